@@ -64,7 +64,7 @@ class ObstacleShape(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Obstacle:
-    """A rigid thing beside the body: it stands still, or moves freely if it has a mass.
+    """A rigid thing beside the body: it stands still, moves freely if it has a mass, or in time along a path.
 
     Attributes:
         name: of it.
@@ -76,6 +76,8 @@ class Obstacle:
         friction: Coulomb's coefficient; None: that of the contact of the body.
         mesh: closed surface, moved by `at`.
         mass: of a thing that moves as it is pushed and pulled [kg], spread evenly; None: it stands still.
+        path: keyframes, instants [s] and where `at` is then [m]; it begins where it stands, goes evenly from one to the
+            next without turning, and stays at the last. Only dynamics knows time; else it stands still.
 
     Raises:
         InputError: a key that is missing or does not belong to the shape, or a wrong value.
@@ -89,6 +91,7 @@ class Obstacle:
     normal: Point | None = None
     friction: float | None = None
     mass: float | None = None
+    path: tuple[tuple[float, Point], ...] = ()
     mesh: ClosedMesh | None = None
 
     def __post_init__(self) -> None:
@@ -127,6 +130,16 @@ class Obstacle:
             check_positive("mass", self.mass, "kg")
             if self.shape is ObstacleShape.PLANE:
                 raise InputError("a plane has no end, so no mass; remove mass, and it stands still")
+            if self.path:
+                raise InputError("a thing with a mass goes where it is pushed, not along a path; remove mass or path")
+        before = 0.0
+        for instant, place in self.path:
+            if not before < instant < np.inf:
+                raise InputError(f"path: its times must rise from above 0 s; {instant:g} s comes after {before:g} s")
+            check_point("path", place)
+            if len(place) != len(self.at):
+                raise InputError(f"path: a place has {len(place)} entries, at has {len(self.at)}; give as many")
+            before = instant
 
     def spine(self) -> Points:
         """Points within it, (points, dim): along the way from `at` to `to`; none of a plane, which has no end [m]."""
@@ -141,6 +154,12 @@ class Obstacle:
     def field(self) -> DistanceField:
         """Distance of points from it."""
         return _FIELDS[ObstacleShape(self.shape)](self)
+
+    def shift(self, instant: float) -> Vector:
+        """How far along its path it has come by an instant of a motion [m]."""
+        times = [0.0, *(time for time, _ in self.path)]
+        places = np.array([self.at, *(place for _, place in self.path)])
+        return np.array([np.interp(instant, times, column) for column in places.T]) - self.at
 
     def frame(self) -> tuple[Vector, Points]:
         """Where its middle is [m], and its axes, a row for each: the first along it, if it is long."""

@@ -103,6 +103,7 @@ class RobotReader(TablesFile):
             file = self._file("obstacle.file", entry.file)
             content = read_bytes(file, file.name, LARGEST_FILE)
             given["mesh"] = closed_mesh(content, file.name, unit=units.scale_up(Decimal(1), self.unit, units.LENGTH))
+        given["path"] = tuple((key.time, self.point(key.at)) for key in entry.path)
         return Obstacle(name=entry.name, shape=entry.shape, at=self.point(entry.at), **given)
 
     def _winch(self, entry: Any) -> Winch:

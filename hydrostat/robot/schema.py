@@ -219,6 +219,13 @@ class ContactTable(TomlTable):
     friction: Number | None = None
 
 
+class KeyframeTable(TomlTable):
+    """An entry of path of [[obstacle]]."""
+
+    time: Time
+    at: Coordinates
+
+
 class ObstacleTable(TomlTable):
     """[[obstacle]]."""
 
@@ -230,6 +237,7 @@ class ObstacleTable(TomlTable):
     normal: Coordinates | None = None
     friction: Number | None = None
     mass: Mass | None = None
+    path: list[KeyframeTable] = []
     file: Text | None = None
 
 

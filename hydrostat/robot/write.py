@@ -201,7 +201,16 @@ class _Writer:
             entry["friction"] = obstacle.friction
         if obstacle.mass is not None:
             entry["mass"] = units.format_quantity(obstacle.mass, units.MASS)
+        if obstacle.path:
+            entry["path"] = self._array(
+                self._key(units.format_quantity(time, units.TIME), place) for time, place in obstacle.path
+            )
         return entry
+
+    def _key(self, time: str, place: Point) -> Any:
+        table = self._toml.inline_table()
+        table.update({"time": time, "at": self.point(place)})
+        return table
 
     def pin(self, pin: Pin) -> dict[str, Any]:
         entry: dict[str, Any] = {}

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics import (
     Assembly,
@@ -23,7 +23,7 @@ from hydrostat.mechanics import (
 )
 from hydrostat.mechanics.patch_volume import PatchVolume
 from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
-from hydrostat.mechanics.rigid import Carriage, CarriedWarp, RigidEnergy
+from hydrostat.mechanics.rigid import Carriage, CarriedWarp, GuideEnergy, RigidEnergy
 from hydrostat.mechanics.warp import Bend
 from hydrostat.robot import Obstacle, Robot, Volume
 
@@ -32,6 +32,7 @@ class BodyPhysics:
     """Elastic body, pins and weight of a robot: energies, sparse pattern, factors at rest, steps along arcs.
 
     It is made once for a body and never changes, so all simulations of networks on it share it, in all threads.
+    Statics has no time, so obstacles with a path stand still there; physics in time have them among the unknowns.
 
     Attributes:
         elastic: the body's resistance to being deformed; to a change of volume too, unless patches measure that.
@@ -42,14 +43,15 @@ class BodyPhysics:
         masses: of the nodes [kg], (nodes,): each element shares its own evenly among its corners.
         inertias: the masses that the unknowns have in motion [kg], (rows,).
         carriages: where the unknowns of obstacles that move are, by their number among the obstacles.
+        guides: energies of what keeps obstacles on their paths, by their numbers, and the obstacle.
         own_contact: energy of the contact of the body with itself, by its number among all energies of a simulation;
             None if it does not feel itself.
         obstacles: energies of the obstacles, by their numbers.
         begin: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the obstacles that move.
     """
 
-    def __init__(self, robot: Robot) -> None:
-        """Physics of the body of `robot`; its network does not matter.
+    def __init__(self, robot: Robot, *, in_time: bool = False) -> None:
+        """Physics of the body of `robot`; its network does not matter; `in_time` obstacles move along their paths.
 
         Raises:
             InputError: a part of the mesh that no pin holds.
@@ -58,8 +60,8 @@ class BodyPhysics:
         self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles
         self.material, self.thickness = body.material, body.thickness
         mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.material.lame
-        self.carriages = _carriages(robot)
-        moving = [carriage.unknowns(*robot.obstacles[index].frame()) for index, carriage in self.carriages.items()]
+        self.carriages = _carriages(robot, in_time=in_time)
+        moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.carriages.items()]
         self.begin = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
         patched = body.volume is Volume.PATCH
         self.elastic = NeoHookean(self.begin, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness)
@@ -78,9 +80,11 @@ class BodyPhysics:
             own = ContactEnergy.of(mesh, **_felt(robot), rest=self.begin)
             rubs = robot.contact.friction
             energies.append(RubbingEnergy.of(mesh, own, rubs) if rubs else own)
-        self.obstacles = []
+        self.obstacles, self.guides = [], dict[int, Obstacle]()
         for index, obstacle in enumerate(robot.obstacles):
             self.obstacles.append(len(energies))
+            if index in self.carriages and obstacle.path:
+                self.guides[len(energies) + 1] = obstacle
             energies += self._met(robot, obstacle, self.carriages.get(index))
         self.assembly = Assembly(energies, rest=self.begin, control_count=0)
 
@@ -136,15 +140,18 @@ class BodyPhysics:
             )
 
     def _met(self, robot: Robot, obstacle: Obstacle, carriage: Carriage | None) -> list[Energy]:
-        """What keeps the body from passing through an obstacle; and the obstacle rigid, if it moves."""
-        field = (obstacle if carriage is None else obstacle.centred()).field()
+        """What keeps the body from passing through an obstacle; and the obstacle rigid, or on its path, if it moves."""
+        field = (obstacle if carriage is None or obstacle.path else obstacle.centred()).field()
         friction = robot.friction_of(obstacle)
         met = ObstacleEnergy(robot.body.mesh, field, **_felt(robot), friction=friction, carriage=carriage)
-        rigid = _RIGID * robot.body.material.young
-        return [
-            met.begun(self.begin),
-            *([] if carriage is None else [RigidEnergy(carriage, rigid * carriage.length**3)]),
-        ]
+        met, rigid = met.begun(self.begin), _RIGID * robot.body.material.young
+        if carriage is None:
+            return [met]
+        if not obstacle.path:
+            return [met, RigidEnergy(carriage, rigid * carriage.length**3)]
+        place, axes = _begin(obstacle)
+        stiffness = rigid * carriage.length
+        return [met, GuideEnergy(carriage, place=place, axes=axes, along=stiffness * axes, turning=stiffness)]
 
     @cached_property
     def warp(self) -> Bend:
@@ -193,20 +200,31 @@ def _felt(robot: Robot) -> dict[str, Any]:
     return {"distance": robot.contact_distance, "young": body.material.young, "thickness": body.thickness}
 
 
-def _carriages(robot: Robot) -> dict[int, Carriage]:
-    """Rows of the unknowns of obstacles that move, after those of the nodes."""
-    carriages, row, dim = {}, len(robot.body.mesh.nodes), robot.body.mesh.dim
+def _carriages(robot: Robot, *, in_time: bool) -> dict[int, Carriage]:
+    """Rows of the unknowns of obstacles that move, after those of the nodes: first of those with a mass."""
+    carriages, row, mesh = {}, len(robot.body.mesh.nodes), robot.body.mesh
     for index, obstacle in enumerate(robot.obstacles):
         if obstacle.mass is not None:
-            carriages[index] = Carriage(row, 2 * float(np.sqrt(obstacle.second_moments().max())), dim)
-            row += 1 + dim
+            carriages[index] = Carriage(row, 2 * float(np.sqrt(obstacle.second_moments().max())), mesh.dim)
+            row += 1 + mesh.dim
+    for index, obstacle in enumerate(robot.obstacles):
+        if in_time and obstacle.path:
+            carriages[index] = Carriage(row, mesh.size, mesh.dim)
+            row += 1 + mesh.dim
     return carriages
+
+
+def _begin(obstacle: Obstacle) -> tuple[Vector, Points]:
+    """Frame of an obstacle at rest; that of the world, if it has a path, along which this frame is shifted."""
+    dim = len(obstacle.at)
+    return (np.zeros(dim), np.eye(dim)) if obstacle.path else obstacle.frame()
 
 
 def _carried(obstacle: Obstacle, carriage: Carriage) -> Float[np.ndarray, " rows"]:
     """Masses of the rows of an obstacle that moves [kg]: its own, then that of each of its axes."""
-    mass = obstacle.mass or 0.0
-    return mass * np.append(1.0, obstacle.second_moments() / carriage.length**2)
+    if obstacle.mass is None:
+        return np.zeros(1 + len(obstacle.at))
+    return obstacle.mass * np.append(1.0, obstacle.second_moments() / carriage.length**2)
 
 
 def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:

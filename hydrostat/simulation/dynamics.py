@@ -89,18 +89,21 @@ class Dynamics:
         material = robot.body.material
         self.robot, self.masses = robot, body.inertias
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
+        self._guides, self._begin = body.guides, body.begin
         branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
         branches += [(material.viscosity, 0.0)] if material.viscosity else []
         viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
         self.memory = Memory(body.begin, body.elastic, viscosities=viscosities, times=times)
         self._round_off = body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
-        rest = self.still(body.begin, np.zeros(len(robot.winches)), None, statics.history)
+        rest = self.still(body.begin, np.zeros(len(robot.winches)), None, None)
         begin = _state(rest)
         moving = self._energies(begin, 1.0, 0.0, list(statics.energies))[len(statics.energies) :]
         self._assembly = statics.extended(moving, control_count=len(robot.winches))
 
-    def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector) -> Motion:
+    def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector | None) -> Motion:
         """A motion that begins at `nodes`, with all viscous branches settled there, after what `history` remembers."""
+        nodes = np.concatenate([nodes, self._begin[len(nodes) :]])  # statics has no rows of obstacles on a path
+        history = self._statics.history if history is None else history
         still, shape = np.zeros_like(nodes), self.robot.body.mesh.nodes.shape
         if velocities is not None and not (velocities.shape == shape and np.isfinite(velocities).all()):
             raise InputError(f"velocities must be finite, {shape}, not {velocities.shape}")
@@ -176,7 +179,7 @@ class Dynamics:
             share = sum(weights) + diagonal
             controls = (1 - share) * motion.contractions + share * goal
             places = (1 - share) * motion.pin_shifts + share * shifts
-            statics = self._remembering(history, end.nodes, at, places)
+            statics = self._remembering(history, end.nodes, at, places, motion.time + share * dt)
             energies = self._energies(base, step, options.drag, statics)
             assembly, result = self._minimise(energies, controls, base, end.nodes, acceleration, step)
             iterations += result.iterations
@@ -191,11 +194,15 @@ class Dynamics:
         counted = replace(result, iterations=iterations, stiffness=None)
         return self._motion(motion.time + dt, (goal, shifts, history), end, acceleration, counted), counted
 
-    def _remembering(self, history: Vector, nodes: Nodes, contractions: Vector, shifts: Points) -> list[Energy]:
-        """The energies of statics with the pins where they are, after what `history` remembers until a state."""
+    def _remembering(
+        self, history: Vector, nodes: Nodes, contractions: Vector, shifts: Points, instant: float
+    ) -> list[Energy]:
+        """Energies of statics at an instant [s], pins and guides where they are, after what `history` remembers."""
         statics = self._statics.resumed(history, nodes, contractions) if len(history) else self._statics
-        energies = statics.energies
-        return [energy.with_supports_moved(shifts) for energy in energies] if shifts.any() else list(energies)
+        energies = list(statics.energies)
+        for slot, obstacle in self._guides.items():
+            energies[slot] = energies[slot].moved(obstacle.shift(instant), np.eye(len(obstacle.at)))  # type: ignore[attr-defined]
+        return [energy.with_supports_moved(shifts) for energy in energies] if shifts.any() else energies
 
     def _energies(self, base: _MotionState, step: float, drag: float, statics: list[Energy]) -> list[Energy]:
         """Those of statics, inertia, and the viscous branches if there are any."""
@@ -263,7 +270,7 @@ class Dynamics:
         """All of an instant; `held` are contractions, shifts of the pins and the history."""
         (contractions, shifts, history), nodes = held, state.nodes
         places = self._markers.positions(nodes)
-        statics = self._remembering(history, nodes, contractions, shifts)
+        statics = self._remembering(history, nodes, contractions, shifts, time)
         count = len(self.robot.body.mesh.nodes)
         carried = (nodes[count:], state.velocities[count:], accelerations[count:])
         return Motion(

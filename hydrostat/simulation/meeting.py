@@ -43,14 +43,16 @@ def replacing(simulation: "Simulation", old: Energy, new: Energy) -> "Simulation
 
 def carried_frames(robot: Robot, carried: Points | None) -> dict[str, tuple[Vector, Points]]:
     """Place [m] and axes of each obstacle that moves, by name, from its unknowns."""
-    moving = [obstacle for obstacle in robot.obstacles if obstacle.mass is not None]
-    if carried is None or not moving:
+    if carried is None:
         return {}
-    parts = carried.reshape(len(moving), -1, carried.shape[1])
-    return {
-        obstacle.name: (rows[0], rows[1:] / np.linalg.norm(rows[1:], axis=1, keepdims=True))
-        for obstacle, rows in zip(moving, parts, strict=True)
-    }
+    free = [obstacle for obstacle in robot.obstacles if obstacle.mass is not None]
+    moving = free + [obstacle for obstacle in robot.obstacles if obstacle.path]
+    frames = {}
+    for obstacle, rows in zip(moving, carried.reshape(-1, 1 + carried.shape[1], carried.shape[1]), strict=False):
+        place, axes = obstacle.frame()
+        turned = rows[1:] / np.linalg.norm(rows[1:], axis=1, keepdims=True)
+        frames[obstacle.name] = (place + rows[0], axes) if obstacle.path else (rows[0], turned)
+    return frames
 
 
 def as_posed(robot: Robot, carried: Points | None) -> Robot:

@@ -1,8 +1,8 @@
 """`write_motion`: a motion as motion.csv, and as motion.pvd with a mesh for each frame, which ParaView plays."""
 
 import shutil
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -13,6 +13,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.geometry.files.vtu_file import write_vtu
 from hydrostat.robot import Robot, replace_file
+from hydrostat.simulation.meeting import carried_frames
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.profile import csv_text
 
@@ -27,6 +28,7 @@ class MotionTable:
         markers: their positions [m].
         tensions: of the cables [N].
         energies: kinetic and potential [J].
+        things: where the middle of each obstacle that moves is [m], by name.
     """
 
     times: Vector
@@ -34,6 +36,7 @@ class MotionTable:
     markers: Float[np.ndarray, "rows markers dim"]
     tensions: Float[np.ndarray, "rows cables"]
     energies: Float[np.ndarray, "rows 2"]
+    things: Mapping[str, Float[np.ndarray, "rows dim"]] = field(default_factory=dict)
 
 
 def write_motion(
@@ -89,17 +92,20 @@ def _until_stopped(motions: Iterable[Motion]) -> Iterator[Motion | NotConvergedE
 
 def _row(robot: Robot, motion: Motion) -> tuple:
     markers = np.array(list(motion.markers.values())).reshape(-1, robot.body.mesh.dim)
-    return motion.time, motion.contractions, markers, motion.tensions, (motion.kinetic, motion.potential)
+    frames = carried_frames(robot, None if motion.carried is None else motion.carried[0])
+    things = {name: place for name, (place, _) in frames.items()}
+    return motion.time, motion.contractions, markers, motion.tensions, (motion.kinetic, motion.potential), things
 
 
 def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
-    times, contractions, markers, tensions, energies = zip(*rows, strict=True)
+    times, contractions, markers, tensions, energies, things = zip(*rows, strict=True)
     return MotionTable(
         times=np.array(times),
         contractions=np.array(contractions).reshape(len(rows), len(robot.winches)),
         markers=np.array(markers),
         tensions=np.array(tensions).reshape(len(rows), len(robot.cables)),
         energies=np.array(energies),
+        things={name: np.array([row[name] for row in things]) for name in things[0]},
     )
 
 
@@ -124,8 +130,10 @@ def _csv(robot: Robot, table: MotionTable) -> bytes:
     head = ["time_s", *(f"{winch.name}_mm" for winch in robot.winches)]
     head += [f"{marker.name}_{axis}_mm" for marker in robot.markers for axis in axes]
     head += [f"cable_{index + 1}_N" for index in range(len(robot.cables))] + ["kinetic_J", "potential_J"]
+    head += [f"{name}_{axis}_mm" for name in table.things for axis in axes]
     places = table.markers.reshape(len(table.times), -1)
     columns = [table.times[:, None], 1e3 * table.contractions, 1e3 * places, table.tensions, table.energies]
+    columns += [1e3 * way for way in table.things.values()]
     return csv_text(head, ([f"{value:.9g}" for value in row] for row in np.concatenate(columns, axis=1)))
 
 

@@ -270,8 +270,7 @@ class Simulation:
         """
         self.check_start(pose)
         if pose is None:
-            idle, history = self.contractions({}), self.assembly.history
-            return self.dynamics.still(self.body.begin, idle, velocities, history)
+            return self.dynamics.still(self.body.begin, self.contractions({}), velocities, None)
         return self.dynamics.still(pose.unknowns, pose.contractions, velocities, pose.history)
 
     def step(
@@ -326,6 +325,9 @@ class Simulation:
     @cached_property
     def dynamics(self) -> Dynamics:
         """Steps in time."""
+        if any(obstacle.path for obstacle in self.robot.obstacles) and not self.body.guides:
+            body = BodyPhysics(self.robot, in_time=True)
+            return Simulation(self.robot, options=self.options, body=body, energies=self._more).dynamics
         return Dynamics(self.robot, self.body, self.assembly, self.tensions, self.marker_anchors, self.options)
 
     @cached_property

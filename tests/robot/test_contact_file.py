@@ -18,7 +18,9 @@ OTHERS = (
     Obstacle(name="rod", shape="capsule", at=(0.3, 0.1), to=(0.4, 0.2), radius=0.01),
     Obstacle(name="step", shape="box", at=(-0.3, 0.0), to=(-0.2, 0.1)),
     Obstacle(name="puck", shape="sphere", at=(0.3, 0.0), radius=0.02, friction=0.4, mass=0.05),
+    Obstacle(name="press", shape="box", at=(-0.3, 0.2), to=(-0.2, 0.3), path=((0.5, (-0.1, 0.2)), (2.0, (0.1, 0.25)))),
 )
+BALL = '[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [900, 0]\nradius = 5\n'
 
 
 def starfish(contact: Contact | None = None, *obstacles: Obstacle) -> Robot:
@@ -74,6 +76,16 @@ def test_the_distance_is_a_share_of_the_size() -> None:
             '[[obstacle]]\nname = "a"\nshape = "plane"\nat = [0, -900]\nnormal = [0, 1]\nmass = "5 g"',
             r"obstacle\[0\]: a plane has no end, so no mass",
         ),
+        (
+            f"{BALL}mass = '5 g'\npath = [{{ time = '1 s', at = [910, 0] }}]",
+            r"obstacle\[0\]: a thing with a mass goes where",
+        ),
+        (
+            f"{BALL}path = [{{ time = '0 s', at = [910, 0] }}]",
+            r"obstacle\[0\].path: its times must rise from above 0 s; 0 s",
+        ),
+        (f"{BALL}path = [{{ time = '1 s', at = [9, 1, 0] }}]", r"obstacle\[0\].path: a place has 3 entries, at has 2"),
+        (f"{BALL}path = [{{ at = [910, 0] }}]", r"obstacle\[0\].path\[0\].time"),
         ('[[obstacle]]\nname = "a"\nshape = "cone"\nat = [900, 0]', r"obstacle\[0\].shape"),
         ('[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [900, 0]', r"obstacle\[0\]: a sphere needs a radius"),
         ('[[obstacle]]\nname = "a"\nshape = "plane"\nat = [0, 0]\nnormal = [0, 0]', "normal must not be 0"),
@@ -110,7 +122,7 @@ def test_a_body_that_crosses_itself_at_rest_is_risky() -> None:
 
 
 def test_friction_of_an_obstacle_is_its_own_or_that_of_the_contact() -> None:
-    puck = OTHERS[-1]
+    puck = OTHERS[-2]
     assert starfish(Contact(friction=0.2), WALL).friction_of(WALL) == 0.2
     assert starfish(Contact(friction=0.2), puck).friction_of(puck) == 0.4
     assert starfish(None, WALL).friction_of(WALL) == 0.0
