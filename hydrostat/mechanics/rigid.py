@@ -103,6 +103,7 @@ class GuideEnergy(Energy):
         unit = np.eye(carriage.dim)
         self.stiffness = np.concatenate([along[None], np.repeat(turning * unit[None], carriage.dim, axis=0)])
         self.targets = carriage.unknowns(place, axes)
+        self.stiffest = float(np.abs(self.stiffness).max())
 
     def moved(self, place: Vector, axes: Matrix) -> "GuideEnergy":
         """The same springs to another place [m] and other axes."""

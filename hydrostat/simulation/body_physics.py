@@ -190,7 +190,8 @@ class BodyPhysics:
         scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
         springs = [pin.stiffness for pin in pins]
-        springs += [_RIGID * body.material.young * carriage.length for carriage in self.carriages.values()]
+        lengths = [carriage.length for carriage in self.carriages.values()]  # of axes, at which A A^T - I pulls
+        springs += [2 * _RIGID * body.material.young * length * max(1.0, length / reach) for length in lengths]
         return scale, reach, max(springs, default=0.0), body.mesh.size
 
 

@@ -59,8 +59,7 @@ class Simulation:
             robot: body and network.
             options: how far Newton goes.
             body: the physics of its body, if they are at hand; making them anew takes longer than all else here.
-            energies: more physics, such as a magnet or a floor; they read the winches' contractions if they have
-                controls.
+            energies: more physics, such as a magnet or a floor; controls of theirs are the winches' contractions.
 
         Raises:
             InputError: physics of another body, or a part of the mesh that no pin holds.
@@ -74,7 +73,8 @@ class Simulation:
         more = [self.friction or self.cables, *energies]
         self.assembly: Assembly = self.body.assembly.extended(more, control_count=len(robot.winches))
         self._more = tuple(energies)
-        hidden = self.body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
+        springs = [*(cable.stiffness for cable in robot.cables), *(energy.stiffest for energy in energies)]
+        hidden = self.body.round_off(max(springs, default=0.0))
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
     def contractions(self, given: Contractions) -> Vector:
