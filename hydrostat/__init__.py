@@ -36,10 +36,12 @@ if TYPE_CHECKING:
         Trajectory,
         TrajectoryOptions,
         drawn_pose,
+        new_robot,
         solve_ik,
         solve_ik_trajectory,
     )
     from hydrostat.mechanics import NewtonOptions
+    from hydrostat.plot import draw_network, draw_pose, draw_reached, draw_rest
     from hydrostat.robot import (
         Cable,
         Contact,
@@ -50,9 +52,11 @@ if TYPE_CHECKING:
         Pose,
         Robot,
         Winch,
+        find_material,
         load_robot,
         save_robot,
     )
+    from hydrostat.robot import gallery_names as gallery
     from hydrostat.simulation import (
         Branch,
         ManyPoses,
@@ -125,11 +129,18 @@ __all__ = [
     "__version__",
     "build_kit",
     "design_cables",
+    "draw_network",
+    "draw_pose",
+    "draw_reached",
+    "draw_rest",
     "drawn_pose",
     "export_kit",
+    "find_material",
     "follow_branch",
     "friction_band",
+    "gallery",
     "load_robot",
+    "new_robot",
     "path_dependence",
     "save_robot",
     "solve_ik",
@@ -190,11 +201,18 @@ _HOMES = {
     "Zone": "design",
     "build_kit": "fabrication",
     "design_cables": "design",
+    "draw_network": "plot",
+    "draw_pose": "plot",
+    "draw_reached": "plot",
+    "draw_rest": "plot",
     "drawn_pose": "ik",
     "export_kit": "fabrication",
+    "find_material": "robot",
     "follow_branch": "simulation",
     "friction_band": "simulation",
+    "gallery": "robot",
     "load_robot": "robot",
+    "new_robot": "ik",
     "path_dependence": "simulation",
     "save_robot": "robot",
     "solve_ik": "ik",
@@ -202,11 +220,14 @@ _HOMES = {
     "touches": "simulation",
 }
 
+_OWN_NAMES = {"gallery": "gallery_names"}
+"""What is called otherwise within the package."""
+
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'hydrostat' has no attribute '{name}'")
-    return getattr(import_module(f"hydrostat.{_HOMES[name]}"), name)
+    return getattr(import_module(f"hydrostat.{_HOMES[name]}"), _OWN_NAMES.get(name, name))
 
 
 def __dir__() -> list[str]:

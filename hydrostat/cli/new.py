@@ -1,9 +1,7 @@
 """`hydrostat new`."""
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 from shutil import rmtree
@@ -17,10 +15,8 @@ from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
+    from hydrostat.ik import NewRobotWish
     from hydrostat.robot import Robot
-
-MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
-CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
 LONGEST = 20.0  # no length that is asked for is longer [m]
 
@@ -52,12 +48,14 @@ def new(
 
     Example: hydrostat new my_hand --from scan.stl --size "190 mm" --nodes 900
     """
+    from hydrostat.ik import NewRobotWish
+
     if name.exists() and (not name.is_dir() or any(name.iterdir())):
         raise InputError(f"{name}: exists already; choose another name or remove it")
     if nodes is not None and element_size is not None:
         raise InputError("--nodes and --element-size: give one of them")
-    wish = _Wish(
-        robot_name=name.resolve().name,
+    wish = NewRobotWish(
+        name=_robot_name(name),
         size=_length("size", size),
         element_size=_length("element_size", element_size),
         nodes=nodes,
@@ -74,23 +72,11 @@ def new(
     _print_made(made, name, [line.replace(str(folder), str(name)) for line in lines])
 
 
-@dataclass(frozen=True)
-class _Wish:
-    """Wishes of the options, lengths in metres; None where nothing is asked."""
+def _robot_name(folder: Path) -> str:
+    """Name of a robot after its folder (InputError: no robot may be called so)."""
+    from hydrostat.robot.checks import check_name
 
-    robot_name: str
-    size: float | None
-    element_size: float | None
-    nodes: int | None
-    thickness: float | None
-    inflate: float | None
-    material: str | None
-
-    def refuse(self, what: str, *keys: str) -> None:
-        """Refuse options that do not fit."""
-        for key in keys:
-            if getattr(self, key) is not None:
-                raise InputError(f"--{key.replace('_', '-')}: {what}; leave it out")
+    return check_name(folder.resolve().name)
 
 
 def _length(key: str, text: str | None) -> float | None:
@@ -130,104 +116,40 @@ def _made_whole(name: Path) -> Iterator[Path]:
                 parent.rmdir()
 
 
-def _begin(source: str, folder: Path, wish: _Wish) -> list[str]:
+def _begin(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
     """Make the robot; returns what there is to tell."""
-    from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
-    from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
+    from hydrostat.ik import begin_robot
+    from hydrostat.plot import draw_healing, save_png
+    from hydrostat.robot import replace_file, save_robot
+    from hydrostat.robot.gallery import is_of_gallery
 
-    if source.startswith("gallery:"):
-        return _from_gallery(source.removeprefix("gallery:"), folder, wish)
-    path = Path(source)
-    kinds = {OUTLINE_SUFFIXES: _from_drawing, SURFACE_SUFFIXES: _from_surface, MESH_SUFFIXES: _from_mesh}
-    for suffixes, make in kinds.items():
-        if path.suffix.lower() in suffixes:
-            if not path.is_file():
-                raise InputError(f"{source}: there is no such file")
-            return make(path, folder, wish)
-    if path.is_dir():
-        raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
-    if path.suffix.lower() in CAD_SUFFIXES:
-        raise InputError(f"{source}: CAD files are not read; export it as STL or 3MF")
-    known = ", ".join(ending for suffixes in kinds for ending in suffixes)
-    raise InputError(f"{source}: cannot be read; a robot begins from gallery:NAME or a file that ends in {known}")
+    if is_of_gallery(source):
+        return _from_gallery(source, folder, wish)
+    begun = begin_robot(source, wish)
+    save_robot(begun.robot, folder)
+    lines, sketch = list(begun.notes), begun.sketch
+    if sketch is not None and not sketch.healing.clean:
+        told = sketch.healing.lines()
+        replace_file(folder / "healing.txt", ("\n".join(told) + "\n").encode())
+        figure = draw_healing(sketch.before, sketch.healing.surface, notes=told, places=sketch.healing.places)
+        save_png(figure, folder / "healing.png")
+        lines.append(f"surface: see {folder / 'healing.png'}; the file that came is not changed")
+    return lines
 
 
-def _from_gallery(robot: str, folder: Path, wish: _Wish) -> list[str]:
-    """Copy a robot, if asked with other elements."""
+def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
+    """Copy a robot under its new name, if asked with other elements."""
     from hydrostat.robot import gallery_folder, load_robot, replace_file
-    from hydrostat.robot.write import with_element_size
+    from hydrostat.robot.gallery import GALLERY
+    from hydrostat.robot.write import with_values
 
     wish.refuse("a gallery robot has its own; edit robot.toml", "size", "thickness", "inflate", "material")
-    source = gallery_folder(robot)
-    files = {file.name: file.read_bytes() for file in sorted(source.iterdir()) if file.is_file()}
-    wanted = wish.element_size if wish.nodes is None else load_robot(source).body.element_size_for(wish.nodes)
-    if wanted is not None:
-        files["robot.toml"] = with_element_size(files["robot.toml"].decode(), wanted).encode()
+    shelf = gallery_folder(source.removeprefix(GALLERY))
+    files = {file.name: file.read_bytes() for file in sorted(shelf.iterdir()) if file.is_file()}
+    wanted = wish.element_size if wish.nodes is None else load_robot(shelf).body.element_size_for(wish.nodes)
+    files["robot.toml"] = with_values(files["robot.toml"].decode(), name=wish.name, element_size=wanted).encode()
     for file, content in files.items():
         replace_file(folder / file, content)
-    return []
-
-
-def _from_drawing(path: Path, folder: Path, wish: _Wish) -> list[str]:
-    from hydrostat.geometry.files.outline_file import read_drawing
-    from hydrostat.robot import save_robot, sketch_robot
-    from hydrostat.robot.sketch_space import inflated
-
-    content, file = path.read_bytes(), _file_name(path.name)
-    drawing = read_drawing(content, name=file, size=wish.size)
-    notes = [f"drawing: {note}" for note in drawing.notes]
-    material = wish.material or "polyester fibre"
-    if wish.inflate is None:
-        sizes = {"size": wish.size, "element_size": wish.element_size, "thickness": wish.thickness}
-        robot = sketch_robot(content, file=file, name=wish.robot_name, material=material, nodes=wish.nodes, **sizes)
-        save_robot(robot, folder)
-        return notes
-    wish.refuse("an inflated body is as thick as --inflate says", "thickness")
-    blown = inflated(drawing.outline, wish.inflate)
-    return [*notes, *_from_bytes(blown, f"{path.stem}.ply", folder, wish, material, size=None)]
-
-
-def _from_surface(path: Path, folder: Path, wish: _Wish) -> list[str]:
-    wish.refuse("is only for drawings", "thickness", "inflate")
-    return _from_bytes(path.read_bytes(), path.name, folder, wish, wish.material or "flexfoam-it x", size=wish.size)
-
-
-def _from_bytes(
-    content: bytes, file: str, folder: Path, wish: _Wish, material: str, *, size: float | None
-) -> list[str]:
-    """A robot from a surface; if that had to be healed, with its report and picture."""
-    from hydrostat.ik.first_pose import with_first_pose
-    from hydrostat.plot import draw_healing, save_png
-    from hydrostat.robot import replace_file, save_robot, sketch_surface
-
-    sketch = sketch_surface(
-        content,
-        file=_file_name(file),
-        name=wish.robot_name,
-        size=size,
-        element_size=wish.element_size,
-        nodes=wish.nodes,
-        material=material,
-    )
-    save_robot(with_first_pose(sketch.robot), folder)
-    lines = list(sketch.healing.lines())
-    if not sketch.healing.clean:
-        replace_file(folder / "healing.txt", ("\n".join(lines) + "\n").encode())
-        figure = draw_healing(sketch.before, sketch.healing.surface, notes=lines, places=sketch.healing.places)
-        save_png(figure, folder / "healing.png")
-        lines.append(f"see {folder / 'healing.png'}; the file that came is not changed")
-    return [f"surface: {line}" for line in lines]
-
-
-def _from_mesh(path: Path, folder: Path, wish: _Wish) -> list[str]:
-    from hydrostat.ik.first_pose import with_first_pose
-    from hydrostat.robot import save_robot, sketch_mesh
-
-    wish.refuse("a ready mesh has its own elements", "element_size", "nodes")
-    wish.refuse("is only for drawings", "thickness", "inflate")
-    material = wish.material or "flexfoam-it x"
-    robot = sketch_mesh(path, name=wish.robot_name, size=wish.size, material=material)
-    save_robot(with_first_pose(robot), folder)
     return []
 
 
@@ -264,7 +186,3 @@ def _print_made(made: "Robot", name: Path, lines: list[str]) -> None:
     elif made.winches:
         pull = f"{made.winches[0].name}={250 * made.winches[0].travel:.0f}mm"
         print(f"Next: hydrostat simulate {folder} --contract {quote(pull)} --out {quote(f'build/{made.name}')}")
-
-
-def _file_name(name: str) -> str:
-    return re.sub(r"[^\w.-]", "_", name)

@@ -10,8 +10,8 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.learned import learned_start, read_model
-from hydrostat.cli.options import EqualWinches, MostTension, pose_limits
-from hydrostat.cli.waiting import read_robot
+from hydrostat.cli.options import EqualWinches, MostTension, asked, pose_limits
+from hydrostat.cli.waiting import read_robot, search_told
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,6 +35,9 @@ def pose(
     restarts: Annotated[
         int | None, typer.Option(metavar="N", help="How often to begin elsewhere where a goal is missed.")
     ] = None,
+    within: Annotated[
+        str | None, typer.Option(metavar="TIME", help="End each search after so long, with the best pose it has.")
+    ] = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
     model: Annotated[
         Path | None, typer.Option(metavar="MODEL", help="Begin from what hydrostat learn has written.")
@@ -50,15 +53,17 @@ def pose(
     """
     from hydrostat.ik import InverseOptions, InverseReason, ShapeGoal, drawn_pose, solve_ik
     from hydrostat.simulation import Simulation
+    from hydrostat.units import TIME
 
     require_folder(out)
-    limits = pose_limits(tension, equal)
+    limits, patience = pose_limits(tension, equal), asked("--within", within, TIME)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
     options = InverseOptions() if restarts is None else InverseOptions(restarts=restarts)
     loaded = read_robot(robot)
     outline = None if drawing is None else drawn_pose(loaded, drawing)
     wishes = [] if outline is None else [ShapeGoal(outline=outline)]
+    asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": patience}
     targets = _targets(loaded, robot, name, drawing)
     learned, loaded = (None, loaded) if model is None else read_model(model, loaded)
     simulation = Simulation(loaded)
@@ -66,7 +71,8 @@ def pose(
     for title, target in targets:
         began = time.process_time()
         start = None if learned is None or target is None else learned_start(simulation, learned, target)
-        reached = solve_ik(simulation, target, limits=limits, objectives=wishes, start=start, options=options)
+        with search_told(title) as tell:
+            reached = solve_ik(simulation, target, start=start, progress=tell, **asked_for)
         seconds = time.process_time() - began
         folder: Path = out / title if len(targets) > 1 else out
         _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)

@@ -2,6 +2,7 @@
 
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -66,6 +67,28 @@ def progress_bar() -> Iterator[Callable[[str, int, int], None]]:
             bar.update(tasks[stage], completed=done, total=total)  # type: ignore[arg-type]
 
         yield tell
+
+
+@contextmanager
+def search_told(title: str) -> Iterator[Callable[[int, float], None]]:
+    """A function to call with the steps of a search and its error [m]: after a while it says how the search goes."""
+    last, shown = time.monotonic(), False
+
+    def tell(steps: int, error: float) -> None:
+        nonlocal last, shown
+        if time.monotonic() - last < PATIENCE:
+            return
+        last = time.monotonic()
+        words = f"{title}: step {steps}, rms error {1e3 * error:.2f} mm ..."
+        print(
+            f"\r{words:<60}" if sys.stderr.isatty() else words, end="" if sys.stderr.isatty() else "\n", file=sys.stderr
+        )
+        sys.stderr.flush()
+        shown = sys.stderr.isatty()
+
+    yield tell
+    if shown:
+        print(f"\r{'':<60}\r", end="", file=sys.stderr, flush=True)
 
 
 def _lines() -> Callable[[str, int, int], None]:

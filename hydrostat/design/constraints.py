@@ -184,6 +184,13 @@ class Constraints:
                     part(name)
                 except InputError as error:
                     raise InputError(f"constraints: {field}[{place}]: {error}") from None
+        for field, allowed in RANGES.items():
+            value = getattr(self, field)
+            if allowed.unit == "m" and value is not None and value > _SIZES * mesh.size:
+                raise InputError(
+                    f"constraints: {field} = {value:g} m is too much for a body of {mesh.size:.3g} m; "
+                    "lengths are in metres: 5 mm is 0.005"
+                )
         if self.mount is Mount.WORLD and not robot.winches:
             raise InputError(
                 'constraints: mount = "world": winches in the world stand at places of the robot\'s own winches, and '
@@ -221,7 +228,8 @@ class Constraints:
         for field, allowed in RANGES.items():
             value = getattr(self, field)
             if not allowed.holds(value):
-                _refuse(field, value, f"{allowed}, or None" if allowed.optional else str(allowed))
+                metres = "; in metres: 5 mm is 0.005" if allowed.unit == "m" else ""
+                _refuse(field, value, f"{allowed}, or None" if allowed.optional else str(allowed), metres)
 
     def _check_locks(self) -> None:
         for field, kind in (("locked_winches", "winch"), ("locked_cables", "cable")):
@@ -233,8 +241,11 @@ class Constraints:
                     raise InputError(f"constraints: {field} names {name!r} twice; name it once")
 
 
-_LENGTH = Range(above=True, unit="m")
-_GAP = Range(unit="m")
+LONGEST = 20.0
+"""No length that is asked for is longer [m]: more was meant in another unit."""
+
+_LENGTH = Range(above=True, most=LONGEST, unit="m")
+_GAP = Range(most=LONGEST, unit="m")
 
 RANGES = {
     "cables_per_winch": Range(whole=True, least=1, most=60),
@@ -246,7 +257,7 @@ RANGES = {
     "cable_gap": _GAP,
     "turn": Range(above=True, most=180.0, unit="degrees"),
     "bend_radius": _GAP,
-    "longest": Range(above=True, optional=True, unit="m"),
+    "longest": Range(above=True, most=LONGEST, optional=True, unit="m"),
     "tension": Range(above=True, most=1000.0, unit="N"),
     "torque": Range(above=True, most=100.0, unit="N m", optional=True),
     "travel": _LENGTH,
@@ -257,6 +268,7 @@ RANGES = {
 }
 """What each number of `Constraints` may be."""
 
+_SIZES = 10.0  # lengths of constraints are at most so many sizes of the body
 _ASKEW = 0.02  # share of its width by which a body's two sides may lie unevenly about a mirror
 
 
@@ -266,5 +278,5 @@ def _several(field: str, given: object) -> tuple[object, ...]:
     return tuple(given)
 
 
-def _refuse(field: str, value: object, allowed: str) -> NoReturn:
-    raise InputError(f"constraints: {field} must be {allowed}, not {value!r:.60}")
+def _refuse(field: str, value: object, allowed: str, hint: str = "") -> NoReturn:
+    raise InputError(f"constraints: {field} must be {allowed}, not {value!r:.60}{hint}")

@@ -15,7 +15,7 @@ from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, 
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.trees.design_trees import design_trees
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import BodyPhysics
 
@@ -54,6 +54,8 @@ def design_cables(
         InputError: no pose, a pose of a marker that does not exist, counts, constraints or options that do not fit.
         HydrostatError: no network can be built.
     """
+    if isinstance(poses, Pose) or not isinstance(poses, Iterable):
+        raise InputError(f"poses must be several, such as [pose] or robot.poses.values(), not {type(poses).__name__}")
     given = {name: value for name, value in asked.items() if value is not None}
     given["method"] = member(DesignMethod, given.get("method", DesignRequest.method), what="method")
     return find_network(robot, DesignRequest(poses=tuple(poses), **given), progress=progress, watch=watch)  # type: ignore[arg-type]
@@ -71,6 +73,8 @@ def find_network(
         InputError: a request that does not fit the robot.
         HydrostatError: no network can be built.
     """
+    if not isinstance(robot, Robot):
+        raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
     stated, told = faced(robot), progress or silent
     fitted = request.fitted(stated)
     if fitted.filled:

@@ -8,6 +8,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
 from hydrostat.robot import Obstacle, Robot, closed_mesh
 from hydrostat.units import LENGTH, parse_quantity
@@ -57,11 +58,7 @@ def _from_file(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
     """Thing of a surface file in millimetres, with its middle at the origin."""
     if dim == 2:
         raise InputError(f"{text}: a flat body meets no mesh; use a sphere, which is a disc in the plane, or a box")
-    try:
-        content = Path(text).read_bytes()
-    except OSError as error:
-        raise InputError(f"{text}: cannot be read ({error.strerror})") from None
-    mesh = closed_mesh(content, Path(text).name)
+    mesh = closed_mesh(read_stranger(text), Path(text).name)
     return Obstacle(name="thing", shape="mesh", at=tuple(-mesh.masses()[1]), mesh=mesh, mass=mass, friction=friction)
 
 

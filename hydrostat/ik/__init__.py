@@ -1,6 +1,7 @@
 """Which contractions reach a pose."""
 
 from hydrostat.ik.limits import Limits
+from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, begin_robot, new_robot
 from hydrostat.ik.objectives.centre_goal import CentreGoal
 from hydrostat.ik.objectives.closeness import Closeness, ClosenessKind
 from hydrostat.ik.objectives.effort import Effort, EffortKind
@@ -19,6 +20,7 @@ from hydrostat.ik.trajectory.solve_ik_trajectory import TrajectoryOptions, solve
 from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory
 
 __all__ = [
+    "BegunRobot",
     "CentreGoal",
     "Closeness",
     "ClosenessKind",
@@ -33,6 +35,7 @@ __all__ = [
     "Limits",
     "MarkerGoal",
     "Moves",
+    "NewRobotWish",
     "Objective",
     "PathKind",
     "PointGoal",
@@ -45,9 +48,11 @@ __all__ = [
     "Tracker",
     "Trajectory",
     "TrajectoryOptions",
+    "begin_robot",
     "drawn_pose",
     "find_reach",
     "moves_at",
+    "new_robot",
     "posture_at",
     "solve_ik",
     "solve_ik_trajectory",

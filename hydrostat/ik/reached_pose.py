@@ -8,6 +8,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose
+from hydrostat.robot.notebook import notebook_html
 from hydrostat.simulation import SolvedPose
 
 
@@ -19,6 +20,7 @@ class InverseReason(StrEnum):
     STUCK = "no step brings it nearer, though there is more to gain"
     TOO_TIGHT = "no pose found that keeps the limits on tension"
     ITERATION_LIMIT = "iteration limit reached"
+    TIME_LIMIT = "time limit reached"
     NO_EQUILIBRIUM = "no equilibrium could be found on the way"
 
 
@@ -53,6 +55,18 @@ class ReachedPose:
     def without_factors(self) -> "ReachedPose":
         """The same with a pose that keeps no factorised Hessian, to be kept with many others."""
         return replace(self, pose=self.pose.without_factors())
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        goal = "objectives" if self.target is None else repr(self.target.name)
+        return f"<ReachedPose for {goal}: rms error {1e3 * self.rms_error:.3g} mm; {self.reason}; {self.pose!r}>"
+
+    def _repr_html_(self) -> str:
+        """The line, what is to be minded, and a picture, for a notebook."""
+        import hydrostat  # the front door: it knows the room of pictures, which is above this one
+
+        words = "\n".join([repr(self), *self.held, *self.pose.notes])
+        return notebook_html(words, hydrostat.draw_reached(self.pose.robot, self))
 
     @property
     def wanted(self) -> Pose:

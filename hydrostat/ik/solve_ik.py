@@ -16,6 +16,7 @@ from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.descend import descend, least_effort
 from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_pose
 from hydrostat.ik.search.others_stay import others_stayed
+from hydrostat.ik.search.patience import Patience, Tell
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
 from hydrostat.robot import Point, Pose
 from hydrostat.simulation import Simulation, SolvedPose, check_still, friction_band, smooth_robot
@@ -31,6 +32,8 @@ def solve_ik(
     objectives: Sequence[Objective] = (),
     start: SolvedPose | None = None,
     options: InverseOptions | None = None,
+    seconds: float | None = None,
+    progress: Tell | None = None,
 ) -> ReachedPose:
     """Bounded Gauss-Newton through the sensitivities of the equilibrium (R31 to R33, E18).
 
@@ -50,13 +53,15 @@ def solve_ik(
         start: a pose to begin from, and to count rates from; the rest pose if left out. Where the goals leave a choice
             it does not matter, unless `options.unique` is off.
         options: tolerances and limits of the search.
+        seconds: after which it ends with the best pose that it has; no limit if left out.
+        progress: called at each step with the number of steps in this descent and the rms error [m] it has.
 
     Raises:
         InputError: nothing to reach, something that the robot does not have, limits without room, a robot without
             cables, or other physics that remember the way.
         NotConvergedError: no equilibrium where the search begins.
     """
-    target = as_pose(targets)
+    target, patience = as_pose(targets), Patience.of(seconds, progress)
     check_still(simulation.robot, "inverse kinematics")
     if (robot := smooth_robot(simulation.robot)) is not simulation.robot:
         begin = None if start is None else replace(start, history=np.zeros(0))
@@ -67,6 +72,8 @@ def solve_ik(
             objectives=objectives,
             start=begin,
             options=options,
+            seconds=seconds,
+            progress=progress,
         )
         return _followed(simulation, found, start)
     given = limits or Limits()
@@ -76,7 +83,7 @@ def solve_ik(
     terms = [wish.on(simulation) for wish in wishes(target, objectives)]
     ready = given.rate is not None or any(keeps_taut(wish) for wish in objectives)
     problem = InverseProblem(simulation, terms, allowed, options or InverseOptions(), ready=ready)
-    search = InverseSearch(problem, origin=start)
+    search = InverseSearch(problem, origin=start, patience=patience)
     begun = search.begin(start)
     seek = descend
     if problem.options.unique and problem.redundant(begun):
@@ -126,7 +133,7 @@ def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objecti
 
 def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, InverseState], Descent]) -> Descent:
     """The best of several beginnings; the first that reaches its goal."""
-    if found.reason is InverseReason.REACHED or not found.state.errors:
+    if found.reason in (InverseReason.REACHED, InverseReason.TIME_LIMIT) or not found.state.errors:
         return found
     spent = found.iterations
     best = [found.state]
@@ -139,6 +146,8 @@ def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, 
             best.append(other.state)
         if found.reason is InverseReason.REACHED:
             break
+        if search.patience.over:
+            return replace(found, reason=InverseReason.TIME_LIMIT).after(spent)
     return found.after(spent)
 
 

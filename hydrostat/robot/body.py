@@ -229,12 +229,13 @@ def mesh_body(
 ) -> Body:
     """Body from a ready mesh, in units of `unit` metres (InputError: the file cannot be read or holds no such mesh)."""
     from hydrostat.geometry.files.mesh_file import read_mesh
+    from hydrostat.geometry.files.stranger import read_stranger
 
     _check_lengths(size=size, thickness=thickness)
     return Body(
         source=Source.MESH,
         file=path.name,
-        content=path.read_bytes(),
+        content=read_stranger(path, name=path.name),
         material=material,
         size=size,
         thickness=thickness,

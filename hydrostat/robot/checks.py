@@ -2,6 +2,7 @@
 
 import math
 import unicodedata
+from numbers import Real
 
 from hydrostat import units
 from hydrostat.errors import InputError
@@ -9,14 +10,22 @@ from hydrostat.errors import InputError
 Point = tuple[float, ...]  # coordinates [m] in the rest pose, two or three
 
 
+def check_number(field: str, value: object, unit: str) -> None:
+    """Refuse what is no number, such as a text with a unit: texts are for robot.toml."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise InputError(f"{field} must be a number{f' in {unit}' if unit else ''}, not {value!r:.60}")
+
+
 def check_positive(field: str, value: float, unit: str) -> None:
-    """Refuse what is not finite and above 0."""
+    """Refuse what is no number, or not finite and above 0."""
+    check_number(field, value, unit)
     if not 0 < value < math.inf:
         raise InputError(f"{field} must be finite and above 0, not {value:g} {unit}")
 
 
 def check_not_negative(field: str, value: float, unit: str) -> None:
-    """Refuse what is not finite or is below 0."""
+    """Refuse what is no number, not finite or below 0."""
+    check_number(field, value, unit)
     if not 0 <= value < math.inf:
         raise InputError(f"{field} must be finite and not negative, not {value:g} {unit}")
 

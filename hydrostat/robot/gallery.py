@@ -2,8 +2,17 @@
 
 from importlib.resources import files
 from pathlib import Path
+from typing import TypeGuard
 
 from hydrostat.errors import InputError
+
+GALLERY = "gallery:"
+"""What stands before the name of a gallery robot, in place of a folder."""
+
+
+def is_of_gallery(source: object) -> TypeGuard[str]:
+    """Whether a source names a robot of the gallery, such as "gallery:starfish"."""
+    return isinstance(source, str) and source.startswith(GALLERY)
 
 
 def gallery_names() -> list[str]:

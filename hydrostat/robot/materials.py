@@ -11,9 +11,10 @@ from types import MappingProxyType
 from typing import Self
 
 from hydrostat.errors import InputError
-from hydrostat.robot.checks import check_not_negative, check_positive
+from hydrostat.robot.checks import check_not_negative, check_number, check_positive
 from hydrostat.units import quote
 
+SOFTEST = 100.0  # Young's modulus of a material is at least so much [Pa]: less was meant in another unit
 MOST_BRANCHES = 10  # a material has at most this many branches
 
 
@@ -69,9 +70,15 @@ class Material:
 
     def __post_init__(self) -> None:
         check_positive("young", self.young, "Pa")
+        check_number("poisson", self.poisson, "")
         if not 0 <= self.poisson < 0.5:
             raise InputError(
                 f"poisson must be at least 0 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
+            )
+        if self.young < SOFTEST:
+            raise InputError(
+                f"young must be at least {SOFTEST:g} Pa, softer than any gel that keeps its shape, not "
+                f"{self.young:g} Pa; 30 kPa is 30e3"
             )
         check_positive("density", self.density, "kg/m^3")
         check_not_negative("viscosity", self.viscosity, "Pa s")

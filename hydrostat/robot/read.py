@@ -9,28 +9,35 @@ from typing import TYPE_CHECKING, Any
 
 from hydrostat import units
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.closed_mesh import closed_mesh
 from hydrostat.robot.contact import Contact, Obstacle
+from hydrostat.robot.gallery import GALLERY, gallery_folder, is_of_gallery
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import Material, Relaxation, find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
-from hydrostat.robot.tables_file import TablesFile, read_bytes, read_text
+from hydrostat.robot.tables_file import TablesFile, read_text
 from hydrostat.robot.winch import Winch
 
 if TYPE_CHECKING:
     from hydrostat.robot.schema import TomlTable
 
 FILE = "robot.toml"
-LARGEST_FILE = 200_000_000  # the file of a body may have this many bytes
 
 
 def load_robot(path: str | Path) -> Robot:
-    """Robot from its folder or robot.toml (InputError: one line with file, line or key, what is wrong and allowed)."""
-    path = Path(path)
+    """Read a robot from its folder, its robot.toml, or the gallery, as "gallery:starfish".
+
+    Raises:
+        InputError: one line with file, line or key, what is wrong and what is allowed.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise InputError(f'a robot is read from its folder, its robot.toml or "gallery:NAME", not from {path!r:.60}')
+    path = gallery_folder(path.removeprefix(GALLERY)) if is_of_gallery(path) else Path(path)
     file = path if path.suffix == ".toml" and not os.path.isdir(path) else path / FILE
     if os.path.isfile(path) and file != path:
         raise InputError(f"{path}: is neither the folder of a robot nor a robot.toml; begin a robot with hydrostat new")
@@ -101,7 +108,7 @@ class RobotReader(TablesFile):
         given |= _given(entry, "mass")
         if entry.file is not None:
             file = self._file("obstacle.file", entry.file)
-            content = read_bytes(file, file.name, LARGEST_FILE)
+            content = read_stranger(file, name=file.name)
             given["mesh"] = closed_mesh(content, file.name, unit=units.scale_up(Decimal(1), self.unit, units.LENGTH))
         given["path"] = tuple((key.time, self.point(key.at)) for key in entry.path)
         return Obstacle(name=entry.name, shape=entry.shape, at=self.point(entry.at), **given)
@@ -139,7 +146,7 @@ class RobotReader(TablesFile):
             make = partial(mesh_body, file, unit=unit)
         else:
             self._need(entry, source)
-            content = self.at(f"body.{source}", lambda: read_bytes(file, file.name, LARGEST_FILE))
+            content = self.at(f"body.{source}", lambda: read_stranger(file, name=file.name))
             given = {"file": file.name, "element_size": entry.element_size}
             if source is Source.SURFACE:
                 make = partial(surface_body, content, unit=unit, **given)
@@ -165,8 +172,6 @@ class RobotReader(TablesFile):
             self.fail(key, f"{units.quote(name)} must be the plain name of a file beside robot.toml, without a folder")
         if not os.path.isfile(file):  # unlike Path.is_file, False for a name too long for the system
             self.fail(key, f"there is no file {units.quote(name)} beside robot.toml; put it there")
-        if file.stat().st_size > LARGEST_FILE:
-            self.fail(key, f"{units.quote(name)} is larger than {LARGEST_FILE // 10**6} MB")
         return file
 
 

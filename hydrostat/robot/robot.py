@@ -18,8 +18,11 @@ from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.marker import Marker, Pose
+from hydrostat.robot.materials import Material, find_material
+from hydrostat.robot.notebook import notebook_html
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.winch import Mount, Winch
+from hydrostat.units import counted
 
 _Part = TypeVar("_Part", Winch, Cable)
 
@@ -134,6 +137,43 @@ class Robot:
     def with_network(self, winches: Iterable[Winch], cables: Iterable[Cable]) -> Self:
         """The same robot with other winches and cables."""
         return replace(self, winches=tuple(winches), cables=tuple(cables))
+
+    def with_material(self, material: Material | str | None = None, **changed: float) -> Self:
+        """The same robot of another material, its mesh kept.
+
+        Args:
+            material: a `Material`, or the name of one in the table; that of the robot if left out.
+            changed: numbers of it that differ, such as `young=50e3`.
+
+        Raises:
+            InputError: no material has this name, or a number that none has or that is out of its range.
+        """
+        known = find_material(material) if isinstance(material, str) else material or self.body.material
+        if not isinstance(known, Material):
+            raise InputError(f"material must be a Material or a name of the table, not {material!r:.60}")
+        numbers = ("young", "poisson", "density", "viscosity")
+        for name in changed:
+            if name not in numbers:
+                raise InputError(f'a material has no number "{name}"; it has: {", ".join(numbers)}')
+        if changed:
+            known = replace(known, **changed, name="", source="", note="")
+        return replace(self, body=replace(self.body, material=known))
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        mesh = self.body.mesh
+        parts = [counted(len(self.winches), "winch"), counted(len(self.cables), "cable")]
+        return (
+            f"<Robot {self.name!r}: {1e3 * mesh.size:.0f} mm, {counted(len(mesh.nodes), 'node')}, {', '.join(parts)}, "
+            f"markers: {', '.join(marker.name for marker in self.markers) or 'none'}, "
+            f"poses: {', '.join(self.poses) or 'none'}>"
+        )
+
+    def _repr_html_(self) -> str:
+        """The robot at rest, for a notebook."""
+        import hydrostat  # the front door: it knows the room of pictures, which is above this one
+
+        return notebook_html(repr(self), hydrostat.draw_rest(self))
 
     def _check_dimensions(self) -> None:
         dim = self.body.mesh.dim

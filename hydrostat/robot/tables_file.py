@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from hydrostat import units
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
 
 if TYPE_CHECKING:
     from hydrostat.robot.schema import TomlTable
@@ -104,26 +105,12 @@ class TablesFile(ABC):
 
 def read_text(file: Path) -> str:
     """The text of a file in UTF-8 (InputError: it cannot be read, is too large, or is no such text)."""
-    content = read_bytes(file, units.printable(str(file)), LARGEST_TEXT)
+    content = read_stranger(file, name=units.printable(str(file)), most=LARGEST_TEXT)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(f"{file}, line {line}: not UTF-8 text; save the file again as UTF-8") from None
-
-
-def read_bytes(file: Path, name: str, most: int) -> bytes:
-    """Bytes of a file, at most so many; complaints name it `name` (InputError: it cannot be read, or is larger)."""
-    try:
-        if not file.exists():
-            raise InputError(f"{name}: there is no such file")
-        if not file.is_file():
-            raise InputError(f"{name}: is not a file")
-        if file.stat().st_size > most:
-            raise InputError(f"{name}: has {file.stat().st_size / 1e6:.3g} MB, at most {most / 1e6:g} MB are read")
-        return file.read_bytes()
-    except OSError as error:
-        raise InputError(f"{name}: cannot be read ({error.strerror})") from None
 
 
 _HEADER = re.compile(r"\s*\[\[?\s*([A-Za-z_][\w.]*)\s*\]")

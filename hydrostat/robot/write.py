@@ -47,12 +47,15 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     return replace_file(folder / "robot.toml", (text or robot_text(robot)).encode())
 
 
-def with_element_size(text: str, element_size: float) -> str:
-    """The text of a robot.toml with another element size [m], its comments kept."""
+def with_values(text: str, *, name: str | None = None, element_size: float | None = None) -> str:
+    """The text of a robot.toml with another name or element size [m], its comments kept; None leaves what is there."""
     import tomlkit
 
     document = tomlkit.parse(text)
-    document["body"]["element_size"] = units.format_quantity(element_size, units.LENGTH)  # type: ignore[index]
+    if name is not None:
+        document["name"] = name
+    if element_size is not None:
+        document["body"]["element_size"] = units.format_quantity(element_size, units.LENGTH)  # type: ignore[index]
     return tomlkit.dumps(document)
 
 

@@ -18,6 +18,7 @@ from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import Contractions, SolvedPose, largest_distance
 from hydrostat.simulation.still import check_still, rests_at_first, smooth_robot
+from hydrostat.simulation.strain import node_strains, node_stresses
 from hydrostat.simulation.touches import Touch, touch_words, touches
 
 __all__ = [
@@ -52,6 +53,8 @@ __all__ = [
     "follow_branch",
     "friction_band",
     "largest_distance",
+    "node_strains",
+    "node_stresses",
     "obstacle_forces",
     "path_dependence",
     "pose_facts",

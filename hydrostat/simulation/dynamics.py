@@ -122,6 +122,10 @@ class Dynamics:
             InputError: a step that is not above 0, or a pin that is not there.
             NotConvergedError: not even the smallest steps converged; its text says why.
         """
+        if not isinstance(motion, Motion):
+            raise InputError(
+                f"a step goes on from a motion, not from {type(motion).__name__}; `simulation.still(pose)` is one"
+            )
         if not (np.isfinite(dt) and dt > 0):
             raise InputError(f"the time step must be above 0 s, not {dt:g}")
         shifts = self._shifts(motion, pin_shifts)
@@ -274,6 +278,7 @@ class Dynamics:
         count = len(self.robot.body.mesh.nodes)
         carried = (nodes[count:], state.velocities[count:], accelerations[count:])
         return Motion(
+            robot=self.robot,
             time=time,
             contractions=contractions,
             pin_shifts=shifts,

@@ -243,6 +243,7 @@ def _solved(simulation: Simulation, controls: Callable[[float], Vector], place: 
     positions = simulation.marker_anchors.positions(place.nodes)
     energy = simulation.assembly.value(place.nodes, contractions)
     return SolvedPose(
+        robot=simulation.robot,
         contractions=contractions,
         nodes=place.nodes,
         markers={marker.name: at for marker, at in zip(simulation.robot.markers, positions, strict=True)},

@@ -97,7 +97,7 @@ def pose_row(
         pose: where the solver ended.
         anchors: what holds the markers.
         keep: whether to keep the nodes.
-        slopes: of the nodes with the contractions; None if they are not wanted.
+        slopes: of the markers with the contractions; None if they are not wanted.
         in_the_way: tells why there is no equilibrium.
     """
     reason, trouble, jacobian = pose.result.reason, "", None
@@ -105,7 +105,7 @@ def pose_row(
         return PoseRow(reason=reason, trouble="; ".join([reason, *in_the_way(pose)]))
     if slopes is not None:
         try:
-            jacobian = np.einsum("pc,pcdw->pdw", anchors.weights, slopes(pose)[anchors.stencils])
+            jacobian = slopes(pose)
         except HydrostatError as error:
             trouble = str(error)
     return PoseRow(

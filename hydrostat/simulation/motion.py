@@ -8,6 +8,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.mechanics import NewtonResult
 from hydrostat.mechanics.viscous import Metrics
+from hydrostat.robot import Robot
 from hydrostat.simulation.solved_pose import SolvedPose
 
 
@@ -16,6 +17,7 @@ class Motion:
     """All that the next step depends on, and what is to be seen at this instant.
 
     Attributes:
+        robot: that moves.
         time: since the beginning [s].
         contractions: cable taken in by each winch [m], in winch order.
         pin_shifts: how far each pin has been moved [m], in pin order.
@@ -33,6 +35,7 @@ class Motion:
         result: how the last minimisation of the step ended; its energy is that of the step, its iterations are of all.
     """
 
+    robot: Robot
     time: float
     contractions: Vector
     pin_shifts: Points
@@ -47,6 +50,11 @@ class Motion:
     history: Vector = field(default_factory=lambda: np.zeros(0))
     result: NewtonResult | None = None
     carried: tuple[Points, Points, Points] | None = None
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        fastest = 1e3 * float(np.linalg.norm(self.velocities, axis=1).max(initial=0.0))
+        return f"<Motion of {self.robot.name!r} at {self.time:.4g} s: no node is faster than {fastest:.2g} mm/s>"
 
     @property
     def energy(self) -> float:
@@ -63,6 +71,7 @@ class Motion:
         if self.result is None:
             raise ValueError("a motion that has not begun has no result; use the pose that it began in")
         return SolvedPose(
+            robot=self.robot,
             contractions=self.contractions,
             nodes=self.nodes,
             markers=self.markers,

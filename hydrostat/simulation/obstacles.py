@@ -1,9 +1,12 @@
 """`obstacles`: what stands in the way of an equilibrium that was not found, in words."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.mechanics import CableEnergy
+from hydrostat.errors import NotConvergedError
+from hydrostat.mechanics import CableEnergy, NewtonResult
 from hydrostat.robot import Robot
 
 
@@ -36,6 +39,15 @@ def obstacles(robot: Robot, cables: CableEnergy, nodes: Nodes, contractions: Vec
         node = int(np.argmax(np.abs(forces).max(axis=1)))
         told.append(f"most force is left over at node {node}, {_at(mesh.nodes[node])} at rest")
     return tuple(told)
+
+
+def not_converged(result: NewtonResult, in_the_way: Sequence[str]) -> NotConvergedError:
+    """The error of a solve that stopped early: why, how much force is left over, and what stands in the way."""
+    return NotConvergedError(
+        f"no equilibrium found after {result.iterations} iterations: {result.reason} (force left over "
+        f"{result.residual:.2g} N, allowed {result.allowed:.2g} N); {'; '.join(in_the_way)}",
+        result,
+    )
 
 
 def _at(place: Vector) -> str:

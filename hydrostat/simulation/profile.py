@@ -13,7 +13,9 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.robot import Robot, replace_file
+from hydrostat.simulation.solved_pose import contraction_values
 from hydrostat.units import quote
 
 
@@ -58,6 +60,16 @@ class Profile:
         if self.gentle:
             share = share * share * (3 - 2 * share)
         return (1 - share) * self.values[place] + share * self.values[place + 1]
+
+
+def check_profile(profile: object, robot: Robot) -> None:
+    """Check that a motion can be played by a profile (InputError: it is none, or one of another robot)."""
+    if not isinstance(profile, Profile):
+        raise InputError(
+            f"a motion is played by a Profile, such as Profile.ramp(simulation.contractions({{...}}), seconds), "
+            f"not by {profile!r:.60}"
+        )
+    contraction_values(robot, profile.values[0])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -124,11 +136,7 @@ class ProfileTable:
         Raises:
             InputError: it cannot be read, or see `read`.
         """
-        try:
-            content = path.read_bytes()
-        except OSError as error:
-            raise InputError(f"{path}: cannot be read as a table ({error.strerror or error})") from None
-        return cls.read(content, robot, name=str(path))
+        return cls.read(read_stranger(path, most=_MOST), robot, name=str(path))
 
     def place(self, row: int) -> str:
         """File and line of a row, for messages."""
@@ -185,3 +193,7 @@ def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, f
 
 TIME = "time_s"
 """Name of the column of times [s]."""
+
+
+_MOST = 50_000_000
+"""Bytes that a table of moves may have."""

@@ -18,8 +18,8 @@ from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.loading_path import LoadingPath
 from hydrostat.simulation.many_poses import LONG_ENOUGH, ManyPoses, PoseRow, in_threads, many_poses, pose_row
 from hydrostat.simulation.motion import Motion
-from hydrostat.simulation.obstacles import obstacles
-from hydrostat.simulation.profile import Profile
+from hydrostat.simulation.obstacles import not_converged, obstacles
+from hydrostat.simulation.profile import Profile, check_profile
 from hydrostat.simulation.response import response
 from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.rubbing_slopes import RubbingSlopes, rubbing_sensitivity, rubbing_slopes
@@ -78,11 +78,7 @@ class Simulation:
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
     def contractions(self, given: Contractions) -> Vector:
-        """Contractions as an array in winch order [m].
-
-        Raises:
-            InputError: an unknown winch, a wrong number of values, or a value that is not finite.
-        """
+        """Contractions as an array in winch order [m] (InputError: not one number in metres for each winch)."""
         return contraction_values(self.robot, given)
 
     def solve(
@@ -122,11 +118,7 @@ class Simulation:
             result = solver.solve(goal, (self.body.begin, self.rest_stiffness), begin)
         pose = self.posed(goal, result, history)
         if strict and not result.converged:
-            raise NotConvergedError(
-                f"no equilibrium found after {result.iterations} iterations: {result.reason} (force left over "
-                f"{result.residual:.2g} N, allowed {result.allowed:.2g} N); {'; '.join(self.in_the_way(pose))}",
-                result,
-            )
+            raise not_converged(result, self.in_the_way(pose))
         return pose
 
     def solve_many(
@@ -162,7 +154,7 @@ class Simulation:
         self.check_start(start)
         _ = self.solver.within(seconds), self.rest_stiffness  # checked and made before threads ask for them
         pays = self.assembly.pattern.analysis.tree.seconds >= LONG_ENOUGH
-        slopes = self.jacobian if jacobians else None
+        slopes = self.marker_jacobian if jacobians else None
 
         def row(number: int) -> PoseRow:
             pose = self.solve(goals[number], start=start, strict=False, seconds=seconds)
@@ -197,12 +189,18 @@ class Simulation:
             InputError: other energies that remember the way, or others beside cables with friction.
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
+        self._own(pose, "the Jacobian")
         if not self.assembly.has_history:
             right = -self.assembly.near(pose.unknowns).control_derivative(pose.unknowns, pose.contractions).toarray()
             return self.response(pose, right).reshape(*self.assembly.shape, -1)[: len(pose.nodes)]
         cables, stiffness = self._rubbing(pose)
         compliance = stiffness.compliance_of(slice(0, len(pose.history)))
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
+
+    def marker_jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "markers dim winches"]:
+        """Sensitivities of the markers at an equilibrium, in marker order; errors as for `jacobian`."""
+        anchors = self.marker_anchors
+        return np.einsum("pc,pcdw->pdw", anchors.weights, self.jacobian(pose)[anchors.stencils])
 
     def adjoint(self, pose: SolvedPose, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
         """Sensitivities of a number L of an equilibrium to contractions, slack, routes, material, by one solve (E16).
@@ -219,6 +217,7 @@ class Simulation:
             NotConvergedError: as for `jacobian`.
         """
         check_still(self.robot, "the adjoint")
+        self._own(pose, "the adjoint")
         if self.assembly.has_history:
             right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
             slopes = self.rubbing_slopes(pose, (right.reshape(1, -1), pulls[None]))
@@ -237,6 +236,9 @@ class Simulation:
     def rubbing_slopes(self, pose: SolvedPose, rows: tuple[np.ndarray, np.ndarray]) -> RubbingSlopes:
         """Slopes of numbers of a pose whose cables rub: `rows` are by its nodes, then by tensions; as for `adjoint`."""
         return rubbing_slopes(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
+
+    def _own(self, pose: SolvedPose, what: str) -> None:
+        check_pose(pose, self.robot.body.mesh.nodes.shape, len(self.robot.winches), what=f"the pose of {what}")
 
     def _rubbing(self, pose: SolvedPose) -> tuple[FrictionCableEnergy, Stiffness]:
         if self.friction is None or self._more or any(map(self.robot.friction_of, self.robot.obstacles)):
@@ -319,7 +321,7 @@ class Simulation:
         Raises:
             InputError, NotConvergedError: as for `step`.
         """
-        self.contractions(profile.values[0])
+        check_profile(profile, self.robot)
         return self.dynamics.play(profile, seconds, dt, start or self.still(), options or StepOptions())
 
     @cached_property
@@ -361,11 +363,7 @@ class Simulation:
 
     @cached_property
     def rest(self) -> SolvedPose:
-        """The pose without contractions: where gravity leaves the body.
-
-        Raises:
-            NotConvergedError: as for `solve`.
-        """
+        """The pose without contractions: where gravity leaves the body (NotConvergedError: as for `solve`)."""
         return self.solve(np.zeros(len(self.robot.winches)))
 
     @cached_property
@@ -389,6 +387,7 @@ class Simulation:
         """Pose that Newton found, with all that the robot shows there."""
         positions, count = self.marker_anchors.positions(result.nodes), self.body.count
         return SolvedPose(
+            robot=self.robot,
             contractions=contractions,
             nodes=result.nodes if count is None else result.nodes[:count],
             carried=None if count is None else result.nodes[count:],

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +12,11 @@ from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics import NewtonResult
 from hydrostat.robot import Robot
+from hydrostat.robot.notebook import notebook_html
+from hydrostat.simulation.strain import node_strains, node_stresses
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Contractions = Mapping[str, float] | Vector
 """Cable taken in [m]: by the name of a winch (others 0), or an array in winch order."""
@@ -29,6 +35,7 @@ class SolvedPose:
         result: how the solver ended: reason, residual [N], iterations, stability; and the factorised Hessian there.
         history: what the physics remember of the way there: how much cable has slipped over each point with friction
             until now, where obstacles with friction hold the skin [m]; empty without friction.
+        robot: whose pose it is.
         carried: unknowns of obstacles that move [m]: place and axes of each; empty if none does.
     """
 
@@ -40,6 +47,59 @@ class SolvedPose:
     result: NewtonResult
     history: Vector = field(default_factory=lambda: np.zeros(0))
     carried: Points | None = None
+    robot: Robot
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be minded of it, in words: winches beyond travel or release, a body that passes through itself.
+
+        Also that it is no equilibrium, or a saddle, or buckled on the way there; empty where all is well.
+        """
+        told = []
+        if not self.result.converged:
+            told.append(f"no equilibrium: {self.result.reason}")
+        told += beyond_travel(self.robot, self.contractions)
+        if self.result.buckled:
+            told.append("the body buckled on the way; it could as well have gone to another side")
+        if self.result.converged and not self.result.stable:
+            told.append("the body is at rest on a saddle; the least push would make it leave")
+        return (*told, *filter(None, [str(find_crossings(self.robot.body.mesh, self.nodes))]))
+
+    @property
+    def strains(self) -> Vector:
+        """Largest principal stretch at each node less 1, (nodes,); see `node_strains`."""
+        return node_strains(self.robot, self.nodes)
+
+    @property
+    def stresses(self) -> Vector:
+        """Von Mises stress at each node [Pa], (nodes,); see `node_stresses`."""
+        return node_stresses(self.robot, self.nodes)
+
+    def plot(self, **options: Any) -> "Figure":
+        """Draw it over the ghost of the rest shape, as a Matplotlib figure.
+
+        Args:
+            options: `title`, `note` and `width` of `hydrostat.plot.draw_pose`.
+        """
+        import hydrostat  # the front door: it knows the room of pictures, which is above this one
+
+        return hydrostat.draw_pose(self.robot, self, **options)
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        taken = [
+            f"{winch.name} {1e3 * value:.4g} mm"
+            for winch, value in zip(self.robot.winches, self.contractions, strict=True)
+            if value
+        ]
+        pulls = f", tensions up to {self.tensions.max():.3g} N" if len(self.tensions) else ""
+        return (
+            f"<SolvedPose of {self.robot.name!r}: {', '.join(taken) or 'no contractions'}{pulls}; {self.result.reason}>"
+        )
+
+    def _repr_html_(self) -> str:
+        """The line, what is to be minded, and a picture, for a notebook."""
+        return notebook_html("\n".join([repr(self), *self.notes]), self.plot())
 
     @property
     def unknowns(self) -> Nodes:
@@ -54,6 +114,20 @@ class SolvedPose:
     def without_factors(self) -> "SolvedPose":
         """Pose without its factorised Hessian, to be kept with many others: that takes megabytes."""
         return replace(self, result=replace(self.result, stiffness=None))
+
+
+def beyond_travel(robot: Robot, contractions: Vector) -> list[str]:
+    """Winches that would take in more than they can, or let out more, in words; empty where none does."""
+    return [
+        f"winch {winch.name} can take in from {0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
+        f"{1e3 * value:.4g} mm is beyond it"
+        for winch, value in zip(robot.winches, contractions, strict=True)
+        if not -winch.release - _HAIR <= value <= winch.travel + _HAIR
+    ]
+
+
+_HAIR = 1e-9
+"""What rounding may add to a contraction [m]."""
 
 
 def largest_distance(one: Nodes, other: Nodes) -> float:
@@ -71,29 +145,32 @@ def check_apart(mesh: Mesh, nodes: Nodes) -> None:
         raise InputError(f"no solve can begin there: {words.partition(':')[0]}")
 
 
-def check_pose(pose: object, shape: tuple[int, ...], winches: int, history: Vector | None) -> None:
-    """Check that a solve can begin from a pose.
+def check_pose(
+    pose: object, shape: tuple[int, ...], winches: int, history: Vector | None = None, *, what: str = "start"
+) -> None:
+    """Check that a pose is one of a robot, such as one that a solve can begin from.
 
     Args:
         pose: what was given.
         shape: of the robot's nodes.
         winches: their number.
         history: of physics that remember the way there; None if none do.
+        what: the pose is for, in messages.
 
     Raises:
         InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.
     """
     if not isinstance(pose, SolvedPose):
         kind = type(pose).__name__
-        raise InputError(f"start must be a solved pose, from `simulation.solve` or a result's `.pose`, not {kind}")
+        raise InputError(f"{what} must be a solved pose, from `simulation.solve` or a result's `.pose`, not {kind}")
     if not (pose.nodes.shape == shape and np.isfinite(pose.nodes).all()):
-        raise InputError(f"start must be a pose of this robot with finite nodes, {shape}, not {pose.nodes.shape}")
+        raise InputError(f"{what} must be a pose of this robot with finite nodes, {shape}, not {pose.nodes.shape}")
     given = len(pose.contractions)
     if given != winches:
-        raise InputError(f"start has {given} contractions, the robot {winches} winches")
+        raise InputError(f"{what} has {given} contractions, the robot {winches} winches")
     if history is not None and len(pose.history) != len(history):
         raise InputError(
-            "start must be a pose of these physics, which remember the way, such as slips of cables with friction: "
+            f"{what} must be a pose of these physics, which remember the way, such as slips of cables with friction: "
             f"{len(history)} numbers, not {len(pose.history)}"
         )
 
@@ -113,8 +190,34 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
         values = np.array(wanted, dtype=float)
     except (TypeError, ValueError):
         raise InputError(f"contractions must be numbers [m], not {given!r}") from None
+    if values.ndim > 1:
+        raise InputError(
+            f"contractions must be one number for each of {len(winches)} winches, not an array of {values.shape}; "
+            "solve_many takes a row for each pose"
+        )
     if values.shape != (len(winches),):
         raise InputError(f"{values.size} contractions given for {len(winches)} winches")
     if not np.isfinite(values).all():
         raise InputError("a contraction is not a finite number")
+    _check_metres(robot, values)
     return values
+
+
+def _check_metres(robot: Robot, contractions: Vector) -> None:
+    """Refuse what no winch could do, as where millimetres were given."""
+    bare = {winch.name: 0.0 for winch in robot.winches}
+    for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
+        bare[cable.winch] = max(bare[cable.winch], cable.length / float(ratio))
+    for winch, value in zip(robot.winches, contractions, strict=True):
+        most = bare[winch.name] or robot.body.mesh.size
+        if not -_MOST_OUT * robot.body.mesh.size <= value <= most:
+            what = "more than all of its cable" if bare[winch.name] else "more than the body"
+            than = f"{what}, {most:.3g} m" if value > 0 else f"far more than the body, {robot.body.mesh.size:.3g} m"
+            raise InputError(
+                f'the contraction of winch "{winch.name}", {value:g} m, is {than}; contractions are in metres: '
+                f"12 mm is 0.012"
+            )
+
+
+_MOST_OUT = 5.0
+"""A winch lets out at most so many sizes of the body."""

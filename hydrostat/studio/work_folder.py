@@ -12,10 +12,11 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from hydrostat import units
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.robot import Source, load_robot, replace_file, robot_text, save_robot
 from hydrostat.robot.merge import lost_comments, merged_text
 from hydrostat.robot.read import FILE
-from hydrostat.robot.tables_file import read_bytes, read_text
+from hydrostat.robot.tables_file import read_text
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 
@@ -45,7 +46,7 @@ def read_studio_file(folder: Path, cables: Sequence[str] = ()) -> StudioFile:
     file = folder / STUDIO_FILE
     if not file.exists():
         return StudioFile(timeline=Timeline(), wishes=Wishes())
-    content = read_bytes(file, STUDIO_FILE, LARGEST)
+    content = read_stranger(file, name=STUDIO_FILE, most=LARGEST)
     try:
         return StudioFile.model_validate_json(_with_names(content, cables))
     except ValidationError as error:

@@ -6,6 +6,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.msh_file import read_msh
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.geometry.files.vtk_file import read_vtk
 from hydrostat.geometry.files.vtu_file import read_vtu
 from hydrostat.geometry.mesh import Mesh
@@ -20,16 +21,13 @@ def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Me
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(f"{path.name}: meshes are read from {', '.join(_READERS)} files only")
-    if path.stat().st_size > _MOST_BYTES:
-        raise InputError(f"{path.name}: is larger than {_MOST_BYTES / 1e6:.0f} MB: save it as bytes, or a coarser mesh")
-    cells = reader(path.read_bytes(), path.name)
+    cells = reader(read_stranger(path, name=path.name), path.name)
     for elements, dim in ((cells.tetrahedra, 3), (cells.triangles, 2)):
         if len(elements):
             return _simplices(path.name, cells.points, elements, dim, unit, size)
     raise InputError(f"{path.name}: holds neither tetrahedra nor triangles")
 
 
-_MOST_BYTES = 60_000_000
 _READERS = {".vtk": read_vtk, ".vtu": read_vtu, ".msh": read_msh}
 
 

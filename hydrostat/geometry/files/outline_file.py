@@ -6,12 +6,10 @@ import numpy as np
 
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.files.rings import Drawing, Page
+from hydrostat.geometry.files.stranger import MOST_BYTES
 from hydrostat.geometry.outline import Outline
 
-_MOST_BYTES = {".svg": 20_000_000, ".dxf": 10_000_000, ".png": 50_000_000, ".jpg": 50_000_000, ".jpeg": 50_000_000}
-"""Larger files are refused."""
-
-OUTLINE_SUFFIXES = tuple(_MOST_BYTES)  # names of files that outlines are read from end in one of these
+OUTLINE_SUFFIXES = tuple(MOST_BYTES)  # names of files that outlines are read from end in one of these
 
 
 def read_outline(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Outline:
@@ -41,9 +39,9 @@ def read_drawing(content: bytes, *, name: str, size: float | None = None, page: 
         )
     if not content.strip():
         raise OutlineError(f"{name}: the file is empty: save it again")
-    if len(content) > _MOST_BYTES[suffix]:
+    if len(content) > MOST_BYTES[suffix]:
         raise OutlineError(
-            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {_MOST_BYTES[suffix] / 1e6:.0f} MB are read: "
+            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES[suffix] / 1e6:.0f} MB are read: "
             "save the outline alone, or a smaller picture"
         )
     if suffix == ".svg":

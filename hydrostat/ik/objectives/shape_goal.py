@@ -10,6 +10,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.outline_file import read_drawing, read_outline
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Curve, Outline
 from hydrostat.geometry.shell import Nearest, Shell, outline_shell
@@ -196,9 +197,6 @@ def drawn_pose(robot: Robot, drawing: Path | str) -> Outline:
     body, file = robot.body, Path(drawing)
     if body.source is not Source.OUTLINE:
         raise InputError(f"{file.name}: a pose can be drawn over a drawing only, the body is of a {body.source} file")
-    try:
-        content = file.read_bytes()
-    except OSError as error:
-        raise InputError(f"{file}: cannot be read: {error.strerror}") from error
+    content = read_stranger(file)
     page = read_drawing(body.content, name=body.file, size=body.size).page
     return read_outline(content, name=file.name, page=page)

@@ -92,6 +92,8 @@ def least_effort(search: InverseSearch, state: InverseState) -> Descent:
     for weight in _WEIGHTS:
         lighter = descend(search, state, weight=weight)
         state, spent = lighter.state, spent + lighter.iterations
+        if lighter.reason is InverseReason.TIME_LIMIT:
+            return lighter.after(spent)
     found = descend(search, state)
     return found.after(spent + found.iterations)
 
@@ -111,6 +113,9 @@ class _TrustRegionDescent:
     def run(self) -> Descent:
         problem, options = self.problem, self.problem.options
         for iteration in range(options.iterations):
+            if self.search.patience.over:
+                return self._end(InverseReason.TIME_LIMIT, iteration)
+            self.search.told(self.state)
             if not self.fixed:
                 if self.state.error <= problem.reached and self._sharpen() and self._reached():
                     return self._end(InverseReason.REACHED, iteration)

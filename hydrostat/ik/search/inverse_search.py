@@ -10,6 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.linear_model import channels
+from hydrostat.ik.search.patience import Patience
 from hydrostat.ik.search.problem import InverseProblem, InverseState, ModelStep
 from hydrostat.mechanics import NewtonResult
 from hydrostat.robot import Pose
@@ -25,11 +26,24 @@ class InverseSearch:
     """
 
     def __init__(
-        self, problem: InverseProblem, *, accuracy: float | None = None, origin: SolvedPose | None = None
+        self,
+        problem: InverseProblem,
+        *,
+        accuracy: float | None = None,
+        origin: SolvedPose | None = None,
+        patience: Patience | None = None,
     ) -> None:
         self.problem, self.solves, self._origin = problem, 0, origin
+        self.patience, self.steps = patience or Patience(), 0
         self.solver = problem.simulation.solver.roughly(accuracy)
         self._remembers, self._turns = problem.simulation.assembly.has_history, False
+
+    def told(self, state: InverseState) -> None:
+        """Say how the search goes, if somebody listens: that there is a step more, and what a state leaves."""
+        self.steps += 1
+        if self.patience.tell is not None:
+            errors = list(state.errors.values())
+            self.patience.tell(self.steps, float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0)
 
     def begin(self, start: SolvedPose | None) -> InverseState:
         """The state of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""

@@ -25,11 +25,14 @@ def others_stayed(
     if not problem.options.stay or not names or found.state.error <= _MISSED * size:
         return search, found
     for _ in range(_ROUNDS):
+        if search.patience.over:
+            break
         missed = float(np.linalg.norm(found.state.residual[:rows]))
         calm = Closeness(
             pose=simulation.rest, of=ClosenessKind.MARKERS, markers=names, weight=float(np.sqrt(0.5 * missed / size))
         )
-        wary = InverseSearch(problem.with_term(calm.on(simulation)), origin=start)
+        wary = InverseSearch(problem.with_term(calm.on(simulation)), origin=start, patience=search.patience)
+        wary.steps = search.steps
         history = found.state.history if simulation.assembly.has_history else None
         begun = wary.problem.state(found.state.values, found.state.result, history)
         calmer = descend(wary, begun)

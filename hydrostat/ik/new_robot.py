@@ -1,0 +1,162 @@
+"""`new_robot`: a first robot from a file of any kind that hydrostat reads, to be edited from there."""
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypedDict, Unpack
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.ik.first_pose import with_first_pose
+from hydrostat.robot import Robot, SurfaceSketch, gallery_folder, load_robot, sketch_mesh, sketch_robot, sketch_surface
+from hydrostat.robot.gallery import GALLERY, is_of_gallery
+
+MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
+CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewRobotWish:
+    """What a new robot should be like, lengths in metres; None where nothing is asked."""
+
+    name: str | None = None  # of the robot; that of its file if nothing is asked
+    size: float | None = None  # longest side of the bounding box
+    element_size: float | None = None  # length of a mesh edge
+    nodes: int | None = None  # about so many, instead of an element size
+    thickness: float | None = None  # of a flat body
+    inflate: float | None = None  # blow a drawing up to a body in space so thick
+    material: str | None = None  # a name of the table
+
+    def __post_init__(self) -> None:
+        if self.nodes is not None and self.element_size is not None:
+            raise InputError("nodes and element_size: give one of them")
+
+    def refuse(self, what: str, *keys: str) -> None:
+        """Refuse wishes that do not fit."""
+        for key in keys:
+            if getattr(self, key) is not None:
+                raise InputError(f"{key}: {what}; leave it out")
+
+
+@dataclass(frozen=True, eq=False)
+class BegunRobot:
+    """A new robot, and what there is to tell of how it was made."""
+
+    robot: Robot
+    notes: tuple[str, ...] = ()  # what was found and done, in words
+    sketch: SurfaceSketch | None = None  # how its surface was healed; None if it came from none
+
+
+class _Wished(TypedDict, total=False):
+    """Fields of `NewRobotWish` as keywords."""
+
+    name: str
+    size: float
+    element_size: float
+    nodes: int
+    thickness: float
+    inflate: float
+    material: str
+
+
+def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
+    """Make a first robot from a file, with sensible numbers where none are given; `save_robot` keeps it.
+
+    Args:
+        source: a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF), a ready mesh (VTK, VTU,
+            MSH), or "gallery:NAME".
+        wished: `name`, `size`, `element_size`, `nodes`, `thickness`, `inflate` and `material`; lengths in metres.
+
+    Raises:
+        InputError: a file that is no body, or wishes that do not fit it.
+    """
+    unknown = set(wished) - set(NewRobotWish.__dataclass_fields__)
+    if unknown:
+        known = ", ".join(NewRobotWish.__dataclass_fields__)
+        raise InputError(f"a new robot knows no wish {sorted(unknown)[0]!r}; it knows: {known}")
+    return begin_robot(source, NewRobotWish(**wished)).robot
+
+
+def begin_robot(source: str | Path, wish: NewRobotWish) -> BegunRobot:
+    """A first robot, and what there is to tell of it; see `new_robot`."""
+    from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
+    from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
+
+    if is_of_gallery(source):
+        return BegunRobot(_of_gallery(source, wish))
+    path = Path(source)
+    kinds = {OUTLINE_SUFFIXES: _of_drawing, SURFACE_SUFFIXES: _of_surface, MESH_SUFFIXES: _of_mesh}
+    for suffixes, make in kinds.items():
+        if path.suffix.lower() in suffixes:
+            if not path.is_file():
+                raise InputError(f"{source}: there is no such file")
+            return make(path, wish)
+    if path.is_dir():
+        raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
+    if path.suffix.lower() in CAD_SUFFIXES:
+        raise InputError(f"{source}: CAD files are not read; export it as STL or 3MF")
+    known = ", ".join(ending for suffixes in kinds for ending in suffixes)
+    raise InputError(f"{source}: cannot be read; a robot begins from gallery:NAME or a file that ends in {known}")
+
+
+def _of_gallery(source: str, wish: NewRobotWish) -> Robot:
+    """A robot of the gallery, if asked under another name and with other elements."""
+    wish.refuse("a gallery robot has its own; edit robot.toml", "size", "thickness", "inflate", "material")
+    robot = load_robot(gallery_folder(source.removeprefix(GALLERY)))
+    if wish.element_size is not None or wish.nodes is not None:
+        raise InputError("elements of a gallery robot are chosen by `hydrostat new`, which keeps its comments")
+    return robot if wish.name is None else replace(robot, name=wish.name)
+
+
+def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
+    from hydrostat.geometry.files.outline_file import read_drawing
+    from hydrostat.robot.sketch_space import inflated
+
+    content, file = read_stranger(path), _file_name(path.name)
+    drawing = read_drawing(content, name=file, size=wish.size)
+    notes = tuple(f"drawing: {note}" for note in drawing.notes)
+    material = wish.material or "polyester fibre"
+    if wish.inflate is None:
+        sizes = {"size": wish.size, "element_size": wish.element_size, "thickness": wish.thickness}
+        name = _robot_name(path, wish)
+        return BegunRobot(
+            sketch_robot(content, file=file, name=name, material=material, nodes=wish.nodes, **sizes), notes
+        )
+    wish.refuse("an inflated body is as thick as is asked by inflate", "thickness")
+    begun = _of_bytes(inflated(drawing.outline, wish.inflate), path.with_suffix(".ply"), wish, material, size=None)
+    return BegunRobot(begun.robot, (*notes, *begun.notes), begun.sketch)
+
+
+def _of_surface(path: Path, wish: NewRobotWish) -> BegunRobot:
+    wish.refuse("is only for drawings", "thickness", "inflate")
+    return _of_bytes(read_stranger(path), path, wish, wish.material or "flexfoam-it x", size=wish.size)
+
+
+def _of_bytes(content: bytes, path: Path, wish: NewRobotWish, material: str, *, size: float | None) -> BegunRobot:
+    sketch = sketch_surface(
+        content,
+        file=_file_name(path.name),
+        name=_robot_name(path, wish),
+        size=size,
+        element_size=wish.element_size,
+        nodes=wish.nodes,
+        material=material,
+    )
+    notes = tuple(f"surface: {line}" for line in sketch.healing.lines())
+    return BegunRobot(with_first_pose(sketch.robot), notes, sketch)
+
+
+def _of_mesh(path: Path, wish: NewRobotWish) -> BegunRobot:
+    wish.refuse("a ready mesh has its own elements", "element_size", "nodes")
+    wish.refuse("is only for drawings", "thickness", "inflate")
+    material = wish.material or "flexfoam-it x"
+    robot = sketch_mesh(path, name=_robot_name(path, wish), size=wish.size, material=material)
+    return BegunRobot(with_first_pose(robot))
+
+
+def _robot_name(path: Path, wish: NewRobotWish) -> str:
+    return wish.name or _file_name(path.stem)
+
+
+def _file_name(name: str) -> str:
+    return re.sub(r"[^\w.-]", "_", name)

@@ -1,0 +1,100 @@
+"""`node_strains`, `node_stresses`: how far a body is stretched in a pose, and how hard."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Float
+from scipy.sparse import csr_array
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot import Robot
+
+
+def node_strains(robot: Robot, nodes: Nodes) -> Vector:
+    """Largest principal stretch of the body less 1, of the elements around each node by their volumes.
+
+    It is what a thread drawn on the body along the worst direction would be lengthened by. A flat body in plane strain
+    has the stretch 1 across the plane, so nothing is below 0 there.
+    """
+    grid = _operators(robot.body.mesh)
+    shape = _Stretch(grid, nodes)
+    return grid.average @ (np.sqrt(shape.largest()) - 1.0)
+
+
+def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
+    """Von Mises stress of the Neo-Hookean body [Pa], of the elements around each node by their volumes.
+
+    Cauchy's stress is mu/J (B - I) + lambda/J ln J I (Bonet 1998 and `NeoHookean`), so only B's deviator counts: it is
+    mu/J sqrt(3/2) |dev B|.
+    """
+    grid = _operators(robot.body.mesh)
+    shape = _Stretch(grid, nodes)
+    mu, _ = robot.body.material.lame
+    return grid.average @ (mu * np.sqrt(1.5 * shape.deviation) / shape.volume)
+
+
+@dataclass(frozen=True, eq=False)
+class _NodeOperators:
+    """What of a mesh does not change."""
+
+    dim: int  # of the body
+    slopes: csr_array  # gives F of all elements, a row for each element and coordinate of rest, from the nodes
+    average: csr_array  # gives values of nodes from those of elements
+
+
+@lru_cache(maxsize=2)
+def _operators(mesh: Mesh) -> _NodeOperators:
+    count, corners = mesh.elements.shape
+    dim = mesh.dim
+    inverse = np.linalg.inv(np.swapaxes(mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]], 1, 2))
+    gradients = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
+    rows = np.broadcast_to(np.arange(count * dim).reshape(count, 1, dim), gradients.shape)
+    columns = np.broadcast_to(mesh.elements[:, :, None], gradients.shape)
+    entries = (gradients.ravel(), (rows.ravel(), columns.ravel()))
+    slopes = csr_array(entries, shape=(count * dim, len(mesh.nodes)))
+    weights = np.repeat(mesh.volumes, corners)
+    total = np.maximum(np.bincount(mesh.elements.ravel(), weights, len(mesh.nodes)), np.finfo(float).tiny)
+    places = (mesh.elements.ravel(), np.repeat(np.arange(count), corners))
+    average = csr_array((weights / total[mesh.elements.ravel()], places), shape=(len(mesh.nodes), count))
+    return _NodeOperators(dim, slopes, average)
+
+
+class _Stretch:
+    """C = F^T F of all elements, by its invariants; in the plane with the stretch 1 across it.
+
+    Attributes:
+        mean: a third of the trace of C.
+        deviation: |dev C|^2, which is |dev B|^2 too.
+        volume: J.
+    """
+
+    def __init__(self, grid: _NodeOperators, nodes: Nodes) -> None:
+        slopes = (grid.slopes @ nodes).reshape(-1, grid.dim, grid.dim)
+        rows = [slopes[:, axis] for axis in range(grid.dim)]
+        stretch = np.zeros((3, 3, len(slopes)))
+        stretch[2, 2] = 1.0
+        for i in range(grid.dim):
+            for j in range(i, grid.dim):
+                stretch[i, j] = stretch[j, i] = np.einsum("ek,ek->e", rows[i], rows[j])
+        self.mean = (stretch[0, 0] + stretch[1, 1] + stretch[2, 2]) / 3.0
+        for i in range(3):
+            stretch[i, i] -= self.mean
+        self._off = stretch
+        self.deviation: Float[np.ndarray, " elements"] = np.einsum("ije,ije->e", stretch, stretch)
+        self.volume = np.sqrt(np.maximum(_determinant(stretch, self.mean), 1e-300))
+
+    def largest(self) -> Float[np.ndarray, " elements"]:
+        """The largest eigenvalue of C, in closed form (Smith 1961)."""
+        spread = np.sqrt(self.deviation / 6.0)
+        cube = np.maximum(spread**3, 1e-300)
+        turned = np.clip(0.5 * _determinant(self._off, 0.0 * self.mean) / cube, -1.0, 1.0)
+        return self.mean + 2.0 * spread * np.cos(np.arccos(turned) / 3.0)
+
+
+def _determinant(off: Float[np.ndarray, "3 3 elements"], shift: Vector) -> Vector:
+    """Determinant of the symmetric matrices `off` + `shift` I."""
+    a, b, c = off[0, 0] + shift, off[1, 1] + shift, off[2, 2] + shift
+    d, e, f = off[0, 1], off[0, 2], off[1, 2]
+    return a * b * c + 2.0 * d * e * f - a * f * f - b * e * e - c * d * d

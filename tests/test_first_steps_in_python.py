@@ -1,0 +1,184 @@
+"""What a person who writes Python meets first: names, guards of units, errors, representations."""
+
+from dataclasses import replace
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import gallery_robot
+
+import hydrostat as hs
+
+
+@pytest.fixture(scope="module")
+def simulation() -> hs.Simulation:
+    return hs.Simulation(gallery_robot("starfish"))
+
+
+@pytest.fixture(scope="module")
+def pose(simulation: hs.Simulation) -> hs.SolvedPose:
+    return simulation.solve({"left": 0.012})
+
+
+def test_types_come_with_it() -> None:
+    """Oracle: PEP 561."""
+    assert (files("hydrostat") / "py.typed").is_file()
+
+
+def test_the_gallery_is_at_the_door() -> None:
+    assert "starfish" in hs.gallery()
+    assert hs.load_robot("gallery:starfish") == gallery_robot("starfish")
+    with pytest.raises(hs.InputError, match='no robot "starfsh"'):
+        hs.load_robot("gallery:starfsh")
+
+
+def test_another_material_keeps_the_mesh() -> None:
+    robot = gallery_robot("starfish")
+    soft = robot.with_material("flexfoam-it x")
+    assert soft.body.material == hs.find_material("flexfoam-it x")
+    assert soft.body.mesh is robot.body.mesh
+    assert robot.with_material(young=50e3).body.material.young == 50e3
+    assert robot.with_material(young=50e3).body.material.name == ""
+    with pytest.raises(hs.InputError, match='no number "yung"; it has: young'):
+        robot.with_material(yung=50e3)
+
+
+def test_a_robot_from_a_file(tmp_path: Path) -> None:
+    """Oracle: what is saved and read again."""
+    drawing = tmp_path / "disc.svg"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100"><circle cx="50" cy="50" r="40"/></svg>'
+    )
+    robot = hs.new_robot(drawing, size=0.1, nodes=120)
+    assert robot.name == "disc"
+    assert robot.body.mesh.size == pytest.approx(0.1, rel=1e-3)
+    hs.save_robot(robot, tmp_path / "disc")
+    assert hs.load_robot(tmp_path / "disc") == robot
+    with pytest.raises(hs.InputError, match="there is no such file"):
+        hs.new_robot(tmp_path / "none.svg")
+    with pytest.raises(hs.InputError, match="no wish 'siez'"):
+        hs.new_robot(drawing, siez=0.1)  # type: ignore[call-arg]
+
+
+def test_slopes_of_markers_are_those_of_finite_differences(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+    """Central differences of the markers themselves."""
+    step, winch = 1e-5, 1
+    ends = [simulation.solve(pose.contractions + sign * step * np.eye(3)[winch], start=pose) for sign in (1, -1)]
+    for row, name in zip(simulation.marker_jacobian(pose), pose.markers, strict=True):
+        measured = (ends[0].markers[name] - ends[1].markers[name]) / (2 * step)
+        assert row[:, winch] == pytest.approx(measured, abs=1e-5)
+
+
+def test_strain_and_stress_of_a_pose(pose: hs.SolvedPose) -> None:
+    """Oracle: every node moved apart by a tenth along x. The closed forms of the fields are in test_colouring."""
+    stretched = replace(pose, nodes=pose.robot.body.mesh.nodes * [1.1, 1.0])
+    assert stretched.strains == pytest.approx(0.1, rel=1e-9)
+    mu, _ = pose.robot.body.material.lame
+    assert stretched.stresses == pytest.approx(mu / 1.1 * (1.1**2 - 1), rel=1e-9)
+
+
+def test_what_is_to_be_minded_is_told(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+    assert pose.notes == ()
+    far = simulation.solve({"left": 0.0601, "right": -0.0101}, strict=False)
+    assert "winch right can take in from -10 to 60 mm, -10.1 mm is beyond it" in far.notes
+    assert "winch left can take in from -10 to 60 mm, 60.1 mm is beyond it" in far.notes
+    nodes = pose.nodes.copy()
+    nodes[np.argmin(nodes[:, 0])] = [0.2, 0.0]  # the tip of the left arm, through all of the body
+    assert any("passes through itself" in note for note in replace(pose, nodes=nodes).notes)
+
+
+def test_representations_are_short(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+    assert "left 12 mm" in repr(pose)
+    shown = [repr(pose), repr(simulation.robot), repr(simulation.still(pose))]
+    shown.append(repr(hs.solve_ik(simulation, simulation.robot.poses["wave"])))
+    assert max(map(len, shown)) < 400
+    assert all("array" not in words and "\n" not in words for words in shown)
+
+
+@pytest.mark.slow
+def test_pictures_for_notebooks(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+    assert pose.plot(title="mine").axes
+    for record in (pose, simulation.robot, hs.solve_ik(simulation, simulation.robot.poses["wave"])):
+        assert 'src="data:image/png;base64,iVBOR' in record._repr_html_()
+        assert "&lt;" in record._repr_html_()
+
+
+MILLIMETRES = {
+    "solve": (
+        lambda simulation: simulation.solve({"left": 12}),
+        "12 m, is more than all of its cable, .*in metres: 12 mm",
+    ),
+    "solve, let out": (
+        lambda simulation: simulation.solve({"left": -5}),
+        "far more than the body, 0.279 m; .*in metres",
+    ),
+    "clearance": (lambda _: hs.Constraints(clearance=5), "at most 1 m, not 5; in metres: 5 mm is 0.005"),
+    "winch gap": (lambda _: hs.Constraints(winch_gap=25), "at most 20 m, not 25; in metres"),
+    "a gap beside the body": (
+        lambda simulation: hs.Constraints(hole_gap=4).check(simulation.robot),
+        "hole_gap = 4 m is too much for a body of 0.279 m",
+    ),
+    "zone": (lambda _: hs.Zone(at=(0, 30), radius=0.01), "in metres, at most 20.*30 mm is 0.03"),
+    "radius of a zone": (lambda _: hs.Zone(at=(0.0, 0.03), radius=30.0), "in metres, at most 20, not 30"),
+    "young": (lambda _: hs.Material(young=30, poisson=0.3, density=40), "not 30 Pa; 30 kPa is 30e3"),
+}
+
+
+@pytest.mark.parametrize("case", MILLIMETRES)
+@pytest.mark.usefixtures("unchecked")
+def test_another_unit_is_noticed(simulation: hs.Simulation, case: str) -> None:
+    """Oracle: the numbers themselves; none of them can be meant in SI."""
+    act, words = MILLIMETRES[case]
+    with pytest.raises(hs.InputError, match=words):
+        act(simulation)
+
+
+ASTRAY = {
+    "jacobian of an array": (lambda s: s.jacobian(np.zeros(3)), "must be a solved pose"),
+    "jacobian of another robot's pose": (
+        lambda s: s.jacobian(hs.Simulation(gallery_robot("pig")).solve({})),
+        "must be a pose of this robot",
+    ),
+    "step from a pose": (lambda s: s.step(s.rest, {}, 0.01), "goes on from a motion, not from SolvedPose"),
+    "play of a dict": (lambda s: s.play({"left": 0.01}, 1.0, 0.01), "by a Profile, such as Profile.ramp"),
+    "design of a name": (lambda s: hs.design_cables("starfish", s.robot.poses.values()), "for a Robot, such as"),
+    "design of one pose": (lambda s: hs.design_cables(s.robot, s.robot.poses["wave"]), "must be several"),
+    "a text for a number": (
+        lambda _: hs.Material(young="30 kPa", poisson=0.3, density=40.0),
+        "young must be a number in Pa, not '30 kPa'",
+    ),
+    "no path": (lambda _: hs.load_robot(None), "not from None"),
+    "a batch": (lambda s: s.solve(np.zeros((3, 10))), r"not an array of \(3, 10\); solve_many takes a row"),
+}
+
+
+@pytest.mark.parametrize("case", ASTRAY)
+@pytest.mark.usefixtures("unchecked")
+def test_what_was_a_raw_exception_is_an_input_error(simulation: hs.Simulation, case: str) -> None:
+    act, words = ASTRAY[case]
+    with pytest.raises(hs.InputError, match=words):
+        act(simulation)
+
+
+def test_a_search_ends_in_time_and_tells_how_it_goes(simulation: hs.Simulation) -> None:
+    """Oracle: a target that no winch reaches; without a limit the search goes on for many steps and restarts."""
+    away = {"left": (0.5, 0.5)}
+    told: list[tuple[int, float]] = []
+    whole = hs.solve_ik(simulation, away, progress=lambda step, error: told.append((step, error)))
+    assert [step for step, _ in told] == list(range(1, len(told) + 1))
+    assert told[0][1] > told[-1][1] > 0.3
+    cut = hs.solve_ik(simulation, away, seconds=1e-9)
+    assert cut.reason == "time limit reached"
+    assert cut.iterations < whole.iterations
+    assert cut.pose.result.converged
+    with pytest.raises(hs.InputError, match="seconds must be above 0, not 0"):
+        hs.solve_ik(simulation, away, seconds=0)
+
+
+def test_what_progress_raises_ends_the_search(simulation: hs.Simulation) -> None:
+    def enough(_: int, __: float) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        hs.solve_ik(simulation, {"left": (0.5, 0.5)}, progress=enough)
