@@ -107,7 +107,7 @@ def test_pictures_for_notebooks(simulation: hs.Simulation, pose: hs.SolvedPose) 
 MILLIMETRES = {
     "solve": (
         lambda simulation: simulation.solve({"left": 12}),
-        "12 m, is more than all of its cable, .*in metres: 12 mm",
+        "12 m, is far more than the body, 0.279 m, .*in metres: 12 mm",
     ),
     "solve, let out": (
         lambda simulation: simulation.solve({"left": -5}),

@@ -75,11 +75,6 @@ class Material:
             raise InputError(
                 f"poisson must be at least 0 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
             )
-        if self.young < SOFTEST:
-            raise InputError(
-                f"young must be at least {SOFTEST:g} Pa, softer than any gel that keeps its shape, not "
-                f"{self.young:g} Pa; 30 kPa is 30e3"
-            )
         check_positive("density", self.density, "kg/m^3")
         check_not_negative("viscosity", self.viscosity, "Pa s")
         if len(self.relaxation) > MOST_BRANCHES:
@@ -88,6 +83,11 @@ class Material:
             raise InputError(f"largest_stretch must be above 1 (twice the length is 2), not {self.largest_stretch:g}")
         if self.largest_squeeze is not None and not 0 < self.largest_squeeze < 1:
             raise InputError(f"largest_squeeze must be above 0 and below 1, not {self.largest_squeeze:g}")
+        if self.young < SOFTEST:
+            raise InputError(
+                f"young must be at least {SOFTEST:g} Pa, softer than any gel that keeps its shape, not "
+                f"{self.young:g} Pa; 30 kPa is 30e3"
+            )
 
     @property
     def elastic(self) -> Self:

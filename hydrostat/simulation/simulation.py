@@ -189,7 +189,7 @@ class Simulation:
             InputError: other energies that remember the way, or others beside cables with friction.
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
-        self._own(pose, "the Jacobian")
+        check_pose(pose, self.robot.body.mesh.nodes.shape, len(self.robot.winches), what="the pose")
         if not self.assembly.has_history:
             right = -self.assembly.near(pose.unknowns).control_derivative(pose.unknowns, pose.contractions).toarray()
             return self.response(pose, right).reshape(*self.assembly.shape, -1)[: len(pose.nodes)]
@@ -217,7 +217,6 @@ class Simulation:
             NotConvergedError: as for `jacobian`.
         """
         check_still(self.robot, "the adjoint")
-        self._own(pose, "the adjoint")
         if self.assembly.has_history:
             right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
             slopes = self.rubbing_slopes(pose, (right.reshape(1, -1), pulls[None]))
@@ -236,9 +235,6 @@ class Simulation:
     def rubbing_slopes(self, pose: SolvedPose, rows: tuple[np.ndarray, np.ndarray]) -> RubbingSlopes:
         """Slopes of numbers of a pose whose cables rub: `rows` are by its nodes, then by tensions; as for `adjoint`."""
         return rubbing_slopes(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
-
-    def _own(self, pose: SolvedPose, what: str) -> None:
-        check_pose(pose, self.robot.body.mesh.nodes.shape, len(self.robot.winches), what=f"the pose of {what}")
 
     def _rubbing(self, pose: SolvedPose) -> tuple[FrictionCableEnergy, Stiffness]:
         if self.friction is None or self._more or any(map(self.robot.friction_of, self.robot.obstacles)):

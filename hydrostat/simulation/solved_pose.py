@@ -208,16 +208,14 @@ def _check_metres(robot: Robot, contractions: Vector) -> None:
     bare = {winch.name: 0.0 for winch in robot.winches}
     for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
         bare[cable.winch] = max(bare[cable.winch], cable.length / float(ratio))
+    size = robot.body.mesh.size
     for winch, value in zip(robot.winches, contractions, strict=True):
-        most = bare[winch.name] or robot.body.mesh.size
-        if not -_MOST_OUT * robot.body.mesh.size <= value <= most:
-            what = "more than all of its cable" if bare[winch.name] else "more than the body"
-            than = f"{what}, {most:.3g} m" if value > 0 else f"far more than the body, {robot.body.mesh.size:.3g} m"
+        if abs(value) > _MOST * (size + bare[winch.name]):
             raise InputError(
-                f'the contraction of winch "{winch.name}", {value:g} m, is {than}; contractions are in metres: '
-                f"12 mm is 0.012"
+                f'the contraction of winch "{winch.name}", {value:g} m, is far more than the body, {size:.3g} m, and '
+                "all of its cable; contractions are in metres: 12 mm is 0.012"
             )
 
 
-_MOST_OUT = 5.0
-"""A winch lets out at most so many sizes of the body."""
+_MOST = 3.0
+"""A winch moves at most so many lengths of body and cable together."""

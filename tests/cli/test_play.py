@@ -109,7 +109,7 @@ def test_an_error_while_playing_stops_the_motors(
 @pytest.mark.parametrize(
     ("text", "options", "words"),
     [
-        (None, (), "wave.csv: cannot be read as a table (No such file or directory)"),
+        (None, (), "wave.csv: there is no such file"),
         ("time_s,tail\n0,1\n", (), 'wave.csv, line 1: there is no winch "tail"; winches are: right, left, feet'),
         ("time_s,left\n0,1\n1,\n", (), 'wave.csv, line 3, column left: write a number of millimetres, not ""'),
         ("time_s,left\n0,1\n1,99\n", (), "wave.csv, line 3, column left: 99 mm is beyond what the winch can take in"),

@@ -57,7 +57,7 @@ def test_positive(kind: type, field: str, others: dict, value: float) -> None:
 @pytest.mark.parametrize(
     ("kind", "field", "others"),
     [
-        (Material, "viscosity", {"young": 1.0, "poisson": 0.3, "density": 1.0}),
+        (Material, "viscosity", {"young": 1e3, "poisson": 0.3, "density": 1.0}),
         (Winch, "release", {"name": "w", "at": (0.0, 0.0)}),
         (Cable, "slack", {"winch": "w", "points": LINE}),
         (Pin, "radius", {"at": (0.0, 0.0)}),

@@ -61,7 +61,7 @@ def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, message: str
     with pytest.raises(hs.InputError, match=message) as refused:
         read_profile(path, strip_robot(columns=4, rows=2))
     assert str(path) in str(refused.value)
-    with pytest.raises(hs.InputError, match="cannot be read"):
+    with pytest.raises(hs.InputError, match="there is no such file"):
         read_profile(tmp_path / "none.csv", strip_robot(columns=4, rows=2))
 
 

@@ -109,13 +109,13 @@ def test_factors_sent_through_pickle_solve_the_same(simulation: Simulation) -> N
 
 
 def test_a_pose_without_factors_is_small_and_still_a_start(simulation: Simulation) -> None:
-    """Its nodes, twice, and little more; slopes are the same, from factors made again."""
+    """Its nodes, twice, its robot, and little more; slopes are the same, from factors made again."""
     pulled = tasks(simulation)[0][1]
     pose = simulation.solve(pulled)
     light = pose.without_factors()
     assert light.result.stiffness is None
     assert pose.result.stiffness is not None
-    assert len(pickle.dumps(light)) < 2 * pose.nodes.nbytes + 4000
+    assert len(pickle.dumps(light)) < len(pickle.dumps(pose.robot)) + 2 * pose.nodes.nbytes + 4000
     slopes = simulation.jacobian(pose)
     np.testing.assert_allclose(simulation.jacobian(light), slopes, rtol=0, atol=1e-8 * np.abs(slopes).max())
     again = simulation.solve(1.1 * pulled, start=light).nodes
