@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose
-from hydrostat.robot.notebook import notebook_html
+from hydrostat.robot.notebook import notebook_html, picture_of
 from hydrostat.simulation import SolvedPose
 
 
@@ -63,10 +63,8 @@ class ReachedPose:
 
     def _repr_html_(self) -> str:
         """The line, what is to be minded, and a picture, for a notebook."""
-        import hydrostat  # the front door: it knows the room of pictures, which is above this one
-
         words = "\n".join([repr(self), *self.held, *self.pose.notes])
-        return notebook_html(words, hydrostat.draw_reached(self.pose.robot, self))
+        return notebook_html(words, picture_of("reached", self.pose.robot, self))
 
     @property
     def wanted(self) -> Pose:

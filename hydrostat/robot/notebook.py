@@ -1,12 +1,24 @@
-"""`notebook_html`: what a notebook shows of a record: its line, and a picture."""
+"""`picture_of`: a record's own picture; `notebook_html`: what a notebook shows of it: its line, and the picture."""
 
 import base64
 import html
 import io
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
-def notebook_html(words: str, figure: Any) -> str:
+def picture_of(kind: str, *records: object, **options: Any) -> "Figure":
+    """The picture that `hydrostat.plot.draw_<kind>` makes of some records.
+
+    Records know no pictures: that room is above theirs, and is looked up by its name only when a person asks.
+    """
+    return getattr(import_module("hydrostat.plot"), f"draw_{kind}")(*records, **options)
+
+
+def notebook_html(words: str, figure: "Figure") -> str:
     """One element of HTML: the words above the picture.
 
     Args:

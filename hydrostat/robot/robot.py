@@ -19,7 +19,7 @@ from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import Material, find_material
-from hydrostat.robot.notebook import notebook_html
+from hydrostat.robot.notebook import notebook_html, picture_of
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import counted
@@ -171,9 +171,7 @@ class Robot:
 
     def _repr_html_(self) -> str:
         """The robot at rest, for a notebook."""
-        import hydrostat  # the front door: it knows the room of pictures, which is above this one
-
-        return notebook_html(repr(self), hydrostat.draw_rest(self))
+        return notebook_html(repr(self), picture_of("rest", self))
 
     def _check_dimensions(self) -> None:
         dim = self.body.mesh.dim

@@ -12,7 +12,7 @@ from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics import NewtonResult
 from hydrostat.robot import Robot
-from hydrostat.robot.notebook import notebook_html
+from hydrostat.robot.notebook import notebook_html, picture_of
 from hydrostat.simulation.strain import node_strains, node_stresses
 
 if TYPE_CHECKING:
@@ -81,9 +81,7 @@ class SolvedPose:
         Args:
             options: `title`, `note` and `width` of `hydrostat.plot.draw_pose`.
         """
-        import hydrostat  # the front door: it knows the room of pictures, which is above this one
-
-        return hydrostat.draw_pose(self.robot, self, **options)
+        return picture_of("pose", self.robot, self, **options)
 
     def __repr__(self) -> str:
         """What it is, in one line."""
