@@ -143,7 +143,7 @@ class ObstacleEnergy(Energy):
         distances = self.field(begin).values
         least, done = _KEPT * distances, np.zeros(len(begin))
         speeds = self._speeds(nodes, move)
-        going = np.flatnonzero(distances - least < speeds)
+        going = np.flatnonzero((distances - least < speeds) & (speeds > 0))
         for _ in range(_ADVANCES):
             if not len(going):
                 break

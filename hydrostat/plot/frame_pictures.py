@@ -20,6 +20,7 @@ from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot, rims
+from hydrostat.simulation import with_obstacles
 
 Picture = UInt8[np.ndarray, "_ _ 3"]  # red, green and blue of each pixel, the top row first
 INCHES = 6.4  # width of the drawing, whatever its pixels: words and lines keep their share of it
@@ -35,7 +36,14 @@ class FramePictures:
         self._scale = TensionScale.of(np.concatenate([frame.tensions for frame in frames]))
         points = _seen(robot, self._carried, frames)
         self._sheet, panes = open_sheet(
-            robot, [], [points], title=shorten(robot.name), subtitle=" ", width=INCHES, bar=True, ruled=False
+            with_obstacles(robot, frames[0].things),
+            [],
+            [points],
+            title=shorten(robot.name),
+            subtitle=" ",
+            width=INCHES,
+            bar=True,
+            ruled=False,
         )
         self._dpi = width / INCHES
         pane = panes[0]

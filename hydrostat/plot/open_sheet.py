@@ -11,7 +11,7 @@ from hydrostat.drawing.palette import GRID, INK, MUTED
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
 from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
 from hydrostat.plot.skin import FlatSkin
-from hydrostat.robot import Robot
+from hydrostat.robot import ObstacleShape, Robot
 
 ROOM = (34.0, 34.0, 40.0, 20.0)  # left, right, lower, upper border of the three-quarter view [pt]: words; compass below
 BARE = 12.0  # free border around a view that stands alone [pt]: half a winch on its plate, that stands at the edge
@@ -73,7 +73,11 @@ def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
 
 
 def _asked(robot: Robot) -> Spread:
-    """How far markers shall go in the poses of a robot [m]."""
+    """How far markers shall go in the poses of a robot [m]; of things beside it, where these are."""
+    nodes = robot.body.mesh.nodes
+    beside = [thing.frame()[0] for thing in robot.obstacles if thing.shape is not ObstacleShape.PLANE]
+    if beside:
+        return np.array(beside) - 0.5 * (nodes.min(axis=0) + nodes.max(axis=0))
     rest = {marker.name: np.array(marker.at) for marker in robot.markers}
     asked = [np.array(target) - rest[name] for pose in robot.poses.values() for name, target in pose.targets.items()]
     return np.array(asked, dtype=float).reshape(-1, 3)

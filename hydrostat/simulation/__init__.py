@@ -8,7 +8,7 @@ from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_fil
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.friction_band import friction_band
 from hydrostat.simulation.many_poses import ManyPoses
-from hydrostat.simulation.meeting import as_posed, carried_frames, obstacle_forces, replacing
+from hydrostat.simulation.meeting import as_posed, carried_frames, obstacle_forces, replacing, with_obstacles
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
@@ -67,6 +67,7 @@ __all__ = [
     "smooth_robot",
     "touch_words",
     "touches",
+    "with_obstacles",
     "write_motion",
     "write_pose",
     "write_profile",

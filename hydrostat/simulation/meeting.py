@@ -1,5 +1,6 @@
 """What meets a robot: forces on obstacles, and guides that move them."""
 
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.mechanics import Energy
-from hydrostat.robot import Robot
+from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation.solved_pose import SolvedPose
 
 if TYPE_CHECKING:
@@ -60,7 +61,13 @@ def as_posed(robot: Robot, carried: Points | None) -> Robot:
     frames = carried_frames(robot, carried)
     if not frames:
         return robot
+    return with_obstacles(
+        robot, [one.moved(*frames[one.name]) if one.name in frames else one for one in robot.obstacles]
+    )
+
+
+def with_obstacles(robot: Robot, obstacles: Sequence[Obstacle]) -> Robot:
+    """The robot with other obstacles, for pictures: where they stand is not checked."""
     other = copy(robot)
-    places = tuple(one.moved(*frames[one.name]) if one.name in frames else one for one in robot.obstacles)
-    object.__setattr__(other, "obstacles", places)
+    object.__setattr__(other, "obstacles", tuple(obstacles))
     return other

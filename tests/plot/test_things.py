@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
-from builders import box_robot
+from builders import box_robot, gallery_robot
 
 from hydrostat.plot import draw_portrait
+from hydrostat.plot.open_sheet import open_sheet
+from hydrostat.plot.pane import SpacePane
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.things import thing_surface
 from hydrostat.robot import Obstacle, rims
+from hydrostat.simulation import with_obstacles
 
 AT, TO = (0.01, 0.02, 0.03), (0.05, 0.08, 0.06)
 LONG = float(np.linalg.norm(np.subtract(TO, AT)))
@@ -47,3 +50,13 @@ def test_what_lies_behind_the_body_is_hidden_by_it() -> None:
         changed.append(int((np.abs(drawn - bare).max(axis=2) > 40).sum()))
     assert changed[0] != changed[1]
     assert max(changed) > 20
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_thing_beside_a_hand_is_seen_before_it(side: float) -> None:
+    robot = gallery_robot("cupping_hand")
+    ball = Obstacle(name="ball", shape="sphere", at=(0.0, side * 0.12, 0.1), radius=0.02)
+    _, panes = open_sheet(with_obstacles(robot, [ball]), [robot.body.mesh.nodes], ruled=False)
+    assert isinstance(panes[0], SpacePane)
+    middle, there = panes[0].camera.see(np.array([robot.body.mesh.nodes.mean(axis=0), ball.at]))
+    assert there[2] > middle[2]

@@ -1,0 +1,177 @@
+"""Keyframes twist a ball within the gallery's gripper and hands: how far it turns, and films.
+
+    python benchmarks/twist.py [--friction 0.8] [--step 0.02] [--films DIR] [HAND ...]
+
+After Fig 4.10 of the thesis, where three hands twist a ball, each its way. The gripper swings its four fingers round
+the ball as one opens a jar; the hands roll it between thumb and fingers. The ball is a free body that Coulomb friction
+takes along, in dynamics; a spring of 100 N/m keeps it about its place in place of a palm under it, as there is no
+gravity here, and nothing keeps it from turning but drag. In the end the hand is open again: what the ball has turned
+by then stays.
+"""
+
+import argparse
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from machine import machine
+
+import numpy as np  # isort: skip
+
+from scipy.spatial.transform import Rotation
+
+import hydrostat as hs
+from hydrostat.arrays import Vector
+from hydrostat.mechanics.rigid import GuideEnergy
+from hydrostat.plot import Frame, save_gif
+from hydrostat.robot import Contact, Obstacle, Robot
+from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+HOLD, VISCOSITY, DRAG, SECONDS = 100.0, 400.0, 5.0, 0.5
+"""Spring of the ball [N/m], shear viscosity of the foam [Pa s], drag [1/s], time from one keyframe to the next [s]."""
+
+
+@dataclass(frozen=True)
+class Twist:
+    """Keyframes, in parts of winches' names with what they take in [mm]; later parts win."""
+
+    at: tuple[float, float, float]  # middle of the ball [mm]
+    radius: float  # of the ball [mm]
+    keys: dict[str, dict[str, float]]
+
+    def contractions(self, robot: Robot, key: str) -> Vector:
+        """What each winch takes in at a key [m]."""
+        taken = np.zeros(len(robot.winches))
+        for part, value in self.keys[key].items():
+            taken[[part in winch.name for winch in robot.winches]] = 1e-3 * value
+        return taken
+
+
+TWISTS = {
+    "caging_gripper": Twist(
+        (0, 0, 78),
+        33.5,
+        {
+            "swung back": {" a": 14, " b": 0},
+            "closed there": {" a": 24, " b": 10},
+            "swung round": {" a": 10, " b": 24},
+            "opened there": {" a": 0, " b": 14},
+            "open": {},
+        },
+    ),
+    "cupping_hand": Twist(
+        (26, -48, 110),
+        15,
+        {
+            "closed": {"thumb flexor": 20, "index flexor": 14, "middle flexor": 14},
+            "rolled": {"thumb flexor": 26, "index flexor": 6, "middle flexor": 6},
+            "open": {},
+        },
+    ),
+    "extended_hand": Twist(
+        (26, -48, 118),
+        15,
+        {
+            "closed": {"thumb flexor": 26, "index flexor": 26, "middle flexor": 26},
+            "rolled": {"thumb flexor": 32, "index flexor": 20, "middle flexor": 20},
+            "open": {},
+        },
+    ),
+}
+
+
+class Held:
+    """A robot and a ball that it turns, from keyframe to keyframe."""
+
+    def __init__(self, robot: Robot, twist: Twist, friction: float) -> None:
+        at = tuple(1e-3 * value for value in twist.at)
+        self.ball = Obstacle(
+            name="ball", shape="sphere", at=at, radius=1e-3 * twist.radius, mass=0.03, friction=friction
+        )
+        body = replace(robot.body, material=replace(robot.body.material, viscosity=VISCOSITY))
+        self.robot = replace(robot, body=body, contact=Contact(), obstacles=(self.ball,))
+        physics = BodyPhysics(self.robot)
+        self.carriage = physics.carriages[0]
+        guide = GuideEnergy(self.carriage, place=np.array(at), axes=np.eye(3), along=HOLD * np.eye(3), turning=0.0)
+        self.simulation = Simulation(self.robot, body=physics, energies=[guide])
+        self.motion = self.simulation.still()
+
+    def go(self, goal: Vector, step: float) -> Motion:
+        """The motion one step [s] later."""
+        self.motion = self.simulation.step(self.motion, goal, step, options=StepOptions(scheme="euler", drag=DRAG))
+        return self.motion
+
+    @property
+    def turned(self) -> Vector:
+        """How far the ball has turned, about each axis [degree]; small enough to be a vector."""
+        return np.rad2deg(Rotation.from_matrix(_rotation(self._axes).T).as_rotvec())
+
+    @property
+    def place(self) -> Vector:
+        """Where the middle of the ball is [m]."""
+        assert self.motion.carried is not None
+        return self.motion.carried[0][0]
+
+    def drawn(self) -> list[Obstacle]:
+        """The ball where it is, with dots on it, which show how it turns."""
+        ways = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]) @ _rotation(self._axes)
+        radius = self.ball.radius or 0.0
+        dots = self.place + 0.94 * radius * ways
+        made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots.tolist()]
+        return [replace(self.ball, at=tuple(self.place.tolist())), *made]
+
+    @property
+    def _axes(self) -> np.ndarray:
+        assert self.motion.carried is not None
+        return self.motion.carried[0][1:] / self.carriage.length
+
+
+def _rotation(axes: np.ndarray) -> np.ndarray:
+    """The rotation nearest to axes that are almost one."""
+    left, _, right = np.linalg.svd(axes)
+    return left @ right
+
+
+def run(name: str, friction: float, step: float, films: Path | None) -> None:
+    """Print a row for each keyframe of a hand, and write a film if asked."""
+    twist, robot = TWISTS[name], hs.load_robot(EXAMPLES / name)
+    held, frames, began = Held(robot, twist, friction), [], time.process_time()
+    goal = np.zeros(len(robot.winches))
+    count = max(1, round(SECONDS / step))
+    for key in twist.keys:
+        begin, goal = goal, twist.contractions(robot, key)
+        for number in range(1, count + 1):
+            share = number / count
+            motion = held.go(begin + share * share * (3 - 2 * share) * (goal - begin), SECONDS / count)
+            words = f"{key}: the ball has turned by {np.linalg.norm(held.turned):.0f} degrees"
+            frames.append(Frame.of(motion, words=words, things=held.drawn()))
+        x, y, z = held.turned
+        away = 1e3 * float(np.linalg.norm(held.place - held.ball.at))
+        print(
+            f"| {name} | {key} | {x:.1f}, {y:.1f}, {z:.1f} | {np.linalg.norm(held.turned):.1f} | {away:.1f} | "
+            f"{time.process_time() - began:.0f} |",
+            flush=True,
+        )
+    if films is not None:
+        films.mkdir(parents=True, exist_ok=True)
+        stride = max(1, round(0.05 / step))
+        print(f"wrote {save_gif(robot, frames[::stride], films / f'{name}.gif', step=0.1, width=480)}", flush=True)
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("hands", nargs="*", default=list(TWISTS))
+    parser.add_argument("--friction", type=float, default=0.8)
+    parser.add_argument("--step", type=float, default=0.02, help="in time [s]")
+    parser.add_argument("--films", type=Path)
+    given = parser.parse_args()
+    print(machine())
+    print("| hand | keyframe | ball turned about x, y, z, degrees | in all | moved mm | s |\n|" + 6 * "---|")
+    for name in given.hands:
+        run(name, given.friction, given.step, given.films)
+
+
+if __name__ == "__main__":
+    main()
