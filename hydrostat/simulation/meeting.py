@@ -42,7 +42,7 @@ def replacing(simulation: "Simulation", old: Energy, new: Energy) -> "Simulation
     return other
 
 
-def carried_frames(robot: Robot, carried: Points | None) -> dict[str, tuple[Vector, Points]]:
+def carried_frames(robot: Robot, carried: Points | None) -> dict[str, tuple[Vector, Float[np.ndarray, "axes dim"]]]:
     """Place [m] and axes of each obstacle that moves, by name, from its unknowns."""
     if carried is None:
         return {}

@@ -154,15 +154,31 @@ class Session:
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
         return meant
 
+    @property
+    def undo_label(self) -> str:
+        """What would be undone; "" if nothing can be."""
+        return (self.current.undo_label if self.document.is_open else "") or self.document.undo_label
+
+    @property
+    def redo_label(self) -> str:
+        """What would be done again; "" if nothing can be."""
+        return (self.current.redo_label if self.document.is_open else "") or self.document.redo_label
+
     def undo(self) -> None:
-        """Take back the last change."""
-        label = self.document.undo_label
-        self.tell(f"undone: {label}" if self.document.undo() else "there is nothing to undo")
+        """Take back the last change: a drag of the stage that is shown, else one of the document."""
+        label = self.undo_label
+        with self._lock:
+            done = self.current.undo if self.document.is_open and self.current.undo_label else self.document.undo
+            done()
+        self.tell(f"undone: {label}" if label else "there is nothing to undo")
 
     def redo(self) -> None:
         """Do again what was undone."""
-        label = self.document.redo_label
-        self.tell(f"done again: {label}" if self.document.redo() else "there is nothing to do again")
+        label = self.redo_label
+        with self._lock:
+            done = self.current.redo if self.document.is_open and self.current.redo_label else self.document.redo
+            done()
+        self.tell(f"done again: {label}" if label else "there is nothing to do again")
 
     def save(self, folder: Path | None = None) -> None:
         """Save the robot where it was, or in another folder (InputError: it has none yet, or cannot be written)."""

@@ -67,6 +67,22 @@ class Stage(ABC):
         """Heed a key such as "delete", "escape", "space", "r" or "g"; whether it meant something here."""
         return False
 
+    @property
+    def undo_label(self) -> str:
+        """What of this stage alone would be undone, before a change of the document; "" if nothing."""
+        return ""
+
+    @property
+    def redo_label(self) -> str:
+        """What of this stage alone would be done again; "" if nothing."""
+        return ""
+
+    def undo(self) -> None:
+        """Take back what `undo_label` names."""
+
+    def redo(self) -> None:
+        """Do again what `redo_label` names."""
+
     def step(self, now: float) -> bool:
         """Do a bit of work, at a time [s] of a clock that only runs forward; whether there is more to do."""
         return False

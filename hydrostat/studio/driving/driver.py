@@ -41,7 +41,8 @@ class Driver(Stage):
         """All parts of the robot, the winch that is pulled marked."""
         chosen = () if self._pull is None else (f"winch:{self._pull[0]}",)
         robot, shape = self._document.robot, self.shape()
-        things = robot_things(robot, tensions=shape.tensions, scale=self.strongest, chosen=chosen)
+        options = {"scale": self.strongest, "carried": shape.carried}
+        things = robot_things(robot, tensions=shape.tensions, chosen=chosen, **options)
         return things + touch_things(shape, robot.body.mesh.size)
 
     @property

@@ -116,14 +116,17 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) 
     def show_robot() -> None:
         document = session.document
         name.set_text(("" if document.saved else "● ") + document.robot.name if document.is_open else "")
-        undo.set_enabled(bool(document.undo_label))
         undo.props(f"data-serial={document.serial}")  # whose state the buttons show
-        redo.set_enabled(bool(document.redo_label))
         save.set_enabled(document.is_open)
         show_stage()
 
+    def show_undo() -> None:
+        undo.set_enabled(bool(session.undo_label))
+        redo.set_enabled(bool(session.redo_label))
+
     page.on(Topic.STAGE, show_stage, lasting=True)
     page.on(Topic.ROBOT, show_robot, lasting=True)
+    page.on((Topic.ROBOT, Topic.STAGE, Topic.THINGS), show_undo, lasting=True)
 
 
 def _tool(icon: str, words: str, action: Ask) -> ui.button:

@@ -1,6 +1,6 @@
 """`Poser`: the stage "pose"."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from threading import RLock
 
@@ -9,25 +9,24 @@ import numpy as np
 from hydrostat.closed_set import member
 from hydrostat.drawing.palette import GHOST
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.geometry.anchors import locate
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.cable_proposals import CableProposals
+from hydrostat.studio.posing.grip import name_under, point_of
 from hydrostat.studio.posing.held import Anchored, Held, Mode, Now, Wish, renamed_markers, with_network_of
 from hydrostat.studio.posing.movers import Movers, same_body
 from hydrostat.studio.posing.poses import checked_name, held_of, renamed_pose, wishes_after, with_pose, without_pose
 from hydrostat.studio.posing.propose_work import Moment
 from hydrostat.studio.posing.reach import MarkerReach
-from hydrostat.studio.records.work import fresh_name
+from hydrostat.studio.posing.trail import Trail
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import MARKER, Bar, robot_things, target_things, winch_bars
 from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
 from hydrostat.studio.view.touching import touch_things
 
 READY = "getting ready ..."  # said while the physics of a robot is made
-NEAR = 0.02  # a plain point so near to one that is held is that one, in sizes of the body
 FARTHEST = 1.0  # no target is farther from the box of the body at rest, in sizes of the body
 TARGET_GHOST = "#8fb4d6"
 
@@ -58,6 +57,8 @@ class Poser(Stage):
         self._rested: dict[Mode, int] = {}
         self._announced = False
         self._hold: _Hold | None = None
+        self._trail = Trail(document)
+        self._dragged = False
         self._armed = ""
         self._chosen = ""
         document.bell.listen(self._heard)
@@ -100,7 +101,8 @@ class Poser(Stage):
             found.append(cloud)
         proposed = self.proposals.network(robot) if wish.mode is Mode.MUSCLES else None
         if proposed is None:
-            found += robot_things(robot, tensions=shape.tensions, scale=limit, chosen=keys)
+            options = {"scale": limit, "carried": shape.carried}
+            found += robot_things(robot, tensions=shape.tensions, chosen=keys, **options)
         else:
             found += robot_things(proposed, chosen=keys)
         markers = {marker.name for marker in robot.markers}
@@ -121,15 +123,16 @@ class Poser(Stage):
         """Take hold of a marker, a target or any point of the body."""
         now = self._fit()
         armed = self._armed
-        name = armed or self._name_under(now, hit)
+        name = armed or name_under(now, hit)
         if not name:
             return False
-        point = self._point(now, name, hit)
+        point = point_of(now, name, hit)
         start = hit.world if armed else self._place(now, name, point)
         if hit.key == f"target:{name}":
             start = point.target
         offset = tuple((np.array(start) - np.array(hit.world)).tolist())
         self._hold, self._armed, self._chosen = _Hold(name=name, point=point, offset=offset), "", name
+        self._dragged = False
         return True
 
     def drag(self, hit: Hit) -> None:
@@ -138,6 +141,9 @@ class Poser(Stage):
             self._fit()
             hold = self._hold
             if hold is not None and np.isfinite(hit.world).all():
+                if not self._dragged:
+                    self._note(f"drag {hold.name}")
+                self._dragged = True
                 self._hold_at(hold.name, hold.point, np.array(hit.world) + hold.offset)
 
     def release(self) -> None:
@@ -150,7 +156,8 @@ class Poser(Stage):
             now = self._fit()
             if self._armed:
                 name, self._armed = self._armed, ""
-                self._hold_at(name, self._point(now, name, hit), np.array(hit.world))
+                self._note(f"move {name}")
+                self._hold_at(name, point_of(now, name, hit), np.array(hit.world))
                 return
             kind, _, name = hit.key.partition(":")
             self._chosen = now.known(name) if kind in ("marker", "target", "point") else ""
@@ -193,6 +200,8 @@ class Poser(Stage):
         """Back to rest: no targets, no cable taken in."""
         with self._lock:
             now = self._fit()
+            if now.wish.held:
+                self._note("rest")
             self._now = replace(now, wish=Wish(mode=now.wish.mode, rests=now.wish.rests + 1), ghost=None)
             self._let_go()
         self._ring()
@@ -201,6 +210,7 @@ class Poser(Stage):
         """Let go of a held point."""
         with self._lock:
             now = self._fit()
+            self._note(f"let go of {name}")
             left = {own: held for own, held in now.wish.held.items() if own != name}
             self._now = replace(now, wish=replace(now.wish, held=left))
             self._chosen = self._armed = ""
@@ -216,7 +226,9 @@ class Poser(Stage):
         """Hold the targets of a pose; the body moves there (InputError: no such pose)."""
         with self._lock:
             now = self._fit()
-            self._now = replace(now, wish=replace(now.wish, held=held_of(now.robot, name)), ghost=None)
+            held = held_of(now.robot, name)
+            self._note(f"show {name}")
+            self._now = replace(now, wish=replace(now.wish, held=held), ghost=None)
             self._let_go()
         self._ring()
 
@@ -266,6 +278,38 @@ class Poser(Stage):
         if not more:
             self._done = (robot, wish, tension)
         return more or self._fit().wish is not wish
+
+    @property
+    def undo_label(self) -> str:
+        """The last drag, if nothing was done to the robot since; "" if there is none."""
+        return self._trail.undo_label
+
+    @property
+    def redo_label(self) -> str:
+        """The drag that was undone last; "" if there is none."""
+        return self._trail.redo_label
+
+    def undo(self) -> None:
+        """Hold what was held before the last drag."""
+        self._hold_again(self._trail.undo)
+
+    def redo(self) -> None:
+        """Hold what was held before that was undone."""
+        self._hold_again(self._trail.redo)
+
+    def _hold_again(self, way: Callable[[Mapping[str, Held]], Mapping[str, Held]]) -> None:
+        """Go to another step of the trail; where nothing was held, back to rest."""
+        with self._lock:
+            now = self._fit()
+            held = way(now.wish.held)
+            rests = now.wish.rests + (not held)
+            self._now = replace(now, wish=replace(now.wish, held=held, rests=rests), ghost=None)
+            self._let_go()
+        self._ring()
+
+    def _note(self, label: str) -> None:
+        """What is held changes now, and can be undone."""
+        self._trail.note(label, self._fit().wish.held)
 
     def _propose(self, robot: Robot, wish: Wish) -> None:
         """Want cables for what the muscles do just now."""
@@ -328,34 +372,6 @@ class Poser(Stage):
             name = names.get(hold.name, hold.name)
             gone = hold.point.marker and not now.known(name)
             self._hold = None if gone else replace(hold, name=name)
-
-    def _name_under(self, now: Now, hit: Hit) -> str:
-        """The point that the pointer is on: a marker, one that is held, or a new one; "" beside the body."""
-        kind, _, name = hit.key.partition(":")
-        markers = [marker.name for marker in now.robot.markers]
-        if kind == "marker" and name in markers:
-            return name
-        if kind in ("target", "point") and name in now.wish.held:
-            return name
-        if hit.rest is None:
-            return ""
-        near = NEAR * now.robot.body.mesh.size
-        for own, held in now.wish.held.items():
-            if np.linalg.norm(np.subtract(held.at, hit.rest)) < near:
-                return own
-        return fresh_name("point", [*now.wish.held, *markers])
-
-    def _point(self, now: Now, name: str, hit: Hit) -> Held:
-        """A point by name, held where it is if it is not held yet."""
-        if name in now.wish.held:
-            return now.wish.held[name]
-        for marker in now.robot.markers:
-            if marker.name == name:
-                return Held(at=marker.at, target=marker.at, marker=True)
-        assert hit.rest is not None
-        mesh = now.robot.body.mesh
-        at = tuple(locate(mesh, np.array([hit.rest])).positions(mesh.nodes)[0].tolist())
-        return Held(at=at, target=at)
 
     def _place(self, now: Now, name: str, point: Held) -> tuple[float, ...]:
         """Where a point of the body is [m]."""

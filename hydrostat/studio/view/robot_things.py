@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Points, Vector
 from hydrostat.drawing.palette import INK, MUTED, winch_colours
 from hydrostat.robot import Cable, Mount, Point, Robot, obstacle_lines
+from hydrostat.simulation import as_posed
 from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
 
 MARKER = "#2b2833"
@@ -19,19 +20,20 @@ def robot_things(
     *,
     tensions: Vector | None = None,
     scale: float = 10.0,
+    carried: Points | None = None,
     chosen: Collection[str] = (),
     vias: bool = False,
 ) -> list[Thing]:
     """What a robot has, in the order obstacles, pins, cables, winches, markers; chosen keys are selected.
 
     Keys are "pin:0", "cable:0", "via:0:2" (cable and point), "winch:left" and "marker:tip". Tensions of the cables [N]
-    are drawn on a scale up to the largest. With `vias` each point of a cable is a dot that can be taken hold of; else
-    only its stopper is shown.
+    are drawn on a scale up to the largest, obstacles that move where they are carried to [m]. With `vias` each point of
+    a cable is a dot that can be taken hold of; else only its stopper is shown.
     """
     colours = winch_colours(robot.winches)
     things: list[Thing] = [
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, colour=MUTED, loose=-1)
-        for line in obstacle_lines(robot)
+        for line in obstacle_lines(as_posed(robot, carried))
     ]
     for index, pin in enumerate(robot.pins):
         middle = pin.at if pin.at is not None else tuple(np.mean(pin.box or (), axis=0).tolist())

@@ -20,6 +20,7 @@ class RobotShape:
     errors: dict[str, float] = field(default_factory=dict)  # distance of each held marker from its target [m]
     muscles: Vector | None = None  # how hard they pull around each node, 1 for the hardest; None where none move it
     touches: tuple[Touch, ...] = ()  # where it touches itself and obstacles, the hardest first
+    carried: Points | None = None  # where obstacles that move are, as `SolvedPose.carried` [m]; None: where they begin
     crossing: Point | None = None  # a place where it passes through itself [m]
     notes: tuple[str, ...] = ()  # what to mind, a line each: limits that hold, why a solver stopped
 

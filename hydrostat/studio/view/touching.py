@@ -17,7 +17,7 @@ TOUCH = "#8a2be2"
 
 
 def with_touches(simulation: Simulation, pose: SolvedPose, shape: RobotShape, *, settled: bool) -> RobotShape:
-    """A shape with the places where its pose touches; without contact where it crosses itself, and a note that says so.
+    """A shape with what its pose touches and carries; without contact where it crosses itself, with a note of that.
 
     Crossings of a body in space take longer than a step of its pose: they are looked for once it has `settled`.
     """
@@ -27,7 +27,7 @@ def with_touches(simulation: Simulation, pose: SolvedPose, shape: RobotShape, *,
         places = find_crossings(robot.body.mesh, pose.nodes).places
         if len(places):
             crossing, notes = tuple(places[len(places) // 2].tolist()), (*notes, OFF.removesuffix(" here"))
-    return replace(shape, notes=notes, touches=touches(simulation, pose), crossing=crossing)
+    return replace(shape, notes=notes, touches=touches(simulation, pose), carried=pose.carried, crossing=crossing)
 
 
 def touch_things(shape: RobotShape, size: float) -> list[Thing]:

@@ -261,3 +261,31 @@ def test_a_pointer_beside_the_body_holds_nothing(poser: Poser) -> None:
     assert not poser.grab(Hit(world=(1.0, 1.0)))
     poser.drag(Hit(world=(0.0, 0.0)))
     assert not poser.held
+
+
+def test_drags_are_undone_between_the_changes_of_the_robot(starfish: Robot, document: Document, poser: Poser) -> None:
+    """Oracle: what was held at each moment."""
+    tip = starfish.markers[0].name
+    drag_marker(starfish, poser, tip, (0.1, 0.02), moves=3)
+    first = dict(poser.held)
+    assert poser.undo_label == f"drag {tip}"
+    poser.store("wave")
+    assert not poser.undo_label, "the stored pose has to be undone first"
+    drag_marker(starfish, poser, tip, (0.08, 0.04), moves=3)
+    second = dict(poser.held)
+    poser.undo()
+    assert (poser.held, poser.undo_label, poser.redo_label) == (first, "", f"drag {tip}")
+    poser.redo()
+    assert poser.held == second
+    poser.undo()
+    assert document.undo()
+    poser.undo()
+    assert poser.held == {}
+    settle(poser)
+    assert np.abs(poser.shape().nodes - starfish.body.mesh.nodes).max() < 1e-6
+    poser.redo()
+    assert poser.held == first
+    poser.rest()
+    assert poser.undo_label == "rest"
+    poser.undo()
+    assert poser.held == first

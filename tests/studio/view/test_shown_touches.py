@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from touching import fork_robot
 
+from hydrostat.robot import Obstacle
 from hydrostat.simulation import Simulation, touches
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
+from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand
 from hydrostat.studio.view.touching import OFF, touch_things, with_touches
 
@@ -56,3 +58,19 @@ def test_the_switch_makes_another_mover() -> None:
     other = replace(robot, contact=None)
     assert not same_physics(robot, other, Mode.CABLES)
     assert same_physics(robot, other, Mode.MUSCLES)
+
+
+def test_what_moves_is_drawn_where_the_pose_has_it() -> None:
+    """Oracle: the middle of the ring, and the unknowns of the solved pose."""
+    ball = Obstacle(name="ball", shape="sphere", at=(0.1, 0.2), radius=0.02, mass=0.05)
+    robot = replace(fork_robot(2), obstacles=(ball,))
+    middles = []
+    for carried in (None, np.array([[0.13, 0.25], [1.0, 0.0], [0.0, 1.0]])):
+        (rim,) = [one for one in robot_things(robot, carried=carried) if isinstance(one, Strand) and not one.key][:1]
+        middles.append(np.mean(rim.points[:-1], axis=0))
+    np.testing.assert_allclose(middles, [(0.1, 0.2), (0.13, 0.25)], atol=1e-9)
+    simulation = Simulation(fork_robot(2))
+    pose = simulation.rest
+    object.__setattr__(pose, "carried", np.eye(3, 2))
+    shape = RobotShape(nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions)
+    assert with_touches(Simulation(fork_robot(2)), pose, shape, settled=False).carried is pose.carried

@@ -1,0 +1,40 @@
+"""`name_under`, `point_of`: which point of the body a pointer is about to hold."""
+
+import numpy as np
+
+from hydrostat.geometry.anchors import locate
+from hydrostat.studio.posing.held import Held, Now
+from hydrostat.studio.records.work import fresh_name
+from hydrostat.studio.stage import Hit
+
+NEAR = 0.02  # a plain point so near to one that is held is that one, in sizes of the body
+
+
+def name_under(now: Now, hit: Hit) -> str:
+    """The point that the pointer is on: a marker, one that is held, or a new one; "" beside the body."""
+    kind, _, name = hit.key.partition(":")
+    markers = [marker.name for marker in now.robot.markers]
+    if kind == "marker" and name in markers:
+        return name
+    if kind in ("target", "point") and name in now.wish.held:
+        return name
+    if hit.rest is None:
+        return ""
+    near = NEAR * now.robot.body.mesh.size
+    for own, held in now.wish.held.items():
+        if np.linalg.norm(np.subtract(held.at, hit.rest)) < near:
+            return own
+    return fresh_name("point", [*now.wish.held, *markers])
+
+
+def point_of(now: Now, name: str, hit: Hit) -> Held:
+    """A point by name, held where it is if it is not held yet."""
+    if name in now.wish.held:
+        return now.wish.held[name]
+    for marker in now.robot.markers:
+        if marker.name == name:
+            return Held(at=marker.at, target=marker.at, marker=True)
+    assert hit.rest is not None
+    mesh = now.robot.body.mesh
+    at = tuple(locate(mesh, np.array([hit.rest])).positions(mesh.nodes)[0].tolist())
+    return Held(at=at, target=at)
