@@ -29,9 +29,9 @@ def _drawn(points: np.ndarray) -> bytes:
     return (SVG % f'<path d="{_path(points)}"/>').encode()
 
 
-def spiral() -> bytes:
-    """A band that winds 60 times about the middle."""
-    turn = np.linspace(2 * np.pi, 122 * np.pi, 30_000)
+def spiral(count: int = 30_000) -> bytes:
+    """A band that winds 60 times about the middle, each edge of so many points."""
+    turn = np.linspace(2 * np.pi, 122 * np.pi, count)
     inner, outer = (np.column_stack([r * np.cos(turn), r * np.sin(turn)]) for r in (0.12 * turn, 0.12 * turn + 0.3))
     return _drawn(np.concatenate([inner, outer[::-1]]) + 50)
 
@@ -48,8 +48,8 @@ def closes(count: int) -> bytes:
 
 
 def clones() -> bytes:
-    """A path that is used by what is used by what is used: 180,000 points."""
-    ring = _path(50 + 40 * np.column_stack([f(np.linspace(0, 6.28, 180)) for f in (np.cos, np.sin)]))
+    """A path that is used by what is used by what is used: 80,000 points."""
+    ring = _path(50 + 40 * np.column_stack([f(np.linspace(0, 6.28, 80)) for f in (np.cos, np.sin)]))
     levels = "".join(f'<g id="g{level + 1}">' + f'<use href="#g{level}"/>' * 10 + "</g>" for level in range(3))
     text = f'<path id="g0" d="{ring}"/>{levels}'
     return (SVG % text).encode()
@@ -183,9 +183,9 @@ def offer(path: Path, folder: Path) -> tuple[str, float, float, str]:
     command = [sys.executable, "-c", run, "new", str(folder / f"of_{path.stem}"), "--from", str(path)]
     if path.suffix in (".png", ".dxf", ".vtk"):
         command += ["--size", "100 mm"]
-    told, began = folder / "told.txt", time.monotonic()
-    with told.open("wb") as file:
-        child = subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT, start_new_session=True)
+    told, errors, began = folder / "told.txt", folder / "errors.txt", time.monotonic()
+    with told.open("wb") as out, errors.open("wb") as file:
+        child = subprocess.Popen(command, stdout=out, stderr=file, start_new_session=True)
         while True:
             done, status, usage = os.wait4(child.pid, os.WNOHANG)
             if done:
@@ -195,12 +195,12 @@ def offer(path: Path, folder: Path) -> tuple[str, float, float, str]:
                 _, status, usage = os.wait4(child.pid, 0)
                 break
             time.sleep(0.05)
-    lines = [line for line in told.read_text(errors="replace").splitlines() if line]
+    lines = [line for line in errors.read_text(errors="replace").splitlines() if line]
     code = os.waitstatus_to_exitcode(status)
-    words = "made" if code == 0 else "refused" if code == 2 and "Traceback" not in "\n".join(lines) else f"BROKE {code}"
-    error = next((line for line in lines if line.startswith("error")), lines[-1] if lines else "")
-    if code == 2 and len(lines) > 3:
-        words = f"refused in {len(lines)} lines"
+    words = {0: "made", 2: "refused"}.get(code, f"BROKE {code}")
+    if len(lines) != (code == 2):
+        words += f", {len(lines)} LINES"
+    error = (lines or told.read_text(errors="replace").splitlines() or [""])[-1].replace(str(path), path.name)
     return words, time.monotonic() - began, usage.ru_maxrss / 1e6, error
 
 

@@ -94,7 +94,12 @@ class Compiled(Late):
         for name in self.py_func.__code__.co_names:
             if isinstance(names.get(name), Late):
                 names[name] = names[name].now
-        return by_numba(**self.options)(self.py_func)
+        try:
+            return by_numba(**self.options)(self.py_func)
+        except RuntimeError as error:  # neither the package nor the home folder can be written
+            if "cannot cache" not in str(error):
+                raise
+            return by_numba(**self.options | {"cache": False})(self.py_func)
 
 
 _MAKING = threading.RLock()

@@ -111,7 +111,7 @@ MILLIMETRES = {
     ),
     "solve, let out": (
         lambda simulation: simulation.solve({"left": -5}),
-        "far more than the body, 0.279 m; .*in metres",
+        "far more than the body, 0.279 m, .*in metres",
     ),
     "clearance": (lambda _: hs.Constraints(clearance=5), "at most 1 m, not 5; in metres: 5 mm is 0.005"),
     "winch gap": (lambda _: hs.Constraints(winch_gap=25), "at most 20 m, not 25; in metres"),

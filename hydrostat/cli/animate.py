@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.options import PictureWidth, check_width
 from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
@@ -70,7 +70,8 @@ def animate(
         ways = len(stops) + 1
         length = max(min(EACH_WAY * ways, USUAL), LEAST_WAY * ways) if seconds is None else seconds
         made = film(simulation, stops, seconds=length, tell=tell)
-        files = [_write(simulation, made, out, kind, width, tell) for kind in formats]
+        with result_folder(out) as folder:
+            files = [out / _write(simulation, made, folder, kind, width, tell).name for kind in formats]
     print(f"{counted(len(made.frames), 'frame')}, {length:g} s: rest, {', '.join(stop.name for stop in stops)}, rest")
     if made.missing:
         print(
@@ -101,7 +102,6 @@ def _write(
 ) -> Path:
     from hydrostat.plot import save_gif, save_glb, save_mp4
 
-    out.mkdir(parents=True, exist_ok=True)
     robot, path = simulation.robot, out / f"animation.{kind}"
     if kind is Format.GLB:
         return save_glb(robot, made.frames, path, step=made.step)

@@ -4,7 +4,7 @@ import os
 import re
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +17,15 @@ OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder fo
 
 
 def require_folder(out: Path) -> None:
-    """Before long work begins: the results can go there (InputError: something that is no folder is in the way)."""
+    """Before long work begins: the results can go there, and what killed runs left unfinished there is cleared.
+
+    Raises:
+        InputError: something that is no folder is in the way.
+    """
+    from hydrostat.robot.unfinished import clear_unfinished
+
+    for folder in (out, out.parent):
+        clear_unfinished(folder)
     for folder in (out, *out.parents):
         if folder.exists() and not folder.is_dir():
             raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file; name a folder")
@@ -30,19 +38,22 @@ def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
     A new folder is renamed as a whole. In one that exists each file takes the place of the one of its name, and others
     stay, but for folders of earlier results that match the pattern `stale`.
     """
+    from hydrostat.robot.unfinished import unfinished
+
     out = out.resolve()
     beside = out if out.exists() else out.parent
     beside.mkdir(parents=True, exist_ok=True)
-    part = beside / f".{out.name}.{os.getpid()}.part"
+    part = unfinished(beside / out.name)
     shutil.rmtree(part, ignore_errors=True)
     part.mkdir()
     try:
         yield part
-        if out.exists():
+        if not out.exists():
+            with suppress(OSError):  # another made it meanwhile
+                part.rename(out)
+        if part.exists():
             _remove(out, stale)
             _move_files(part, out)
-        else:
-            part.rename(out)
     finally:
         shutil.rmtree(part, ignore_errors=True)
 

@@ -94,15 +94,32 @@ def main() -> None:
     gc.set_threshold(50_000, *gc.get_threshold()[1:])  # looking for garbage is a tenth of a short command
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
     try:
-        app()
+        _run()
     except InputError as error:
         _stop(str(error), 2)
     except HydrostatError as error:
         _stop(str(error), 1)
+    except BrokenPipeError:
+        _close_quietly()
     except OSError as error:
-        _stop(f"{error.filename or 'a file'}: {error.strerror or error}", 2)
+        _stop(f"{error.filename or 'what was to be written'}: {error.strerror or error}", 2)
     except (KeyboardInterrupt, _InterruptError):
         _stop("stopped; what had been written is whole", 130)
+
+
+def _run() -> None:
+    """Run the app; what it printed is out when it ends, so that a full disk or a closed pipe is noticed here."""
+    try:
+        app()
+    except SystemExit:
+        sys.stdout.flush()
+        raise
+
+
+def _close_quietly() -> None:
+    """End as a program does whose reader has gone, such as `head`: without a word."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    raise SystemExit(1)
 
 
 def _stop(message: str, code: int) -> None:

@@ -1,22 +1,25 @@
 """`hydrostat new`."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shlex import quote
 from shutil import rmtree
-from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.options import positive
+from hydrostat.cli.bounded import bounded
+from hydrostat.cli.options import asked, positive
 from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.ik import NewRobotWish
+    from hydrostat.ik import BegunRobot, NewRobotWish
     from hydrostat.robot import Robot
+
+SECONDS, SECONDS_A_NODE = 10.0, 0.02
+"""Processor time that a file may take to be read, healed and meshed [s], and so much more for each node asked for."""
 
 LONGEST = 20.0  # no length that is asked for is longer [m]
 
@@ -40,6 +43,9 @@ def new(
         str | None, typer.Option(help='Blow a drawing up to a body in space so thick, for example "60 mm".')
     ] = None,
     material: Annotated[str | None, typer.Option(help="A material of the table: hydrostat materials.")] = None,
+    within: Annotated[
+        str | None, typer.Option(metavar="TIME", help="Give up reading, healing and meshing after so long.")
+    ] = None,
 ) -> None:
     """Make a robot from the gallery, a drawing, a scan, a CAD model or a mesh.
 
@@ -49,6 +55,7 @@ def new(
     Example: hydrostat new my_hand --from scan.stl --size "190 mm" --nodes 900
     """
     from hydrostat.ik import NewRobotWish
+    from hydrostat.units import TIME
 
     if name.exists() and (not name.is_dir() or any(name.iterdir())):
         raise InputError(f"{name}: exists already; choose another name or remove it")
@@ -63,9 +70,11 @@ def new(
         inflate=_length("inflate", inflate),
         material=material,
     )
-    with _made_whole(name) as folder, patiently("healing and meshing the body ..."):
-        lines = _begin(source, folder, wish)
-        made = _draw(folder)
+    seconds = asked("--within", within, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
+    with _made_whole(name) as folder:
+        lines = _begin(source, folder, wish, seconds)
+        with patiently("reading it back, and drawing it ..."):
+            made = _draw(folder)
     count = len(made.body.mesh.nodes)
     if nodes is not None and abs(count / nodes - 1) > 0.1:
         lines.append(f"nodes: {nodes} were asked for, {count} come nearest, as thin places need finer elements")
@@ -94,18 +103,25 @@ def _length(key: str, text: str | None) -> float | None:
 @contextmanager
 def _made_whole(name: Path) -> Iterator[Path]:
     """A folder to fill beside where it will stand; it gets its name when all is well, else it is gone."""
+    from hydrostat.robot.unfinished import clear_unfinished, unfinished
+
     made = [parent for parent in name.resolve().parents if not parent.exists()]
     try:
         name.resolve().parent.mkdir(parents=True, exist_ok=True)
-        folder = Path(mkdtemp(prefix=f".{name.name}.", dir=name.resolve().parent))
+        clear_unfinished(name.resolve().parent)
+        folder = unfinished(name.resolve())
+        rmtree(folder, ignore_errors=True)
+        folder.mkdir()
     except OSError as error:
         raise InputError(f"{name}: cannot be made ({error.strerror})") from None
     try:
         yield folder
-        folder.chmod(0o755)
-        if name.is_dir():
-            name.rmdir()
-        folder.rename(name)
+        try:
+            if name.is_dir():
+                name.rmdir()
+            folder.rename(name)
+        except OSError as error:
+            raise InputError(f"{name}: was made by another meanwhile, or cannot be ({error.strerror})") from None
         made = []
     except InputError as error:
         raise InputError(str(error).replace(str(folder), str(name))) from None
@@ -116,7 +132,7 @@ def _made_whole(name: Path) -> Iterator[Path]:
                 parent.rmdir()
 
 
-def _begin(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
+def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> list[str]:
     """Make the robot; returns what there is to tell."""
     from hydrostat.ik import begin_robot
     from hydrostat.plot import draw_healing, save_png
@@ -125,7 +141,11 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
 
     if is_of_gallery(source):
         return _from_gallery(source, folder, wish)
-    begun = begin_robot(source, wish)
+
+    def run(sketch: Callable[[], "BegunRobot"]) -> "BegunRobot":
+        return bounded(sketch, file=source, words="healing and meshing the body ...", seconds=seconds)
+
+    begun = begin_robot(source, wish, run=run)
     save_robot(begun.robot, folder)
     lines, sketch = list(begun.notes), begun.sketch
     if sketch is not None and not sketch.healing.clean:

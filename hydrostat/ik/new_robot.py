@@ -1,6 +1,7 @@
 """`new_robot`: a first robot from a file of any kind that hydrostat reads, to be edited from there."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypedDict, Unpack
@@ -77,8 +78,16 @@ def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
     return begin_robot(source, NewRobotWish(**wished)).robot
 
 
-def begin_robot(source: str | Path, wish: NewRobotWish) -> BegunRobot:
-    """A first robot, and what there is to tell of it; see `new_robot`."""
+Sketch = Callable[[], BegunRobot]
+
+
+def begin_robot(
+    source: str | Path, wish: NewRobotWish, *, run: Callable[[Sketch], BegunRobot] = lambda sketch: sketch()
+) -> BegunRobot:
+    """A first robot, and what there is to tell of it; see `new_robot`.
+
+    `run` does the part that reads, heals and meshes what may be a stranger's file, perhaps within limits.
+    """
     from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
     from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
 
@@ -90,7 +99,7 @@ def begin_robot(source: str | Path, wish: NewRobotWish) -> BegunRobot:
         if path.suffix.lower() in suffixes:
             if not path.is_file():
                 raise InputError(f"{source}: there is no such file")
-            return make(path, wish)
+            return _posed(run(lambda make=make: make(path, wish)))
     if path.is_dir():
         raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
     if path.suffix.lower() in CAD_SUFFIXES:
@@ -143,7 +152,7 @@ def _of_bytes(content: bytes, path: Path, wish: NewRobotWish, material: str, *, 
         material=material,
     )
     notes = tuple(f"surface: {line}" for line in sketch.healing.lines())
-    return BegunRobot(with_first_pose(sketch.robot), notes, sketch)
+    return BegunRobot(sketch.robot, notes, sketch)
 
 
 def _of_mesh(path: Path, wish: NewRobotWish) -> BegunRobot:
@@ -151,7 +160,22 @@ def _of_mesh(path: Path, wish: NewRobotWish) -> BegunRobot:
     wish.refuse("is only for drawings", "thickness", "inflate")
     material = wish.material or "flexfoam-it x"
     robot = sketch_mesh(path, name=_robot_name(path, wish), size=wish.size, material=material)
-    return BegunRobot(with_first_pose(robot))
+    return BegunRobot(robot)
+
+
+def _posed(begun: BegunRobot) -> BegunRobot:
+    """The same with a pose that its cable makes, if it is in space and not so large that this would take long."""
+    mesh = begun.robot.body.mesh
+    if mesh.dim == 2:
+        return begun
+    if len(mesh.nodes) > MOST_POSED:
+        note = f"no first pose was looked for, as {len(mesh.nodes)} nodes take long: hydrostat pose finds yours"
+        return replace(begun, notes=(*begun.notes, note))
+    return replace(begun, robot=with_first_pose(begun.robot))
+
+
+MOST_POSED = 10_000
+"""Nodes of a body from which on no first pose is looked for."""
 
 
 def _robot_name(path: Path, wish: NewRobotWish) -> str:

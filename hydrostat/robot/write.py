@@ -18,6 +18,7 @@ from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.unfinished import unfinished
 from hydrostat.robot.winch import Mount
 
 
@@ -61,7 +62,7 @@ def with_values(text: str, *, name: str | None = None, element_size: float | Non
 
 def replace_file(path: Path, content: bytes) -> Path:
     """Write a file whole or not at all (InputError: it cannot be written)."""
-    part = path.with_name(f".{path.name}.part")
+    part = unfinished(path)
     try:
         part.write_bytes(content)
         os.replace(part, path)

@@ -3,6 +3,7 @@
 import io
 import logging
 import re
+import warnings
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -63,7 +64,8 @@ def read_dxf(content: bytes, name: str, size: float | None, page: Page | None) -
     elif size is None and unit is None:
         raise OutlineError(f"{name}: the drawing has no unit ($INSUNITS): give its size")
     layout = _ModelSpace(document, name)
-    lines = list(checked_lines(layout.lines(), name))
+    with _listening(), np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
+        lines = list(checked_lines(layout.lines(), name))
     chains = join_lines([line for line, closed in lines if not closed], name)
     rings, left_out = closed_rings([pair for pair in lines if pair[1]] + chains, name)
     body, holes = body_and_holes(rings, name)

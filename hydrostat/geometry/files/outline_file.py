@@ -1,5 +1,6 @@
 """Outlines from any kind of flat file."""
 
+from functools import lru_cache
 from pathlib import PurePath
 
 import numpy as np
@@ -27,7 +28,15 @@ def read_outline(content: bytes, *, name: str, size: float | None = None, page: 
 
 
 def read_drawing(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Drawing:
-    """Read the outline of a body, and in words what was left out; all else is as in `read_outline`."""
+    """Read the outline of a body, and in words what was left out; all else is as in `read_outline`.
+
+    The last drawing is kept: who makes a robot of one reads it several times.
+    """
+    return _read_drawing(content, name, size, page)
+
+
+@lru_cache(maxsize=1)
+def _read_drawing(content: bytes, name: str, size: float | None, page: Page | None) -> Drawing:
     if size is not None and page is not None:
         raise InputError(f"{name}: a drawing on the page of another has its size from there: leave the size out")
     if size is not None and not 0.0 < size < np.inf:

@@ -65,7 +65,7 @@ class Drawing:
     notes: tuple[str, ...] = ()
 
 
-MOST_POINTS = 200_000  # a drawing with more points, counting what it repeats, is refused
+MOST_POINTS = 100_000  # a drawing with more points, counting what it repeats, is refused
 MOST_SHAPES = 200  # a drawing may have this many closed shapes: the body and its holes
 CHORD_ERROR = 2e-5  # curves become chords that stray at most this part of their box
 

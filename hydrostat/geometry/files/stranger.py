@@ -33,7 +33,7 @@ def read_stranger(path: str | Path, *, name: str | None = None, most: int | None
             raise InputError(f"{said}: is not a file")
         if known.st_size > most:
             raise InputError(
-                f"{said}: the file has {known.st_size / 1e6:.3g} MB, at most {most / 1e6:g} MB are read"
+                f"{said}: the file has {known.st_size / 1e6:.0f} MB, at most {most / 1e6:g} MB are read"
                 f"{_HINTS.get(path.suffix.lower(), '')}"
             )
         with path.open("rb") as file:

@@ -24,11 +24,14 @@ from hydrostat.geometry.files.rings import (
     without_repeats,
 )
 from hydrostat.geometry.outline import Ring
+from hydrostat.units import printable
 
 if TYPE_CHECKING:
     from svgelements import Path
 
 _MOST_DEPTH = 200
+_MOST_WORDS = 100_000  # letters of a style sheet, and of an attribute that holds no points
+_COMMAND = re.compile(r"[A-DF-Za-df-z]")  # of a path; an e is part of a number
 _NUMBER = re.compile(r"\d+\.?\d*|\.\d+")
 _METRES = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6, "q": 0.25e-3}
 _PIXEL = 0.0254 / 96
@@ -105,13 +108,15 @@ def _strip_others(element: ElementTree.Element) -> None:
 
 def _check_points(root: ElementTree.Element, name: str) -> None:
     """Refuse drawings with too many points, or that repeat themselves without end by way of `use`."""
+    _check_words(root, name)
     targets = {element.attrib["id"]: element for element in root.iter() if "id" in element.attrib}
     points = 0
     stack: list[tuple[ElementTree.Element, tuple[str, ...]]] = [(root, ())]
     while stack:
         element, users = stack.pop()
         drawn = element.get("d", "") + element.get("points", "")
-        points += 1 + sum(1 for _ in _NUMBER.finditer(drawn)) // 2
+        numbers, letters = (sum(1 for _ in kind.finditer(drawn)) for kind in (_NUMBER, _COMMAND))
+        points += 1 + max(numbers // 2, letters)
         if points > MOST_POINTS:
             raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing, save the outline alone")
         stack.extend((child, users) for child in element)
@@ -122,6 +127,19 @@ def _check_points(root: ElementTree.Element, name: str) -> None:
                 raise OutlineError(f"{name}: the <use> of #{target} holds itself: ungroup the clones")
             if target in targets:
                 stack.append((targets[target], (*users, target)))
+
+
+def _check_words(root: ElementTree.Element, name: str) -> None:
+    """Refuse long style sheets and long attributes that are no points: reading them could take for ever."""
+    for element in root.iter():
+        words = {key: len(value) for key, value in element.attrib.items() if key not in ("d", "points")}
+        words["text"] = len(element.text or "") if _tag(element) == "style" else 0
+        key = max(words, key=lambda each: words[each])
+        if words[key] > _MOST_WORDS:
+            what = "a style sheet" if key == "text" else f"an attribute {printable(key.rpartition('}')[2])[:40]!r}"
+            raise OutlineError(
+                f"{name}: has {what} of {words[key]} letters, at most {_MOST_WORDS} are read: save it as plain SVG"
+            )
 
 
 def _length(text: str | None) -> tuple[float, str] | None:

@@ -7,7 +7,14 @@ from jaxtyping import Bool, Int
 
 from hydrostat.arrays import Points
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.healing.faults import Piece, crossing_pairs, describe_faults, pieces_of, sliver_count
+from hydrostat.geometry.healing.faults import (
+    MOST_PAIRS,
+    Piece,
+    crossing_pairs,
+    describe_faults,
+    pieces_of,
+    sliver_count,
+)
 from hydrostat.geometry.healing.mend import Holes, Welded, holes_of, members_of, one_way, sides_of, weld, with_closed
 from hydrostat.geometry.healing.remake import Remade, deviation, remake
 from hydrostat.geometry.healing.shells import Role, Shells, shells_of
@@ -18,6 +25,8 @@ _MOST_PATCHED = 0.25
 _MOST_LOST = 0.1
 _LISTED = 5
 _MOST_CROSSED = 20
+_MOST_AT_EDGE = 200
+_MOST_PARTS = 20_000
 _SMALL_HOLE = 24.0  # resolutions around: about two elements across
 
 
@@ -77,6 +86,7 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     if not (np.isfinite(resolution) and resolution > 0.0):
         raise SurfaceError(f"the resolution to heal with is {resolution!r} m, but has to be above 0")
     welded = weld(surface)
+    _check_parts(welded.surface)
     triangles, flipped = one_way(welded.surface.triangles)
     turned = Surface(welded.surface.vertices, triangles)
     holes = holes_of(turned)
@@ -98,10 +108,30 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     return _made_anew(kept, shells, found, done, removed, resolution)
 
 
+def _check_parts(surface: Surface) -> None:
+    """Refuse what is no surface, and would take long: thousands of loose triangles, or hundreds about one edge."""
+    sides = sides_of(surface.triangles)
+    most = int(sides.counts.max(initial=0))
+    if most > _MOST_AT_EDGE:
+        raise SurfaceError(
+            f"{most} triangles meet at one edge, where a surface has two: this is no surface of a body, perhaps the "
+            "file is damaged; export it again"
+        )
+    parts = int(sides.groups(sides.counts > 1).max(initial=0)) + 1
+    if parts > _MOST_PARTS:
+        raise SurfaceError(
+            f"the surface falls into {parts} loose parts, at most {_MOST_PARTS} are read: this is no surface of a "
+            "body; in the program it comes from, join its vertices, and export it again"
+        )
+
+
 def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:
     """Refuse what is no surface: most of the triangles that cross any cross many others."""
     counts = np.bincount(crossing.ravel())
-    if len(crossing) and np.median(counts[counts > 0]) > _MOST_CROSSED:
+    usual = float(np.median(counts[counts > 0])) if len(crossing) else 0.0
+    if len(crossing) >= MOST_PAIRS:  # of the first triangles only, as no more were looked for
+        usual = max(usual, len(crossing) / (1 + int(crossing[:, 0].max())))
+    if usual > _MOST_CROSSED:
         raise SurfaceError(
             f"the triangles run through each other everywhere, most through more than {_MOST_CROSSED} others: this "
             "is no surface of a body, perhaps the file is damaged; export it again"

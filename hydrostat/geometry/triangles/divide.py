@@ -1,5 +1,6 @@
 """Spacing of nodes, and the rings of an outline divided by it into the edges of a mesh."""
 
+from bisect import bisect
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,7 +77,12 @@ def widths_at(samples: CurveSamples, curves: tuple[Curve, ...], polygon: Polygon
     from scipy.spatial import KDTree  # Imported here: not every command needs it.
 
     width, neck = np.ones(len(samples.places)), np.ones(len(samples.places))
-    pairs = KDTree(samples.places).query_pairs(1.0, output_type="ndarray")
+    tree = KDTree(samples.places)
+    if tree.count_neighbors(tree, 1.0) > _MOST_PAIRS:
+        raise OutlineError(
+            "the outline comes near to itself in too many places: draw it simpler, or take smaller elements"
+        )
+    pairs = tree.query_pairs(1.0, output_type="ndarray")
     first, second = pairs[:, 0], pairs[:, 1]
     across = samples.places[second] - samples.places[first]
     distance = np.linalg.norm(across, axis=1)
@@ -96,6 +102,9 @@ def widths_at(samples: CurveSamples, curves: tuple[Curve, ...], polygon: Polygon
     return width, neck
 
 
+MOST_RIM = 50_000  # elements along the outline
+_MOST_PAIRS = 20_000_000  # places of an outline that are within an element of each other
+
 SAGITTA = 0.12  # an edge stays this near to the outline, in element sizes
 FLOOR = 1 / 6  # spacing never goes below this part of the element size on account of a thin feature
 
@@ -110,6 +119,7 @@ def divide(outline: Outline, element_size: float) -> Draft:
     it.
     """
     curves = tuple(Curve(ring / element_size) for ring in outline.rings)
+    _refuse_long(outline, sum(curve.length for curve in curves), element_size)
     corners = tuple(_corners(curve) for curve in curves)
     samples = sample_rings(curves, corners)
     scaled = Outline(curves[0].corners, tuple(curve.corners for curve in curves[1:]))
@@ -136,6 +146,21 @@ def _refuse_thin(places: Points, neck: Vector, element_size: float) -> None:
         )
 
 
+def _refuse_long(outline: Outline, rim: float, element_size: float) -> None:
+    """Refuse before long work what is thin or winding all over; the rim is as many elements long."""
+    width = 2 * outline.area / (rim * element_size)
+    if width < FLOOR * element_size:
+        raise OutlineError(
+            f"the outline is only {1e3 * width:.2g} mm wide on average, too thin for elements of "
+            f"{1e3 * element_size:.4g} mm: thicken it, or take elements of {1e3 * width / FLOOR:.2g} mm or less"
+        )
+    if rim > MOST_RIM:
+        raise OutlineError(
+            f"the outline is {rim * element_size:.3g} m long, {rim:.3g} elements of {1e3 * element_size:.4g} mm, "
+            f"at most {MOST_RIM} are made: draw it with fewer teeth, or take larger elements"
+        )
+
+
 def _corners(curve: Curve) -> Stations:
     """Stations of the true corners: where a ring turns much on a short way, and little just before and after."""
     reach = min(_CORNER_REACH, curve.length / 24)
@@ -145,10 +170,12 @@ def _corners(curve: Curve) -> Stations:
     likely = np.flatnonzero((sharp > _CORNER_ANGLE) & (sharp > 0.75 * around))
     found: list[float] = []
     for index in likely[np.argsort(-np.abs(curve.turning[likely]) - sharp[likely], kind="stable")]:
-        gaps = np.abs(np.array(found) - stations[index])
-        if not found or np.minimum(gaps, curve.length - gaps).min() > 2 * reach:
-            found.append(float(stations[index]))
-    return np.sort(np.array(found))
+        place = float(stations[index])
+        after = bisect(found, place)
+        gaps = [abs(found[other % len(found)] - place) for other in (after - 1, after)] if found else []
+        if all(min(gap, curve.length - gap) > 2 * reach for gap in gaps):
+            found.insert(after, place)
+    return np.array(found)
 
 
 def _divide_ring(curve: Curve, sharp: Stations, stations: Vector, wanted: Vector) -> Division:

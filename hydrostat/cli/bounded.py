@@ -1,0 +1,123 @@
+"""`bounded`: work on a stranger's file in a process of its own, which is ended when it takes too long or too much."""
+
+import os
+import pickle
+import select
+import signal
+import sys
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NoReturn, TypeVar
+
+from hydrostat.cli.waiting import PATIENCE
+from hydrostat.errors import InputError
+
+MEMORY = 1_800_000_000
+"""The most memory that a file may take [bytes]."""
+
+_Result = TypeVar("_Result")
+
+
+def bounded(work: Callable[[], _Result], *, file: str, words: str, seconds: float, memory: int = MEMORY) -> _Result:
+    """What some work gives; compiled loops cannot be interrupted, but their process can.
+
+    Ctrl-C ends it at once. Where processes cannot be forked the work is done here, without a limit.
+
+    Args:
+        work: what it gives can be pickled.
+        file: that it is about, in complaints.
+        words: said when it takes long.
+        seconds: the most processor time.
+        memory: the most [bytes].
+
+    Raises:
+        InputError: it took longer or more; and all that the work raises.
+    """
+    if not hasattr(os, "fork"):
+        return work()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.close(reader)
+        _work(work, writer, seconds)
+    os.close(writer)
+    try:
+        content = _watched(child, reader, file, words, seconds, memory)
+    finally:
+        os.close(reader)
+        with suppress(ProcessLookupError):
+            os.kill(child, signal.SIGKILL)
+        _, status = os.waitpid(child, 0)
+    if not content:
+        raise InputError(f"{file}: reading it broke off ({_ended(status)}); simplify it, or export it again")
+    done, value = pickle.loads(content)  # of our own child
+    if not done:
+        raise value
+    return value
+
+
+def _work(work: Callable[[], Any], writer: int, seconds: float) -> NoReturn:
+    """In the child: do it, send what came of it, and end."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.alarm(int(10 * seconds) + 60)  # should nobody watch any more
+    code = 1
+    try:
+        try:
+            answer: tuple[bool, Any] = (True, work())
+        except MemoryError:
+            answer = (False, InputError("it takes more memory than there is; simplify the file"))
+        except Exception as error:  # noqa: BLE001  # the parent raises it again
+            answer = (False, error)
+        with os.fdopen(writer, "wb") as pipe:
+            pipe.write(pickle.dumps(answer))
+        code = 0
+    finally:
+        os._exit(code)
+
+
+def _watched(child: int, reader: int, file: str, words: str, seconds: float, memory: int) -> bytes:
+    """What the child sends; ended when it takes longer or more."""
+    parts: list[bytes] = []
+    began = told = time.monotonic()
+    usage = Path(f"/proc/{child}")
+    while True:
+        ready, _, _ = select.select([reader], [], [], _LOOK)
+        if ready:
+            part = os.read(reader, 1 << 20)
+            if not part:
+                return b"".join(parts)
+            parts.append(part)
+            continue
+        now = time.monotonic()
+        spent, taken = _spent(usage, now - began)
+        if spent > seconds:
+            raise InputError(
+                f"{file}: takes longer than {seconds:.3g} s; simplify it, or give it more time: --within 2min"
+            )
+        if taken > memory:
+            raise InputError(f"{file}: takes more than {1e-9 * memory:.2g} GB of memory; simplify it")
+        if now - told > (PATIENCE if told == began else _AGAIN):
+            told = now
+            print(words if now - began < 2 * PATIENCE else f"{words} {now - began:.0f} s", flush=True)
+
+
+def _spent(usage: Path, waited: float) -> tuple[float, int]:
+    """Processor time [s] and memory [bytes] of a process; the time waited and 0 where the system does not say."""
+    try:
+        fields = (usage / "stat").read_text().rpartition(")")[2].split()
+        taken = int((usage / "statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, IndexError, ValueError):
+        return waited, 0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), taken
+
+
+def _ended(status: int) -> str:
+    code = os.waitstatus_to_exitcode(status)
+    return f"signal {-code}" if code < 0 else f"code {code}"
+
+
+_LOOK, _AGAIN = 0.05, 5.0  # seconds between looks, and between words

@@ -1,0 +1,46 @@
+"""`unfinished`: the name of a file or folder while it is written; `clear_unfinished`: of those that were never done."""
+
+import os
+import platform
+import re
+import shutil
+import threading
+from contextlib import suppress
+from pathlib import Path
+
+_HOST = re.sub(r"\W", "_", platform.node())[:24] or "here"
+_NAME = re.compile(rf"\..*\.{_HOST}-(\d+)-\d+\.part", re.DOTALL)
+_LONGEST = 40  # letters of the name that are kept, as no name has more than 255 bytes
+
+
+def unfinished(path: Path) -> Path:
+    """The hidden place beside a path where it is written first: each writer has its own, on each machine."""
+    return path.with_name(f".{path.name[:_LONGEST]}.{_HOST}-{os.getpid()}-{threading.get_native_id()}.part")
+
+
+def clear_unfinished(folder: Path) -> None:
+    """Remove from a folder what writers of this machine left unfinished that are no more, as if killed."""
+    try:
+        found = [(entry, _NAME.fullmatch(entry.name)) for entry in os.scandir(folder)]
+    except OSError:
+        return
+    for entry, named in found:
+        if named is None or _lives(int(named[1])):
+            continue
+        with suppress(OSError):
+            if entry.is_dir(follow_symlinks=False):
+                shutil.rmtree(entry.path, ignore_errors=True)
+            else:
+                os.unlink(entry.path)
+
+
+def _lives(process: int) -> bool:
+    if os.name != "posix":
+        return True  # there a signal 0 would end it
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True

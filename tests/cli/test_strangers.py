@@ -1,0 +1,230 @@
+"""Files of strangers have a budget, and what was killed, filled or closed leaves nothing behind.
+
+The 20 files of benchmarks/strangers.py are offered there one by one; here those that cost no seconds.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+import tracemalloc
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import strangers
+
+from hydrostat.cli.bounded import bounded
+from hydrostat.cli.folders import require_folder, result_folder
+from hydrostat.errors import InputError
+from hydrostat.geometry.files.outline_file import read_drawing
+from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry.files.surface_file import read_surface
+from hydrostat.geometry.healing.heal import heal
+from hydrostat.geometry.triangles.triangulate import triangulate
+from hydrostat.kernel import Compiled
+from hydrostat.robot import replace_file
+from hydrostat.robot.unfinished import clear_unfinished, unfinished
+
+Run = Callable[..., tuple[int, str, str]]
+START = "from hydrostat.cli.main import main; main()"
+
+
+@pytest.mark.parametrize("name", ["giant.stl", "giant.obj", "giant.vtk", "giant.png", "giant.svg"])
+def test_a_giant_is_refused_before_a_byte_is_read(tmp_path: Path, name: str) -> None:
+    """Oracle: the memory that Python takes, of a file of 6 GB that is nothing but a hole."""
+    path = strangers.make(name, tmp_path)
+    tracemalloc.start()
+    try:
+        with pytest.raises(InputError, match=r"has 6000 MB, at most .* are read: save"):
+            read_stranger(path)
+        assert tracemalloc.get_traced_memory()[1] < 1_000_000
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_device_and_a_pipe_are_no_files(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.svg")
+    for path in (Path("/dev/zero"), tmp_path / "pipe.svg", tmp_path):
+        with pytest.raises(InputError, match="is not a file"):
+            read_stranger(path)
+
+
+DRAWINGS = {
+    "closed again and again": (lambda: strangers.closes(1_000_000), "more than 100000 points"),
+    "clones of clones": (strangers.clones, "has 1111 closed shapes, more than 200"),
+    "a style sheet": (strangers.styles, "a style sheet of 10688890 letters, at most 100000"),
+    "an attribute": (
+        lambda: (strangers.SVG % f'<path transform="{"scale(1) " * 20_000}" d="M0 0H9V9Z"/>').encode(),
+        "an attribute 'transform' of 180000 letters",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", DRAWINGS)
+def test_drawings_are_counted_before_they_are_read(case: str) -> None:
+    make, words = DRAWINGS[case]
+    began = time.process_time()
+    with pytest.raises(InputError, match=words):
+        read_drawing(make(), name="a.svg", size=0.1)
+    assert time.process_time() - began < 10.0
+
+
+OUTLINES = {
+    "a spiral": (lambda: strangers.spiral(3000), "only .* mm wide on average, too thin for elements of 4 mm"),
+    "a comb": (lambda: strangers.zigzag(8000), "only .* mm wide on average|m long, .* elements of 4 mm, at most 50000"),
+}
+
+
+@pytest.mark.parametrize("case", OUTLINES)
+def test_outlines_that_wind_are_refused_at_once(case: str) -> None:
+    make, words = OUTLINES[case]
+    outline = read_drawing(make(), name="a.svg", size=0.1).outline
+    with pytest.raises(InputError, match=words):
+        triangulate(outline, 0.004)
+
+
+SURFACES = {
+    "a fan": (lambda: strangers.fan(20_000), "20000 triangles meet at one edge"),
+    "a soup": (lambda: strangers.soup(25_000, 0.5), "falls into 25000 loose parts, at most 20000"),
+    "a tangle": (lambda: strangers.soup(15_000, 30.0), "run through each other everywhere"),
+}
+
+
+@pytest.mark.parametrize("case", SURFACES)
+def test_what_is_no_surface_is_refused_at_once(case: str) -> None:
+    make, words = SURFACES[case]
+    with pytest.raises(InputError, match=words):
+        heal(read_surface(make(), name="a.stl"), resolution=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["bulge", "splines"])
+def test_nothing_is_said_that_is_not_ours(kind: str, capfd: pytest.CaptureFixture[str]) -> None:
+    """Oracle: warnings are errors, and nothing is written past Python."""
+    with warnings.catch_warnings(action="error"):
+        read_drawing(strangers.dxf(kind), name="a.dxf", size=0.1)
+    assert capfd.readouterr() == ("", "")
+
+
+def _spin() -> None:
+    while True:
+        pass
+
+
+def _hoard() -> None:
+    kept = []
+    while True:
+        kept.append(bytearray(50_000_000))
+
+
+def _refuse() -> None:
+    raise InputError("no")
+
+
+def bound(work: Callable[[], object], seconds: float = 20.0) -> object:
+    return bounded(work, file="a.stl", words="healing ...", seconds=seconds, memory=400_000_000)
+
+
+def test_work_within_its_budget_is_as_if_done_here() -> None:
+    assert bound(lambda: {"a": 1}) == {"a": 1}
+    with pytest.raises(InputError, match=r"^no$"):
+        bound(_refuse)
+
+
+def test_work_beyond_its_budget_is_ended() -> None:
+    began = time.monotonic()
+    with pytest.raises(InputError, match=r"a\.stl: takes longer than 0.2 s; simplify it, or give it more time"):
+        bound(_spin, seconds=0.2)
+    with pytest.raises(InputError, match=r"a\.stl: takes more than 0.4 GB of memory"):
+        bound(_hoard)
+    with pytest.raises(InputError, match=r"reading it broke off \(signal 9\)"):
+        bound(lambda: os.kill(os.getpid(), signal.SIGKILL))
+    assert time.monotonic() - began < 20.0
+
+
+def test_ctrl_c_ends_it_at_once() -> None:
+    """Oracle: the clock, and that no child is left."""
+    signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    signal.setitimer(signal.ITIMER_REAL, 0.3)
+    began = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            bound(lambda: time.sleep(60))
+    finally:
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    assert time.monotonic() - began < 5.0
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
+
+
+def dead_process() -> int:
+    """Number of a process that is no more."""
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    return gone.pid
+
+
+def test_what_killed_runs_left_is_cleared_by_the_next(tmp_path: Path) -> None:
+    own = unfinished(tmp_path / "robot.toml")
+    left = [tmp_path / own.name.replace(f"-{os.getpid()}-", f"-{dead_process()}-"), tmp_path / "kit"]
+    left[1] = left[0].with_name(left[0].name.replace("robot.toml", "kit"))
+    left[0].write_text("half")
+    left[1].mkdir()
+    (left[1] / "half.svg").write_text("half")
+    stays = [own, tmp_path / ".hidden.part", tmp_path / "robot.toml"]
+    for path in stays:
+        path.write_text("whole")
+    require_folder(tmp_path / "out")
+    assert sorted(tmp_path.iterdir()) == sorted(stays)
+    clear_unfinished(tmp_path / "nowhere")
+
+
+def test_two_writers_of_one_folder(tmp_path: Path) -> None:
+    """Each is whole, and the later stays; neither stumbles over what the other has under way."""
+    out = tmp_path / "out"
+    with result_folder(out) as one:
+        (one / "a.txt").write_text("one")
+        (out / "made").mkdir(parents=True)
+        (out / "a.txt").write_text("other")
+    assert (out / "a.txt").read_text() == "one"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["out"]
+    assert unfinished(out / "a") != replace_file(out / "a", b"x")
+    assert sorted(path.name for path in out.iterdir()) == ["a", "a.txt", "made"]
+
+
+def test_a_name_as_long_as_any_may_be_can_be_written(tmp_path: Path) -> None:
+    long = tmp_path / ("ü" * 120)
+    assert replace_file(long, b"whole").read_bytes() == b"whole"
+
+
+@pytest.mark.slow
+def test_a_closed_pipe_and_a_full_disk_end_without_a_trace() -> None:
+    """Oracle: the exit codes of a shell, and what is said."""
+    command = [sys.executable, "-c", START, "materials"]
+    reader, writer = os.pipe()
+    os.close(reader)
+    closed = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writer)
+    assert (closed.returncode, closed.stderr) == (1, "")
+    with open("/dev/full", "w") as full:
+        filled = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert filled.returncode == 2
+    assert filled.stderr == "hydrostat: what was to be written: No space left on device\n"
+
+
+def test_where_no_cache_can_be_written_kernels_are_compiled_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: numba itself, which finds no place for its cache."""
+    from numba.core import caching
+
+    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
+    assert Compiled(_twice, {"cache": True})(21) == 42
+
+
+def _twice(value: int) -> int:
+    return 2 * value
+
+
+def test_the_files_of_the_benchmark_are_twenty() -> None:
+    assert len(strangers.FILES) == 20
