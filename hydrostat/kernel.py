@@ -99,7 +99,8 @@ class Compiled(Late):
         except RuntimeError as error:  # neither the package nor the home folder can be written
             if "cannot cache" not in str(error):
                 raise
-            return by_numba(**self.options | {"cache": False})(self.py_func)
+            uncached: dict[str, Any] = self.options | {"cache": False}
+            return by_numba(**uncached)(self.py_func)
 
 
 _MAKING = threading.RLock()
