@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from hydrostat.errors import InputError
+from hydrostat.robot import load_robot
 
 
 def studio(
@@ -16,13 +17,19 @@ def studio(
     host: Annotated[
         str, typer.Option(metavar="ADDRESS", help="To listen at; others than this machine need the printed token.")
     ] = "127.0.0.1",
+    rooms: Annotated[
+        bool,
+        typer.Option("--rooms", help="Give each browser a robot of its own, as for a class."),
+    ] = False,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
     """Open the studio in the browser: pose a robot by hand, watch it design itself, drive it, export it.
 
     Example: hydrostat studio examples/starfish
+    Example: hydrostat studio examples/starfish --rooms --host 192.168.1.20
     """
     try:
+        from hydrostat.studio.face.rooms import Rooms
         from hydrostat.studio.face.serve import serve
     except ModuleNotFoundError as error:
         if error.name != "nicegui":
@@ -31,8 +38,14 @@ def studio(
     from hydrostat.studio.session import Session
     from hydrostat.studio.starting.shelf import state_folder
 
-    session = Session(state_folder())
-    if robot is not None:
-        session.open_folder(robot)
+    if rooms:
+        if robot is not None:
+            load_robot(robot)  # what is wrong with it is told now, not to each who comes
+        served = Rooms(state=state_folder(), first=robot)
+    else:
+        session = Session(state_folder())
+        if robot is not None:
+            session.open_folder(robot)
+        served = Rooms(session)
     words = "The studio is at {}   (Ctrl-C ends it)"
-    serve(session, host=host, port=port, show=browser, announce=lambda at: print(words.format(at), flush=True))
+    serve(served, host=host, port=port, show=browser, announce=lambda at: print(words.format(at), flush=True))

@@ -157,12 +157,13 @@ class Document:
         """Do again what was undone last; whether there was something."""
         return self._move(self._future, self._past, least=1)
 
-    def mark_saved(self, folder: Path, work: Work) -> None:
-        """Note that this work is saved in this folder; nothing happens if another robot was opened meanwhile."""
+    def mark_saved(self, folder: Path | None, work: Work) -> None:
+        """Note that this work is saved in this folder, None: taken home; nothing happens if another robot is open."""
         with self._lock:
             if not any(change.work is work for change in (*self._past, *self._future)):
                 return
-            self.folder, self._saved, self.stamp = folder, work, folder_stamp(folder)
+            self.folder, self._saved = folder, work
+            self.stamp = "" if folder is None else folder_stamp(folder)
         self.bell.ring(Topic.ROBOT)
 
     def _move(self, source: list[Change], goal: list[Change], *, least: int) -> bool:

@@ -6,14 +6,14 @@ from dataclasses import dataclass, field, replace
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
-from threading import Lock, Thread
+from threading import Lock, Semaphore, Thread
 from typing import Any
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.work_process import Report, run_work
 
-__all__ = ["JobState", "Jobs", "Report"]
+__all__ = ["JobState", "Jobs", "Report", "Slots"]
 
 PATIENCE = 5.0  # a process that has told what came of its work is given so long to end [s]
 
@@ -31,10 +31,28 @@ class JobState:
     error: str = ""  # why it failed; "" if it did not
 
 
+class Slots:
+    """How many long works may run at a time, of all sessions that share these."""
+
+    def __init__(self, count: int) -> None:
+        self._free = Semaphore(count)
+
+    def take(self) -> None:
+        """Begin one; each is given back (InputError: all are taken)."""
+        if not self._free.acquire(blocking=False):
+            raise InputError("this machine is busy with the work of other rooms; try again in a moment")
+
+    def give(self) -> None:
+        """One has ended."""
+        self._free.release()
+
+
 class Jobs:
     """One long work at a time."""
 
-    def __init__(self, bell: Bell) -> None:
+    def __init__(self, bell: Bell, slots: Slots | None = None) -> None:
+        """Work beside other sessions that share slots, where no process stands ready; None: there are no others."""
+        self._slots = slots
         self.state: JobState | None = None  # of the work that runs or ran last; None before the first
         self._bell = bell
         self._lock = Lock()
@@ -53,7 +71,7 @@ class Jobs:
         with self._lock:
             if self._spare is not None and self._spare.process.is_alive():
                 return
-            if self._closed:
+            if self._closed or self._slots is not None:
                 return
             self._spare = _Worker.started()
             self._spare.pipe.send(("import", modules))
@@ -81,6 +99,8 @@ class Jobs:
                 raise InputError(f"{self.state.title} is still in progress; wait for it or stop it")
             if self._closed:
                 raise InputError("the studio is closing")
+            if self._slots is not None:
+                self._slots.take()
             spare, self._spare = self._spare, None
             worker = spare if spare is not None and spare.process.is_alive() else _Worker.started()
             self._worker, self.state = worker, JobState(title=title)
@@ -139,6 +159,8 @@ class Jobs:
         worker.end(patience)
         if error and self.state is not None and self.state.stopping:
             error = "stopped"
+        if self._slots is not None:
+            self._slots.give()
         self._note(running=False, error=error)
         on_end(error)
 

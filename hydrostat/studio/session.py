@@ -15,8 +15,9 @@ from hydrostat.studio.designing.designer import Designer
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.driver import Driver
 from hydrostat.studio.editing.editor import Editor
+from hydrostat.studio.exporting.download import Download
 from hydrostat.studio.exporting.exporter import Exporter
-from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.jobs import Jobs, Slots
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter
@@ -52,11 +53,15 @@ class Session:
     session: they all see the same, and one of them at a time holds something with its pointer.
     """
 
-    def __init__(self, state: Path | None = None) -> None:
-        """An empty studio that remembers in the folder `state`, over runs and crashes; None: nothing."""
+    def __init__(self, state: Path | None = None, *, guest: bool = False, slots: Slots | None = None) -> None:
+        """An empty studio that remembers in the folder `state`, over runs and crashes; None: nothing.
+
+        A guest of this machine reads and writes none of its folders, and shares its slots for long work with others.
+        """
+        self.guest = guest  # whether folders of this machine are not this person's
         self.bell = Bell()  # rings when something has changed
         self.document = Document(self.bell)  # the robot, with undo
-        self.jobs = Jobs(self.bell)  # long work
+        self.jobs = Jobs(self.bell, slots)  # long work
         self.starter = Starter(self.document, self.jobs, state)
         self.editor = Editor(self.document, self.jobs)
         self.poser = Poser(self.document, self.jobs)
@@ -105,6 +110,7 @@ class Session:
 
     def open_folder(self, folder: Path | str) -> None:
         """Open the robot in a folder and show it (InputError: as for `load_robot`)."""
+        self._at_home()
         self.starter.open_folder(str(folder))
         self.go(StageName.POSE)
         if self.document.folder is not None and (note := open_note(self.document.folder)):
@@ -182,6 +188,7 @@ class Session:
 
     def save(self, folder: Path | None = None) -> None:
         """Save the robot where it was, or in another folder (InputError: it has none yet, or cannot be written)."""
+        self._at_home()
         folder = folder or self.document.folder
         if folder is None:
             raise InputError("choose a folder to save this robot in")
@@ -189,6 +196,18 @@ class Session:
         save_work(work, folder, self.document.text)
         self.document.mark_saved(folder, work)
         self.tell(f"saved in {folder}", Tone.GOOD)
+
+    def take_home(self) -> Download:
+        """The robot as a zip, which Start reads; saved by it if it is in no folder (InputError: no robot is open)."""
+        work = self.document.work
+        made = self.exporter.robot_zip()
+        if self.document.folder is None:
+            self.document.mark_saved(None, work)
+        return made
+
+    def _at_home(self) -> None:
+        if self.guest:
+            raise InputError("folders of this machine are not for guests; bring a .zip, or take one home")
 
     @property
     def waiting(self) -> bool:

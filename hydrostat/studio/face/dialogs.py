@@ -1,6 +1,6 @@
-"""`save_dialog`, `may_leave`: questions asked before something is lost."""
+"""`SaveDialog`, `may_leave`: questions asked before something is lost."""
 
-from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from nicegui import ui
@@ -9,48 +9,59 @@ from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.work_folder import doubts
 
 
-def save_dialog(page: WindowPage) -> Callable[[], None]:
-    """Build the dialogs; returns what saves: at once where nothing can be lost by it, else after asking."""
-    document = page.session.document
-    with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 420px"):
-        ui.label("Save the robot").classes("studio-title")
-        ui.label("A folder with robot.toml and the file of the body.").classes("studio-hint")
-        folder = ui.input("Folder").classes("w-full").mark("save-folder")
-        with ui.row().classes("w-full justify-end"):
-            ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
-            ui.button("Save", on_click=lambda: save()).props("unelevated no-caps").mark("save-now")
-    sure = _Sure()
+class SaveDialog:
+    """Saves: at once where nothing can be lost by it, else after asking. A guest takes the robot home."""
 
-    async def save() -> None:
-        name = (folder.value or "").strip()
-        if not name:
-            page.tell("name a folder")
-            return
-        dialog.close()
-        await save_in(Path(name).expanduser())
+    def __init__(self, page: WindowPage) -> None:
+        """Build the dialogs of a window."""
+        self._page, self._document = page, page.session.document
+        with ui.dialog() as self._dialog, ui.card().classes("q-pa-md").style("min-width: 420px"):
+            ui.label("Save the robot").classes("studio-title")
+            ui.label("A folder with robot.toml and the file of the body.").classes("studio-hint")
+            self._folder = ui.input("Folder").classes("w-full").mark("save-folder")
+            with ui.row().classes("w-full justify-end"):
+                ui.button("Cancel", on_click=lambda: self._dialog.submit("")).props("flat no-caps")
+                ui.button("Save", on_click=lambda: self._dialog.submit(self._folder.value)).props(
+                    "unelevated no-caps"
+                ).mark("save-now")
+        self._sure = _Sure()
 
-    async def save_in(goal: Path) -> None:
+    async def save(self) -> None:
+        """Save where the robot is, else where a person says."""
+        if self._page.session.guest:
+            await self.take_home()
+        elif self._document.folder is None:
+            await self.save_as()
+        else:
+            await self._save_in(self._document.folder)
+
+    async def save_as(self) -> None:
+        """Save where a person says."""
+        self._folder.set_value(str(self._document.folder or Path.cwd() / self._document.robot.name))
+        told = await self._dialog
+        name = (told or "").strip()
+        if name:
+            await self._save_in(Path(name).expanduser())
+        elif told is not None and self._folder.value is not None and not self._folder.value.strip():
+            self._page.tell("name a folder")
+
+    async def take_home(self) -> None:
+        """Hand the robot over as a zip."""
+        made = await self._page.act_slowly(self._page.session.take_home)
+        if made is not None:
+            ui.download.content(made.content, made.name, media_type=made.media_type)
+
+    async def _save_in(self, goal: Path) -> None:
+        document = self._document
         same = document.folder is not None and goal.resolve() == document.folder.resolve()
-        told = await page.act_slowly(doubts, document.work, goal, document.stamp if same else "")
+        told = await self._page.act_slowly(doubts, document.work, goal, document.stamp if same else "")
         if told is None:
             return
-        answer = await sure.ask(told) if told else "save"
+        answer = await self._sure.ask(told) if told else "save"
         if answer == "save":
-            await page.act_slowly(page.session.save, goal)
+            await self._page.act_slowly(self._page.session.save, goal)
         elif answer == "elsewhere":
-            ask_where()
-
-    def ask_where() -> None:
-        folder.set_value(str(document.folder or Path.cwd() / document.robot.name))
-        dialog.open()
-
-    async def ask() -> None:
-        if document.folder is None:
-            ask_where()
-        else:
-            await save_in(document.folder)
-
-    return ask  # type: ignore[return-value]
+            await self.save_as()
 
 
 class _Sure:
@@ -80,12 +91,27 @@ class _Sure:
 
 
 async def may_leave(page: WindowPage) -> bool:
-    """Ask if there is work that is not saved; what the person says."""
+    """Ask if there is work that is not saved, and save it if a person says so; whether it may be left now."""
     document = page.session.document
     if document.saved:
         return True
-    title, words = f"{document.robot.name} is not saved", "Another robot takes its place, and what was changed is lost."
-    return await ask(page, title, words, "Go back", "Throw the changes away", name="leave", negative=True)
+    with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
+        ui.label(f"{document.robot.name} is not saved").classes("studio-title")
+        ui.label("Another robot takes its place, and what was changed would be lost.").classes("studio-hint")
+        with ui.row().classes("w-full justify-end items-center"):
+            for words, answer, look in (
+                ("Go back", "no", "flat"),
+                ("Throw the changes away", "yes", "flat color=negative"),
+                ("Take home" if page.session.guest else "Save", "save", "unelevated"),
+            ):
+                button = ui.button(words, on_click=partial(dialog.submit, answer))
+                button.props(f'{look} no-caps data-testid="leave-{answer}"')
+    answer = await dialog
+    dialog.delete()
+    if answer == "save":
+        await page.save()
+        return document.saved
+    return answer == "yes"
 
 
 async def ask(

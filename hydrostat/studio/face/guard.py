@@ -1,5 +1,6 @@
 """`Guard`: who may talk to the studio."""
 
+import re
 from ipaddress import ip_address
 from secrets import compare_digest
 from urllib.parse import parse_qs
@@ -11,6 +12,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")  # names of this machine that a page may have
 COOKIE = "hydrostat_token"  # followed by the port: cookies do not know ports, and two studios may run on one machine
 LARGEST = 200_000_000  # no request has more bytes
+
+_ROOM = re.compile(r"/(room|watch)/[A-Za-z0-9_-]+")  # what a link with a token may lead to, beside the front
 
 SAFE_HEADERS = {
     "content-security-policy": (
@@ -25,7 +28,7 @@ SAFE_HEADERS = {
 """No other page may frame this one or read of it, and it loads nothing from elsewhere. The page needs scripts within
 it and evaluation of templates. A policy of no referrer at all would make browsers hide the origin of our own forms."""
 
-WELCOME = '<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/"><title>hydrostat</title>'
+WELCOME = '<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0;url={}"><title>hydrostat</title>'
 """Goes on to the page. A redirection would not do: after a link of another page it goes without the strict cookie."""
 
 
@@ -68,7 +71,7 @@ class Guard:
         elif scope["type"] == "websocket":
             await self._app(scope, receive, send)
         elif self._token is not None and "token" in _query(scope):
-            await self._welcome()(scope, receive, _dressed(send))
+            await self._welcome(scope["path"])(scope, receive, _dressed(send))
         else:
             body = _Body(receive, _dressed(send), self._largest)
             await body.serve(self._app, scope)
@@ -102,9 +105,10 @@ class Guard:
         wanted = (self._token or "").encode()
         return any(compare_digest(text.encode(errors="replace"), wanted) for text in given)
 
-    def _welcome(self) -> Response:
+    def _welcome(self, path: str) -> Response:
         """Keeps the token as a cookie and goes to the page, so that it does not stay in the address."""
-        response = HTMLResponse(WELCOME, headers={"cache-control": "no-store"})
+        here = path if _ROOM.fullmatch(path) else "/"
+        response = HTMLResponse(WELCOME.format(here), headers={"cache-control": "no-store"})
         response.set_cookie(self._cookie, self._token or "", httponly=True, samesite="strict")
         return response
 

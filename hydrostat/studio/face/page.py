@@ -8,12 +8,12 @@ from nicegui import run, ui
 
 from hydrostat.errors import HydrostatError
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.toasts import Toasts
 from hydrostat.studio.face.viewport import Viewport
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import StageName
 
 HEARTBEAT = 0.1  # panels follow the session within this time [s]
-COLOURS = {Tone.GOOD: "positive", Tone.PLAIN: "dark", Tone.BAD: "negative"}
 
 Refresh = Callable[[], Any]
 
@@ -29,6 +29,8 @@ class WindowPage:
         self._told = session.notes[-1].number if session.notes else 0
         self._leave = session.bell.listen(self._rung.add)
         self.viewport: Viewport  # the view of the body
+        self.toasts: Toasts  # notes to the person
+        self.save: Callable[[], Awaitable[None]]  # saves, after asking what is to be asked
         self.panel: ui.column  # the column beside it, filled by the panel of the stage
         self.bottom: ui.column  # the strip below the view, likewise
         self.whole: ui.column  # in place of view and column, for the stage that needs all the room
@@ -81,8 +83,7 @@ class WindowPage:
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
         """Show a note to the person of this window."""
-        timeout = 8000 if tone is Tone.BAD else 2500
-        ui.notify(text, color=COLOURS[tone], position="bottom", multi_line=len(text) > 60, timeout=timeout)
+        self.toasts.show(text, tone)
 
     def go(self, stage: StageName) -> None:
         """Show another stage, in all windows."""

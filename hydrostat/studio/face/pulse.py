@@ -55,7 +55,8 @@ class Pulse:
         self._end.set()
         self._wake.set()
         for thread in self._threads:
-            thread.join(timeout=10.0)
+            if thread.ident is not None:  # it was begun
+                thread.join(timeout=10.0)
 
     def refresh(self) -> None:
         """Hand over a picture even if nothing has changed, as a new screen needs one."""

@@ -6,60 +6,120 @@ import webbrowser
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from secrets import token_urlsafe
+from urllib.parse import quote
 
 import uvicorn
 from fastapi import FastAPI
 from nicegui import ui
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from hydrostat.errors import InputError
 from hydrostat.studio.face.guard import LOOPBACK, Guard
-from hydrostat.studio.face.pulse import Pulse
-from hydrostat.studio.face.stream import Stream
+from hydrostat.studio.face.rooms import Room, Rooms, new_key
+from hydrostat.studio.face.share import Links
+from hydrostat.studio.face.watch import build_watch
 from hydrostat.studio.face.window import build_window
-from hydrostat.studio.session import Session
 
+TITLE = "hydrostat studio"
+ROOM = "hydrostat_room"  # the cookie of a browser's own room, followed by the port
+KEPT = 90 * 24 * 3600  # a browser remembers its room so long [s]
 SWITCH = 1e-3  # threads take turns so often [s]: a solver in one must not keep the pointer waiting in another
 
 
-def make_app(session: Session) -> FastAPI:
-    """The app of a session, without a guard. There can be one in a process, as NiceGUI has one set of pages."""
-    stream = Stream(session)
-    pulse = Pulse(session, stream.publish)
+def make_app(rooms: Rooms, *, token: str | None = None, port: int = 0) -> FastAPI:
+    """The app of some rooms, without a guard. There can be one in a process, as NiceGUI has one set of pages.
+
+    Links that are shown have the token, if there is one; the cookie of a browser's room has the port in its name.
+    """
 
     @asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
-        pulse.start()
+        rooms.start()
         yield
-        pulse.stop()
-        session.close()
+        rooms.close()
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
 
-    @app.websocket("/stream")
-    async def connect(socket: WebSocket) -> None:
-        pulse.refresh()
-        await stream.serve(socket)
-
-    @ui.page("/", title="hydrostat studio")
-    def window() -> None:
-        page = build_window(session)
-        ui.context.client.on_delete(page.close)
-
+    _add_streams(app, rooms)
+    _add_pages(rooms, token, f"{ROOM}_{port}")
     ui.run_with(app, show_welcome_message=False, reconnect_timeout=30.0)
     return app
 
 
+def _add_streams(app: FastAPI, rooms: Rooms) -> None:
+    """Pictures to all screens and pointers back, by the key of a room; none to those who watch."""
+
+    async def show(socket: WebSocket, room: Room, *, watching: bool = False) -> None:
+        room.pulse.refresh()
+        await room.stream.serve(socket, watching=watching)
+
+    @app.websocket("/stream")
+    @app.websocket("/stream/{key}")
+    async def connect(socket: WebSocket, key: str = "") -> None:
+        try:
+            room = rooms.enter(key)
+        except InputError:
+            await socket.close(1008)
+        else:
+            await show(socket, room)
+
+    @app.websocket("/watched/{key}")
+    async def watch(socket: WebSocket, key: str) -> None:
+        room = rooms.watched(key)
+        await (socket.close(1008) if room is None else show(socket, room, watching=True))
+
+
+def _add_pages(rooms: Rooms, token: str | None, cookie: str) -> None:
+    """The page of a room, of those who watch, and the front, which leads each browser into its own room."""
+
+    def build(request: Request, room: Room) -> None:
+        base, asked = str(request.base_url), f"?token={token}" if token else ""
+        own = f"room/{room.key}" if rooms.many else ""
+        links = Links(f"{base}{own}{asked}", f"{base}watch/{room.watch_key}{asked}")
+        stream = f"/stream/{room.key}" if rooms.many else "/stream"
+        page = build_window(room.session, stream, links if rooms.many or token else None)
+        ui.context.client.on_delete(page.close)
+
+    @ui.page("/", title=TITLE, language="en-US")
+    def front(request: Request) -> Response | None:
+        if not rooms.many:
+            build(request, rooms.enter())
+            return None
+        key = request.cookies.get(cookie) or new_key()
+        response = RedirectResponse(f"/room/{quote(key, safe='')}", headers={"cache-control": "no-store"})
+        response.set_cookie(cookie, key, httponly=True, samesite="lax", max_age=KEPT)
+        return response
+
+    @ui.page("/room/{key}", title=TITLE, language="en-US")
+    def window(request: Request, key: str) -> Response | None:
+        try:
+            build(request, rooms.enter(key))
+        except InputError as error:
+            return PlainTextResponse(f"hydrostat: {error}\n", status_code=404)
+        return None
+
+    @ui.page("/watch/{key}", title=TITLE, language="en-US")
+    def watcher(key: str) -> Response | None:
+        room = rooms.watched(key)
+        if room is None:
+            return PlainTextResponse("hydrostat: nobody works in that room just now\n", status_code=404)
+        page = build_watch(room.session, f"/watched/{key}")
+        ui.context.client.on_delete(page.close)
+        return None
+
+
 def serve(
-    session: Session,
+    rooms: Rooms,
     *,
     host: str = "127.0.0.1",
     port: int = 0,
     show: bool = True,
     announce: Callable[[str], None] = print,
 ) -> None:
-    """Serve a session until Ctrl-C (InputError: the address cannot be listened at).
+    """Serve rooms until Ctrl-C (InputError: the address cannot be listened at).
 
     At another address than this machine's own a token is asked for. Port 0 is a free one; `announce` is told the
     address, `show` opens the browser.
@@ -71,7 +131,8 @@ def serve(
     number = listener.getsockname()[1]
     name = host if ":" not in host else f"[{host}]"
     shown = name if host not in ("0.0.0.0", "::") else socket.gethostname()
-    guarded: ASGIApp = Guard(make_app(session), port=number, names=LOOPBACK if own else (*LOOPBACK, shown), token=token)
+    app = make_app(rooms, token=token, port=number)
+    guarded: ASGIApp = Guard(app, port=number, names=LOOPBACK if own else (*LOOPBACK, shown), token=token)
     address = f"http://{shown}:{number}/" + (f"?token={token}" if token else "")
     announce(address)
     if show:

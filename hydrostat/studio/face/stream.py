@@ -42,12 +42,17 @@ class Stream:
             with suppress(RuntimeError):  # the loop has ended: there is no screen left
                 self._loop.call_soon_threadsafe(self._wake)
 
-    async def serve(self, socket: WebSocket) -> None:
-        """One screen, from its first word to its last."""
+    @property
+    def screens(self) -> int:
+        """How many look at it."""
+        return len(self._screens)
+
+    async def serve(self, socket: WebSocket, *, watching: bool = False) -> None:
+        """One screen, from its first word to its last; of one that only watches no pointer is heeded."""
         self._loop = asyncio.get_running_loop()
         await socket.accept()
         name = f"screen {next(self._numbers)}"
-        screen = _Screen(socket)
+        screen = _Screen(socket, watching)
         self._screens[name] = screen
         writer = asyncio.create_task(screen.write(lambda: self._latest))
         try:
@@ -85,6 +90,8 @@ class Stream:
         message = read_message(text)
         if isinstance(message, Seen):
             screen.saw(message.count)
+        elif screen.watching:
+            return
         elif isinstance(message, LetGo):
             self._session.release(name)
         else:
@@ -112,8 +119,8 @@ class Stream:
 class _Screen:
     """One screen: a few pictures may be on their way to it, then it is sent the latest when it has painted one."""
 
-    def __init__(self, socket: WebSocket) -> None:
-        self.socket = socket
+    def __init__(self, socket: WebSocket, watching: bool) -> None:
+        self.socket, self.watching = socket, watching
         self.fresh, self._room = asyncio.Event(), asyncio.Event()
         self.fresh.set()
         self._flying = 0

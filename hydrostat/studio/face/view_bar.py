@@ -19,8 +19,8 @@ COLOURINGS = {
 }
 
 
-def view_bar(page: WindowPage) -> None:
-    """Buttons in a corner of the view, and the legend in another."""
+def view_bar(page: WindowPage, *, colours: bool = True) -> None:
+    """Buttons in a corner of the view, that for colours, which all windows share, if wanted; a legend in another."""
     _legend(page)
     view = page.viewport
     with ui.element("div").classes("studio-view-bar"):
@@ -32,8 +32,9 @@ def view_bar(page: WindowPage) -> None:
             icon_button("layers", "Top (7)", lambda: view.view("top"))
             with icon_button("view_in_ar", "Looks", None):
                 _space_menu(page)
-        with icon_button("palette", "Colours", None):
-            _colour_menu(page)
+        if colours:
+            with icon_button("palette", "Colours", None):
+                _colour_menu(page)
         mesh = icon_button("grid_4x4", "Mesh", None)
         mesh.on_click(lambda: _toggle_mesh(page, mesh))
 

@@ -8,7 +8,7 @@ from typing import Any
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.dialogs import save_dialog
+from hydrostat.studio.face.dialogs import SaveDialog
 from hydrostat.studio.face.page import HEARTBEAT, WindowPage, icon_button
 from hydrostat.studio.face.panels.design_panel import design_panel
 from hydrostat.studio.face.panels.drive_panel import drive_panel
@@ -16,6 +16,8 @@ from hydrostat.studio.face.panels.edit_panel import edit_panel
 from hydrostat.studio.face.panels.export_panel import export_panel
 from hydrostat.studio.face.panels.pose_panel import pose_panel
 from hydrostat.studio.face.panels.start_panel import start_panel
+from hydrostat.studio.face.share import Links, share_dialog
+from hydrostat.studio.face.toasts import Toasts
 from hydrostat.studio.face.tour import STAGES, Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
 from hydrostat.studio.face.viewport import Side, Viewport
@@ -31,7 +33,18 @@ def dress() -> ui.dark_mode:
               dark="#2a2732")  # fmt: skip
     for style in sorted(STATIC.glob("*.css")):
         ui.add_css(style.read_text(encoding="utf-8"))
+    ui.add_head_html(HABITS)
     return ui.dark_mode(None)
+
+
+HABITS = """
+<script>
+addEventListener("click", (event) => {
+  if (event.detail) setTimeout(() => event.target.closest("button, [role=button]")?.blur());
+});
+</script>
+"""
+"""What was clicked does not keep the keyboard, or Space would press it again and not play. By Tab it does."""
 
 
 PANELS = {
@@ -46,19 +59,24 @@ PANELS = {
 Ask = Callable[[], Any]
 
 
-def build_window(session: Session) -> WindowPage:
-    """Build the page of one browser window; it follows the session from now on."""
+def build_window(session: Session, stream: str = "/stream", links: Links | None = None) -> WindowPage:
+    """Build the page of one browser window; it follows the session from now on.
+
+    Pictures come by the path of a stream; links to the room, if any, can be shared.
+    """
     page = WindowPage(session)
     dark = dress()
     tour = Tour()
-    ask_save, ask_help = save_dialog(page), help_dialog(tour)
-    _header(page, dark, ask_save, ask_help)
-    with ui.element("div").classes("studio-body"):
+    ask_save, ask_help = SaveDialog(page), help_dialog(tour)
+    page.save = ask_save.save
+    _header(page, dark, ask_save, ask_help, links)
+    with ui.element("div").classes("studio-body") as body:
         page.whole = ui.column().classes("studio-whole")
         with ui.element("div").classes("studio-work") as work:
-            with ui.element("div").classes("studio-view"):
-                page.viewport = Viewport(stream="/stream").classes("studio-viewport")
+            with ui.element("div").classes("studio-view") as view:
+                page.viewport = Viewport(stream=stream).classes("studio-viewport")
                 view_bar(page)
+                page.toasts = Toasts()
             page.bottom = ui.column().classes("studio-bottom")
         page.panel = ui.column().classes("studio-panel")
 
@@ -67,6 +85,7 @@ def build_window(session: Session) -> WindowPage:
         work.set_visibility(not start)
         page.panel.set_visibility(not start)
         page.whole.set_visibility(start)
+        page.toasts.room.move(body if start else view)
         page.show_panel(PANELS[session.stage])
 
     brush = [False]
@@ -87,7 +106,7 @@ def build_window(session: Session) -> WindowPage:
     return page
 
 
-def _header(page: WindowPage, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> None:
+def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help: Ask, links: Links | None) -> None:
     """Name, stages, undo, save."""
     session = page.session
     with ui.header().classes("studio-header"):
@@ -104,7 +123,12 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) 
         ui.space()
         undo = _tool("undo", "Undo", session.undo)
         redo = _tool("redo", "Do again", session.redo)
-        save = _tool("save", "Save", ask_save)
+        save = _tool("save", "Save", ask_save.save)
+        more = _tool("arrow_drop_down", "Save as, take home", lambda: None)
+        with more.style("margin-left: -10px; width: 22px"), ui.menu():
+            _saving_menu(page, ask_save)
+        if links is not None:
+            _tool("group_add", "Share this room", share_dialog(links))
         _tool("dark_mode", "Light or dark", partial(_switch, dark))
         _tool("help_outline", "Help", ask_help)
 
@@ -117,7 +141,8 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) 
         document = session.document
         name.set_text(("" if document.saved else "● ") + document.robot.name if document.is_open else "")
         undo.props(f"data-serial={document.serial}")  # whose state the buttons show
-        save.set_enabled(document.is_open)
+        for button in (save, more):
+            button.set_enabled(document.is_open)
         show_stage()
 
     def show_undo() -> None:
@@ -127,6 +152,12 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) 
     page.on(Topic.STAGE, show_stage, lasting=True)
     page.on(Topic.ROBOT, show_robot, lasting=True)
     page.on((Topic.ROBOT, Topic.STAGE, Topic.THINGS), show_undo, lasting=True)
+
+
+def _saving_menu(page: WindowPage, ask_save: SaveDialog) -> None:
+    if not page.session.guest:
+        ui.menu_item("Save as ...", ask_save.save_as).props('data-testid="save-as"')
+    ui.menu_item("Take home as .zip", ask_save.take_home).props('data-testid="save-zip"')
 
 
 def _tool(icon: str, words: str, action: Ask) -> ui.button:
@@ -154,7 +185,7 @@ DARK = "hydrostat-dark"  # what a browser remembers it under
 SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 
 
-def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> Any:
+def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: SaveDialog, ask_help: Ask) -> Any:
     """What a key does; see `tour.KEYS`. Returns what is still to be waited for, if anything."""
     if not event.action.keydown:
         return None
@@ -164,7 +195,7 @@ def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: Ask, ask_h
     elif name.lower() == "z":
         page.session.redo() if event.modifiers.shift else page.session.undo()
     elif name.lower() == "s" and (event.modifiers.ctrl or event.modifiers.meta):
-        return ask_save()
+        return ask_save.save_as() if event.modifiers.shift and not page.session.guest else ask_save.save()
     elif name == "?":
         return ask_help()
     elif not (event.modifiers.ctrl or event.modifiers.meta or event.modifiers.alt):

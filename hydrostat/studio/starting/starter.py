@@ -18,6 +18,7 @@ from hydrostat.studio.starting.draft import BodyDraft, new_draft
 from hydrostat.studio.starting.outlining import Outlining
 from hydrostat.studio.starting.shelf import Card, Recent, card_of, robots_in, told_apart
 from hydrostat.studio.starting.sketch import Sketch, make_sketch
+from hydrostat.studio.starting.unpack import unpacked
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.studio.work_folder import open_work, text_of
@@ -76,6 +77,11 @@ class Starter(Stage):
             raise InputError(f"this folder cannot be read ({error})") from None
         home = folder.parent if folder.suffix == ".toml" else folder
         self._document.open(work, folder=home, text=text_of(home))
+
+    def open_zip(self, name: str, content: bytes) -> None:
+        """Open the robot in a .zip, such as Export makes; Save asks for a folder (InputError: there is none in it)."""
+        work, text = unpacked(name, content)
+        self._document.open(work, text=text)
 
     def recent(self) -> list[Card]:
         """Robots that were open lately, then those of the working folder; each once, those of one name told apart."""

@@ -13,12 +13,12 @@ TOY = Path(__file__).parent / "toy_studio.py"
 
 
 @pytest.fixture(scope="module")
-def serving() -> Iterator[Callable[[str], Server]]:
+def serving() -> Iterator[Callable[..., Server]]:
     """Starts studios that listen at an address."""
     with ExitStack() as stack:
 
-        def start(host: str) -> Server:
-            command = [sys.executable, str(TOY), host]
+        def start(*arguments: str) -> Server:
+            command = [sys.executable, str(TOY), *arguments]
             process = stack.enter_context(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
             stack.callback(process.terminate)
             assert process.stdout is not None
@@ -28,6 +28,6 @@ def serving() -> Iterator[Callable[[str], Server]]:
 
 
 @pytest.fixture(scope="module")
-def server(serving: Callable[[str], Server]) -> Server:
+def server(serving: Callable[..., Server]) -> Server:
     """A studio for this machine only."""
     return serving("127.0.0.1")

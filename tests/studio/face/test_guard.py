@@ -169,7 +169,7 @@ def test_a_body_that_never_ends_is_cut_off() -> None:
 
 
 @pytest.fixture(scope="module")
-def open_server(serving: Callable[[str], Server]) -> Server:
+def open_server(serving: Callable[..., Server]) -> Server:
     """A studio that other machines can reach."""
     return serving("0.0.0.0")
 

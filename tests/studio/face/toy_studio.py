@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hydrostat.robot import gallery_folder
+from hydrostat.studio.face.rooms import Rooms
 from hydrostat.studio.face.serve import serve
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, Stage, StageName
@@ -34,12 +35,15 @@ class Toy(Stage):
         self.place = hit.world
 
 
-def main(host: str) -> None:
-    """Serve until the program is ended."""
+def main(host: str, many: str = "") -> None:
+    """Serve until the program is ended; one room for all, or many."""
+    if many:
+        serve(Rooms(first=gallery_folder("starfish")), host=host, show=False, announce=announce)
+        return
     session = Session()
     session.open_folder(gallery_folder("starfish"))
     session.stages = {**session.stages, StageName.POSE: Toy(session)}
-    serve(session, host=host, show=False, announce=announce)
+    serve(Rooms(session), host=host, show=False, announce=announce)
 
 
 def announce(address: str) -> None:
@@ -49,4 +53,4 @@ def announce(address: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])

@@ -20,7 +20,7 @@ from hydrostat.studio.starting.shelf import Card, gallery_cards, suggestions
 
 STYLE = Path(__file__).parents[1] / "static" / "start.css"
 
-KINDS = ("SVG", "DXF", "PNG", "JPG", "STL", "OBJ", "PLY", "OFF", "3MF")
+KINDS = ("SVG", "DXF", "PNG", "JPG", "STL", "OBJ", "PLY", "OFF", "3MF", "ZIP")
 
 MOST_LEFT = 4  # so many works that a crash left are offered at once, the newest
 
@@ -34,8 +34,9 @@ def shelf_view(page: WindowPage) -> Callable[[], None]:
     with ui.element("div").classes("start-ways"):
         _drop(page)
         _draw(page)
-        _folder(page)
-    recent = starter.recent()
+        if not page.session.guest:
+            _folder(page)
+    recent = [] if page.session.guest else starter.recent()
     if recent:
         ui.label("Your robots").classes("start-section")
         with ui.element("div").classes("start-chips"):
@@ -90,7 +91,7 @@ def _drop(page: WindowPage) -> None:
     card = ui.element("div").classes("start-card start-drop")
     with card.props('tabindex=0 role=button aria-label="Bring a file"'):
         _head("upload_file", "Bring a drawing or a scan")
-        words = "Drop a file here, or click to choose one. It is meshed and mended, and you see what was done."
+        words = "Drop a file, or click to choose one: you see how it is meshed and mended. A .zip is a robot again."
         ui.label(words).classes("start-small")
         wrong = ui.label().classes("start-problem").props('data-testid="upload-wrong"')
         wrong.bind_visibility_from(wrong, "text", bool)
@@ -110,6 +111,10 @@ def _drop(page: WindowPage) -> None:
         wrong.set_text("")
         content = await event.file.read()
         try:
+            if event.file.name.lower().endswith(".zip"):
+                complain("")
+                await open_with(page, card, partial(page.session.starter.open_zip, event.file.name, content))
+                return
             await run.io_bound(page.session.starter.bring, event.file.name, content)
         except HydrostatError as error:
             complain(str(error))

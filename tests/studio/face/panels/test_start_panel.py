@@ -4,8 +4,9 @@ from pathlib import Path
 
 from desk import Desk, at_desk
 
-from hydrostat.robot import Robot, gallery_names, save_robot
+from hydrostat.robot import Robot, gallery_names, load_robot, save_robot
 from hydrostat.studio.face.tour import KEYS, STAGES
+from hydrostat.studio.session import Tone
 from hydrostat.studio.stage import StageName
 
 
@@ -38,6 +39,51 @@ def test_work_that_is_not_saved_is_not_left_without_asking(starfish: Robot, tmp_
         await desk.press(desk.all("leave-yes")[-1])
         await desk.until(lambda: desk.session.stage is StageName.POSE)
         assert "tip" not in {marker.name for marker in desk.robot.markers}
+
+    at_desk(starfish, act)
+
+
+def test_work_that_is_not_saved_is_saved_on_the_way_out(starfish: Robot, tmp_path: Path) -> None:
+    save_robot(starfish, tmp_path / "mine")
+    save_robot(starfish, tmp_path / "other")
+
+    async def act(desk: Desk) -> None:
+        desk.session.open_folder(tmp_path / "mine")
+        desk.session.editor.rename("marker:top", "tip")
+        desk.go(StageName.START)
+        await desk.choose("folder", str(tmp_path / "other"))
+        await desk.press("folder-open")
+        await desk.press("leave-save")
+        await desk.until(lambda: desk.session.document.folder == tmp_path / "other")
+        assert "tip" in {marker.name for marker in load_robot(tmp_path / "mine").markers}
+
+    at_desk(starfish, act)
+
+
+def test_save_as_goes_to_another_folder(starfish: Robot, tmp_path: Path) -> None:
+    save_robot(starfish, tmp_path / "mine")
+
+    async def act(desk: Desk) -> None:
+        desk.session.open_folder(tmp_path / "mine")
+        await desk.press("save-as")
+        await desk.choose("save-folder", str(tmp_path / "yours"))
+        await desk.press("save-now")
+        await desk.until(lambda: desk.session.document.folder == tmp_path / "yours")
+        assert load_robot(tmp_path / "yours").name == "starfish"
+
+    at_desk(starfish, act)
+
+
+def test_notes_do_not_pile_up(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        toasts = desk.page.toasts
+        with desk.client:
+            for text in ("undone: a", "undone: b", "undone: c"):
+                toasts.show(text)
+            assert toasts.words == ["undone: c"]
+            for text in ("wrong 1", "wrong 2", "wrong 3", "wrong 3"):
+                toasts.show(text, Tone.BAD)
+            assert toasts.words == ["wrong 2", "wrong 3"]
 
     at_desk(starfish, act)
 

@@ -1,0 +1,129 @@
+"""`Rooms`: the sessions of one server: the only one of a person, or one for each browser of a class."""
+
+import re
+import time
+from base64 import urlsafe_b64encode
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from secrets import token_urlsafe
+from threading import Lock, Thread
+
+from hydrostat.errors import InputError
+from hydrostat.studio.face.pulse import Pulse
+from hydrostat.studio.face.stream import Stream
+from hydrostat.studio.jobs import Slots
+from hydrostat.studio.session import Session
+
+MOST = 48  # so many rooms are open at a time
+WORKS = 2  # so many long works run at a time, of all rooms
+IDLE = 120.0  # a room that nobody looked at for so long [s] may be closed for another; its work is kept
+
+_KEY = re.compile(r"[A-Za-z0-9_-]{16,64}")
+
+
+@dataclass(eq=False)
+class Room:
+    """A session with what lets it work and be seen."""
+
+    key: str  # who knows it may work here
+    session: Session  # the robot and all that can be done with it
+    stream: Stream = field(init=False)  # to the screens in it
+    pulse: Pulse = field(init=False)  # its threads
+    seen: float = 0.0  # when somebody came in last, by a clock that only grows [s]
+
+    def __post_init__(self) -> None:
+        self.stream = Stream(self.session)
+        self.pulse = Pulse(self.session, self.stream.publish)
+
+    @property
+    def watch_key(self) -> str:
+        """Who knows it may watch, and does not learn the other one from it."""
+        return urlsafe_b64encode(sha256(f"watch {self.key}".encode()).digest()[:18]).decode()
+
+    def close(self) -> None:
+        """End all work of it; what is not saved is kept."""
+        self.pulse.stop()
+        self.session.close()
+
+
+class Rooms:
+    """Rooms by their keys. With a session given there is one room, and every key leads into it."""
+
+    def __init__(self, only: Session | None = None, *, state: Path | None = None, first: Path | None = None) -> None:
+        """Open the only room, or make others as browsers come.
+
+        Args:
+            only: the session of the only room; None: a room for each key.
+            state: folder in which rooms remember what is not saved; None: nowhere.
+            first: folder of a robot of which each new room has a copy; None: rooms begin empty.
+        """
+        self._state, self._first, self._slots = state, first, Slots(WORKS)
+        self._lock, self._open = Lock(), False
+        self._rooms: dict[str, Room] = {}
+        self._only = None if only is None else Room(new_key(), only)
+
+    @property
+    def many(self) -> bool:
+        """Whether each browser has a room of its own."""
+        return self._only is None
+
+    def start(self) -> None:
+        """Let rooms work; those that come later work at once."""
+        self._open = True
+        if self._only is not None:
+            self._only.pulse.start()
+
+    def close(self) -> None:
+        """Close all rooms."""
+        with self._lock:
+            rooms = [*self._rooms.values(), *([] if self._only is None else [self._only])]
+            self._rooms, self._open = {}, False
+        for room in rooms:
+            room.close()
+
+    def enter(self, key: str = "") -> Room:
+        """The room of a key, made where there is none yet (InputError: no key, or the studio is full)."""
+        if self._only is not None:
+            return self._only
+        if not _KEY.fullmatch(key):
+            raise InputError("there is no such room; open the address that the studio printed")
+        with self._lock:
+            room = self._rooms.get(key)
+            if room is None:
+                self._make_way()
+                room = self._rooms[key] = Room(key, self._session(key))
+                if self._open:
+                    room.pulse.start()
+            room.seen = time.monotonic()
+        return room
+
+    def watched(self, key: str) -> Room | None:
+        """The room that a watch key shows; None if there is none, or nobody has opened it yet."""
+        rooms = [self._only] if self._only is not None else list(self._rooms.values())
+        return next((room for room in rooms if room.watch_key == key), None)
+
+    def _session(self, key: str) -> Session:
+        name = sha256(key.encode()).hexdigest()[:24]
+        state = None if self._state is None else self._state / "rooms" / name
+        session = Session(state, guest=True, slots=self._slots)
+        if self._first is not None and not session.starter.autosave.left():
+            session.starter.open_gallery(self._first)
+            session.go("pose")
+        return session
+
+    def _make_way(self) -> None:
+        """Close the room that nobody has looked at for longest, if there are too many."""
+        if len(self._rooms) < MOST:
+            return
+        idle = [room for room in self._rooms.values() if not room.stream.screens]
+        oldest = min(idle, key=lambda room: room.seen, default=None)
+        if oldest is None or time.monotonic() - oldest.seen < IDLE:
+            raise InputError(f"this studio has {MOST} rooms, and somebody is in each; try again later")
+        del self._rooms[oldest.key]
+        Thread(target=oldest.close, name="closing a room", daemon=True).start()
+
+
+def new_key() -> str:
+    """A key that nobody guesses."""
+    return token_urlsafe(18)

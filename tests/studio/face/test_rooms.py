@@ -1,0 +1,161 @@
+"""Rooms of a class. Oracles: whose robot a screen is shown, and which folders are touched."""
+
+import json
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from urllib.error import HTTPError
+from urllib.request import HTTPRedirectHandler, Request, build_opener
+
+import pytest
+from toy_server import Server
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import ClientConnection, connect
+
+from hydrostat.errors import InputError
+from hydrostat.robot import gallery_folder
+from hydrostat.studio.face import rooms as rooms_module
+from hydrostat.studio.face.rooms import Room, Rooms, new_key
+from hydrostat.studio.jobs import Jobs, Slots
+from hydrostat.studio.session import Session
+from hydrostat.studio.view.picture import opened
+
+
+@pytest.fixture
+def rooms(tmp_path: Path) -> Iterator[Rooms]:
+    made = Rooms(state=tmp_path / "state", first=gallery_folder("starfish"))
+    yield made
+    made.close()
+
+
+def test_each_key_has_its_own_robot_and_keeps_it(rooms: Rooms, tmp_path: Path) -> None:
+    one, two = new_key(), new_key()
+    first = rooms.enter(one)
+    first.session.editor.rename("marker:top", "tip")
+    assert rooms.enter(one) is first
+    assert "tip" not in {marker.name for marker in rooms.enter(two).session.document.robot.markers}
+    assert rooms.watched(first.watch_key) is first
+    assert rooms.watched(one) is None
+    assert first.watch_key not in (one, rooms.enter(two).watch_key)
+    rooms.close()
+    again = Rooms(state=tmp_path / "state", first=gallery_folder("starfish"))
+    (left,) = again.enter(one).session.starter.autosave.left()
+    again.enter(one).session.starter.autosave.restore(left)
+    assert "tip" in {marker.name for marker in again.enter(one).session.document.robot.markers}
+    assert not again.enter(two).session.starter.autosave.left(), "nobody is offered the work of others"
+    assert one not in "".join(str(path) for path in tmp_path.rglob("*")), "a key can be read on the disk"
+    again.close()
+
+
+@pytest.mark.parametrize("key", ["", "short", "../../../../etc/passwd", "x" * 65, "a b c d e f g h i j"])
+def test_what_is_no_key_opens_no_room(rooms: Rooms, key: str) -> None:
+    with pytest.raises(InputError, match="no such room"):
+        rooms.enter(key)
+
+
+def test_a_guest_reads_and_writes_no_folder(rooms: Rooms, tmp_path: Path) -> None:
+    session = rooms.enter(new_key()).session
+    for act in (lambda: session.save(tmp_path / "mine"), lambda: session.open_folder(gallery_folder("squid"))):
+        with pytest.raises(InputError, match="not for guests"):
+            act()
+    assert not (tmp_path / "mine").exists()
+    assert session.document.robot.name == "starfish"
+
+
+def test_the_room_that_nobody_sees_makes_way(rooms: Rooms, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rooms_module, "MOST", 2)
+    one, two = (rooms.enter(new_key()) for _ in range(2))
+    with pytest.raises(InputError, match="2 rooms, and somebody is in each"):
+        rooms.enter(new_key())
+    one.seen = two.seen = time.monotonic() - 2 * rooms_module.IDLE
+    one.seen -= 1.0
+    rooms.enter(new_key())
+    assert (rooms.watched(one.watch_key), rooms.watched(two.watch_key)) == (None, two)
+
+
+def test_long_work_waits_for_a_slot() -> None:
+    slots, session = Slots(1), Session()
+    jobs = Jobs(session.bell, slots)
+    slots.take()
+    with pytest.raises(InputError, match="busy with the work of other rooms"):
+        jobs.start("Counting", len, [])
+    assert not jobs.running
+    slots.give()
+    slots.take()
+    session.close()
+
+
+class _Stay(HTTPRedirectHandler):
+    def redirect_request(self, *_: object, **__: object) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
+        return None
+
+
+def fetched(server: Server, path: str, cookie: str = "") -> tuple[int, dict[str, str], str]:
+    """Status, headers and body of a page, redirections not followed."""
+    request = Request(f"http://127.0.0.1:{server.port}{path}", headers={"Cookie": cookie} if cookie else {})
+    try:
+        with build_opener(_Stay).open(request, timeout=60) as answer:
+            return answer.status, dict(answer.headers), answer.read().decode()
+    except HTTPError as error:
+        return error.code, dict(error.headers), error.read().decode()
+
+
+@contextmanager
+def screen(server: Server, path: str) -> Iterator[ClientConnection]:
+    own = f"http://127.0.0.1:{server.port}"
+    with connect(f"ws://127.0.0.1:{server.port}{path}", origin=own, max_size=None, close_timeout=1.0) as socket:  # type: ignore[arg-type]
+        yield socket
+
+
+def frames(socket: ClientConnection, until: float) -> list[float]:
+    """Stamps of the frames that come until a time."""
+    stamps = []
+    while (left := until - time.monotonic()) > 0:
+        try:
+            head, _ = opened(bytes(socket.recv(timeout=left)))  # type: ignore[arg-type]
+        except TimeoutError:
+            break
+        socket.send(json.dumps({"kind": "seen"}))
+        if "stamp" in head:
+            stamps.append(head["stamp"])
+    return stamps
+
+
+def test_a_class_in_browsers(serving: Callable[..., Server]) -> None:
+    """Each browser is led into a room of its own, again and again; who watches sees, and moves nothing."""
+    server = serving("127.0.0.1", "many")
+    status, headers, _ = fetched(server, "/")
+    assert status == 307
+    cookie, place = headers["set-cookie"].split(";")[0], headers["location"]
+    assert fetched(server, "/", cookie)[1]["location"] == place
+    assert fetched(server, "/")[1]["location"] != place
+    status, _, page = fetched(server, place)
+    assert (status, '<html lang="en' in page) == (200, True)
+    key = place.rpartition("/")[2]
+    watch = Room(key, Session()).watch_key
+    assert fetched(server, f"/watch/{watch}")[0] == 200
+    assert fetched(server, f"/watch/{key}")[0] == 404
+    assert fetched(server, "/room/short")[0] == 404
+    grab = {"kind": "grab", "key": "marker:top", "world": [0, 0.1, 0]}
+    drag = {"kind": "drag", "world": [0.0, 0.12, 0]}
+    with screen(server, f"/stream/{key}") as own, screen(server, f"/watched/{watch}") as watcher:
+        for message in (grab, drag):
+            watcher.send(json.dumps({**message, "stamp": 7.0}))
+        assert 7.0 not in frames(own, time.monotonic() + 1.5), "who watches has moved it"
+        for message in (grab, drag):
+            own.send(json.dumps({**message, "stamp": 8.0}))
+        until = time.monotonic() + 60
+        while 8.0 not in frames(watcher, time.monotonic() + 1.0):
+            assert time.monotonic() < until
+    with pytest.raises(InvalidStatus), screen(server, f"/watched/{key}"):
+        pass
+
+
+def test_what_a_guest_takes_home_counts_as_saved(rooms: Rooms) -> None:
+    session = rooms.enter(new_key()).session
+    session.document.change("rename", robot=replace(session.document.robot, name="mine"))
+    assert not session.document.saved
+    assert session.take_home().name == "mine.zip"
+    assert session.document.saved
