@@ -49,10 +49,11 @@ def check(
 def _print_judgement(robot: "Robot") -> None:
     """What is to be said before a robot is built, as the studio says it: whatever its poses ask of motors."""
     from hydrostat.design import Constraints, Weight, judgement_of
+    from hydrostat.robot.in_words import in_words
 
     found = judgement_of(robot, constraints=Constraints())
     for finding in found:
-        print(f"{FINDINGS[finding.weight]}: {finding.text}")
+        print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Weight.REFUSED, Weight.MIND))
     wrong = f"{counted(refused, 'thing')} cannot be built" if refused else "Nothing is wrong"
     print(f"{wrong}, {risky} risky." if risky else f"{wrong}.")

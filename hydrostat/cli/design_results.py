@@ -91,9 +91,10 @@ def _print_findings(network: "Network") -> None:
     from hydrostat.cli.check import FINDINGS
     from hydrostat.design import judgement_of
     from hydrostat.fabrication.demand import demand_of
+    from hydrostat.robot.in_words import in_words
 
     for finding in judgement_of(network.robot, demand=demand_of(network.robot, network.reached)):
-        print(f"{FINDINGS[finding.weight]}: {finding.text}")
+        print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
 
 
 def _print_filled(network: "Network") -> None:

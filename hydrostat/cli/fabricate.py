@@ -100,13 +100,14 @@ def fabricate(
 def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
     """The kit; the reasons are printed why there is none (InputError: it cannot be built well)."""
     from hydrostat.fabrication import UnbuildableError, build_kit
+    from hydrostat.robot.in_words import in_words
 
     try:
         with progress_bar() as progress:
             return build_kit(robot, options=options, progress=progress)
     except UnbuildableError as error:
         for reason in error.reasons:
-            print(f"cannot be built: {reason}")
+            print(f"cannot be built: {in_words(reason)}")
         count = counted(len(error.reasons), "reason")
         words = f"{folder}: cannot be built well, for {count}; mend it, or write it anyway with --force"
         raise InputError(words) from None
@@ -114,10 +115,12 @@ def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
 
 def print_kit(kit: "Kit") -> None:
     """Print what is in a kit, what to mind, and whether it is true to the robot."""
+    from hydrostat.robot.in_words import in_words
+
     for problem in kit.problems:
-        print(f"cannot be built well: {problem}")
+        print(f"cannot be built well: {in_words(problem)}")
     for warning in kit.warnings:
-        print(f"warning: {warning}")
+        print(f"warning: {in_words(warning)}")
     for line in kit.summary:
         print(line)
     held = sum(check.passed for check in kit.checks)

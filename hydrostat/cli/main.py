@@ -22,6 +22,7 @@ from hydrostat.cli.play import play
 from hydrostat.cli.pose import pose
 from hydrostat.cli.reproduce import reproduce
 from hydrostat.cli.sample import sample
+from hydrostat.cli.scale import scale
 from hydrostat.cli.simulate import simulate
 from hydrostat.cli.studio import studio
 from hydrostat.cli.trajectory import trajectory
@@ -59,6 +60,7 @@ def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
 
 for command in (
     new,
+    scale,
     check,
     simulate,
     branches,

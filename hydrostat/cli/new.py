@@ -78,7 +78,8 @@ def new(
     count = len(made.body.mesh.nodes)
     if nodes is not None and abs(count / nodes - 1) > 0.1:
         lines.append(f"nodes: {nodes} were asked for, {count} come nearest, as thin places need finer elements")
-    _print_made(made, name, [line.replace(str(folder), str(name)) for line in lines])
+    told = [line.replace(str(folder), str(name)) for line in lines]
+    _print_made(made, name, told, chosen=bool(nodes or element_size))
 
 
 def _robot_name(folder: Path) -> str:
@@ -137,6 +138,7 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
     from hydrostat.ik import begin_robot
     from hydrostat.plot import draw_healing, save_png
     from hydrostat.robot import replace_file, save_robot
+    from hydrostat.robot.commented import commented_text
     from hydrostat.robot.gallery import is_of_gallery
 
     if is_of_gallery(source):
@@ -146,7 +148,7 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
         return bounded(sketch, file=source, words="healing and meshing the body ...", seconds=seconds)
 
     begun = begin_robot(source, wish, run=run)
-    save_robot(begun.robot, folder)
+    save_robot(begun.robot, folder, text=commented_text(begun.robot, Path(source).name))
     lines, sketch = list(begun.notes), begun.sketch
     if sketch is not None and not sketch.healing.clean:
         told = sketch.healing.lines()
@@ -183,9 +185,10 @@ def _draw(folder: Path) -> "Robot":
     return made
 
 
-def _print_made(made: "Robot", name: Path, lines: list[str]) -> None:
+def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) -> None:
     """Say what there is now, and what to do next."""
     from hydrostat.robot import find_risks
+    from hydrostat.robot.in_words import in_words
 
     mesh, flat = made.body.mesh, made.body.mesh.dim == 2
     kind = "triangles" if flat else "tetrahedra"
@@ -193,7 +196,11 @@ def _print_made(made: "Robot", name: Path, lines: list[str]) -> None:
         f"Made {name}: {1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}, "
         f"poses: {', '.join(made.poses)}"
     )
-    for line in [*lines, *(f"risky: {risk}" for risk in find_risks(made))]:
+    coarse = not flat and not chosen  # fewer elements than would be exact, so that all is quick at first
+    for risk in find_risks(made):
+        mild = coarse and "elements across" in risk
+        lines.append(f"{'coarse, to be quick at first' if mild else 'risky'}: {in_words(risk)}")
+    for line in lines:
         print(line)
     scaled = made.body.size is not None
     origin = (

@@ -1,5 +1,7 @@
 """`sketch_robot`: a first robot from nothing but a drawing, to be edited from there."""
 
+from functools import partial
+
 import numpy as np
 
 from hydrostat.geometry.files.outline_file import read_outline
@@ -7,10 +9,14 @@ from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.sizing import size_for
 from hydrostat.geometry.triangles.triangulate import triangulate
 from hydrostat.robot.body import outline_body
+from hydrostat.robot.finer import finer_size
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
+
+MOST_NODES = 2000
+"""A sketch gets no more nodes than this for the sake of its thin limbs."""
 
 
 def sketch_robot(
@@ -36,7 +42,8 @@ def sketch_robot(
         size: longest side of the bounding box [m]; None: as the drawing says, if it does.
         element_size: [m]; None: so that there are about as many nodes as asked for.
         thickness: [m]; None: a seventh of the size.
-        nodes: wanted; None: about 250; not used with an element size.
+        nodes: wanted; None: about 250, or as many as give each limb enough elements across; not used with an element
+            size.
         material: a name from the table.
 
     Raises:
@@ -46,14 +53,14 @@ def sketch_robot(
     from shapely import maximum_inscribed_circle
 
     outline = read_outline(content, name=file, size=size)
-    body = outline_body(
-        content,
-        file=file,
-        material=find_material(material),
-        size=size,
-        element_size=element_size or _element_size(outline, nodes),
-        thickness=thickness or _round(outline.size / 7),
-    )
+    length, asked = element_size or _element_size(outline, nodes), bool(element_size or nodes)
+    make = partial(outline_body, content, file=file, material=find_material(material), size=size)
+    body = make(element_size=length, thickness=thickness or _round(outline.size / 7))
+    while not asked and (finer := finer_size(body, MOST_NODES)) is not None:
+        if _round(finer) >= length:
+            break
+        length = _round(finer)
+        body = make(element_size=length, thickness=body.thickness or 0.0)
     centre = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
     depth = outline.polygon.boundary.distance(ShapelyPoint(centre))
     inner = body.mesh.nodes[np.setdiff1d(np.arange(len(body.mesh.nodes)), body.mesh.boundary_nodes)]

@@ -74,7 +74,7 @@ def check_profile(profile: object, robot: Robot) -> None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProfileTable:
-    """A CSV of moves: a column `time_s`, and one for each winch that moves, by its name, in millimetres.
+    """A CSV of moves: a column `time_s`, and in millimetres one for each winch that moves, `left_mm` or just `left`.
 
     The studio, `hydrostat trajectory`, `hydrostat play` and `hydrostat simulate --play` write and read this table.
 
@@ -105,8 +105,8 @@ class ProfileTable:
             rows = [(reader.line_num, row) for row in reader]
         except (UnicodeDecodeError, csv.Error) as error:
             raise InputError(f"{name}: cannot be read as a table ({error})") from None
-        head = [cell.strip() for cell in rows[0][1]] if rows else []
         names = [winch.name for winch in robot.winches]
+        head = [_column(cell.strip(), names) for cell in rows[0][1]] if rows else []
         if TIME not in head or len(set(head)) != len(head):
             raise InputError(f"{name}, line 1: name the columns: {TIME} and the winches, each once")
         for column in head:
@@ -143,11 +143,17 @@ class ProfileTable:
         return f"{self.name}, line {self.lines[row]}"
 
 
+def _column(head: str, winches: Sequence[str]) -> str:
+    """The winch that a column is of, if it is of one; else its head."""
+    bare = head.removesuffix(MILLIMETRES)
+    return bare if head not in winches and bare in winches else head
+
+
 def profile_text(robot: Robot, profile: Profile) -> bytes:
     """The bytes of a `ProfileTable` of a profile; a gentle one loses that."""
     rows = zip(profile.times, 1e3 * profile.values + 0.0, strict=True)
     return csv_text(
-        [TIME, *(winch.name for winch in robot.winches)],
+        [TIME, *(f"{winch.name}{MILLIMETRES}" for winch in robot.winches)],
         ([f"{time:.15g}", *(f"{value:.9g}" for value in row)] for time, row in rows),
     )
 
@@ -192,6 +198,7 @@ def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, f
 
 
 TIME = "time_s"
+MILLIMETRES = "_mm"  # ends the head of a column of contractions
 """Name of the column of times [s]."""
 
 

@@ -114,7 +114,7 @@ def test_by_force_it_is_built_with_the_reasons_on_the_sheet():
     robot = plush_robot(drawn_body("M0 0H100V100H0Z"), TOO_NEAR)
     kit = build_kit(robot, options=KitOptions(force=True))
     assert len(kit.problems) == 1
-    assert "cable[0].points[2]" in words_of(kit.files["assembly_sheet.pdf"]).lower()
+    assert "cable 1, point 3" in words_of(kit.files["assembly_sheet.pdf"]).lower()
 
 
 def test_a_spool_too_small_for_the_shaft_is_refused():

@@ -80,7 +80,7 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
         times=np.array([0.0, 0.25, 1.0]), values=np.array([[0.0, 0.01], [0.0123456, -0.0], [0.02, 0.0]])
     )
     path = write_profile(tmp_path / "way.csv", robot, profile)
-    assert path.read_text().splitlines()[:2] == ["time_s,up,down", "0,0,10"]
+    assert path.read_text().splitlines()[:2] == ["time_s,up_mm,down_mm", "0,0,10"]
     again = read_profile(path, robot)
     assert again.times == pytest.approx(profile.times)
     assert again.values == pytest.approx(profile.values, abs=1e-11)

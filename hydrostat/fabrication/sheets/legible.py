@@ -8,6 +8,7 @@ import typst
 
 from hydrostat.fabrication.sheets.cable_map import winch_mark
 from hydrostat.robot import Robot
+from hydrostat.robot.in_words import in_words
 
 FONTS = ("Libertinus Serif", "DejaVu Sans Mono")
 """Come with typst: Latin, Greek, Cyrillic, Hebrew, signs of mathematics."""
@@ -108,7 +109,7 @@ _MOTOR = re.compile(r"\b(motor|torque|N mm)\b")
 
 def minds(problems: tuple[str, ...], warnings: tuple[str, ...]) -> list[str]:
     """Problems first, then what motors bear, then what else must fit, then cloth; how many more there are."""
-    ordered = [*merged(problems), *sorted(merged(warnings), key=_rank)]
+    ordered = [in_words(words) for words in (*merged(problems), *sorted(merged(warnings), key=_rank))]
     shown = [shortened(sentence(words), _SENTENCE) for words in ordered[:_MOST]]
     if len(ordered) > _MOST:
         shown.append(f"… and {len(ordered) - _MOST} more in manifest.json")

@@ -15,7 +15,17 @@ from hydrostat.geometry.healing.faults import (
     pieces_of,
     sliver_count,
 )
-from hydrostat.geometry.healing.mend import Holes, Welded, holes_of, members_of, one_way, sides_of, weld, with_closed
+from hydrostat.geometry.healing.mend import (
+    NEAR,
+    Holes,
+    Welded,
+    holes_of,
+    members_of,
+    one_way,
+    sides_of,
+    weld,
+    with_closed,
+)
 from hydrostat.geometry.healing.remake import Remade, deviation, remake
 from hydrostat.geometry.healing.shells import Role, Shells, shells_of
 from hydrostat.geometry.surface import Surface
@@ -85,6 +95,7 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     """
     if not (np.isfinite(resolution) and resolution > 0.0):
         raise SurfaceError(f"the resolution to heal with is {resolution!r} m, but has to be above 0")
+    _check_loose(surface)
     welded = weld(surface)
     _check_parts(welded.surface)
     triangles, flipped = one_way(welded.surface.triangles)
@@ -108,6 +119,22 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     return _made_anew(kept, shells, found, done, removed, resolution)
 
 
+def _check_loose(surface: Surface) -> None:
+    """Refuse a soup before its vertices are joined: a part of some triangles has at most two vertices more."""
+    cells = np.floor((surface.vertices - surface.box[0]) / (4 * NEAR * surface.size)).astype(np.int64)
+    places = len(np.unique(cells @ np.array([1 << 36, 1 << 18, 1])))
+    parts = (places - len(surface.triangles)) // 2
+    if parts > 3 * _MOST_PARTS:  # some that are near are counted twice, as a cell ends between them
+        raise _loose(parts)
+
+
+def _loose(parts: int) -> SurfaceError:
+    return SurfaceError(
+        f"the surface falls into {parts} loose parts, at most {_MOST_PARTS} are read: this is no surface of a body; in "
+        "the program it comes from, join its vertices, and export it again"
+    )
+
+
 def _check_parts(surface: Surface) -> None:
     """Refuse what is no surface, and would take long: thousands of loose triangles, or hundreds about one edge."""
     sides = sides_of(surface.triangles)
@@ -119,10 +146,7 @@ def _check_parts(surface: Surface) -> None:
         )
     parts = int(sides.groups(sides.counts > 1).max(initial=0)) + 1
     if parts > _MOST_PARTS:
-        raise SurfaceError(
-            f"the surface falls into {parts} loose parts, at most {_MOST_PARTS} are read: this is no surface of a "
-            "body; in the program it comes from, join its vertices, and export it again"
-        )
+        raise _loose(parts)
 
 
 def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:

@@ -1,24 +1,16 @@
-"""`finding_things`, `in_words`: what is said of a robot, as rings where it is and in the words of the screen."""
+"""`finding_things`: what is said of a robot, as rings where it is and in the words of the screen."""
 
-import re
 from collections.abc import Iterable
 
 from hydrostat.design.finding import Finding, Weight
 from hydrostat.drawing.palette import SEAM
 from hydrostat.robot import Mount, Robot
+from hydrostat.robot.in_words import in_words
 from hydrostat.studio.view.things import Dot, Look, Thing
 
 TONES = {Weight.REFUSED: "#c8243f", Weight.LIMIT: "#6d6875", Weight.MIND: SEAM}  # colour of each weight
 MOST = 24  # rings of one finding: more say no more
 BRIEF = 64  # letters that are written beside a ring
-
-_NAMED = re.compile(r"\b(winch|marker)\[\d+\](?= )")
-_PART = re.compile(r"\b(pin|winch|cable|marker|pose)\[(\d+)\]")
-
-
-def in_words(text: str) -> str:
-    """A sentence with parts called as on the screen: "cable 1" for "cable[0]", "winch left" for "winch[0] left"."""
-    return _PART.sub(lambda match: f"{match[1]} {int(match[2]) + 1}", _NAMED.sub(r"\1", text))
 
 
 def finding_things(robot: Robot, said: Iterable[Finding], chosen: Finding | None = None) -> list[Thing]:

@@ -470,5 +470,5 @@ def test_a_winch_is_pulled_in_the_view(driver: Driver, starfish: Robot) -> None:
 
 def test_a_table_takes_the_place_of_the_timeline(driver: Driver, document: Document) -> None:
     driver.load_table("wave.csv", b"time_s,left\n0,0\n2,20\n")
-    assert driver.table() == b"time_s,right,left,feet\n0,0,0,0\n2,0,20,0\n"
+    assert driver.table() == b"time_s,right_mm,left_mm,feet_mm\n0,0,0,0\n2,0,20,0\n"
     assert document.undo_label == "import wave.csv"

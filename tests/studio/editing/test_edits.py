@@ -10,6 +10,7 @@ from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.robot import Contact, Mount, Robot, find_risks
+from hydrostat.robot.in_words import in_words
 from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity, sheathed_segments, sheaths
 from hydrostat.studio.editing.hold import below_skin, inside
@@ -17,7 +18,6 @@ from hydrostat.studio.editing.part import Mirror, find_part, keys_of, place_of
 from hydrostat.studio.editing.place import add_cable, add_marker, add_pin, add_winch, insert_via, move, remove
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work, after_design, followed
-from hydrostat.studio.view.finding_things import in_words
 
 pytestmark = pytest.mark.filterwarnings("error")
 

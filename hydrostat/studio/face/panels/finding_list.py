@@ -6,9 +6,10 @@ from nicegui import ui
 
 from hydrostat.design.finding import Finding, Weight
 from hydrostat.robot import Robot
+from hydrostat.robot.in_words import in_words
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, pressable
-from hydrostat.studio.view.finding_things import TONES, in_words
+from hydrostat.studio.view.finding_things import TONES
 
 GOOD = "#00795f"
 ICONS = {Weight.REFUSED: "block", Weight.LIMIT: "straighten", Weight.MIND: "error_outline"}

@@ -4,11 +4,11 @@ import pytest
 from desk import Desk, at_desk
 
 from hydrostat.robot import Point, Robot
+from hydrostat.robot.in_words import in_words
 from hydrostat.studio.editing.editor import Tool
 from hydrostat.studio.editing.part import keys_of
 from hydrostat.studio.judge import QUIET
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.view.finding_things import in_words
 
 
 def place(robot: Robot, name: str) -> Point:

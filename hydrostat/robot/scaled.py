@@ -1,0 +1,118 @@
+"""`scaled_robot`: a robot of another size, with all of its parts where they were on it."""
+
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hydrostat import units
+from hydrostat.errors import InputError
+from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
+from hydrostat.robot.checks import Point
+from hydrostat.robot.contact import Contact, Obstacle
+from hydrostat.robot.marker import Pose
+from hydrostat.robot.robot import Robot
+
+LEAST, MOST = 0.01, 100.0
+"""No robot is made smaller or larger at once than by these factors."""
+
+
+def scaled_robot(robot: Robot, factor: float) -> Robot:
+    """The robot with every length so many times as long: body, elements, thickness, pins, winches, cables, obstacles.
+
+    Also markers, targets of poses, spools, travel, release, slack and the distance of contact. Materials, stiffnesses,
+    friction and masses stay: they are those of what is bought.
+
+    Raises:
+        InputError: a factor out of its range, an obstacle that is a mesh, or no body of that size.
+    """
+    if isinstance(factor, bool) or not isinstance(factor, int | float) or not LEAST <= factor <= MOST:
+        raise InputError(f"the factor must be from {LEAST:g} to {MOST:g}, not {factor!r}")
+    for obstacle in robot.obstacles:
+        if obstacle.mesh is not None:
+            raise InputError(f'obstacle "{obstacle.name}" has the size of its file; scale that in CAD')
+
+    def length(value: float) -> float:
+        return float(f"{factor * value:.12g}")
+
+    def point(place: Point) -> Point:
+        return tuple(length(value) for value in place)
+
+    def ends(box: tuple[Point, Point] | None) -> tuple[Point, Point] | None:
+        return None if box is None else (point(box[0]), point(box[1]))
+
+    def maybe(value: float | None) -> float | None:
+        return None if value is None else length(value)
+
+    def obstacle(each: Obstacle) -> Obstacle:
+        return replace(
+            each, at=point(each.at), to=None if each.to is None else point(each.to), radius=maybe(each.radius)
+        )
+
+    contact = robot.contact
+    return replace(
+        robot,
+        body=_scaled_body(robot, factor),
+        pins=tuple(
+            replace(pin, at=None if pin.at is None else point(pin.at), radius=length(pin.radius), box=ends(pin.box))
+            for pin in robot.pins
+        ),
+        winches=tuple(
+            replace(
+                winch,
+                at=point(winch.at),
+                spool_radius=length(winch.spool_radius),
+                travel=length(winch.travel),
+                release=length(winch.release),
+            )
+            for winch in robot.winches
+        ),
+        cables=tuple(
+            replace(
+                cable,
+                points=tuple(map(point, cable.points)),
+                smoothing=length(cable.smoothing),
+                slack=length(cable.slack),
+                spool_radius=maybe(cable.spool_radius),
+                name=name,
+            )
+            for cable, name in zip(robot.cables, robot.given_cable_names, strict=True)
+        ),
+        markers=tuple(replace(marker, at=point(marker.at)) for marker in robot.markers),
+        poses={
+            name: Pose(name=name, targets={key: point(place) for key, place in pose.targets.items()})
+            for name, pose in robot.poses.items()
+        },
+        obstacles=tuple(map(obstacle, robot.obstacles)),
+        contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),
+    )
+
+
+def _scaled_body(robot: Robot, factor: float) -> Body:
+    """The body, meshed anew; where its file alone said how large it is, the size is said now."""
+    body = robot.body
+    size = float(f"{factor * (body.size or _drawn_size(body)):.12g}")
+    given = {"material": body.material, "size": size, "volume": body.volume}
+    element_size = float(f"{factor * (body.element_size or 0.0):.12g}")
+    thickness = None if body.thickness is None else float(f"{factor * body.thickness:.12g}")
+    if body.source is Source.OUTLINE:
+        return outline_body(
+            body.content, file=body.file, element_size=element_size, thickness=thickness or 0.0, **given
+        )
+    unit = float(units.unit_factor(robot.length_unit, units.LENGTH))
+    if body.source is Source.SURFACE:
+        return surface_body(body.content, file=body.file, unit=unit, element_size=element_size, **given)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / body.file
+        path.write_bytes(body.content)
+        return mesh_body(path, unit=unit, thickness=thickness, **given)
+
+
+def _drawn_size(body: Body) -> float:
+    """Longest side of the bounding box of what the file holds [m]."""
+    if body.outline is not None:
+        return body.outline.size
+    if body.source is Source.SURFACE:
+        from hydrostat.geometry.files.surface_file import read_surface
+
+        return read_surface(body.content, name=body.file).size
+    return body.mesh.size

@@ -1,0 +1,84 @@
+"""Files that commands make and change: comments, names, sizes, how parts are counted."""
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from hydrostat.robot import find_risks, load_robot
+from hydrostat.robot.in_words import in_words
+from hydrostat.robot.merge import comments
+
+Run = Callable[..., tuple[int, str, str]]
+WHALE = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="300mm" height="160mm" viewBox="0 0 300 160"><path d="M20,90 '
+    "C20,30 120,20 190,60 C220,75 240,70 260,40 L285,30 C285,60 275,80 262,90 C285,105 290,120 288,140 C265,135 "
+    '250,120 240,108 C200,140 120,150 70,140 C35,130 20,115 20,90 Z"/></svg>'
+)
+
+
+@pytest.mark.parametrize(
+    ("said", "words"),
+    [
+        ("cable[0].points[2] turns by 40 degrees", "cable 1, point 3 turns by 40 degrees"),
+        ("cable[1] between points 2 and 3 crosses cable[0]", "cable 2 between points 3 and 4 crosses cable 1"),
+        ("winch[0] left: pulls no cable", "winch left: pulls no cable"),
+        ("pin[0]: holds nothing; element_size[m]", "pin 1: holds nothing; element_size[m]"),
+    ],
+)
+def test_parts_are_counted_from_one(said: str, words: str) -> None:
+    assert in_words(said) == words
+
+
+def test_a_new_robot_is_commented_and_not_risky(run: Run, tmp_path: Path) -> None:
+    """Oracle: the reader of comments, and the risks themselves."""
+    (tmp_path / "whale.svg").write_text(WHALE)
+    code, out, _ = run("new", tmp_path / "moby", "--from", tmp_path / "whale.svg")
+    assert code == 0
+    assert "risky" not in out
+    robot = load_robot(tmp_path / "moby")
+    assert find_risks(robot) == []
+    told = comments((tmp_path / "moby" / "robot.toml").read_text())
+    assert told[0] == "# moby, begun from whale.svg. All of it is meant to be changed."
+    assert sum(line.startswith(("# The body", "# Where it is held", "# Markers", "# A pose")) for line in told) == 4
+    assert "# [[winch]]" in told
+
+
+def test_a_robot_of_the_gallery_gets_its_new_name(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Its comments stay."""
+    assert run("new", tmp_path / "mine", "--from", "gallery:starfish")[0] == 0
+    text = (tmp_path / "mine" / "robot.toml").read_text()
+    assert tomllib.loads(text)["name"] == "mine"
+    assert text == (starfish / "robot.toml").read_text().replace('name = "starfish"', 'name = "mine"')
+
+
+def test_a_robot_is_scaled_in_its_file(run: Run, tmp_path: Path) -> None:
+    run("new", tmp_path / "mine", "--from", "gallery:starfish")
+    before = (tmp_path / "mine" / "robot.toml").read_text()
+    code, out, _ = run("scale", tmp_path / "mine", "1.5")
+    assert code == 0
+    assert "from 279 mm to 419 mm" in out
+    after = (tmp_path / "mine" / "robot.toml").read_text()
+    assert comments(after) == comments(before)
+    assert 'size = "420 mm"' in after
+    assert run("scale", tmp_path / "mine", "2", "--out", tmp_path / "big")[0] == 0
+    assert 'size = "840 mm"' in (tmp_path / "big" / "robot.toml").read_text()
+    for factor, words in (("x", "is no factor"), ("0", "must be from 0.01 to 100")):
+        code, _, errors = run("scale", tmp_path / "mine", factor)
+        assert (code, errors.count("\n")) == (2, 1)
+        assert words in errors
+
+
+def test_columns_of_moves_tell_their_unit(starfish: Path) -> None:
+    """Written with it, read with and without."""
+    import numpy as np
+
+    from hydrostat.simulation import Profile, ProfileTable, profile_text
+
+    robot = load_robot(starfish)
+    profile = Profile(times=np.array([0.0, 1.0]), values=np.array([[0.0, 0.0, 0.0], [0.01, 0.02, 0.0]]))
+    text = profile_text(robot, profile)
+    assert text.splitlines()[0] == b"time_s,right_mm,left_mm,feet_mm"
+    for content in (text, text.replace(b"_mm", b"")):
+        np.testing.assert_array_equal(ProfileTable.read(content, robot, name="a.csv").profile.values, profile.values)
