@@ -10,6 +10,7 @@ from hydrostat.control import Link, Motors, SimulatedLink, read_timeline, timeli
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.designing.design_work import told_error
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.film import Recorder
 from hydrostat.studio.driving.keyframes import Keyframes
@@ -219,7 +220,7 @@ class Driver(Stage):
             self._machine.halt()
             self.motors.ask(found.pose.contractions)
             self.add_key()
-        return f"{name}: marker error {1e3 * found.rms_error:.1f} mm rms"
+        return f"{name}: marker error {told_error(found.rms_error)} rms"
 
     def move_key(self, index: int, time: float) -> None:
         """Drag a key to a time [s]; ends with `drop_key` (InputError: there is no such key)."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -14,29 +13,21 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.cable_draft import CableDraft, begin_cable, end_cable, overlay
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity
+from hydrostat.studio.editing.copies import pasted, shifted
 from hydrostat.studio.editing.findings import Findings, look_over
-from hydrostat.studio.editing.hold import Hold, below_skin, inside, take_hold
-from hydrostat.studio.editing.part import Mirror, find_part, name_of, title_of
+from hydrostat.studio.editing.hold import Hold, below_skin, gridded, inside, take_hold
+from hydrostat.studio.editing.part import Mirror, find_part, keys_of, name_of, place_of, title_of
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
+from hydrostat.studio.editing.ruler import Ruler
+from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Tool
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import followed
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.units import counted
 
-
-class Tool(StrEnum):
-    """The tools."""
-
-    MOVE = "move"
-    PIN = "pin"
-    MARKER = "marker"
-    WINCH = "winch"
-    CABLE = "cable"
-
-
-KEYS = {"v": Tool.MOVE, "p": Tool.PIN, "m": Tool.MARKER, "w": Tool.WINCH, "c": Tool.CABLE}  # the key of each tool
 SAME_CLICK = 0.005  # a click so near to the last one, as a share of the body, ends a cable: it was a double click
 DEPTH = 0.005  # how deep below the skin of a body in space winches and cables are placed at first [m]
 
@@ -50,7 +41,10 @@ class Editor(Stage):
         self.mirror: Mirror | None = None  # both sides are edited alike about this plane; None: only what is touched
         self.depth = DEPTH  # how deep below the skin of a body in space winches and cables are placed [m]
         self.draft: CableDraft | None = None  # the cable that is being laid
-        self._chosen = ""
+        self.snap = 0.0  # places of parts are multiples of it [m]; 0: of a tenth of a millimetre
+        self.ruler: Ruler | None = None  # laid with its tool; None: it is not
+        self._chosen: tuple[str, ...] = ()
+        self._copied: tuple[Robot, tuple[str, ...]] | None = None
         self._hold: Hold | None = None
         self._holds = 0
         self._refused = ""
@@ -58,10 +52,15 @@ class Editor(Stage):
 
     @property
     def chosen(self) -> str:
-        """Key of the part that is selected; "" for none."""
-        if self._document.is_open and find_part(self._document.robot, self._chosen) is not None:
-            return self._chosen
-        return ""
+        """Key of the part that was selected last; "" for none."""
+        return next(reversed(self.selection), "")
+
+    @property
+    def selection(self) -> tuple[str, ...]:
+        """Keys of all parts that are selected, in the order in which they were."""
+        if not self._document.is_open:
+            return ()
+        return tuple(key for key in self._chosen if find_part(self._document.robot, key) is not None)
 
     @property
     def findings(self) -> Findings | None:
@@ -77,25 +76,75 @@ class Editor(Stage):
     def things(self) -> Sequence[Thing]:
         """All parts of the robot, the cable that is being laid, and the plane of the mirror."""
         robot = self._document.robot
-        chosen = set(self._both(robot, self.chosen)) if self.chosen else set()
+        chosen = {key for own in self.selection for key in self._both(robot, own)}
         judge = self._document.judge
         flags = finding_things(robot, judge.of(robot, self._document.work.wishes) or (), judge.chosen)
-        return [*robot_things(robot, vias=True, chosen=chosen), *flags, *overlay(robot, self.draft, self.mirror)]
+        ruler = [] if self.ruler is None else self.ruler.things()
+        parts = robot_things(robot, vias=True, chosen=chosen)
+        return [*parts, *flags, *overlay(robot, self.draft, self.mirror), *ruler]
 
     def leave(self) -> None:
         """Drop what was begun: another stage is shown."""
-        self.draft, self._hold, self._refused = None, None, ""
+        self.draft, self.ruler, self._hold, self._refused = None, None, None, ""
 
     # What the panel does.
 
-    def choose(self, key: str) -> None:
-        """Select a part; "" for none."""
-        self._chosen = key
+    def choose(self, key: str, *, also: bool = False) -> None:
+        """Select a part, "" for none; with `also` beside what is selected, or no longer if it is."""
+        if not also:
+            self._chosen = (key,) if key else ()
+        elif key:
+            rest = tuple(own for own in self.selection if own != key)
+            self._chosen = rest if key in self.selection else (*rest, key)
+        self._ring()
+
+    def choose_all(self) -> None:
+        """Select all parts."""
+        self._chosen = tuple(keys_of(self._document.robot))
+        self._ring()
+
+    def copy(self) -> None:
+        """Remember what is selected, to be pasted."""
+        if self.selection:
+            self._copied = (self._document.robot, self.selection)
+
+    def paste(self) -> None:
+        """Put in what was copied once more, beside it, and select that (InputError: nothing was copied, or no room)."""
+        if self._copied is None:
+            raise InputError("nothing was copied; choose parts and press Ctrl C")
+        robot, keys = pasted(self._document.robot, *self._copied)
+        self._change(f"paste {counted(len(keys), 'part')}", robot)
+        self._copied = (robot, keys)
+        self._chosen = keys
+        self._ring()
+
+    def duplicate(self) -> None:
+        """Copy what is selected, and paste it (InputError: there is no room beside it)."""
+        before = self._copied
+        if self.selection:
+            self.copy()
+            self.paste()
+            self._copied = before
+
+    def nudge(self, step: float, axis: int) -> None:
+        """Move what is selected by a step [m] along an axis (InputError: it would lie outside)."""
+        if self.selection:
+            way = np.zeros(self._document.robot.body.mesh.dim)
+            way[axis] = step
+            robot = shifted(self._document.robot, self.selection, way.tolist(), self.mirror)
+            words = title_of(self.chosen) if len(self.selection) == 1 else counted(len(self.selection), "part")
+            self._document.change(f"nudge {words}", robot=robot, merge=f"nudge {' '.join(self.selection)}")
+
+    def set_snap(self, step: float) -> None:
+        """Put parts that are placed or dragged at multiples of a step [m]; 0: anywhere (InputError: no step)."""
+        if not 0 <= step <= self._document.robot.body.mesh.size:
+            raise InputError("snapping must be from 0 mm to the size of the body")
+        self.snap = step
         self._ring()
 
     def take(self, tool: Tool | str) -> None:
         """Take another tool; a cable that was begun is dropped (InputError: there is no tool of this name)."""
-        self.tool, self.draft = member(Tool, tool, what="tool"), None
+        self.tool, self.draft, self.ruler = member(Tool, tool, what="tool"), None, None
         self._ring()
 
     def mirror_about(self, axis: str) -> None:
@@ -135,10 +184,11 @@ class Editor(Stage):
 
     def delete(self) -> None:
         """Remove what is selected, and its twin (InputError: the robot cannot do without it)."""
-        key = self.chosen
-        if key:
-            robot = self._document.robot
-            self._change(f"delete {title_of(key)}", remove(robot, self._both(robot, key)))
+        robot, keys = self._document.robot, self.selection
+        if keys:
+            words = title_of(keys[0]) if len(keys) == 1 else counted(len(keys), "part")
+            gone = {key: None for own in keys for key in self._both(robot, own)}
+            self._change(f"delete {words}", remove(robot, list(gone)))
             self.choose("")
 
     def set_gravity(self, direction: str) -> None:
@@ -181,7 +231,7 @@ class Editor(Stage):
             self.draft = None
             self._ring()
         else:
-            self._chosen = ""
+            self._chosen = ()
             self.take(Tool.MOVE)
 
     # What the pointer does.
@@ -189,12 +239,12 @@ class Editor(Stage):
     def grab(self, hit: Hit) -> bool:
         """Take hold of a part; of a cable, to draw a new via point out of it."""
         robot = self._document.robot
-        if self.draft is not None or find_part(robot, hit.key) is None:
+        if self.draft is not None or self.tool is Tool.RULER or find_part(robot, hit.key) is None:
             return False
         if self.tool is Tool.CABLE and not hit.key.startswith("via:"):
             return False  # it is a click that begins a cable
-        if self._chosen != hit.key:
-            self.choose(hit.key)
+        if hit.key not in self.selection:
+            self.choose(hit.key, also=hit.shift)
         self._hold = take_hold(robot, hit.key, self.mirror, hit.world)
         self._holds += 1
         return True
@@ -205,12 +255,15 @@ class Editor(Stage):
             return
         try:
             robot, hold = self._hold.drawn_out(self._document.robot)
-            moved = move(robot, hold.places(hold.asked(robot, hit.world)))
+            moved = self._dragged(robot, hold, hold.asked(robot, hit.world, self.snap))
         except InputError as error:
             self._refused = str(error)
             return
-        self._hold, self._chosen, self._refused = hold, hold.key, ""
-        self._document.change(f"move {title_of(hold.key)}", robot=moved, merge=f"drag {self._holds}")
+        many = self._many(hold.key)
+        self._chosen = self._chosen if many else (hold.key,)
+        self._hold, self._refused = hold, ""
+        words = counted(len(self.selection), "part") if many else title_of(hold.key)
+        self._document.change(f"move {words}", robot=moved, merge=f"drag {self._holds}")
 
     def release(self) -> None:
         """Let go."""
@@ -220,16 +273,25 @@ class Editor(Stage):
         """Select, place a new part, or lay a cable one point further."""
         if self.tool is Tool.CABLE:
             self._lay(hit)
+        elif self.tool is Tool.RULER:
+            self._measure(hit)
         elif self.tool is Tool.MOVE or find_part(self._document.robot, hit.key) is not None:
-            self.choose(hit.key)
+            self.choose(hit.key if find_part(self._document.robot, hit.key) else "", also=hit.shift)
         else:
             at = self._clicked(hit, skin=self.tool is not Tool.WINCH)
             add = {Tool.PIN: add_pin, Tool.MARKER: add_marker, Tool.WINCH: add_winch}[self.tool]
             self._add(add, at)
 
     def key(self, name: str) -> bool:
-        """Heed delete, escape, enter, and a letter for each tool."""
-        if name == "delete":
+        """Heed delete, escape, enter, arrows, the words of copying, and a letter for each tool."""
+        words = {"all": self.choose_all, "copy": self.copy, "paste": self.paste, "duplicate": self.duplicate}
+        arrow = name.removeprefix("shift ")
+        if name in words:
+            words[name]()
+        elif arrow in ARROWS:
+            sign, last = ARROWS[arrow]
+            self.nudge(sign * (NUDGE if arrow == name else PUSH), -1 if last else 0)
+        elif name == "delete":
             if self.draft is not None:
                 self.draft = self.draft.shorter()
                 self._ring()
@@ -262,7 +324,7 @@ class Editor(Stage):
         robot, at = self._document.robot, self._clicked(hit, skin=False)
         if self.draft is None:
             self.draft = begin_cable(robot, at, hit.key)
-            self._chosen = ""
+            self._chosen = ()
         elif np.linalg.norm(np.subtract(at, self.draft.points[-1])) <= SAME_CLICK * robot.body.mesh.size:
             if len(self.draft.points) > 1:
                 self.finish()
@@ -270,12 +332,32 @@ class Editor(Stage):
             self.draft = self.draft.through(at)
         self._ring()
 
+    def _many(self, key: str) -> bool:
+        """Tell whether a part is one of several that are selected."""
+        return key in self.selection and len(self.selection) > 1
+
+    def _dragged(self, robot: Robot, hold: Hold, at: Point) -> Robot:
+        """The robot with what is held at a place, and all that is selected with it moved as far."""
+        before = place_of(robot, hold.key)
+        if before is None or not self._many(hold.key):
+            return move(robot, hold.places(at))
+        return shifted(robot, self.selection, tuple(np.subtract(at, before).tolist()), self.mirror)
+
+    def _measure(self, hit: Hit) -> None:
+        """Lay the ruler on a part, or on a place of the body."""
+        at = place_of(self._document.robot, hit.key) or hit.rest
+        if at is None:
+            raise InputError("click on a part or on the body to measure from there")
+        self.ruler = Ruler((at,)) if self.ruler is None else self.ruler.to(at)
+        self._ring()
+
     def _clicked(self, hit: Hit, *, skin: bool) -> Point:
         """The place in the body that a click means."""
         robot = self._document.robot
         if hit.rest is None:
             raise InputError(f"click on the body to place a {self.tool}")
-        at = inside(robot.body, hit.rest) if skin else below_skin(robot.body, hit.rest, self.depth)
+        asked = gridded(hit.rest, self.snap)
+        at = inside(robot.body, asked) if skin else below_skin(robot.body, asked, self.depth)
         return self.mirror.on_plane(at) if self.mirror is not None and self.mirror.near(robot, at) else at
 
     def _add(self, add: Callable[[Robot, Point], Robot], at: Point) -> None:

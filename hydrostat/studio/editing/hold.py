@@ -54,6 +54,11 @@ def tidy(at: Point) -> Point:
     return tuple(round(float(value), DIGITS) + 0.0 for value in at)
 
 
+def gridded(at: Point, step: float) -> Point:
+    """The nearest place whose coordinates are multiples of a step [m]; the place itself where that is 0."""
+    return at if step <= 0 else tuple((step * np.round(np.array(at) / step)).tolist())
+
+
 def _is_in(body: Body, at: Point) -> bool:
     return not body.distances(np.array([at], dtype=float)).any()
 
@@ -77,9 +82,9 @@ class Hold:
             return {self.key: at, self.twin: self.mirror.point(at)}
         return {self.key: at}
 
-    def asked(self, robot: Robot, world: Point) -> Point:
-        """The place [m] that a pointer asks for; inside the body, but for pins and winches beside it."""
-        at = tuple((np.array(world) + self.grip).tolist()) if self.grip else world
+    def asked(self, robot: Robot, world: Point, snap: float = 0.0) -> Point:
+        """The place [m] that a pointer asks for, on a grid; inside the body, but for pins and winches beside it."""
+        at = gridded(tuple((np.array(world) + self.grip).tolist()) if self.grip else world, snap)
         part = find_part(robot, self.key)
         if part is not None and part.kind is Kind.WINCH and robot.winches[part.index].mount is Mount.WORLD:
             return tidy(at)

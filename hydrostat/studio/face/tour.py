@@ -57,9 +57,12 @@ KEYS = (  # and what they do
     (("Shift", "Z"), "do again"),
     (("Space",), "play, or stop playing"),
     (("1", "3", "7"), "view from the front, the side, the top"),
+    (("Shift", "click"), "choose several parts; Ctrl A: all"),
+    (("Ctrl", "C"), "copy what is chosen; Ctrl V: paste, Ctrl D: both"),
+    (("\u2190", "\u2192", "\u2191", "\u2193"), "move what is chosen by 1 mm; with Shift by 10 mm"),
     (("Delete",), "remove what is chosen"),
     (("Esc",), "choose nothing; stop what was begun"),
-    (("Ctrl", "S"), "save"),
+    (("Ctrl", "S"), "save; with Shift somewhere else"),
     (("?",), "this help"),
 )
 SEEN = "hydrostat-tour"  # where the browser keeps that it has shown the tour

@@ -42,6 +42,12 @@ HABITS = """
 addEventListener("click", (event) => {
   if (event.detail) setTimeout(() => event.target.closest("button, [role=button]")?.blur());
 });
+addEventListener("keydown", (event) => {
+  const typing = event.target.closest?.("input, textarea, select, [contenteditable=true]");
+  const word = (event.ctrlKey || event.metaKey) && "acdsv".includes(event.key.toLowerCase());
+  if (word && !typing && !String(getSelection())) event.preventDefault();
+  if (event.key.startsWith("Arrow") && event.target === document.body) event.preventDefault();
+});
 </script>
 """
 """What was clicked does not keep the keyboard, or Space would press it again and not play. By Tab it does."""
@@ -182,6 +188,7 @@ async def _switch(dark: ui.dark_mode) -> None:
 
 
 DARK = "hydrostat-dark"  # what a browser remembers it under
+WORDS = {"a": "all", "c": "copy", "v": "paste", "d": "duplicate"}  # with Ctrl
 SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 
 
@@ -198,6 +205,10 @@ def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: SaveDialog
         return ask_save.save_as() if event.modifiers.shift and not page.session.guest else ask_save.save()
     elif name == "?":
         return ask_help()
-    elif not (event.modifiers.ctrl or event.modifiers.meta or event.modifiers.alt):
-        page.session.key({" ": "space", "Backspace": "delete"}.get(name, name.lower()))
+    elif event.modifiers.ctrl or event.modifiers.meta:
+        if name.lower() in WORDS:
+            page.session.key(WORDS[name.lower()])
+    elif not event.modifiers.alt:
+        shifted = "shift " if event.modifiers.shift and name.startswith("Arrow") else ""
+        page.session.key(shifted + {" ": "space", "Backspace": "delete"}.get(name, name.lower()))
     return None

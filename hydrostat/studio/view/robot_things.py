@@ -9,7 +9,8 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.drawing.palette import INK, MUTED, winch_colours
 from hydrostat.robot import Cable, Mount, Point, Robot, obstacle_lines
 from hydrostat.simulation import as_posed
-from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
+from hydrostat.studio.view.pinned import pinned_points
+from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, Stroke, Thing
 
 MARKER = "#2b2833"
 PIN = "#5f5a68"
@@ -35,6 +36,9 @@ def robot_things(
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, colour=MUTED, loose=-1)
         for line in obstacle_lines(as_posed(robot, carried))
     ]
+    held = pinned_points(robot)
+    if len(held):
+        things.append(Cloud(name="pins", points=held, colour=PIN))
     for index, pin in enumerate(robot.pins):
         middle = pin.at if pin.at is not None else tuple(np.mean(pin.box or (), axis=0).tolist())
         key = f"pin:{index}"

@@ -312,3 +312,90 @@ def test_all_that_is_shown_makes_a_picture(editor: Editor, document: Document) -
     assert editor.key("v")
     assert editor.tool is Tool.MOVE
     assert not editor.key("q")
+
+
+def test_several_parts_move_copy_and_go_together(editor: Editor, document: Document, starfish: Robot) -> None:
+    """Oracle: places of before, and the way."""
+    markers = [f"marker:{marker.name}" for marker in starfish.markers[:2]]
+    editor.click(on(starfish.markers[0].at, markers[0]))
+    editor.click(replace(on(starfish.markers[1].at, markers[1]), shift=True))
+    assert editor.selection == tuple(markers)
+    start = starfish.markers[0].at
+    way = tuple((-0.02 * np.array(start)).tolist())
+    drag(editor, document, markers[0], tuple(np.add(start, way).tolist()), start=start)
+    moved = [marker.at for marker in document.robot.markers[:2]]
+    assert moved == [pytest.approx(np.add(marker.at, way), abs=2e-4) for marker in starfish.markers[:2]]
+    assert document.undo_label == "move 2 parts"
+    document.undo()
+    editor.key("duplicate")
+    assert len(document.robot.markers) == len(starfish.markers) + 2
+    assert [key.startswith("marker:") for key in editor.selection] == [True, True]
+    assert not set(editor.selection) & set(markers)
+    editor.key("delete")
+    assert document.robot.markers == starfish.markers
+    editor.click(on(start, markers[0]))
+    editor.click(replace(on(start, markers[0]), shift=True))
+    assert editor.selection == (), "a second click takes it out again"
+
+
+def test_a_winch_is_pasted_with_its_cables(editor: Editor, document: Document, starfish: Robot) -> None:
+    winch = starfish.winches[0]
+    own = [cable for cable in starfish.cables if cable.winch == winch.name]
+    assert own
+    editor.choose(f"winch:{winch.name}")
+    editor.key("copy")
+    editor.key("paste")
+    robot = document.robot
+    new = robot.winches[-1]
+    assert new.name not in {other.name for other in starfish.winches}
+    copies = [cable for cable in robot.cables if cable.winch == new.name]
+    ways = [
+        np.subtract(new.at, winch.at),
+        *(np.subtract(a.points, b.points)[-1] for a, b in zip(copies, own, strict=True)),
+    ]
+    assert all(np.allclose(way, ways[0], atol=1e-9) for way in ways)
+    assert np.linalg.norm(ways[0]) > 1e-3
+    assert document.undo_label == f"paste {1 + len(own)} parts"
+    editor.key("all")
+    assert len(editor.selection) == sum(map(len, (robot.pins, robot.winches, robot.cables, robot.markers)))
+    with pytest.raises(InputError, match="last pin"):
+        editor.key("delete")
+
+
+def test_arrows_nudge_in_one_step_to_undo(editor: Editor, document: Document, starfish: Robot) -> None:
+    editor.choose("marker:top")
+    before = starfish.markers[0].at
+    for name in ("arrowleft", "arrowdown", "arrowdown", "shift arrowdown"):
+        assert editor.key(name)
+    assert document.robot.markers[0].at == pytest.approx((before[0] - 1e-3, before[1] - 12e-3))
+    document.undo()
+    assert document.robot is starfish
+    with pytest.raises(InputError):
+        editor.nudge(1.0, 0)
+    assert document.robot is starfish
+
+
+def test_snapping_puts_parts_on_the_grid(editor: Editor, document: Document) -> None:
+    editor.set_snap(5e-3)
+    drag(editor, document, "marker:top", (0.0021, 0.1079), start=document.robot.markers[0].at)
+    assert document.robot.markers[0].at == pytest.approx((0.0, 0.11), abs=1e-9)
+    editor.take(Tool.MARKER)
+    editor.click(on((0.0112, 0.0093)))
+    assert document.robot.markers[-1].at == pytest.approx((0.01, 0.01), abs=1e-9)
+    with pytest.raises(InputError, match="snapping"):
+        editor.set_snap(-1.0)
+
+
+def test_the_ruler_measures_between_parts_and_places(editor: Editor, document: Document) -> None:
+    editor.take(Tool.RULER)
+    assert not editor.grab(on((0.0, 0.0), "marker:top")), "it drags nothing"
+    at = document.robot.markers[0].at
+    editor.click(on((0.003, 0.1), "marker:top"))
+    editor.click(on((at[0] - 0.03, at[1] - 0.04)))
+    assert editor.ruler is not None
+    assert editor.ruler.words == "50.0 mm (x 30.0, y 40.0)"
+    assert "50.0 mm" in [thing.label for thing in editor.things() if isinstance(thing, Dot)]
+    editor.click(on((0.0, 0.0)))
+    assert editor.ruler.words == "", "it begins anew"
+    editor.take(Tool.MOVE)
+    assert editor.ruler is None

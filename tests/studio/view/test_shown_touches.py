@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from touching import fork_robot
 
 from hydrostat.robot import Obstacle
@@ -11,7 +12,7 @@ from hydrostat.simulation import Simulation, touches
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand
+from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand
 from hydrostat.studio.view.touching import OFF, touch_things, with_touches
 
 CLOSED = {"up": 0.02, "down": 0.016}
@@ -74,3 +75,20 @@ def test_what_moves_is_drawn_where_the_pose_has_it() -> None:
     object.__setattr__(pose, "carried", np.eye(3, 2))
     shape = RobotShape(nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions)
     assert with_touches(Simulation(fork_robot(2)), pose, shape, settled=False).carried is pose.carried
+
+
+def test_what_pins_hold_is_dotted_on_the_skin_in_space() -> None:
+    """Oracle: the pin's own rule for nodes; a flat disc has its ring instead."""
+    hand = gallery_robot("cupping_hand")
+    (cloud,) = [thing for thing in robot_things(hand) if isinstance(thing, Cloud)]
+    nodes = hand.body.mesh.nodes
+    held = np.any([pin.holds(hand.body.mesh) for pin in hand.pins], axis=0)
+    assert held.any()
+    near = np.linalg.norm(cloud.points[:, None] - nodes[held][None], axis=2)
+    assert near.min(axis=0).max() < 1e-6, "a held node has no dot"
+    low, high = nodes[held].min(axis=0), nodes[held].max(axis=0)
+    assert (cloud.points >= low - 1e-6).all()
+    assert (cloud.points <= high + 1e-6).all()
+    again = next(thing for thing in robot_things(hand) if isinstance(thing, Cloud))
+    assert again.points is cloud.points, "the same points are no new scene"
+    assert not [thing for thing in robot_things(gallery_robot("starfish")) if isinstance(thing, Cloud)]

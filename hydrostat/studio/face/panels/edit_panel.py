@@ -1,22 +1,27 @@
 """The panel of the stage "edit": tools, the mirror, all parts, the chosen one, the body, and what the check says."""
 
-from nicegui import ui
+from nicegui import events, ui
 
 from hydrostat.drawing.palette import winch_colours
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.editing.editor import KEYS, Tool
 from hydrostat.studio.editing.part import Kind, find_part, keys_of
+from hydrostat.studio.editing.tools import KEYS, Tool
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.edit_body import body_card, check_card
 from hydrostat.studio.face.panels.edit_part import EditNumber, chip, light, part_card
 
 TOOLS = {  # icon, name and what to do with each tool
-    Tool.MOVE: ("near_me", "Select and move", "Drag a part, or a point out of a cable. Click to select."),
+    Tool.MOVE: (
+        "near_me",
+        "Select and move",
+        "Drag a part, or a point out of a cable. Shift and click chooses several.",
+    ),
     Tool.PIN: ("push_pin", "Place pins", "Click on the body where it is held."),
     Tool.MARKER: ("my_location", "Place markers", "Click on a point to track."),
     Tool.WINCH: ("album", "Place winches", "Click on the body where a winch sits."),
     Tool.CABLE: ("polyline", "Lay cables", "Click at a winch, then point after point. Enter or a double click ends."),
+    Tool.RULER: ("straighten", "Measure", "Click on two parts or places: how far apart they are at rest."),
 }
 
 
@@ -25,6 +30,7 @@ def edit_panel(page: WindowPage) -> None:
     ui.label("Edit").classes("studio-title")
     _tools(page)
     _mirror(page)
+    _snap(page)
     part_card(page)
     parts_list(page)
     body_card(page)
@@ -54,7 +60,8 @@ def _tools(page: WindowPage) -> None:
             now = tool is editor.tool
             button.props(f"color={'primary' if now else 'transparent'} text-color={'white' if now else 'primary'}")
             button.props(add="" if now else "flat", remove="flat" if now else "")
-        hint.set_text(TOOLS[editor.tool][2])
+        measured = "" if editor.ruler is None else editor.ruler.words
+        hint.set_text(measured or TOOLS[editor.tool][2])
         laying.set_visibility(editor.draft is not None)
         done.set_enabled(editor.draft is not None and len(editor.draft.points) > 1)
 
@@ -84,6 +91,27 @@ def _mirror(page: WindowPage) -> None:
         _depth(page)
 
 
+SNAPS = {0.0: "off", 1e-3: "1", 5e-3: "5", 1e-2: "10 mm"}  # steps of the grid [m], and their words
+
+
+def _snap(page: WindowPage) -> None:
+    """On which grid parts are placed."""
+    editor = page.session.editor
+    with ui.element("div").classes("studio-row"):
+        ui.icon("grid_on", size="20px").style("color: var(--muted)")
+        ui.label("Snap").style("font-size: 13px")
+        ui.space()
+        chips = {step: chip(words, page.doing(editor.set_snap, step)) for step, words in SNAPS.items()}
+        for step, button in chips.items():
+            button.mark(f"edit-snap-{SNAPS[step].split()[0]}")
+
+    def show() -> None:
+        for step, button in chips.items():
+            light(button, step == editor.snap)
+
+    page.on(Topic.THINGS, show)
+
+
 def _depth(page: WindowPage) -> None:
     editor = page.session.editor
 
@@ -96,7 +124,7 @@ def _depth(page: WindowPage) -> None:
     depth.show(1e3 * editor.depth)
 
 
-HEIGHT = "188px"  # of the list; longer ones are scrolled
+HEIGHT = "min(420px, 40vh)"  # of the list; longer ones are scrolled
 ICONS = {Kind.PIN: "push_pin", Kind.WINCH: "album", Kind.CABLE: "timeline", Kind.MARKER: "my_location"}
 
 
@@ -107,7 +135,7 @@ def parts_list(page: WindowPage) -> None:
         ui.label("Parts").classes("studio-section")
         ui.space()
         count = ui.label().classes("studio-hint studio-figure").style("margin-top: 8px")
-    box = ui.column().classes("w-full").style(
+    box = ui.column().classes("w-full").props('role="listbox" aria-label="Parts" aria-multiselectable="true"').style(
         f"max-height: {HEIGHT}; overflow-y: auto; gap: 0; flex-wrap: nowrap; border: 1px solid var(--line);"
         "border-radius: 12px; padding: 4px; flex-shrink: 0"
     )  # fmt: skip
@@ -122,12 +150,11 @@ def parts_list(page: WindowPage) -> None:
         count.set_text(f"{len(rows)}")
 
     def show() -> None:
-        chosen = editor.chosen
-        if chosen.startswith("via:"):
-            chosen = f"cable:{chosen.split(':')[1]}"
+        chosen = {f"cable:{key.split(':')[1]}" if key.startswith("via:") else key for key in editor.selection}
         for key, row in rows.items():
-            row.style("background: color-mix(in srgb, var(--accent) 16%, transparent)" if key == chosen else
+            row.style("background: color-mix(in srgb, var(--accent) 16%, transparent)" if key in chosen else
                       "background: transparent")  # fmt: skip
+            row.props(f'aria-selected="{str(key in chosen).lower()}"')
 
     page.on_new(Topic.THINGS, entries, box, build)
     page.on(Topic.THINGS, show)
@@ -136,11 +163,18 @@ def parts_list(page: WindowPage) -> None:
 def _part_row(page: WindowPage, robot: Robot, key: str, words: str, number: str) -> ui.element:
     part = find_part(robot, key)
     kind = Kind.PIN if part is None else part.kind
-    row = ui.element("div").classes("studio-row cursor-pointer").mark(f"part-{key}")
+    choose = page.session.editor.choose
+
+    def press(event: events.GenericEventArguments) -> None:
+        also = bool((event.args or {}).get("shiftKey"))
+        page.act(lambda: choose(key, also=also))
+
+    row = ui.element("div").classes("studio-row cursor-pointer").mark(f"part-{key}").props('role="option" tabindex="0"')
+    for kind_of_press in ("click", "keydown.enter"):
+        row.on(kind_of_press, press, args=["shiftKey"])
     row.style(
         f"padding: 3px 8px 3px {24 if kind is Kind.CABLE else 8}px; border-radius: 8px; font-size: 13px; flex-shrink: 0"
     )
-    row.on("click", page.doing(page.session.editor.choose, key))
     with row:
         ui.icon(ICONS[kind], size="17px").style(f"color: {_colour(robot, key)}")
         ui.label(words).style("overflow: hidden; text-overflow: ellipsis; white-space: nowrap")

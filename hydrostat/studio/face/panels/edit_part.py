@@ -11,7 +11,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.change import sheathed_segments, sheaths
 from hydrostat.studio.editing.part import Kind, Part, find_part, name_of, place_of, title_of
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.page import WindowPage, icon_button
 
 
 def chip(words: str, press: Callable[[], Any]) -> ui.button:
@@ -85,6 +85,14 @@ def part_card(page: WindowPage) -> None:
         if part is None:
             built.clear()
             return
+        if len(editor.selection) > 1:
+            if built != [f"{len(editor.selection)} parts"]:
+                built[:] = [f"{len(editor.selection)} parts"]
+                card.clear()
+                shows.clear()
+                with card:
+                    _many(page, built[0])
+            return
         form = f"{key} {len(robot.cables[part.index].points) if part.kind is Kind.CABLE else ''}"
         if built != [form]:
             built[:] = [form]
@@ -97,14 +105,25 @@ def part_card(page: WindowPage) -> None:
     page.on(Topic.THINGS, show)
 
 
+def _many(page: WindowPage, words: str) -> None:
+    """What can be done with several parts."""
+    editor = page.session.editor
+    with ui.element("div").classes("studio-row"):
+        ui.label(words).style("font-weight: 600")
+        ui.space()
+        icon_button("content_copy", "Duplicate (Ctrl D)", page.doing(editor.duplicate)).mark("edit-duplicate")
+        icon_button("delete_outline", "Delete (Del)", page.doing(editor.delete)).mark("edit-delete")
+
+
 def _build(page: WindowPage, key: str, part: Part) -> Shows:
     """The rows for a part."""
     editor = page.session.editor
     with ui.element("div").classes("studio-row"):
         ui.label(_title(key)).style("font-weight: 600")
         ui.space()
-        delete = ui.button(icon="delete_outline", on_click=page.doing(editor.delete)).props("flat round dense size=sm")
-        delete.props('aria-label="Delete"').tooltip("Delete (Del)").mark("edit-delete")
+        if part.kind is not Kind.VIA:
+            icon_button("content_copy", "Duplicate (Ctrl D)", page.doing(editor.duplicate)).mark("edit-duplicate")
+        icon_button("delete_outline", "Delete (Del)", page.doing(editor.delete)).mark("edit-delete")
     shows: Shows = []
     if name_of(page.session.document.robot, key):
         shows.append(_name(page, key))

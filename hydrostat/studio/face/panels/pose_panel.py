@@ -4,6 +4,7 @@ from nicegui import ui
 
 from hydrostat.drawing.palette import ERROR
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.designing.design_work import told_error
 from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
 from hydrostat.studio.face.panels.pose_muscles import muscles_card
@@ -75,7 +76,7 @@ def held_card(page: WindowPage) -> None:
         shape = poser.shape()
         for name, label in figures.items():
             error = shape.errors.get(name)
-            words = "" if error is None else f"{1e3 * error:.1f} mm"
+            words = "" if error is None else told_error(error)
             if label.text != words:
                 label.set_text(words)
                 near = error is not None and error < NEAR
