@@ -74,13 +74,6 @@ class Candidate:
         return next((reach for reach in self.reaches if reach.pose.name == pose), None)
 
 
-def told_error(error: float) -> str:
-    """An error [m] as it is told; nobody builds a robot that is better than a tenth of a millimetre."""
-    if error < 1e-4:
-        return "below 0.1 mm"
-    return f"{1e3 * error:.1f} mm" if error < 0.01 else f"{1e3 * error:.0f} mm"
-
-
 def network_words(robot: Robot) -> str:
     """How many winches and cables a robot has."""
     return f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"

@@ -20,7 +20,6 @@ from hydrostat.studio.designing.design_work import (
     Reach,
     design_work,
     network_words,
-    told_error,
 )
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
@@ -28,6 +27,7 @@ from hydrostat.studio.designing.run import DesignRun, Mark, beginning, error_at_
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.records.wishes import Paint, Wishes
 from hydrostat.studio.records.work import after_design
 from hydrostat.studio.stage import Hit, Stage

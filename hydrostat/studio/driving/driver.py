@@ -10,12 +10,12 @@ from hydrostat.control import Link, Motors, SimulatedLink, read_timeline, timeli
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.designing.design_work import told_error
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.film import Recorder
 from hydrostat.studio.driving.keyframes import Keyframes
 from hydrostat.studio.driving.machine import Machine
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing

@@ -7,12 +7,13 @@ from nicegui import ui
 from hydrostat.design import DesignMethod
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
-from hydrostat.studio.designing.design_work import Candidate, told_error
+from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.run import wished_poses
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
 from hydrostat.studio.face.panels.design_method import design_method
 from hydrostat.studio.face.panels.finding_list import finding_list
+from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
 

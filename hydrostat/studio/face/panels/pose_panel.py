@@ -4,11 +4,11 @@ from nicegui import ui
 
 from hydrostat.drawing.palette import ERROR
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.designing.design_work import told_error
 from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
 from hydrostat.studio.face.panels.pose_muscles import muscles_card
 from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.view.robot_things import Bar
 
