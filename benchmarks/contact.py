@@ -1,11 +1,12 @@
 """Random contractions with and without self-contact: what arrives, what crosses, what it costs.
 
-    python benchmarks/contact.py [--count 100] [--seed 0] [--share 1.0] [EXAMPLE ...]
+    python benchmarks/contact.py [--count 100] [--minutes 60] [--seed 0] [--share 1.0] [EXAMPLE ...]
 
 Each winch draws from 0 to a share of its travel. A pose with contact counts as wrong if the solver says so, if an
 independent program (ipctk in space, our cuts of edges in the plane) finds that the body crosses itself, if an element
 has J <= 0, or if a gap is below 0.3 of the distance at which it is felt. CPU time is of this process, one pose with
-contact after the same pose without; the exit code is 1 if one pose is wrong.
+contact after the same pose without. A body has so many poses, or as many as fit into some minutes. The exit code is 1
+if one pose is wrong.
 """
 
 import argparse
@@ -49,7 +50,7 @@ def gaps(energy: ContactEnergy, nodes: Nodes) -> np.ndarray:
     return np.sqrt(squared / begins)[squared < begins]
 
 
-def study(name: str, count: int, seed: int, share: float) -> int:
+def study(name: str, count: int, minutes: float, seed: int, share: float) -> int:
     """Print the row of one body; return how many poses are wrong."""
     robot = hs.load_robot(EXAMPLES / name)
     free, touching = hs.Simulation(robot), hs.Simulation(replace(robot, contact=hs.Contact()))
@@ -57,8 +58,10 @@ def study(name: str, count: int, seed: int, share: float) -> int:
     travel = np.array([winch.travel for winch in robot.winches])
     random = np.random.default_rng(seed)
     _ = free.rest, touching.rest
-    rows, wrong = [], 0
+    rows, wrong, begin = [], 0, time.monotonic()
     for number in range(count):
+        if rows and time.monotonic() - begin > 60 * minutes:
+            break
         contractions = random.uniform(0, share, len(travel)) * travel
         start = time.process_time()
         other = free.solve(contractions, strict=False)
@@ -84,6 +87,7 @@ def study(name: str, count: int, seed: int, share: float) -> int:
     ratio, touch = cpu_contact / cpu, felt > 0
     parts = [f"{np.median(ratio[kind]):.2f}" if kind.any() else "" for kind in (touch, ~touch)]
     parts.append(f"{np.quantile(ratio, 0.99):.1f}")
+    count = len(rows)
     print(
         f"| {name} | {len(robot.body.mesh.nodes)} | {count - wrong}/{count} | "
         f"{crossed.mean():.0%} | {touch.mean():.0%} | "
@@ -99,6 +103,7 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("examples", nargs="*", default=BODIES)
     parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--minutes", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--share", type=float, default=1.0)
     given = parser.parse_args()
@@ -107,7 +112,7 @@ def main() -> None:
         "| body | nodes | right | cross without | touch | least gap | iterations: median, most | ms without | "
         "ms with | ratio where touching | elsewhere | 99 % |\n|" + 12 * "---|"
     )
-    wrong = sum(study(name, given.count, given.seed, given.share) for name in given.examples)
+    wrong = sum(study(name, given.count, given.minutes, given.seed, given.share) for name in given.examples)
     sys.exit(1 if wrong else 0)
 
 

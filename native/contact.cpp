@@ -140,22 +140,53 @@ struct Move {
         return done;
     }
 
-    // Whether the two features of a pair, in boxes that move, stay out of reach along one axis all the time.
+    bool ends_within(const Int* stencil, bool edges, double limit, double reach) const {
+        int corners = dim + 1;
+        double y[4][3], way[4][3];
+        place(x, dim, stencil, corners, y);
+        place(move, dim, stencil, corners, way);
+        for (int i = 0; i < corners; i++)
+            for (int k = 0; k < 3; k++) y[i][k] += limit * way[i][k];
+        Nearest pair;
+        pair.find(y, corners, edges, 0.0);
+        return pair.squared < reach * reach;
+    }
+
+    // Whether a plane across the line between the middles of two features keeps them so far apart up to a share of
+    // the move that they neither come within reach nor lose more of their gap than is allowed.
     bool passes(const Int* stencil, int first, double limit, double reach) const {
-        for (int k = 0; k < dim; k++) {
-            double ends[2][4] = {{NONE, -NONE, NONE, -NONE}, {NONE, -NONE, NONE, -NONE}};
-            for (int i = 0; i < dim + 1; i++) {
-                double *side = ends[i < first ? 0 : 1], at = x[stencil[i] * dim + k], by = move[stencil[i] * dim + k];
-                side[0] = std::min(side[0], at), side[1] = std::max(side[1], at);
-                side[2] = std::min(side[2], by), side[3] = std::max(side[3], by);
+        return dim == 2 ? parted<2, 1>(stencil, limit, reach)
+                        : (first == 1 ? parted<3, 1>(stencil, limit, reach) : parted<3, 2>(stencil, limit, reach));
+    }
+
+    template <int DIM, int FIRST>
+    bool parted(const Int* stencil, double limit, double reach) const {
+        double from[DIM + 1][DIM], to[DIM + 1][DIM], before[DIM], across[DIM];
+        for (int i = 0; i <= DIM; i++)
+            for (int k = 0; k < DIM; k++) {
+                from[i][k] = x[stencil[i] * DIM + k];
+                to[i][k] = limit * move[stencil[i] * DIM + k];
             }
-            for (int turn = 0; turn < 2; turn++) {
-                const double *a = ends[turn], *b = ends[1 - turn];
-                double gap = a[0] - b[1] - reach;
-                if (gap > 0.0 && gap + limit * (a[2] - b[3]) > 0.0) return true;
+        double length = 0.0, square = 0.0;
+        for (int k = 0; k < DIM; k++) {
+            double turn = before[k] = 0.0;
+            for (int i = 0; i <= DIM; i++) {
+                double weight = i < FIRST ? 1.0 / FIRST : -1.0 / (DIM + 1 - FIRST);
+                before[k] += weight * from[i][k];
+                turn += weight * to[i][k];
             }
+            across[k] = before[k] + 0.5 * turn;
+            length += before[k] * before[k], square += across[k] * across[k];
         }
-        return false;
+        double least[2] = {NONE, NONE}, most[2] = {-NONE, -NONE};
+        for (int i = 0; i <= DIM; i++) {
+            double begin = 0.0, end = 0.0;
+            for (int k = 0; k < DIM; k++) begin += across[k] * from[i][k], end += across[k] * (from[i][k] + to[i][k]);
+            if (i < FIRST) least[0] = std::min(least[0], begin), least[1] = std::min(least[1], end);
+            else most[0] = std::max(most[0], begin), most[1] = std::max(most[1], end);
+        }
+        double gap = std::min(least[0] - most[0], least[1] - most[1]);
+        return gap > 0.0 && gap * gap > std::max(reach * reach, 1.44 * kept * kept * length) * square;
     }
 };
 
@@ -172,22 +203,11 @@ bool any(Mask mask) {
 struct Box {
     Four low, high;  // high is that of the highest corner, less
 
-    static Box empty() { return {Four{} + 3e38f, Four{} + 3e38f}; }
     void join(const Box& other) {
         low = low < other.low ? low : other.low;
         high = high < other.high ? high : other.high;
     }
-    bool apart(const Box& other) const {  // low > other's highest, or the other way round
-        return any((low + other.high > 0.0f) | (other.low + high > 0.0f));
-    }
 };
-
-// Whether two boxes that move, each by any way in a second one, stay apart along one axis up to a share of the way.
-bool passing(const Box& one, const Box& one_way, const Box& other, const Box& other_way, float limit) {
-    Four gap = one.low + other.high, closing = one_way.low + other_way.high;
-    Four back = other.low + one.high, returning = other_way.low + one_way.high;
-    return any(((gap > 0.0f) & (gap + limit * closing > 0.0f)) | ((back > 0.0f) & (back + limit * returning > 0.0f)));
-}
 
 void demand_nodes(const Int* numbers, Int count, Int nodes, const char* what) {
     for (Int i = 0; i < count; i++) demand(numbers[i] >= -1 && numbers[i] < nodes, what);
@@ -221,21 +241,31 @@ struct Tree {
     Int facet_of(Int leaf) const { return children[2 * leaf + 1]; }
 };
 
-// The boxes of a tree, of its nodes and edges, while every node goes anywhere between two corners.
-struct Boxes {
-    std::vector<Box> tree, nodes, edges;  // of an edge: at the place that it has in the list of its facet
+// A box of places and a box of ways.
+struct alignas(64) Moving {
+    Box at, way;
 
-    Boxes(const Tree& all, const double* low, const double* high, Int count, double wider)
+    void join(const Moving& other) { at.join(other.at), way.join(other.way); }
+};
+
+// The boxes of a tree, of its nodes and edges, wider by half of a reach.
+struct Boxes {
+    std::vector<Moving> tree, nodes, edges;  // of an edge: at the place that it has in the list of its facet
+
+    Boxes(const Tree& all, const double* x, const double* move, Int count, double reach)
         : tree(all.boxes), nodes(count), edges(all.count * (all.width / 2)) {
-        double widest = 0.0;
-        for (Int i = 0; i < count * all.dim; i++)
-            widest = std::max(widest, std::max(std::abs(low[i]), std::abs(high[i])));
-        float margin = (float)(4e-7 * widest + wider);
+        double widest = 0.0, longest = 0.0;
+        for (Int i = 0; i < count * all.dim; i++) {
+            widest = std::max(widest, std::abs(x[i]));
+            longest = std::max(longest, std::abs(move[i]));
+        }
+        float margin = (float)(4e-7 * widest + 0.5 * reach), way_margin = (float)(4e-7 * longest);
         for (Int node = 0; node < count; node++) {
-            Box box{};
+            Moving box{};
             for (int k = 0; k < all.dim; k++) {
-                box.low[k] = (float)low[node * all.dim + k] - margin;
-                box.high[k] = -(float)high[node * all.dim + k] - margin;
+                float at = (float)x[node * all.dim + k], by = (float)move[node * all.dim + k];
+                box.at.low[k] = at - margin, box.at.high[k] = -at - margin;
+                box.way.low[k] = by - way_margin, box.way.high[k] = -by - way_margin;
             }
             nodes[node] = box;
         }
@@ -246,25 +276,35 @@ struct Boxes {
             edges[place].join(nodes[ends[1]]);
         }
         for (Int at = all.boxes - 1; at >= 0; at--) {
-            Box box = Box::empty();
-            if (all.is_leaf(at)) {
-                for (int corner = 0; corner < all.dim; corner++)
-                    box.join(nodes[all.facets[all.facet_of(at) * all.dim + corner]]);
-            } else {
-                box = tree[all.children[2 * at]];
-                box.join(tree[all.children[2 * at + 1]]);
-            }
+            const Int* facet = all.facets + all.facet_of(at) * all.dim;
+            bool leaf = all.is_leaf(at);
+            Moving box = leaf ? nodes[facet[0]] : tree[all.children[2 * at]];
+            if (!leaf) box.join(tree[all.children[2 * at + 1]]);
+            for (int corner = 1; leaf && corner < all.dim; corner++) box.join(nodes[facet[corner]]);
             tree[at] = box;
         }
     }
-
 };
 
-// Go down all pairs of boxes; `skip(room, one, other)` leaves out pairs of a room of boxes, given by their places in it:
-// `near`, with three rooms: tree, nodes and tree, edges. Each pair of features without a common node goes to `visit`.
-template <class Skip, class Visit>
-void descend(const Tree& tree, const Boxes& boxes, const Skip& skip, const Visit& visit) {
-    if (tree.boxes == 0) return;
+// Whether two boxes, each of which moves by any of its ways, stay apart along one axis up to a share of the ways.
+struct Passing {
+    const Boxes& own;
+    const float& limit;
+    bool test(const Moving& one, const Moving& other) const {
+        Four gap = one.at.low + other.at.high, closing = one.way.low + other.way.high;
+        Four back = other.at.low + one.at.high, returning = other.way.low + one.way.high;
+        return any(((gap > 0.0f) & (gap + limit * closing > 0.0f)) |
+                   ((back > 0.0f) & (back + limit * returning > 0.0f)));
+    }
+    bool boxes(Int one, Int other) const { return test(own.tree[one], own.tree[other]); }
+    bool node(Int node, Int leaf) const { return test(own.nodes[node], own.tree[leaf]); }
+    bool edges(Int one, Int other) const { return test(own.edges[one], own.edges[other]); }
+};
+
+// Go down from some pairs of boxes; `skip` leaves out pairs of boxes of the tree, of a node and a leaf, of edges. Each
+// pair of features without a common node goes to `visit`.
+template <class Visit>
+void descend(const Tree& tree, const Int* begin, Int count, const Passing& skip, const Visit& visit) {
     std::vector<Int> stack(8 * tree.boxes + 8);
     Int top = 0, dim = tree.dim, each = tree.width / 2;
     auto push = [&](Int one, Int other) { stack[top++] = one, stack[top++] = other; };
@@ -295,16 +335,15 @@ void descend(const Tree& tree, const Boxes& boxes, const Skip& skip, const Visit
             }
         }
     };
-    push(0, 0);
-    while (top > 0) {
+    for (Int next = 0; top > 0 || next < count;) {
+        if (top == 0) {
+            Int one = begin[2 * next], other = begin[2 * next + 1];
+            next++;
+            if (skip.boxes(one, other)) continue;
+            push(one, other);
+        }
         Int other = stack[--top], one = stack[--top];
         Int left = tree.children[2 * one], right = tree.children[2 * one + 1];
-        if (one == other) {
-            if (left < 0) continue;
-            push(left, left), push(right, right);
-            if (!skip.boxes(left, right)) push(left, right);
-            continue;
-        }
         if (left < 0 && tree.is_leaf(other)) {
             leaves(one, other);
             continue;
@@ -316,85 +355,6 @@ void descend(const Tree& tree, const Boxes& boxes, const Skip& skip, const Visit
         if (!skip.boxes(left, other)) push(left, other);
         if (!skip.boxes(right, other)) push(right, other);
     }
-}
-
-struct Apart {
-    const Boxes& own;
-    bool boxes(Int one, Int other) const { return own.tree[one].apart(own.tree[other]); }
-    bool node(Int node, Int leaf) const { return own.nodes[node].apart(own.tree[leaf]); }
-    bool edges(Int one, Int other) const { return own.edges[one].apart(own.edges[other]); }
-};
-
-struct Passing {
-    const Boxes &own, &ways;
-    const float& limit;
-    bool test(const std::vector<Box>& a, const std::vector<Box>& u, Int one, const std::vector<Box>& b,
-              const std::vector<Box>& v, Int other) const {
-        return passing(a[one], u[one], b[other], v[other], limit);
-    }
-    bool boxes(Int one, Int other) const { return test(own.tree, ways.tree, one, own.tree, ways.tree, other); }
-    bool node(Int node, Int leaf) const { return test(own.nodes, ways.nodes, node, own.tree, ways.tree, leaf); }
-    bool edges(Int one, Int other) const { return test(own.edges, ways.edges, one, own.edges, ways.edges, other); }
-};
-
-std::pair<double, Int> pairs_within(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges, Reals<2> low, Reals<2> high,
-                 Array<Int, 2> stencils, Array<bool, 1> both) {
-    Tree tree(children, facets, points, edges, (Int)low.shape(0));
-    int dim = tree.dim;
-    demand((int)low.shape(1) == dim && (int)high.shape(1) == dim && high.shape(0) == low.shape(0) &&
-               (int)stencils.shape(1) == dim + 1 && both.shape(0) == stencils.shape(0), "shapes of boxes and pairs");
-    const double *least = low.data(), *most = high.data();
-    Int found = 0, room = (Int)stencils.shape(0);
-    Free free(100.0 * tree.boxes);
-    Boxes boxes(tree, least, most, (Int)low.shape(0), 0.0);
-    auto visit = [&](const Int* stencil, int first) {
-        for (int k = 0; k < dim; k++) {
-            double ends[2][2] = {{NONE, -NONE}, {NONE, -NONE}};
-            for (int i = 0; i < dim + 1; i++) {
-                double* side = ends[i < first ? 0 : 1];
-                side[0] = std::min(side[0], least[stencil[i] * dim + k]);
-                side[1] = std::max(side[1], most[stencil[i] * dim + k]);
-            }
-            if (ends[0][0] > ends[1][1] || ends[1][0] > ends[0][1]) return;
-        }
-        if (found < room) {
-            std::copy(stencil, stencil + dim + 1, stencils.data() + found * (dim + 1));
-            both.data()[found] = first == 2;
-        }
-        found++;
-    };
-    descend(tree, boxes, Apart{boxes}, visit);
-    return {1.0, found};
-}
-
-std::pair<double, Int> share_of_way(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges,
-                                    Reals<2> nodes, Reals<2> move, Reals<2> rest, double kept, double reach,
-                                    Array<Int, 2> stencils, Array<bool, 1> both) {
-    Tree tree(children, facets, points, edges, (Int)nodes.shape(0));
-    int dim = tree.dim;
-    demand((int)nodes.shape(1) == dim && move.size() == nodes.size() && rest.size() == nodes.size() &&
-               (int)stencils.shape(1) == dim + 1 && both.shape(0) == stencils.shape(0), "shapes of nodes and pairs");
-    Move all{nodes.data(), move.data(), rest.data(), dim, kept};
-    double limit = 1.0;
-    float rounded = 1.0f;
-    Int found = 0, room = (Int)stencils.shape(0);
-    Free free(100.0 * tree.boxes);
-    Boxes boxes(tree, nodes.data(), nodes.data(), (Int)nodes.shape(0), 0.5 * reach);
-    Boxes ways(tree, move.data(), move.data(), (Int)nodes.shape(0), 0.0);
-    auto visit = [&](const Int* stencil, int first) {
-        bool close;
-        if (all.passes(stencil, first, limit, reach)) return;
-        limit = all.advanced(stencil, first == 2, limit, reach, close);
-        rounded = (float)limit * 1.000001f;
-        if (!close) return;
-        if (found < room) {
-            std::copy(stencil, stencil + dim + 1, stencils.data() + found * (dim + 1));
-            both.data()[found] = first == 2;
-        }
-        found++;
-    };
-    descend(tree, boxes, Passing{boxes, ways, rounded}, visit);
-    return {limit, found};
 }
 
 // Pairs as they come from Python.
@@ -421,6 +381,50 @@ struct Listed {
         return found;
     }
 };
+
+std::pair<double, Int> share_of_way(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges,
+                                    Counts<2> front, Counts<2> beside, Array<const bool, 1> kinds, Reals<2> nodes,
+                                    Reals<2> move, Reals<2> rest, double kept, double reach, Array<Int, 2> stencils,
+                                    Array<bool, 1> both) {
+    Tree tree(children, facets, points, edges, (Int)nodes.shape(0));
+    int dim = tree.dim;
+    Listed neighbours(nodes, beside, kinds);
+    demand(front.shape(1) == 2, "pairs of boxes");
+    for (size_t i = 0; i < front.size(); i++)
+        demand(front.data()[i] >= 0 && front.data()[i] < tree.boxes, "no such box");
+    demand((int)nodes.shape(1) == dim && move.size() == nodes.size() && rest.size() == nodes.size() &&
+               (int)stencils.shape(1) == dim + 1 && both.shape(0) == stencils.shape(0), "shapes of nodes and pairs");
+    Move all{nodes.data(), move.data(), rest.data(), dim, kept};
+    double limit = 1.0;
+    float rounded = 1.0f;
+    Int found = 0, room = (Int)stencils.shape(0);
+    Free free(100.0 * tree.boxes);
+    Boxes boxes(tree, nodes.data(), move.data(), (Int)nodes.shape(0), reach);
+    auto visit = [&](const Int* stencil, int first) {
+        bool close;
+        if (all.passes(stencil, first, limit, reach)) return;
+        limit = all.advanced(stencil, first == 2, limit, reach, close);
+        rounded = (float)limit * 1.000001f;
+        if (!close) return;
+        if (found < room) {
+            std::copy(stencil, stencil + dim + 1, stencils.data() + found * (dim + 1));
+            both.data()[found] = first == 2;
+        }
+        found++;
+    };
+    for (Int pair = 0; pair < neighbours.count; pair++)
+        visit(neighbours.stencils + pair * (dim + 1), neighbours.edges[pair] ? 2 : 1);
+    descend(tree, front.data(), (Int)front.shape(0), Passing{boxes, rounded}, visit);
+    if (found > room) return {limit, found};
+    Int last = 0;
+    for (Int pair = 0; pair < found; pair++) {
+        const Int* stencil = stencils.data() + pair * (dim + 1);
+        if (!all.ends_within(stencil, both.data()[pair], limit, reach)) continue;
+        std::copy(stencil, stencil + dim + 1, stencils.data() + last * (dim + 1));
+        both.data()[last++] = both.data()[pair];
+    }
+    return {limit, last};
+}
 
 void squared_distances(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft,
                        Array<double, 1> squared) {
@@ -542,9 +546,8 @@ void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges,
 }  // namespace
 
 void add_contact(nb::module_& module) {
-    module.def("pairs_within", &pairs_within, given(), given(), given(), given(), given(), given(), filled(), filled());
     module.def("share_of_way", &share_of_way, given(), given(), given(), given(), given(), given(), given(), given(),
-               given(), filled(), filled());
+               given(), given(), given(), given(), filled(), filled());
     module.def("squared_distances", &squared_distances, given(), given(), given(), given(), filled());
     module.def("admissible_share", &admissible_share);
     module.def("barrier_energy", &barrier_energy);

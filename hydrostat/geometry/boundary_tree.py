@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable
+from functools import cached_property
 from typing import NamedTuple, no_type_check
 
 import numpy as np
@@ -9,7 +10,7 @@ from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.pair_distances import advanced
+from hydrostat.geometry.pair_distances import advanced, dot, nearest, place
 from hydrostat.kernel import INNER, Kernel, njit
 
 Stencils = Int[np.ndarray, "pairs corners"]
@@ -54,22 +55,24 @@ class BoundaryTree:
         edges = _owned(np.sort(turned, axis=2)) if dim == 3 else np.full((count, 0, 2), -1)
         self.edges = np.ascontiguousarray(edges.reshape(count, -1))
         self.children = _tree(mesh.nodes[self.facets].mean(axis=1))
+        self._rest = mesh.nodes
 
     def pairs(self, nodes: Nodes, reach: float) -> Pairs:
-        """Pairs of features whose boxes come within reach [m] of one another."""
-        return self._filled(lambda *pairs: _pairs_within(*self._parts, nodes, nodes + reach, *pairs))[1]
+        """Pairs of features within reach [m] of one another."""
+        return self.sweep(nodes, np.zeros_like(nodes), nodes, kept=0.0, reach=reach)[1]
 
     def sweep(self, nodes: Nodes, move: Nodes, rest: Nodes, *, kept: float, reach: float) -> tuple[float, Pairs]:
-        """Largest share of a straight move, at most 1, that is admissible, and the pairs that come near on the way.
+        """Largest share of a straight move, at most 1, that is admissible, and the pairs within reach at its end.
 
         Args:
             nodes: where it begins [m].
             move: of each node [m].
             rest: where the nodes are at rest [m]: pairs that touch there may do as they like.
             kept: share of its distance that each pair is to keep.
-            reach: all pairs that come within this distance [m] are told, and more.
+            reach: up to which distance pairs are told [m].
         """
-        return self._filled(lambda *pairs: _share_of_way(*self._parts, nodes, move, rest, kept, reach, *pairs))
+        known = *self._parts, *self._at_rest
+        return self._filled(lambda *pairs: _share_of_way(*known, nodes, move, rest, kept, reach, *pairs))
 
     def _filled(self, fill: Callable[[np.ndarray, np.ndarray], tuple[float, int]]) -> tuple[float, Pairs]:
         """What a loop tells, and the pairs that it fills in; again with more room where that was too little."""
@@ -80,6 +83,54 @@ class BoundaryTree:
             if count <= room:
                 return told, Pairs(stencils[:count], edges[:count])
             room = 2 * count
+
+    @cached_property
+    def _at_rest(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Largest boxes that are apart at rest, in pairs, and the pairs of features of all facets whose boxes meet.
+
+        So no sweep goes down the tree from its root again, to facets that are neighbours anyway.
+        """
+        children = self.children
+        low, high = (np.empty((len(children), self.facets.shape[1])) for _ in range(2))
+        for box in range(len(children) - 1, -1, -1):
+            left, right = children[box]
+            low[box] = self._rest[self.facets[right]].min(axis=0) if left < 0 else np.minimum(low[left], low[right])
+            high[box] = self._rest[self.facets[right]].max(axis=0) if left < 0 else np.maximum(high[left], high[right])
+        pairs = np.zeros((min(len(children), 1), 2), np.int64)
+        apart, met = [np.empty((0, 2), np.int64)], [np.empty((0, 2), np.int64)]
+        while len(pairs):
+            same, leaf = pairs[:, 0] == pairs[:, 1], children[:, 0] < 0
+            one, other = pairs.T
+            free = ((low[one] > high[other]) | (low[other] > high[one])).any(axis=1)
+            ends = leaf[one] & leaf[other]
+            apart.append(pairs[free])
+            met.append(pairs[~free & ends & ~same])
+            split = pairs[~free & ~ends & ~same]
+            turn = leaf[split[:, 0]] | (~leaf[split[:, 1]] & (split[:, 1] < split[:, 0]))
+            split[turn] = split[turn, ::-1]
+            own = children[pairs[same & ~ends, 0]]
+            halves = [np.column_stack([children[split[:, 0], side], split[:, 1]]) for side in range(2)]
+            pairs = np.concatenate([own[:, [0, 0]], own[:, [1, 1]], own, *halves])
+        front = np.concatenate(apart)
+        listed, kinds = self._features_of(children[np.concatenate(met), 1])
+        return front[np.lexsort(front.T)], listed, kinds
+
+    def _features_of(self, met: Int[np.ndarray, "pairs 2"]) -> Pairs:
+        """All pairs of features that belong to pairs of facets and have no node in common."""
+        dim, (one, other) = self.facets.shape[1], met.T
+        lone = [
+            np.column_stack([self.points[f, corner], self.facets[g]])
+            for f, g in ((one, other), (other, one))
+            for corner in range(dim)
+        ]
+        edges = self.edges.reshape(len(self.facets), -1, 2)
+        rows = range(edges.shape[1])
+        both = [np.column_stack([edges[one, i], edges[other, j]]) for i in rows for j in rows]
+        kept = []
+        for stencils, first in ((np.concatenate(lone), 1), (np.concatenate([np.empty((0, dim + 1), int), *both]), 2)):
+            shared = (stencils[:, :first, None] == stencils[:, None, first:]).any(axis=(1, 2))
+            kept.append(stencils[~shared & (stencils >= 0).all(axis=1)])
+        return Pairs(np.concatenate(kept), np.repeat([False, True], [len(part) for part in kept]))
 
     @property
     def _parts(self) -> tuple[np.ndarray, ...]:
@@ -127,35 +178,31 @@ def _tree(middles: Float[np.ndarray, "facets dim"]) -> Int[np.ndarray, "boxes 2"
 
 @Kernel
 @no_type_check
-def _pairs_within(children, facets, points, edges, low, high, stencils, both):
-    """Fill in pairs whose boxes meet, as long as there is room; return 1 and how many there are."""
-    boxes, still = np.zeros((children.shape[0], 6)), np.zeros((children.shape[0], 6))
-    _fit_boxes(children, facets, low, high, boxes)
-    listed, kinds = _features(_leaves(children, boxes, still), children, facets, points, edges)
-    found = 0
-    for pair in range(listed.shape[0]):
-        if not _apart(low, high, listed[pair], 2 if kinds[pair] else 1):
-            found = _add(found, listed[pair], kinds[pair], stencils, both)
-    return 1.0, found
-
-
-@Kernel
-@no_type_check
-def _share_of_way(children, facets, points, edges, x, move, rest, kept, reach, stencils, both):
-    """Fill in pairs that may come within reach, as long as there is room; return the largest share and their number."""
+def _share_of_way(children, facets, points, edges, front, beside, kinds, x, move, rest, kept, reach, stencils, both):
+    """Fill in pairs that end within reach, as long as there is room; return the largest share and their number."""
     boxes, ways = np.zeros((children.shape[0], 6)), np.zeros((children.shape[0], 6))
     _fit_boxes(children, facets, x - 0.5 * reach, x + 0.5 * reach, boxes)
     _fit_boxes(children, facets, move, move, ways)
-    listed, kinds = _features(_leaves(children, boxes, ways), children, facets, points, edges)
+    met, met_kinds = _features(_leaves(children, boxes, ways, front), children, facets, points, edges)
     y, w, dw, c, way = np.zeros((4, 3)), np.empty(4), np.empty((2, 4)), np.empty(3), np.zeros((4, 3))
     limit, found = 1.0, 0
-    for pair in range(listed.shape[0]):
-        if _passes(x, move, listed[pair], 2 if kinds[pair] else 1, limit, reach):
-            continue
-        limit, close = advanced(x, move, rest, listed[pair], kinds[pair], kept, limit, reach, y, way, w, dw, c)
-        if close:
-            found = _add(found, listed[pair], kinds[pair], stencils, both)
-    return limit, found
+    for listed, edged in ((beside, kinds), (met, met_kinds)):
+        for pair in range(listed.shape[0]):
+            if _passes(x, move, listed[pair], 2 if edged[pair] else 1, limit, reach, kept, y, way):
+                continue
+            limit, close = advanced(x, move, rest, listed[pair], edged[pair], kept, limit, reach, y, way, w, dw, c)
+            if close:
+                found = _add(found, listed[pair], edged[pair], stencils, both)
+    if found > stencils.shape[0]:
+        return limit, found
+    last = 0
+    for pair in range(found):
+        place(x, stencils[pair], y)
+        place(move, stencils[pair], way)
+        y += limit * way
+        if nearest(y, stencils.shape[1], both[pair], 0.0, w, dw, c)[1] < reach * reach:
+            last = _add(last, stencils[pair], both[pair], stencils, both)
+    return limit, last
 
 
 @njit(**INNER)
@@ -178,14 +225,14 @@ def _fit_boxes(children, facets, low, high, boxes):
 
 @njit(**INNER)
 @no_type_check
-def _leaves(children, boxes, ways):
-    """Pairs of leaves whose boxes may meet while they move by `ways`."""
+def _leaves(children, boxes, ways, front):
+    """Pairs of leaves below some pairs of boxes that may meet while they move by `ways`."""
     leaves, found = np.empty((1024, 2), np.int64), 0
-    if children.shape[0] == 0:
-        return leaves[:0]
     stack = np.empty((4 * children.shape[0] + 4, 2), np.int64)
-    stack[0, 0], stack[0, 1], top = 0, 0, 1
-    while top > 0:
+    top, following = 0, 0
+    while top > 0 or following < front.shape[0]:
+        if top == 0:
+            stack[0], top, following = front[following], 1, following + 1
         top -= 1
         one, other = stack[top, 0], stack[top, 1]
         if one == other:
@@ -263,35 +310,31 @@ def _shared(stencil, first):
 
 @njit(**INNER)
 @no_type_check
-def _apart(low, high, stencil, first):
-    """Whether the boxes of the two features of a pair do not meet."""
-    for axis in range(low.shape[1]):
-        ends = np.array([np.inf, -np.inf, np.inf, -np.inf])
-        for i in range(stencil.shape[0]):
-            side = 0 if i < first else 2
-            ends[side] = min(ends[side], low[stencil[i], axis])
-            ends[side + 1] = max(ends[side + 1], high[stencil[i], axis])
-        if ends[0] > ends[3] or ends[2] > ends[1]:
-            return True
-    return False
+def _passes(x, move, stencil, first, limit, reach, kept, y, way):
+    """Whether a plane across the line between the middles of two features keeps them apart, up to a share of the move.
 
-
-@njit(**INNER)
-@no_type_check
-def _passes(x, move, stencil, first, limit, reach):
-    """Whether the two features of a pair, in boxes that move, stay out of reach along one axis all the time."""
-    for k in range(x.shape[1]):
-        ends = np.array([[np.inf, -np.inf, np.inf, -np.inf], [np.inf, -np.inf, np.inf, -np.inf]])
-        for i in range(stencil.shape[0]):
-            side, at, by = ends[0 if i < first else 1], x[stencil[i], k], move[stencil[i], k]
-            side[0], side[1] = min(side[0], at), max(side[1], at)
-            side[2], side[3] = min(side[2], by), max(side[3], by)
-        for turn in range(2):
-            a, b = ends[turn], ends[1 - turn]
-            gap = a[0] - b[1] - reach
-            if gap > 0.0 and gap + limit * (a[2] - b[3]) > 0.0:
-                return True
-    return False
+    So far apart that they neither come within reach nor lose more of their gap than is allowed. y and way are room.
+    """
+    place(x, stencil, y)
+    place(move, stencil, way)
+    corners = stencil.shape[0]
+    before, across = np.zeros(3), np.zeros(3)
+    for k in range(3):
+        for i in range(corners):
+            weight = 1.0 / first if i < first else -1.0 / (corners - first)
+            before[k] += weight * y[i, k]
+            across[k] += weight * (y[i, k] + 0.5 * limit * way[i, k])
+    ends = np.array([[np.inf, -np.inf], [np.inf, -np.inf]])
+    for i in range(corners):
+        begin = dot(across, y[i])
+        for turn, at in enumerate((begin, begin + limit * dot(across, way[i]))):
+            if i < first:
+                ends[turn, 0] = min(ends[turn, 0], at)
+            else:
+                ends[turn, 1] = max(ends[turn, 1], at)
+    gap = min(ends[0, 0] - ends[0, 1], ends[1, 0] - ends[1, 1])
+    wanted = max(reach * reach, 1.44 * kept * kept * dot(before, before)) * dot(across, across)
+    return gap > 0.0 and gap * gap > wanted
 
 
 @njit(**INNER)

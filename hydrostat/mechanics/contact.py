@@ -175,8 +175,7 @@ class ContactEnergy(Energy):
         end, pairs = self.swept or (None, None)
         if end is None or pairs is None or np.abs(nodes - end).max() > _ROUNDING * self.skin.distance:
             pairs = self.skin.tree.pairs(nodes, self._reach)
-        close = self.skin.squared(nodes, pairs) < self._reach**2
-        return Watch(nodes - margin, nodes + margin, pairs.only(close))
+        return Watch(nodes - margin, nodes + margin, pairs)
 
     def _felt(self, pairs: Pairs, nodes: Nodes) -> int:
         """How many of these pairs are felt."""

@@ -39,25 +39,52 @@ def samples(features: np.ndarray, count: int) -> np.ndarray:
     return weights @ features
 
 
+def all_pairs(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Every pair of features without a common node, and whether both are edges."""
+    points, edges = surface(mesh)
+    facets = [tuple(facet) for facet in mesh.boundary.tolist()]
+    others = [(point, facet) for point in points for facet in facets]
+    others += list(combinations(edges, 2)) if mesh.dim == 3 else []
+    apart = [(one + other, len(one) == 2) for one, other in others if not set(one) & set(other)]
+    return np.array([pair for pair, _ in apart]), np.array([edges for _, edges in apart])
+
+
+def as_set(stencils: np.ndarray, edges: np.ndarray) -> set[frozenset[tuple[int, ...]]]:
+    """Pairs, whichever feature and whichever node of it is told first."""
+    splits = zip(stencils.tolist(), np.where(edges, 2, 1), strict=True)
+    return {frozenset((tuple(sorted(pair[:first])), tuple(sorted(pair[first:])))) for pair, first in splits}
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 def test_all_pairs_within_reach_are_found(dim: int) -> None:
     mesh = fork_mesh(dim, columns=6)
     nodes, reach = bent(mesh, 0.05), 0.012
-    points, edges = surface(mesh)
-    facets = [tuple(facet) for facet in mesh.boundary.tolist()]
-    others = [(point, facet) for point in points for facet in facets]
-    others += list(combinations(edges, 2)) if dim == 3 else []
-    apart = np.array([one + other for one, other in others if not set(one) & set(other)])
-    lone = np.array([len(one) == 1 for one, other in others if not set(one) & set(other)])
-    squared = np.empty(len(apart))
-    squared_distances(nodes, apart, ~lone, 0.0, squared)
-    wanted = {(bool(e), *sorted(map(int, s))) for s, e, q in zip(apart, ~lone, squared, strict=True) if q < reach**2}
-    _, found = BoundaryTree(mesh).sweep(nodes, np.zeros_like(nodes), mesh.nodes, kept=0.1, reach=reach)
+    stencils, edges = all_pairs(mesh)
+    squared = np.empty(len(edges))
+    squared_distances(nodes, stencils, edges, 0.0, squared)
+    wanted = as_set(stencils[squared < reach**2], edges[squared < reach**2])
+    found = BoundaryTree(mesh).pairs(nodes, reach)
     assert len(wanted) > 10
-    assert wanted <= {(bool(e), *sorted(map(int, s))) for s, e in zip(*found, strict=True)}
-    near = BoundaryTree(mesh).pairs(nodes, reach)
-    assert wanted <= {(bool(e), *sorted(map(int, s))) for s, e in zip(*near, strict=True)}
-    assert len({(bool(e), *map(int, s)) for s, e in zip(*near, strict=True)}) == len(near.edges)
+    assert as_set(*found) == wanted
+    assert len(found.edges) == len(wanted)
+
+
+@pytest.mark.parametrize("amount", [0.01, 0.4])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_sweep_is_that_of_all_pairs(dim: int, amount: float) -> None:
+    """No shortcut changes how far a move may go, nor what is near at its end."""
+    mesh = fork_mesh(dim, columns=6)
+    stencils, edges = all_pairs(mesh)
+    reach, least = 0.012, 1.0
+    for seed in range(4):
+        nodes, move = bent(mesh, 0.02, 9 + seed), bent(mesh, amount, seed) - mesh.nodes
+        share, found = BoundaryTree(mesh).sweep(nodes, move, mesh.nodes, kept=0.1, reach=reach)
+        assert share == pytest.approx(admissible_share(nodes, move, mesh.nodes, stencils, edges, 0.1), rel=1e-12)
+        squared = np.empty(len(edges))
+        squared_distances(nodes + share * move, stencils, edges, 0.0, squared)
+        assert as_set(*found) == as_set(stencils[squared < reach**2], edges[squared < reach**2])
+        least = min(least, share)
+    assert (least < 1.0) == (amount == 0.4)
 
 
 @pytest.mark.parametrize("kind", ["node and edge", "node and triangle", "edges"])

@@ -195,7 +195,10 @@ def twice(monkeypatch: pytest.MonkeyPatch) -> set[str]:
         copies = [each.copy() if isinstance(each, np.ndarray) else each for each in arguments]
         assert self.by_core is not None, self.by_numba.__name__
         outcomes = self.by_core(*arguments), self.by_numba(*copies)
-        for core, numba in (outcomes, *zip(arguments, copies, strict=True)):
+        lots = list(zip(arguments, copies, strict=True))
+        if self.by_numba.__name__ == "_share_of_way":  # what stands behind the pairs that it tells is room to work in
+            lots[-2:] = [(core[: outcomes[0][1]], numba[: outcomes[1][1]]) for core, numba in lots[-2:]]
+        for core, numba in (outcomes, *lots):
             if isinstance(numba, np.ndarray) and numba.dtype.kind == "f":
                 np.testing.assert_allclose(core, numba, rtol=1e-13, atol=1e-13 * np.abs(numba).max(initial=0.0))
             else:
@@ -275,11 +278,19 @@ def test_a_tree_that_does_not_fit_its_facets_is_refused() -> None:
     """Two triangles, each a leaf; then two leaves of one, an edge with one end, children before parents."""
     nodes = np.random.default_rng(0).normal(size=(6, 3))
     children, facets = np.array([[1, 2], [-1, 0], [-1, 1]]), np.arange(6).reshape(2, 3)
-    edges = np.full((2, 6), -1)
+    edges, front = np.full((2, 6), -1), np.array([[1, 2]])
+    beside, kinds = np.array([[0, 3, 4, 5]]), np.zeros(1, np.bool_)
     pairs = np.empty((9, 4), int), np.empty(9, np.bool_)
 
-    def call(children: np.ndarray, facets: np.ndarray, edges: np.ndarray) -> None:
-        kernel.native.pairs_within(children, facets, facets, edges, nodes - 9, nodes + 9, *pairs)
+    def call(
+        children: np.ndarray,
+        facets: np.ndarray,
+        edges: np.ndarray,
+        front: np.ndarray = front,
+        beside: np.ndarray = beside,
+    ) -> None:
+        tree = children, facets, facets, edges, front, beside, kinds
+        kernel.native.share_of_way(*tree, nodes, 0 * nodes, nodes, 0.1, 9.0, *pairs)
 
     call(children, facets, edges)
     call(np.array([[1, 2], [-1, 0], [-1, 0]]), facets, edges)  # it finds nothing wrong, and nothing outside
@@ -289,6 +300,8 @@ def test_a_tree_that_does_not_fit_its_facets_is_refused() -> None:
         (children, facets + 1, edges, "no such node|no node"),
         (np.array([[1, 2], [-1, 0], [-1, 2]]), facets, edges, "children come after their parents"),
         (np.array([[1, 0], [-1, 0], [-1, 1]]), facets, edges, "children come after their parents"),
+        (children, facets, edges, front + 1, "no such box"),
+        (children, facets, edges, front, beside + 1, "a corner is no node"),
     ]
     for *given, told in broken:
         with pytest.raises(ValueError, match=told):
