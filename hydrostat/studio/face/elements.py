@@ -1,6 +1,7 @@
 """`Knob`, `TimelineView`, `OutlineEditor`: elements of the page that are drawn by JavaScript of ours."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 from nicegui import events, ui
@@ -11,6 +12,7 @@ from hydrostat.drawing.palette import winch_colours
 from hydrostat.robot import Robot
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops
+from hydrostat.studio.starting.photo import Backdrop
 
 SEEN = 0.05  # changes smaller than this are not sent to the screen
 
@@ -107,12 +109,13 @@ class OutlineEditor(ui.element, component="static/outline_editor.js"):
     by `starting.loops.read_loops`.
     """
 
-    def __init__(self, loops: Sequence[Loop], on_change: Callable[[Any], None]) -> None:
-        """An editor of loops; `on_change` gets what the screen has sent, not yet checked."""
+    def __init__(self, loops: Sequence[Loop], on_change: Callable[[Any], None], behind: Backdrop | None = None) -> None:
+        """An editor of loops, over a picture if there is one; `on_change` gets what was sent, not yet checked."""
         super().__init__()
         self._props["handle"] = HANDLE
         self._props["start"] = send_loops(loops)
         self._props["fault"] = False
+        self._props["behind"] = None if behind is None else asdict(behind)
         self.on("change", lambda event: on_change(event.args))  # pyright: ignore[reportAttributeAccessIssue]
 
     def show(self, loops: Sequence[Loop]) -> None:

@@ -1,7 +1,7 @@
 """`BodyDraft`: what a robot is to be made of, and with which numbers."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import PurePath
 
 from hydrostat.errors import InputError
@@ -16,8 +16,25 @@ MOST_BYTES = 190_000_000  # of a file that is brought; with what goes round it, 
 LONGEST, SHORTEST = 20.0, 1e-4  # lengths that a person may ask for [m]
 NODES = (20, 20_000)  # so few and so many nodes may be asked for
 PICTURE_SIZE = 0.2  # of a body from a picture, which says no size, until another is asked for [m]
+PICTURES = (".png", ".jpg", ".jpeg")  # endings of files of pixels
 _LONGEST_STEM = 40
 _CAD = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
+
+THRESHOLDS = (5.0, 250.0)  # least and most difference in colour from the ground that may be asked for, of 441
+SMOOTHINGS = (0.0, 20.0)  # likewise how far the edge is smoothed [pixels]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """How a person has a picture read; all as it comes by default."""
+
+    threshold: float | None = None  # what differs from the ground by more is body; None: found in the picture
+    smoothing: float = 0.0  # edges are smoothed over so many pixels of at most 1600
+
+    @property
+    def plain(self) -> bool:
+        """Whether nothing is asked for."""
+        return self.threshold is None and self.smoothing == 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +46,7 @@ class BodyDraft:
     """
 
     file: str  # name of the file, made safe by `safe_name`
-    content: bytes  # its bytes
+    content: bytes = field(repr=False)  # its bytes
     name: str  # of the robot
     material: str  # a name of the table
     size: float | None = None  # longest side [m]
@@ -37,6 +54,7 @@ class BodyDraft:
     nodes: int | None = None  # about so many; not used with an element size
     thickness: float | None = None  # of a flat body [m]
     inflate: float | None = None  # thickness to blow a drawing up to [m]
+    reading: Reading = Reading()  # of a picture
 
     def __post_init__(self) -> None:
         find_material(self.material)
@@ -48,8 +66,17 @@ class BodyDraft:
                     f"{key.replace('_', ' ')}: must be from {1e3 * SHORTEST:g} mm to {LONGEST:g} m, "
                     f"not {1e3 * value:g} mm"
                 )
+        asked = (("threshold", self.reading.threshold, THRESHOLDS), ("smoothing", self.reading.smoothing, SMOOTHINGS))
+        for key, value, (least, most) in asked:
+            if value is not None and not least <= value <= most:
+                raise InputError(f"{key}: must be from {least:g} to {most:g}, not {value:g}")
         if self.nodes is not None and not NODES[0] <= self.nodes <= NODES[1]:
             raise InputError(f"nodes: must be from {NODES[0]} to {NODES[1]}, not {self.nodes}")
+
+    @property
+    def is_picture(self) -> bool:
+        """Whether the file is a photograph or another picture of pixels."""
+        return self.file.endswith(PICTURES)
 
     @property
     def is_drawing(self) -> bool:
@@ -65,7 +92,7 @@ def new_draft(name: str, content: bytes) -> BodyDraft:
     if len(content) > MOST_BYTES:
         raise InputError(f"{file}: has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read")
     material = "polyester fibre" if file.endswith(OUTLINE_SUFFIXES) else "flexfoam-it x"
-    size = PICTURE_SIZE if file.endswith((".png", ".jpg", ".jpeg")) else None
+    size = PICTURE_SIZE if file.endswith(PICTURES) else None
     return BodyDraft(file=file, content=content, name=_robot_name(PurePath(file).stem), material=material, size=size)
 
 

@@ -12,6 +12,7 @@ from hydrostat.robot import Body, Cable, Mount, Pin, Point, Pose, Robot, outline
 from hydrostat.studio.records.wishes import moved_zone
 from hydrostat.studio.records.work import Work, followed
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fitted, loops_svg, outline_of, read_loops
+from hydrostat.studio.starting.photo import Backdrop
 from hydrostat.units import counted
 
 Move = Callable[[Point], Point]  # from a place in the old body to the same in the new
@@ -28,8 +29,11 @@ class Reshaped:
 class Outlining:
     """Loops that are drawn, checked as they change."""
 
-    def __init__(self, loops: tuple[Loop, ...] = (), robot: Robot | None = None) -> None:
+    def __init__(
+        self, loops: tuple[Loop, ...] = (), robot: Robot | None = None, behind: Backdrop | None = None
+    ) -> None:
         self.robot = robot  # whose outline is edited; None: a new one is drawn
+        self.behind = behind  # a picture that it is drawn over; None: none
         self.loops: tuple[Loop, ...] = ()  # the rim and holes, in any order
         self.fault = ""  # why they are no body yet; "" if they are
         self.words = ""  # what they are, such as "280 x 240 mm, 21 corners"; "" if they are no body

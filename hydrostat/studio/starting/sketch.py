@@ -8,6 +8,7 @@ from hydrostat.robot import Robot, SurfaceSketch, sketch_robot, sketch_surface
 from hydrostat.robot.sketch_space import inflated
 from hydrostat.studio.jobs import Report
 from hydrostat.studio.starting.draft import BodyDraft
+from hydrostat.studio.starting.photo import Backdrop, backdrop, cut_out
 
 MOST_MEMORY = 6 * 2**30  # the process may have so much memory [bytes]; a file that needs more is refused
 WIDTH = 6.4  # of pictures [inch]
@@ -23,6 +24,7 @@ class Sketch:
     clean: bool  # whether nothing had to be mended
     picture: str  # of the robot, as SVG that follows the colours of the page
     repair: str = ""  # of what was mended, likewise; "" if nothing was
+    behind: Backdrop | None = None  # the picture that a flat body was read from; None: it was no picture
 
 
 def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
@@ -42,11 +44,18 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
 
     report.progress("reading and meshing", 0, 3)
     file, content, size, lines = draft.file, draft.content, draft.size, ()
+    behind = None
     if draft.is_drawing:
+        if draft.is_picture and not draft.reading.plain:
+            read_drawing(content, name=file, size=size)  # a file that is no picture is told as such
+            file, content = f"{PurePath(file).stem}.png", cut_out(content, draft.reading)
         drawing = read_drawing(content, name=file, size=size)
         lines = drawing.notes
+        if draft.is_picture:
+            behind = backdrop(draft.content, content, name=file, size=size)
         if draft.inflate is None:
-            return _drawn(report, draft, _flat(draft), lines, None)
+            made = _drawn(report, draft, _flat(draft, file, content), lines, None)
+            return replace(made, behind=behind)
         content, file, size = inflated(drawing.outline, draft.inflate), f"{PurePath(file).stem}.ply", None
     sketch = sketch_surface(
         content,
@@ -63,10 +72,10 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
     return replace(made, robot=with_first_pose(sketch.robot))
 
 
-def _flat(draft: BodyDraft) -> Robot:
+def _flat(draft: BodyDraft, file: str, content: bytes) -> Robot:
     return sketch_robot(
-        draft.content,
-        file=draft.file,
+        content,
+        file=file,
         name=draft.name,
         size=draft.size,
         element_size=draft.element_size,

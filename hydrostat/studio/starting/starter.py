@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from threading import RLock
 from typing import Any
 
@@ -15,6 +15,7 @@ from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.starting.autosave import Autosave
 from hydrostat.studio.starting.draft import BodyDraft, new_draft
+from hydrostat.studio.starting.loops import fitted
 from hydrostat.studio.starting.outlining import Outlining
 from hydrostat.studio.starting.shelf import Card, Recent, card_of, robots_in, told_apart
 from hydrostat.studio.starting.sketch import Sketch, make_sketch
@@ -157,11 +158,32 @@ class Starter(Stage):
         self.outlining = Outlining.of(self._document.robot)
         self._document.bell.ring(Topic.JOB)
 
+    def outline_correct(self) -> None:
+        """Begin to correct the outline of the sketch, over its picture if there is one (InputError: it is not flat)."""
+        sketch = self.sketch
+        if sketch is None or sketch.robot.body.outline is None:
+            raise InputError("there is no flat outline yet")
+        self.outlining = Outlining(fitted(sketch.robot.body.outline), behind=sketch.behind)
+        self._document.bell.ring(Topic.JOB)
+
+    def outline_cancel(self) -> None:
+        """Draw no further; what was brought is there still."""
+        self.outlining = None
+        self._document.bell.ring(Topic.JOB)
+
     def outline_done(self) -> None:
         """Make a draft of the outline that was drawn (InputError: it is no body)."""
         if self.outlining is None:
             return
-        self.bring("outline.svg", self.outlining.drawing())
+        content, before = self.outlining.drawing(), self.draft
+        if before is None:
+            self.bring("outline.svg", content)
+        else:  # what was chosen for the picture that was corrected stays
+            kept = {key: getattr(before, key) for key in ("name", "material", "nodes", "element_size", "thickness")}
+            draft = replace(new_draft(f"{PurePath(before.file).stem}.svg", content), **kept)
+            with self._lock:
+                self.sketch = None
+                self._take(draft)
         self.outlining = None
         self._document.bell.ring(Topic.JOB)
 

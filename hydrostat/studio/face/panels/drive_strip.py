@@ -86,8 +86,8 @@ def _player(page: WindowPage) -> None:
 def _keys(page: WindowPage) -> None:
     """Add, duplicate, delete; linear or smooth."""
     driver = page.session.driver
-    add = ui.button("Add", icon="add", on_click=page.doing(driver.add_key)).props("unelevated dense no-caps")
-    add.style("padding: 2px 12px 2px 8px")
+    add = ui.button("Add", icon="add", on_click=page.doing(driver.add_key)).props("unelevated dense no-caps no-wrap")
+    add.style("padding: 2px 12px 2px 8px; flex: none")
     unfocused(add).tooltip("Keep the knobs as a keyframe at the playhead").mark("drive-add")
     copy = _button("content_copy", "Duplicate the keyframe", page.doing(driver.duplicate_key))
     delete = _button("delete_outline", "Delete the keyframe", page.doing(driver.delete_key))

@@ -1,6 +1,7 @@
 """Start: what is being made of a file: its picture, its repair report, its numbers."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from nicegui import ui
@@ -8,9 +9,11 @@ from nicegui import ui
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import MATERIALS
 from hydrostat.studio.face.dialogs import may_leave
+from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.starting.draft import BodyDraft, material_words, young_words
+from hydrostat.studio.starting.draft import SMOOTHINGS, THRESHOLDS, BodyDraft, Reading, material_words, young_words
+from hydrostat.studio.starting.photo import overlay
 from hydrostat.studio.starting.sketch import Sketch
 
 LEVELS = ("Coarse", "Medium", "Fine")
@@ -28,6 +31,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
     with ui.element("div").classes("start-split"):
         with ui.column().classes("w-full gap-4"):
             show_state = _state(page)
+            show_photo = _photo(page)
             show_pictures = _pictures()
         with ui.element("div").classes("start-card"):
             fields = _Fields(page)
@@ -36,6 +40,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
         draft = starter.draft
         title.set_text("" if draft is None else draft.file)
         show_state()
+        show_photo()
         show_pictures(starter.sketch)
         if draft is not None:
             fields.show(draft, starter.sketch)
@@ -63,6 +68,69 @@ def _state(page: WindowPage) -> Callable[[], None]:
         problem.set_text(starter.problem)
 
     return refresh
+
+
+def _photo(page: WindowPage) -> Callable[[], None]:
+    """The outline over the picture that it was read from, and how it is read."""
+    starter = page.session.starter
+    with ui.element("div").classes("start-card") as card:
+        with ui.element("div").classes("studio-row"):
+            ui.label("The outline over the picture").classes("start-head")
+            ui.space()
+            correct = ui.button("Correct it by hand", icon="draw", on_click=page.doing_slowly(starter.outline_correct))
+            correct.props("outline no-caps dense padding='4px 12px' data-testid=\"outline-correct\"")
+        view = ui.html("", sanitize=False).classes("start-photo")
+        threshold = _Reading(page, "threshold", "Body is what differs from the ground by more than", THRESHOLDS)
+        smoothing = _Reading(page, "smoothing", "Smooth the edge", SMOOTHINGS)
+    shown: Sketch | None = None
+
+    def refresh() -> None:
+        nonlocal shown
+        draft, sketch = starter.draft, starter.sketch
+        card.set_visibility(draft is not None and draft.is_picture)
+        correct.set_enabled(starter.is_current and sketch is not None and sketch.behind is not None)
+        if draft is None or not draft.is_picture:
+            return
+        threshold.show(draft.reading)
+        smoothing.show(draft.reading)
+        if sketch is not shown:
+            shown = sketch
+            behind = None if sketch is None else sketch.behind
+            outline = None if sketch is None else sketch.robot.body.outline
+            view.set_content("" if behind is None or outline is None else overlay(behind, outline))
+
+    return refresh
+
+
+class _Reading:
+    """A slider for one number of how a picture is read, and a button that leaves it to the program."""
+
+    def __init__(self, page: WindowPage, key: str, words: str, ends: tuple[float, float]) -> None:
+        self._page, self._key, self._words = page, key, words
+        with ui.element("div").classes("w-full"):
+            with ui.element("div").classes("studio-row").style("min-height: 30px"):
+                self._label = ui.label().classes("start-small studio-figure")
+                ui.space()
+                self._auto = ui.button("As found", on_click=lambda: self._ask(None if key == "threshold" else 0.0))
+                self._auto.props("flat no-caps dense size=sm")
+            self._slider = ui.slider(min=ends[0], max=ends[1], step=1.0, value=ends[0])
+            self._slider.props(f'aria-label="{words}"').mark(f"reading-{key}")
+        self._slider.on("change", lambda event: self._ask(sent_number(event.args)), args=[None])
+
+    def show(self, reading: Reading) -> None:
+        """Show what is asked for."""
+        value = getattr(reading, self._key)
+        found = value is None or (self._key == "smoothing" and value == 0)
+        self._auto.set_visibility(not found)
+        unit = " pixels" if self._key == "smoothing" else " of 441 steps of colour"
+        self._label.set_text(f"{self._words}: {'as found' if found else f'{value:g}{unit}'}")
+        self._slider.set_value(60.0 if value is None else value)
+
+    def _ask(self, value: float | None) -> None:
+        starter = self._page.session.starter
+        if starter.draft is not None:
+            reading = replace(starter.draft.reading, **{self._key: value})
+            self._page.act(lambda: starter.revise(reading=reading))
 
 
 def _pictures() -> Callable[[Sketch | None], None]:

@@ -21,15 +21,17 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
         return lambda: None
     robot = outlining.robot
     with ui.row().classes("items-center no-wrap w-full gap-2"):
-        back = ui.button(icon="arrow_back", on_click=page.doing(starter.drop)).mark("back")
+        back = ui.button(icon="arrow_back", on_click=page.doing(starter.outline_cancel)).mark("back")
         back.props('flat round aria-label="Back"')
-        ui.label("New outline" if robot is None else f"Outline of {robot.name}").classes("start-title")
+        title = "New outline" if outlining.behind is None else "Correct the outline"
+        ui.label(title if robot is None else f"Outline of {robot.name}").classes("start-title")
         ui.space()
         tools = ui.row().classes("items-center no-wrap gap-1")
         done = ui.button("Next" if robot is None else "Apply", icon="check")
         done.props('unelevated no-caps data-testid="outline-done"')
     with ui.element("div").classes("start-outline"):
-        editor = OutlineEditor(outlining.loops, lambda raw: take(raw)).style("width: 100%; height: 100%")
+        editor = OutlineEditor(outlining.loops, lambda raw: take(raw), outlining.behind)
+        editor.style("width: 100%; height: 100%")
     with ui.row().classes("items-center no-wrap w-full gap-2"):
         sign = ui.icon("check_circle").classes("text-lg")
         words = ui.label().classes("start-small studio-figure").props('data-testid="outline-words"')
@@ -37,7 +39,7 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
         hint = ui.label("Click: corner. Drag: move. Double click: round or sharp. Delete: remove. Wheel: zoom.")
         hint.classes("start-small")
     with tools:
-        _tools(editor, new=robot is None)
+        _tools(editor, new=robot is None and not outlining.loops)
 
     def take(raw: Any) -> None:
         page.act(outlining.take, raw)

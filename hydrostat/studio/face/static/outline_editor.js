@@ -7,12 +7,14 @@ export default /** @type {Component} */ ({
     <svg class="outline-editor" :class="{faulty: fault, drawing: open}" tabindex="0" aria-label="Outline"
          @pointerdown="down" @pointermove="move" @pointerup="up" @pointercancel="up" @dblclick="twice" @wheel.prevent="zoom"
          @keydown="key" @contextmenu.prevent>
+      <image v-if="behind" :href="behind.address" :x="px(behind.left)" :y="py(behind.top)" :width="behind.wide * scale"
+             :height="behind.high * scale" preserveAspectRatio="none" opacity="0.75"/>
       <g class="outline-grid">
         <line v-for="line in grid" :key="line.id" :class="line.kind" :x1="line.x1" :y1="line.y1" :x2="line.x2" :y2="line.y2"/>
         <text v-for="text in rulers" :key="text.id" :x="text.x" :y="text.y" :text-anchor="text.anchor">{{ text.words }}</text>
       </g>
       <line v-if="mirror" class="outline-mirror" :x1="px(0)" y1="0" :x2="px(0)" :y2="high"/>
-      <path class="outline-body" :d="body" fill-rule="evenodd"/>
+      <path class="outline-body" :class="{over: behind}" :d="body" fill-rule="evenodd"/>
       <path v-if="open && open.length" class="outline-open" :d="openPath"/>
       <path v-if="open && mirror && open.length" class="outline-open outline-ghost" :d="ghostPath"/>
       <template v-for="(loop, l) in shown" :key="l">
@@ -28,7 +30,7 @@ export default /** @type {Component} */ ({
       </text>
       <text v-if="held" class="outline-place" :x="px(held[0]) + 12" :y="py(held[1]) - 12">{{ held[0] }}, {{ held[1] }} mm</text>
     </svg>`,
-  props: { start: Array, handle: Number, fault: Boolean },
+  props: { start: Array, handle: Number, fault: Boolean, behind: Object },
   emits: ["change"],
   data() {
     return { loops: copy(this.start), open: null, chosen: null, past: [], future: [], mirror: false, snap: true, wide: 800,
