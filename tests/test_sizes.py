@@ -27,6 +27,7 @@ MANY_PARAMETERS = {
     "hydrostat/cli/sample.py:sample": "a parameter is an option of the command line",
     "hydrostat/cli/simulate.py:simulate": "a parameter is an option of the command line",
     "hydrostat/cli/trajectory.py:trajectory": "a parameter is an option of the command line",
+    "hydrostat/robot/sketch.py:sketch_robot": "a parameter is a number that a person may leave out",
     "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "what `solve_ik` takes, and what is of time",
 }
 """What may be larger, with the reason."""

@@ -1,7 +1,9 @@
 """`hydrostat new`."""
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from shutil import rmtree
@@ -13,8 +15,10 @@ from hydrostat.cli.bounded import bounded
 from hydrostat.cli.options import asked, positive
 from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
+    from hydrostat.geometry.files.drawn_lines import Inner
     from hydrostat.ik import BegunRobot, NewRobotWish
     from hydrostat.robot import Robot
 
@@ -43,6 +47,10 @@ def new(
         str | None, typer.Option(help='Blow a drawing up to a body in space so thick, for example "60 mm".')
     ] = None,
     material: Annotated[str | None, typer.Option(help="A material of the table: hydrostat materials.")] = None,
+    inner: Annotated[
+        str | None,
+        typer.Option(help="What closed shapes in a drawing are: holes, or drawn on the body (eyes, a mouth)."),
+    ] = None,
     within: Annotated[
         str | None, typer.Option(metavar="TIME", help="Give up reading, healing and meshing after so long.")
     ] = None,
@@ -69,6 +77,7 @@ def new(
         thickness=_length("thickness", thickness),
         inflate=_length("inflate", inflate),
         material=material,
+        inner=_inner(inner),
     )
     seconds = asked("--within", within, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
     with _made_whole(name) as folder:
@@ -80,6 +89,13 @@ def new(
         lines.append(f"nodes: {nodes} were asked for, {count} come nearest, as thin places need finer elements")
     told = [line.replace(str(folder), str(name)) for line in lines]
     _print_made(made, name, told, chosen=bool(nodes or element_size))
+
+
+def _inner(given: str | None) -> "Inner | None":
+    from hydrostat.closed_set import member
+    from hydrostat.geometry.files.drawn_lines import Inner
+
+    return None if given is None else member(Inner, given, what="--inner")
 
 
 def _robot_name(folder: Path) -> str:
@@ -143,6 +159,7 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
 
     if is_of_gallery(source):
         return _from_gallery(source, folder, wish)
+    wish = _asked_about_holes(source, wish, seconds)
 
     def run(sketch: Callable[[], "BegunRobot"]) -> "BegunRobot":
         return bounded(sketch, file=source, words="healing and meshing the body ...", seconds=seconds)
@@ -157,6 +174,30 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
         save_png(figure, folder / "healing.png")
         lines.append(f"surface: see {folder / 'healing.png'}; the file that came is not changed")
     return lines
+
+
+def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "NewRobotWish":
+    """The wish with what a person at the terminal says of closed shapes in a drawing, if there are any to ask about."""
+    from hydrostat.geometry.files.drawn_lines import Inner
+    from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES, read_drawing
+    from hydrostat.geometry.files.stranger import read_stranger
+
+    path = Path(source)
+    if wish.inner is not None or path.suffix.lower() not in OUTLINE_SUFFIXES or not path.is_file():
+        return wish
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        return wish
+
+    def count() -> int:
+        drawn = read_drawing(read_stranger(path), name=path.name, size=wish.size, inner=Inner.DRAWN)
+        return sum(bool((line[0] == line[-1]).all()) for line in drawn.marks)
+
+    shapes = bounded(count, file=source, words="reading the drawing ...", seconds=seconds)
+    if not shapes:
+        return wish
+    what = f"The drawing has {counted(shapes, 'closed shape')} within the body."
+    drawn = typer.confirm(f"{what} Drawn on it, such as an eye (y), or cut through it, as a hole (n)?", default=True)
+    return replace(wish, inner=Inner.DRAWN if drawn else Inner.HOLES)
 
 
 def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:

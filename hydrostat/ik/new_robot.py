@@ -6,7 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypedDict, Unpack
 
+from hydrostat.closed_set import member
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.ik.first_pose import with_first_pose
 from hydrostat.robot import Robot, SurfaceSketch, gallery_folder, load_robot, sketch_mesh, sketch_robot, sketch_surface
@@ -27,6 +29,7 @@ class NewRobotWish:
     thickness: float | None = None  # of a flat body
     inflate: float | None = None  # blow a drawing up to a body in space so thick
     material: str | None = None  # a name of the table
+    inner: Inner | None = None  # whether shapes in a drawn body are holes, or drawn on it
 
     def __post_init__(self) -> None:
         if self.nodes is not None and self.element_size is not None:
@@ -58,6 +61,7 @@ class _Wished(TypedDict, total=False):
     thickness: float
     inflate: float
     material: str
+    inner: Inner
 
 
 def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
@@ -66,7 +70,8 @@ def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
     Args:
         source: a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF), a ready mesh (VTK, VTU,
             MSH), or "gallery:NAME".
-        wished: `name`, `size`, `element_size`, `nodes`, `thickness`, `inflate` and `material`; lengths in metres.
+        wished: `name`, `size`, `element_size`, `nodes`, `thickness`, `inflate`, `material` and `inner` ("holes" or
+            "drawn"); lengths in metres.
 
     Raises:
         InputError: a file that is no body, or wishes that do not fit it.
@@ -110,7 +115,7 @@ def begin_robot(
 
 def _of_gallery(source: str, wish: NewRobotWish) -> Robot:
     """A robot of the gallery, if asked under another name and with other elements."""
-    wish.refuse("a gallery robot has its own; edit robot.toml", "size", "thickness", "inflate", "material")
+    wish.refuse("a gallery robot has its own; edit robot.toml", "size", "thickness", "inflate", "material", "inner")
     robot = load_robot(gallery_folder(source.removeprefix(GALLERY)))
     if wish.element_size is not None or wish.nodes is not None:
         raise InputError("elements of a gallery robot are chosen by `hydrostat new`, which keeps its comments")
@@ -122,14 +127,16 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
     from hydrostat.robot.sketch_space import inflated
 
     content, file = read_stranger(path), _file_name(path.name)
-    drawing = read_drawing(content, name=file, size=wish.size)
+    inner = member(Inner, wish.inner or Inner.HOLES, what="inner")
+    drawing = read_drawing(content, name=file, size=wish.size, inner=inner)
     notes = tuple(f"drawing: {note}" for note in drawing.notes)
     material = wish.material or "polyester fibre"
     if wish.inflate is None:
         sizes = {"size": wish.size, "element_size": wish.element_size, "thickness": wish.thickness}
         name = _robot_name(path, wish)
         return BegunRobot(
-            sketch_robot(content, file=file, name=name, material=material, nodes=wish.nodes, **sizes), notes
+            sketch_robot(content, file=file, name=name, material=material, nodes=wish.nodes, inner=inner, **sizes),
+            notes,
         )
     wish.refuse("an inflated body is as thick as is asked by inflate", "thickness")
     begun = _of_bytes(inflated(drawing.outline, wish.inflate), path.with_suffix(".ply"), wish, material, size=None)
@@ -137,7 +144,7 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
 
 
 def _of_surface(path: Path, wish: NewRobotWish) -> BegunRobot:
-    wish.refuse("is only for drawings", "thickness", "inflate")
+    wish.refuse("is only for drawings", "thickness", "inflate", "inner")
     return _of_bytes(read_stranger(path), path, wish, wish.material or "flexfoam-it x", size=wish.size)
 
 
@@ -157,7 +164,7 @@ def _of_bytes(content: bytes, path: Path, wish: NewRobotWish, material: str, *, 
 
 def _of_mesh(path: Path, wish: NewRobotWish) -> BegunRobot:
     wish.refuse("a ready mesh has its own elements", "element_size", "nodes")
-    wish.refuse("is only for drawings", "thickness", "inflate")
+    wish.refuse("is only for drawings", "thickness", "inflate", "inner")
     material = wish.material or "flexfoam-it x"
     robot = sketch_mesh(path, name=_robot_name(path, wish), size=wish.size, material=material)
     return BegunRobot(robot)

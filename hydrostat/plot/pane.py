@@ -99,6 +99,8 @@ class FlatPane(Pane):
         stitches = {"linewidth": 1.2, "linestyle": (0, (2.4, 2.0)), "dash_capstyle": "butt"}
         for ring in seams:
             sheet.curve(np.concatenate([ring, ring[:1]]), color=STITCH, zorder=3.2, **stitches)
+        for anchors in self.robot.body.mark_anchors:
+            sheet.curve(MILLIMETRES * anchors.positions(nodes), color=mix(INK, PAPER, pale), linewidth=1.5, zorder=3.3)
         if mesh:
             ends = MILLIMETRES * nodes[self.robot.body.mesh.edges]
             sheet.segments(ends, color=MESH, linewidth=0.35, alpha=0.42, zorder=4)

@@ -13,7 +13,8 @@ from jaxtyping import Float
 from hydrostat.arrays import Points
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, OutlineError, SurfaceError
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.healing.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
@@ -58,14 +59,19 @@ class Body:
     element_size: float | None = None  # length of a mesh edge [m]; None for a ready mesh
     thickness: float | None = None  # of a flat body [m]; None in space
     volume: Volume = Volume.ELEMENT  # how its change of volume is measured
+    inner: Inner = Inner.HOLES  # what shapes within the outer line of a drawing are
     mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
     outline: Outline | None = field(default=None, compare=False, repr=False)  # of a flat body that was drawn
+    marks: tuple[Points, ...] = field(default=(), compare=False, repr=False)  # lines drawn on a flat body [m]
     # of a body in space that came as a surface: that surface closed, and what that took
     healing: Healing | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         make_member(self, "source", Source)
         make_member(self, "volume", Volume)
+        make_member(self, "inner", Inner)
+        if self.inner is Inner.DRAWN and self.source is not Source.OUTLINE:
+            raise InputError('inner = "drawn" is for bodies with an outline; remove it')
         if isinstance(self.material, str):
             object.__setattr__(self, "material", find_material(self.material))
         if self.mesh.dim == 2 and self.thickness is None:
@@ -100,6 +106,11 @@ class Body:
     def solid(self) -> Solid | None:
         """Solid that the closed surface of a body in space encloses; None for other bodies."""
         return None if self.healing is None else Solid(self.healing.surface)
+
+    @cached_property
+    def mark_anchors(self) -> tuple[Anchors, ...]:
+        """What holds each line that is drawn on the body."""
+        return tuple(locate(self.mesh, line) for line in self.marks)
 
     @cached_property
     def measured_thickness(self) -> Thickness:
@@ -147,13 +158,15 @@ def outline_body(
     thickness: float,
     size: float | None = None,
     volume: Volume = Volume.ELEMENT,
+    inner: Inner = Inner.HOLES,
 ) -> Body:
     """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
-    from hydrostat.geometry.files.outline_file import read_outline
+    from hydrostat.geometry.files.outline_file import read_drawing
     from hydrostat.geometry.triangles.triangulate import triangulate
 
     _check_lengths(size=size, element_size=element_size)
-    outline = read_outline(content, name=file, size=size)
+    drawing = read_drawing(content, name=file, size=size, inner=Inner(inner))
+    outline = drawing.outline
     with _blaming_the_element_size():
         mesh = triangulate(outline, element_size)
     return Body(
@@ -165,8 +178,10 @@ def outline_body(
         element_size=element_size,
         thickness=thickness,
         volume=volume,
+        inner=inner,
         mesh=mesh,
         outline=outline,
+        marks=drawing.marks,
     )
 
 

@@ -137,6 +137,8 @@ class RobotReader(TablesFile):
         if len(sources) != 1:
             self.fail("body", "give one of outline (a drawing), surface (a scan or CAD model) or mesh (a ready mesh)")
         source = sources[0]
+        if entry.inner is not None and source is not Source.OUTLINE:
+            self.fail("body.inner", "is for bodies with an outline; remove it")
         file = self._file(f"body.{source}", getattr(entry, source))
         material = self.at("body.material", lambda: read_material(entry.material))
         unit = units.scale_up(Decimal(1), self.unit, units.LENGTH)
@@ -154,7 +156,12 @@ class RobotReader(TablesFile):
                 make = partial(outline_body, content, **given)
         return self.at(
             "body",
-            lambda: make(material=material, size=entry.size, thickness=entry.thickness, **_given(entry, "volume")),
+            lambda: make(
+                material=material,
+                size=entry.size,
+                thickness=entry.thickness,
+                **_given(entry, "volume", *(("inner",) if source is Source.OUTLINE else ())),
+            ),
             otherwise=f"body.{source}",
         )
 

@@ -43,7 +43,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     def maybe(value: float | None) -> float | None:
         return None if value is None else length(value)
 
-    def obstacle(each: Obstacle) -> Obstacle:
+    def placed(each: Obstacle) -> Obstacle:
         return replace(
             each, at=point(each.at), to=None if each.to is None else point(each.to), radius=maybe(each.radius)
         )
@@ -82,7 +82,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
             name: Pose(name=name, targets={key: point(place) for key, place in pose.targets.items()})
             for name, pose in robot.poses.items()
         },
-        obstacles=tuple(map(obstacle, robot.obstacles)),
+        obstacles=tuple(map(placed, robot.obstacles)),
         contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),
     )
 
@@ -96,7 +96,12 @@ def _scaled_body(robot: Robot, factor: float) -> Body:
     thickness = None if body.thickness is None else float(f"{factor * body.thickness:.12g}")
     if body.source is Source.OUTLINE:
         return outline_body(
-            body.content, file=body.file, element_size=element_size, thickness=thickness or 0.0, **given
+            body.content,
+            file=body.file,
+            element_size=element_size,
+            thickness=thickness or 0.0,
+            inner=body.inner,
+            **given,
         )
     unit = float(units.unit_factor(robot.length_unit, units.LENGTH))
     if body.source is Source.SURFACE:

@@ -4,6 +4,7 @@ from functools import partial
 
 import numpy as np
 
+from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.files.outline_file import read_outline
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.sizing import size_for
@@ -29,6 +30,7 @@ def sketch_robot(
     thickness: float | None = None,
     nodes: int | None = None,
     material: str = "polyester fibre",
+    inner: Inner = Inner.HOLES,
 ) -> Robot:
     """Robot from the bytes of a drawing (SVG, DXF, PNG, JPG), with sensible numbers where none are given.
 
@@ -45,6 +47,7 @@ def sketch_robot(
         nodes: wanted; None: about 250, or as many as give each limb enough elements across; not used with an element
             size.
         material: a name from the table.
+        inner: whether shapes in the body are holes, or drawn on it.
 
     Raises:
         InputError: the drawing is no body.
@@ -52,9 +55,9 @@ def sketch_robot(
     from shapely import Point as ShapelyPoint
     from shapely import maximum_inscribed_circle
 
-    outline = read_outline(content, name=file, size=size)
+    outline = read_outline(content, name=file, size=size, inner=inner)
     length, asked = element_size or _element_size(outline, nodes), bool(element_size or nodes)
-    make = partial(outline_body, content, file=file, material=find_material(material), size=size)
+    make = partial(outline_body, content, file=file, material=find_material(material), size=size, inner=inner)
     body = make(element_size=length, thickness=thickness or _round(outline.size / 7))
     while not asked and (finer := finer_size(body, MOST_NODES)) is not None:
         if _round(finer) >= length:
@@ -63,8 +66,8 @@ def sketch_robot(
         body = make(element_size=length, thickness=body.thickness or 0.0)
     centre = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
     depth = outline.polygon.boundary.distance(ShapelyPoint(centre))
-    inner = body.mesh.nodes[np.setdiff1d(np.arange(len(body.mesh.nodes)), body.mesh.boundary_nodes)]
-    tip = inner[int(np.argmax(np.linalg.norm(inner - centre, axis=1)))]
+    within = body.mesh.nodes[np.setdiff1d(np.arange(len(body.mesh.nodes)), body.mesh.boundary_nodes)]
+    tip = within[int(np.argmax(np.linalg.norm(within - centre, axis=1)))]
     arm = tip - centre
     turned = centre + 0.9 * (np.cos(0.5) * arm + np.sin(0.5) * np.array([-arm[1], arm[0]]))
     return Robot(

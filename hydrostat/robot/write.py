@@ -10,6 +10,7 @@ from typing import Any
 
 from hydrostat import units
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
@@ -149,7 +150,9 @@ class _Writer:
     def body(self, body: Body) -> dict[str, Any]:
         lengths = {key: getattr(body, key) for key in ("size", "element_size", "thickness")}
         volume = {"volume": str(body.volume)} if body.volume is not Volume.ELEMENT else {}
-        return {str(body.source): body.file, **_lengths(lengths), "material": self.material(body.material), **volume}
+        inner = {"inner": str(body.inner)} if body.inner is not Inner.HOLES else {}
+        given = {"material": self.material(body.material), **volume, **inner}
+        return {str(body.source): body.file, **_lengths(lengths), **given}
 
     def material(self, material: Material) -> Any:
         """A name of the table, or an inline table of the name or the numbers, then the viscosity."""

@@ -82,3 +82,25 @@ def test_columns_of_moves_tell_their_unit(starfish: Path) -> None:
     assert text.splitlines()[0] == b"time_s,right_mm,left_mm,feet_mm"
     for content in (text, text.replace(b"_mm", b"")):
         np.testing.assert_array_equal(ProfileTable.read(content, robot, name="a.csv").profile.values, profile.values)
+
+
+@pytest.mark.parametrize(("answer", "holes"), [("y\n", 0), ("n\n", 1)])
+def test_at_a_terminal_it_asks_what_an_eye_is(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: str, holes: int
+) -> None:
+    import io
+    import sys
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    (tmp_path / "whale.svg").write_text(WHALE.replace("</svg>", '<circle cx="70" cy="80" r="6"/></svg>'))
+    monkeypatch.setattr(sys, "stdin", Terminal(answer))
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    code, out, _ = run("new", tmp_path / "moby", "--from", tmp_path / "whale.svg")
+    assert code == 0
+    assert "1 closed shape within the body" in out
+    outline = load_robot(tmp_path / "moby").body.outline
+    assert outline is not None
+    assert len(outline.rings) == 1 + holes

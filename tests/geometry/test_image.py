@@ -285,3 +285,17 @@ def test_same_picture_same_outline() -> None:
     content = DISCS["noise, fading light, JPEG 40"]()
     first, second = (read_outline(content, name="a.jpg", size=SIZE).exterior for _ in range(2))
     assert np.array_equal(first, second)
+
+
+@pytest.mark.parametrize("depth", [0.42, 0.55])
+def test_a_shadow_that_is_taken_for_body_is_told(depth: float) -> None:
+    """Oracle: the star without its shadow: the outline is off, and so it says; without a shadow it says nothing."""
+    star = shape(STAR, (70, 120, 190))
+    ground = (200, 200, 200)
+    image = shadowed(canvas(star, ground=ground), canvas(shape(STAR, "white"), ground="black"), depth)
+    found = read_drawing(picture(noisy(image, 3), "JPEG", quality=60), name="a.jpg", size=SIZE)
+    pixel = SIZE / float(np.ptp(STAR, axis=0).max())
+    assert found.outline.area > 1.1 * Polygon(STAR).area * pixel**2
+    assert any("of the body has the colour of the ground, only darker" in note for note in found.notes)
+    plain = read_drawing(picture(noisy(canvas(star, ground=ground), 3), "JPEG", quality=60), name="a.jpg", size=SIZE)
+    assert not any("darker" in note for note in plain.notes)

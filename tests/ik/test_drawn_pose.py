@@ -57,7 +57,7 @@ def test_what_cannot_be_a_pose_is_refused(tmp_path: Path) -> None:
         InputError, match=r"a\.svg: a pose can be drawn over a drawing only, the body is of a mesh file"
     ):
         drawn_pose(strip_robot(), tmp_path / "a.svg")
-    with pytest.raises(InputError, match=r"missing\.svg: cannot be read: No such file"):
+    with pytest.raises(InputError, match=r"missing\.svg: there is no such file"):
         drawn_pose(drawn(), tmp_path / "missing.svg")
     (tmp_path / "pose.svg").write_bytes(svg(30, 40, unit=2.0))
     with pytest.raises(OutlineError, match=r"pose\.svg: is an SVG drawing in units of 2 x 2 mm on a page of"):

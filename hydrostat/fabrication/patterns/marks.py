@@ -80,6 +80,14 @@ def marker_marks(robot: Robot) -> tuple[Shape, ...]:
     return tuple(marks)
 
 
+def decoration_marks(robot: Robot, seam: Polygon, pinholes: Iterable[Pinhole]) -> tuple[Shape, ...]:
+    """What is drawn on the body, such as eyes, but for where a hole is."""
+    holes = shapely.union_all([shapely.Point(hole.centre).buffer(hole.radius + _CLEAR) for hole in pinholes])
+    lines = [LineString([place(point) for point in line]) for line in robot.body.marks]
+    drawn = [line.intersection(seam).difference(holes) for line in lines]
+    return tuple(mark for line in drawn for mark in trace(line, Layer.MARK, PatternPart.DECORATION))
+
+
 def dashed(geometry: BaseGeometry) -> BaseGeometry:
     """Each line of a geometry as dashes, with one at both of its ends."""
     dashes = []

@@ -9,7 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.gusset import gusset_panels, stuffed_thickness, wants_gusset
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.marks import cable_marks, marker_marks, seam_marks, winch_marks
+from hydrostat.fabrication.patterns.marks import cable_marks, decoration_marks, marker_marks, seam_marks, winch_marks
 from hydrostat.fabrication.patterns.opening import Opening, find_opening
 from hydrostat.fabrication.patterns.pinholes import Pinhole, find_pinholes, pinhole_problems
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, PatternPart, Place, Shape, trace
@@ -101,7 +101,8 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
     pinholes = tuple(hole.circle for hole in holes)
     markers = marker_marks(robot) if options.marker_names else ()
     marks = {side: cable_marks(robot, draft.sewn(side), skin.seam, holes) for side in sides}
-    front = (*cloth, *(pinholes if "front" in sides else ()), *marks.get("front", ()), *markers)
+    drawn = decoration_marks(robot, skin.seam, holes)
+    front = (*cloth, *(pinholes if "front" in sides else ()), *marks.get("front", ()), *markers, *drawn)
     back = (*cloth, *(pinholes if behind else ()), *marks.get("back", ()))
     thickness = 1e3 * (robot.body.thickness or 0.0)
     wanted = wants_gusset(skin.seam, thickness, options)

@@ -36,6 +36,7 @@ class PatternPart(StrEnum):
     OPENING = "opening"
     ZIPPER = "zipper"
     MARKER = "marker"
+    DECORATION = "decoration"
     GRAIN = "grain"
     RULER = "ruler"
     TEXT = "text"

@@ -15,17 +15,16 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from hydrostat.errors import OutlineError
+from hydrostat.geometry.files.drawn_lines import Inner, drawing_of
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
     Drawing,
     Page,
-    body_and_holes,
     checked_lines,
     closed_rings,
     join_lines,
     one_line,
-    outline_on_page,
     page_about,
     without_repeats,
 )
@@ -47,7 +46,7 @@ _LINES = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "LINE", "ARC"
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError, AssertionError)
 
 
-def read_dxf(content: bytes, name: str, size: float | None, page: Page | None) -> Drawing:
+def read_dxf(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
     """Read the outline of a body from a DXF drawing in text form, and in words what was left out.
 
     The largest closed line is the body, those inside it are holes. Polylines, circles, ellipses, splines, lines and
@@ -67,10 +66,10 @@ def read_dxf(content: bytes, name: str, size: float | None, page: Page | None) -
     with _listening(), np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
         lines = list(checked_lines(layout.lines(), name))
     chains = join_lines([line for line, closed in lines if not closed], name)
-    rings, left_out = closed_rings([pair for pair in lines if pair[1]] + chains, name)
-    body, holes = body_and_holes(rings, name)
-    page = page or page_about(body, kind, (unit or 1.0, unit or 1.0), size)
-    return Drawing(outline_on_page(body, holes, page, name), page, (*mended, *layout.notes(), *left_out))
+    found = closed_rings([pair for pair in lines if pair[1]] + chains, name)
+    side = unit or 1.0
+    notes = (*mended, *layout.notes())
+    return drawing_of(found, name, inner, lambda body: page or page_about(body, kind, (side, side), size), notes)
 
 
 def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:

@@ -8,8 +8,18 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import OutlineError
+from hydrostat.geometry.files.drawn_lines import Inner, drawn_picture
 from hydrostat.geometry.files.rings import Drawing, Page, one_line, outline_on_page, page_about
-from hydrostat.geometry.files.silhouette import Contrast, PixelPatch, Silhouette, contrast, covered, silhouette
+from hydrostat.geometry.files.silhouette import (
+    Contrast,
+    PixelPatch,
+    ShadedPart,
+    Silhouette,
+    contrast,
+    covered,
+    shaded_part,
+    silhouette,
+)
 from hydrostat.units import counted
 
 if TYPE_CHECKING:
@@ -23,7 +33,7 @@ _UNEVEN = 80.0
 _BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticError, AttributeError, EOFError)
 
 
-def read_image(content: bytes, name: str, size: float | None, page: Page | None) -> Drawing:
+def read_image(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
     """Read the outline of a body from a photograph or a drawing on plain ground, PNG or JPEG, and what was left out.
 
     A picture with transparent parts tells the body by them; else the body is what differs in colour from the ground,
@@ -40,11 +50,13 @@ def read_image(content: bytes, name: str, size: float | None, page: Page | None)
     kind = f"a picture of {step * pixels.shape[1]} x {step * pixels.shape[0]} pixels"
     if page is not None:
         page.check(kind, name)
-    found, notes = _find_body(pixels, name)
+    found, shadow, notes = _find_body(pixels, name)
     page = page or page_about(found.body, kind, (1.0, -1.0), size)
     outline, scale = outline_on_page(found.body, list(found.holes), page, name), page.scale[0]
     coarse = (f"read at one pixel in {step * step}: the outline is known to {1e3 * scale:.2g} mm",) if step > 1 else ()
-    return Drawing(outline, page, (*notes, *_notes(found, page), *coarse))
+    shade = (_shade_told(shadow, page),) if shadow else ()
+    drawing = Drawing(outline, page, (*notes, *shade, *_notes(found, page), *coarse))
+    return drawn_picture(drawing) if inner is Inner.DRAWN else drawing
 
 
 def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 4"], int]:
@@ -94,11 +106,13 @@ def _plain(image: "Image", step: int) -> Float[np.ndarray, "rows columns 4"]:
     return np.asarray(coloured, dtype=float)
 
 
-def _find_body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[Silhouette, tuple[str, ...]]:
-    """The body in a picture, and a note on how it was told from its ground."""
+def _find_body(
+    pixels: Float[np.ndarray, "rows columns 4"], name: str
+) -> tuple[Silhouette, ShadedPart | None, tuple[str, ...]]:
+    """The body in a picture, what of it may be its shadow, and a note on how it was told from its ground."""
     opacity = pixels[..., 3]
     if float((opacity < 128.0).mean()) > 0.005:
-        return silhouette(opacity, 127.5, 127.5, name), ()
+        return silhouette(opacity, 127.5, 127.5, name), None, ()
     if min(opacity.shape) < 8:
         raise OutlineError(
             f"{name}: the picture is too small, {opacity.shape[1]} x {opacity.shape[0]} pixels: take a larger one"
@@ -111,7 +125,18 @@ def _find_body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[
         )
     level, shadow = _body_level(seen)
     note = ("a grey part beside the body was taken for its shadow and left out",) if shadow else ()
-    return silhouette(seen.field, level, seen.faint, name), note
+    return silhouette(seen.field, level, seen.faint, name), shaded_part(seen, level), note
+
+
+def _shade_told(found: ShadedPart, page: Page) -> str:
+    """A note on what of the body may be its shadow."""
+    x, y = found.place[0] - page.origin[0], page.origin[1] - found.place[1]
+    scale = 1e3 * page.scale[0]
+    where = f"up to {scale * found.width:.2g} mm wide about ({scale * x:.0f}, {scale * y:.0f}) mm"
+    return (
+        f"{found.share:.0%} of the body has the colour of the ground, only darker, {where}: if that is a shadow, the "
+        "outline is as much off; take the picture in even light, or draw over it"
+    )
 
 
 def _body_level(seen: Contrast) -> tuple[float, bool]:

@@ -6,6 +6,7 @@ from pathlib import PurePath
 import numpy as np
 
 from hydrostat.errors import InputError, OutlineError
+from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.files.rings import Drawing, Page
 from hydrostat.geometry.files.stranger import MOST_BYTES
 from hydrostat.geometry.outline import Outline
@@ -13,30 +14,44 @@ from hydrostat.geometry.outline import Outline
 OUTLINE_SUFFIXES = tuple(MOST_BYTES)  # names of files that outlines are read from end in one of these
 
 
-def read_outline(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Outline:
+def read_outline(
+    content: bytes,
+    *,
+    name: str,
+    size: float | None = None,
+    page: Page | None = None,
+    inner: Inner = Inner.HOLES,
+) -> Outline:
     """Read the outline of a body [m] from a drawing or a picture; its name says which kind it is, and stands in errors.
 
     The x axis points right, y up, the origin is the centre of the bounding box or that of the `page`: of another
     drawing, which this one was drawn over. `size` is the longest side of the bounding box [m], not needed where the
-    file has a unit.
+    file has a unit. `inner` says whether shapes in the body are holes, or drawn on it.
 
     Raises:
         OutlineError: no kind of file that is read, or no body can be made of it; the message says why.
         InputError: `size` is not positive, or there is a page as well.
     """
-    return read_drawing(content, name=name, size=size, page=page).outline
+    return read_drawing(content, name=name, size=size, page=page, inner=inner).outline
 
 
-def read_drawing(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Drawing:
+def read_drawing(
+    content: bytes,
+    *,
+    name: str,
+    size: float | None = None,
+    page: Page | None = None,
+    inner: Inner = Inner.HOLES,
+) -> Drawing:
     """Read the outline of a body, and in words what was left out; all else is as in `read_outline`.
 
     The last drawing is kept: who makes a robot of one reads it several times.
     """
-    return _read_drawing(content, name, size, page)
+    return _read_drawing(content, name, size, page, inner)
 
 
 @lru_cache(maxsize=1)
-def _read_drawing(content: bytes, name: str, size: float | None, page: Page | None) -> Drawing:
+def _read_drawing(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
     if size is not None and page is not None:
         raise InputError(f"{name}: a drawing on the page of another has its size from there: leave the size out")
     if size is not None and not 0.0 < size < np.inf:
@@ -59,4 +74,4 @@ def _read_drawing(content: bytes, name: str, size: float | None, page: Page | No
         from hydrostat.geometry.files.dxf import read_dxf as read
     else:
         from hydrostat.geometry.files.image import read_image as read
-    return read(content, name, size, page)
+    return read(content, name, size, page, inner)

@@ -11,7 +11,6 @@ from shapely import Polygon
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.mesh import joined_groups
 from hydrostat.geometry.outline import Outline, Ring, fault
-from hydrostat.units import counted
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,11 @@ class Drawing:
     page: Page  # what the drawing's own coordinates mean
     # one line for each thing that was ignored, filled or mended; empty if there was nothing
     notes: tuple[str, ...] = ()
+    marks: tuple[Ring, ...] = ()  # lines that are drawn on the body [m]; closed ones end where they begin
 
+
+DRAWN_HINT = '--inner drawn, or inner = "drawn" in [body]'
+"""What to say where closed shapes are no holes."""
 
 MOST_POINTS = 100_000  # a drawing with more points, counting what it repeats, is refused
 MOST_SHAPES = 200  # a drawing may have this many closed shapes: the body and its holes
@@ -73,8 +76,8 @@ _GAP = 1e-3
 _ROUNDING = 1e-6
 
 
-def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ring], tuple[str, ...]]:
-    """The rings among a drawing's lines, in its units, and a note on the open lines that were left out.
+def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ring], list[Ring]]:
+    """The rings among a drawing's lines, in its units, and the open lines.
 
     Each line is said to close itself or not; ends that all but meet are closed. Errors call the file by its name.
     Raises OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
@@ -95,8 +98,7 @@ def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ri
         raise OutlineError(f"{name}: the outline is open between {start} and {end}, a gap of {gap:.4g}: close the path")
     if largest == 0.0:
         raise OutlineError(f"{name}: no closed shape: draw the outline of the body as one closed path")
-    left_out = (f"left out {counted(len(open_lines), 'open line')}, the largest at {point_text(line[0])}",)
-    return [line for extent, line in rings if extent > 0.0], left_out if open_lines else ()
+    return [line for extent, line in rings if extent > 0.0], [line for _, line in open_lines]
 
 
 def checked_lines(lines: Iterable[tuple[Ring, bool]], name: str) -> Iterator[tuple[Ring, bool]]:
@@ -117,7 +119,7 @@ def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
     Raises:
         OutlineError: a ring crosses itself or another, lies outside the body or inside a hole, or there are too many.
     """
-    shapes = _shapes(rings, name)
+    shapes = shapes_of(rings, name)
     body, holes = shapes[0], []
     for shape in shapes[1:]:
         if body.disjoint(shape):
@@ -131,7 +133,7 @@ def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
         if inside is not None:
             raise OutlineError(
                 f"{name}: a closed shape at {point_text(shape.exterior.coords[0])} lies inside a hole and so hangs on "
-                "nothing: delete it, or the hole"
+                f"nothing: delete it, or the hole; or if they are drawn on the body, such as an eye, say {DRAWN_HINT}"
             )
         crossing = next((other for other in (body, *holes) if other.exterior.intersects(shape.exterior)), None)
         if crossing is not None:
@@ -142,7 +144,7 @@ def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
     return np.array(body.exterior.coords), [np.array(hole.exterior.coords) for hole in holes]
 
 
-def _shapes(rings: list[Ring], name: str) -> list[Polygon]:
+def shapes_of(rings: list[Ring], name: str) -> list[Polygon]:
     """The rings that have an area as polygons, the largest first."""
     shapes = []
     for ring in rings:

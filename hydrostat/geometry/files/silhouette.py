@@ -103,6 +103,32 @@ def _shaded(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bool[np
     return (off < tolerance) & (share < 1.0) & (share > _DARKEST_SHADOW)
 
 
+@dataclass(frozen=True)
+class ShadedPart:
+    """A part of what was taken for body that has the colour of the ground, only darker, as a shadow has."""
+
+    share: float  # of the body's pixels
+    place: tuple[float, float]  # a pixel in the widest of it: column and row
+    width: float  # there, in pixels
+
+
+def shaded_part(seen: Contrast, level: float) -> ShadedPart | None:
+    """What of the body may be its shadow; None where it is little, or where all of the body has such a colour."""
+    body = seen.field > level
+    shaded = body & seen.shaded
+    depth = distance_transform_edt(shaded)
+    wide = shaded & (depth > _SHADE_DEPTH)
+    share = float(shaded.sum() / max(body.sum(), 1))
+    outer = distance_transform_edt(body)[wide].min(initial=np.inf)
+    if not (wide.any() and _SHADE_LEAST < share < _SHADE_MOST and outer < 2 * _SHADE_DEPTH):
+        return None
+    row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
+    return ShadedPart(share, (float(column), float(row)), 2.0 * float(depth[row, column]))
+
+
+_SHADE_DEPTH = 3.0  # pixels: along its edge every body is mixed with the ground
+_SHADE_LEAST, _SHADE_MOST = 0.02, 0.5
+
 _SECOND = 0.02
 _HOLE = 0.01
 _THIN = 0.025

@@ -11,15 +11,14 @@ from xml.parsers import expat
 import numpy as np
 
 from hydrostat.errors import OutlineError
+from hydrostat.geometry.files.drawn_lines import Inner, drawing_of
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
     Drawing,
     Page,
-    body_and_holes,
     closed_rings,
     one_line,
-    outline_on_page,
     page_about,
     without_repeats,
 )
@@ -192,13 +191,13 @@ def _box(text: str) -> tuple[float, float, float, float] | None:
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError)
 
 
-def read_svg(content: bytes, name: str, size: float | None, page: Page | None) -> Drawing:
+def read_svg(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
     """Read the outline of a body from an SVG drawing, and in words what was left out.
 
-    The largest closed shape is the body, the shapes inside it are holes; whether they are filled plays no part. Text,
-    pictures, what is hidden and open lines smaller than the body are ignored. Curves become chords. Without `size` or
-    `page` the file must have a size in mm, cm, in, ...; see `read_outline`. Raises OutlineError: the file is no SVG, or
-    no body can be made of it; the message says where, in the drawing's units.
+    The largest closed shape is the body, the shapes inside it are holes, or drawn on it; whether they are filled plays
+    no part. Text, pictures, what is hidden and open lines smaller than the body are ignored. Curves become chords.
+    Without `size` or `page` the file must have a size in mm, cm, in, ...; see `read_outline`. Raises OutlineError: the
+    file is no SVG, or no body can be made of it; the message says where, in the drawing's units.
     """
     document = _open(content, name)
     across, down = document.unit or (1.0, 1.0)
@@ -207,10 +206,8 @@ def read_svg(content: bytes, name: str, size: float | None, page: Page | None) -
         page.check(kind, name)
     elif size is None and document.unit is None:
         raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): give its size")
-    rings, notes = closed_rings(_subpaths(document, name), name)
-    body, holes = body_and_holes(rings, name)
-    page = page or page_about(body, kind, (across, -down), size)
-    return Drawing(outline_on_page(body, holes, page, name), page, notes)
+    lines = closed_rings(_subpaths(document, name), name)
+    return drawing_of(lines, name, inner, lambda body: page or page_about(body, kind, (across, -down), size))
 
 
 def _kind_of_page(document: _SvgDocument) -> str:

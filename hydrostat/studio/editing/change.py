@@ -144,4 +144,4 @@ def remesh(
         unit = float(units.unit_factor(robot.length_unit, units.LENGTH))
         return surface_body(body.content, unit=unit, volume=body.volume, **given)
     assert body.thickness is not None
-    return outline_body(body.content, thickness=body.thickness, volume=body.volume, **given)
+    return outline_body(body.content, thickness=body.thickness, volume=body.volume, inner=body.inner, **given)
