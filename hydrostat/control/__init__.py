@@ -1,5 +1,17 @@
-"""From contractions in time to motors: the contract of a link, motors within limits, playing (R58)."""
+"""From contractions in time to motors: a bus and a link to them, motors within limits, playing (R58)."""
 
+from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
+from hydrostat.control.calibration import (
+    Calibration,
+    WinchMotor,
+    read_calibration,
+    usual_calibration,
+    write_calibration,
+)
+from hydrostat.control.dynamixel_bus import DynamixelBus
+from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+from hydrostat.control.guard import GuardLimits, TensionGuard
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
 from hydrostat.control.motors import FASTEST, Motors
 from hydrostat.control.player import Player, play
@@ -8,13 +20,31 @@ from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_ta
 __all__ = [
     "FASTEST",
     "SILENCE",
+    "Ails",
+    "Bus",
+    "BusLink",
+    "Calibration",
+    "DynamixelBus",
+    "EmulatedChain",
+    "EmulatedServo",
+    "GuardLimits",
     "Key",
     "Link",
+    "LinkLimits",
+    "LinkState",
+    "MotorFacts",
     "Motors",
     "Player",
+    "Port",
+    "Reading",
     "SimulatedLink",
+    "TensionGuard",
     "Timeline",
+    "WinchMotor",
     "play",
+    "read_calibration",
     "read_timeline",
     "timeline_table",
+    "usual_calibration",
+    "write_calibration",
 ]

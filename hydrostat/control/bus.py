@@ -1,0 +1,105 @@
+"""`Bus`: the contract of a chain of motors on one cable to this computer."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, Protocol, runtime_checkable
+
+from hydrostat.arrays import Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotorFacts:
+    """What a motor has answered.
+
+    Attributes:
+        number: of the motor on its bus.
+        model: in words.
+        firmware: its version.
+        watchdog: whether it was seen, just now, to stop by itself when it was told nothing.
+    """
+
+    number: int
+    model: str
+    firmware: int
+    watchdog: bool
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reading:
+    """What was last heard of each motor; what it never told is NaN.
+
+    Attributes:
+        angles: of the spools, rising as they take cable in [rad].
+        currents: positive as they take cable in [A].
+        temperatures: [degree C].
+        volts: of the supply [V].
+        stamps: when each was heard, by the clock of the bus [s].
+        faults: what each reports, in words; empty for none.
+    """
+
+    angles: Vector
+    currents: Vector
+    temperatures: Vector
+    volts: Vector
+    stamps: Vector
+    faults: tuple[str, ...]
+
+
+@runtime_checkable
+class Port(Protocol):
+    """A serial line, as pyserial has it."""
+
+    timeout: float | None
+
+    def write(self, data: bytes, /) -> int | None:
+        """Send bytes."""
+        ...
+
+    def read(self, size: int, /) -> bytes:
+        """So many bytes, or fewer after the time-out."""
+        ...
+
+    def close(self) -> None:
+        """Let it go."""
+        ...
+
+
+class Bus(ABC):
+    """Contract of a chain of motors, each with one spool: a new kind of motor is one class.
+
+    Only a `BusLink` uses a bus, which keeps to one thread at a time. A bus never stands in for another: what cannot be
+    reached is an error. Angles count from where the motor itself counts; contractions are made of them by a
+    `Calibration`. Motors turn to bounded positions only: they are never told a speed or a current to keep for ever.
+
+    Attributes:
+        kind: words that begin every line about it.
+    """
+
+    kind: ClassVar[str]
+
+    @abstractmethod
+    def identify(self) -> tuple[MotorFacts, ...]:
+        """Facts of the motors asked for, in their order, torque off (HydrostatError: who is silent, or another model).
+
+        Each motor's own watchdog is armed and then tried: told nothing for a moment, does it stop?
+        """
+
+    @abstractmethod
+    def arm(self, currents: Vector) -> None:
+        """Switch torque on where they stand, each bounded to a current [A] (HydrostatError: one did not take it)."""
+
+    @abstractmethod
+    def read(self) -> Reading:
+        """What was last heard; a motor that is silent keeps its old stamp (HydrostatError: the line itself is gone)."""
+
+    @abstractmethod
+    def write(self, angles: Vector, speeds: Vector) -> None:
+        """Let them go to angles [rad] at speeds of at most [rad/s]; return at once (HydrostatError: line gone)."""
+
+    @abstractmethod
+    def stop(self) -> None:
+        """Let them stand where they are, torque on. It may be called at any time, twice, and never raises."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop them and let the line go. It may be called twice and never raises."""

@@ -1,0 +1,265 @@
+"""`BusLink`: motors on a bus as a link in contractions, which turn only when armed, and stand when in doubt."""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.bus import Bus, MotorFacts, Reading
+from hydrostat.control.calibration import Calibration
+from hydrostat.control.guard import TensionGuard
+from hydrostat.control.link import Link
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Winch
+
+DEADLINE = 0.2
+"""Told nothing for so long [s], motors are stopped by the watch on this side; their own watchdogs stop them sooner."""
+AHEAD = 0.12
+"""A goal is never further ahead of a motor than it turns in this time [s]: a dead host leaves it no further."""
+LOST = 0.2
+"""A reading so old is a fault [s]."""
+BEYOND = 5e-4
+"""Motors may be so far beyond the limits of their winch, by what the motor rounds and the cable gives [m]."""
+HOTTEST = 75.0
+"""Warmest that a motor may be [degree C]."""
+BEHIND, PATIENCE = 1e-3, 0.5
+"""A motor that is further from its goal than this [m] and stands for so long [s] does not follow."""
+
+
+class LinkState(StrEnum):
+    """How far a link is."""
+
+    CLOSED = "closed"
+    IDENTIFIED = "identified: every motor has answered"
+    CALIBRATED = "calibrated: all zeros are known"
+    ARMED = "armed: motors turn as they are told"
+    HOLD = "hold: motors stand, and must be armed anew"
+    STOPPED = "stopped by hand"
+    FAULT = "fault"
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkLimits:
+    """What motors may do.
+
+    Attributes:
+        speed: of cables, at most [m/s].
+        rise: of that speed [m/s^2].
+    """
+
+    speed: float = 0.06
+    rise: float = 1.0
+
+
+class BusLink(Link):
+    """A link to real motors: limits, deadline, guard, state and log; all that turns goes through it.
+
+    `identify` asks every motor, `arm` lets them turn, and nothing else does. Contractions are clipped to the limits of
+    the winches, speeds rise and stay below theirs, and goals stay close ahead of the motors. A motor that is silent,
+    hot or at fault, a deadline that is missed, and a guard that objects stop all motors; the words say why.
+
+    Attributes:
+        state: of it.
+        facts: of the motors, once identified.
+        why: it stopped, in words.
+        reading: the newest.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        winches: Sequence[Winch],
+        calibration: Calibration,
+        *,
+        limits: LinkLimits | None = None,
+        guard: TensionGuard | None = None,
+        log: Callable[[str], None] = lambda _: None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """A closed link (InputError: the calibration is of other winches)."""
+        if [spool.winch for spool in calibration.spools] != [winch.name for winch in winches]:
+            raise InputError("the calibration is of other winches than these")
+        self.state, self.why = LinkState.CLOSED, ""
+        self.facts: tuple[MotorFacts, ...] = ()
+        self.reading: Reading | None = None
+        self._bus, self._calibration, self._guard, self._log, self._clock = bus, calibration, guard, log, clock
+        self._limits, self._names = limits or LinkLimits(), [winch.name for winch in winches]
+        self._low = np.array([-winch.release for winch in winches], dtype=float)
+        self._high = np.array([winch.travel for winch in winches], dtype=float)
+        self._places = self._goal = np.zeros(len(winches))
+        self._speed, self._sent = 0.0, -np.inf
+        self._mark, self._marked = np.zeros(len(winches)), np.zeros(len(winches))  # a place [m], and when it was [s]
+        self._lock, self._over = threading.RLock(), threading.Event()
+        self._watch: threading.Thread | None = None
+
+    def identify(self) -> tuple[MotorFacts, ...]:
+        """Ask every motor who it is (HydrostatError: one is silent, or another model)."""
+        with self._lock:
+            try:
+                self.facts = self._bus.identify()
+            except HydrostatError as error:
+                raise self._fault(str(error)) from None
+            self._to(LinkState.CALIBRATED if self._calibration.done else LinkState.IDENTIFIED)
+            for fact, name in zip(self.facts, self._names, strict=True):
+                stops = "stops by itself" if fact.watchdog else "does not stop by itself: its goals stay close ahead"
+                self._say(f"{name}: motor {fact.number}, {fact.model}, firmware {fact.firmware}, {stops}")
+            return self.facts
+
+    def arm(self) -> None:
+        """Let motors turn from now on (HydrostatError: not calibrated, out of the limits, or one is not heard)."""
+        with self._lock:
+            if self.state in (LinkState.CLOSED, LinkState.IDENTIFIED):
+                needed = "identify the motors" if self.state is LinkState.CLOSED else "calibrate them"
+                raise HydrostatError(f"motors cannot be armed: first {needed}")
+            try:
+                self.reading = self._bus.read()
+                self._judge(self._clock(), armed=False)
+                self._bus.arm(np.array([spool.current for spool in self._calibration.spools]))
+            except HydrostatError as error:
+                raise self._fault(str(error)) from None
+            self._goal, self._speed, self._sent, self.why = self._places.copy(), 0.0, self._clock(), ""
+            self._marked[:] = self._sent
+            self._to(LinkState.ARMED)
+
+    def send(self, contractions: Vector, now: float, *, speed: float) -> None:
+        """Let the motors go to contractions, within limits."""
+        with self._lock:
+            self._must_be_armed()
+            since = self._clock() - self._sent
+            if since > DEADLINE:
+                raise self._stopped(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
+            self._goal = np.clip(contractions, self._low, self._high)
+            self._speed = min(speed, self._limits.speed, self._speed + self._limits.rise * max(since, 1e-3))
+            ahead = self._speed * AHEAD
+            near = np.clip(self._goal, self._places - ahead, self._places + ahead)
+            if (np.abs(near - self._goal) == 0).all() and np.abs(self._goal - self._places).max(initial=0.0) < 1e-4:
+                self._speed = 0.0
+            rates = max(self._speed, 1e-3) / self._calibration.radii(near)
+            try:
+                self._bus.write(self._calibration.angles(near), rates)
+            except HydrostatError as error:
+                raise self._fault(str(error)) from None
+            self._sent = self._clock()
+
+    def read(self, now: float) -> Vector:
+        """Contractions as last heard of [m]."""
+        with self._lock:
+            if self.state is LinkState.FAULT:
+                raise HydrostatError(self.why)
+            try:
+                self.reading = self._bus.read()
+                self._judge(self._clock(), armed=self.state is LinkState.ARMED)
+            except HydrostatError as error:
+                raise self._fault(str(error)) from None
+            return self._places.copy()
+
+    def stop(self) -> None:
+        """Let the motors stand."""
+        with suppress(Exception):
+            self._bus.stop()
+        with suppress(Exception):
+            if self.state is LinkState.ARMED:
+                self._stopped(LinkState.STOPPED, "stopped")
+
+    def close(self) -> None:
+        """Stop the motors, and let them go for good."""
+        self._over.set()
+        self.stop()
+        with suppress(Exception):
+            self._bus.close()
+        self._to(LinkState.CLOSED)
+
+    def check_deadline(self) -> None:
+        """Stop motors that were told nothing for too long; `watch` asks it all the time."""
+        if self.state is LinkState.ARMED and self._clock() - self._sent > DEADLINE:
+            with self._lock:
+                if self.state is LinkState.ARMED and (since := self._clock() - self._sent) > DEADLINE:
+                    self._stopped(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
+
+    def watch(self) -> None:
+        """Keep the deadline from a thread of its own, whatever else this program is busy with."""
+        if self._watch is None:
+            self._watch = threading.Thread(target=self._watching, name="deadline of the motors", daemon=True)
+            self._watch.start()
+
+    def _watching(self) -> None:
+        while not self._over.wait(0.02):
+            with suppress(Exception):
+                self.check_deadline()
+
+    def _judge(self, now: float, *, armed: bool) -> None:
+        """Raise what is wrong with the newest reading; else take it as where the motors are."""
+        reading = self.reading
+        assert reading is not None
+        ages = now - reading.stamps
+        if (worst := float(ages.max(initial=0.0))) > LOST:
+            name = self._names[int(ages.argmax())]
+            told = f"for {worst:.2f} s" if np.isfinite(worst) else "at all"
+            raise HydrostatError(f"the motor of {name} has not answered {told}; look at its power and cable")
+        for name, fault in zip(self._names, reading.faults, strict=True):
+            if fault:
+                raise HydrostatError(f"the motor of {name} reports: {fault}")
+        if (hot := float(np.nanmax(np.append(reading.temperatures, -np.inf)))) > HOTTEST:
+            name = self._names[int(np.nanargmax(reading.temperatures))]
+            raise HydrostatError(f"the motor of {name} is {hot:.0f} degrees warm, {HOTTEST:g} at most; let it cool")
+        if not self._calibration.done:
+            return
+        self._places = self._calibration.contractions(reading.angles)
+        beyond = np.maximum(self._low - self._places, self._places - self._high)
+        if not (beyond <= BEYOND).all():
+            index = int(np.nan_to_num(beyond, nan=np.inf).argmax())
+            raise HydrostatError(
+                f"{self._names[index]} stands at {1e3 * self._places[index]:.1f} mm, beyond its limits of "
+                f"{1e3 * self._low[index]:.1f} to {1e3 * self._high[index]:.1f} mm; calibrate it anew"
+            )
+        if armed:
+            self._judge_following(now)
+        if armed and self._guard is not None:
+            radii = self._calibration.radii(self._places)
+            if words := self._guard.fault(self._places, self._taking(reading), radii, now):
+                raise HydrostatError(words)
+
+    def _judge_following(self, now: float) -> None:
+        """Raise that a motor stands away from its goal: it is stuck, or has lost its power and begun anew."""
+        follows = np.abs(self._goal - self._places) < BEHIND
+        follows |= np.abs(self._places - self._mark) > 1e-4
+        self._mark = np.where(follows, self._places, self._mark)
+        self._marked = np.where(follows, now, self._marked)
+        if (waits := now - self._marked).max(initial=0.0) > PATIENCE:
+            index = int(waits.argmax())
+            raise HydrostatError(
+                f"{self._names[index]} does not follow: it stands at {1e3 * self._places[index]:.1f} mm and was told "
+                f"{1e3 * self._goal[index]:.1f} mm; its cable is held, it has lost power, or its current is too low"
+            )
+
+    def _taking(self, reading: Reading) -> Vector:
+        """Currents, positive as cable is taken in [A]."""
+        return reading.currents * [spool.turns for spool in self._calibration.spools]
+
+    def _must_be_armed(self) -> None:
+        if self.state is not LinkState.ARMED:
+            raise HydrostatError(f"the motors do not turn: {self.why or self.state}")
+
+    def _fault(self, why: str) -> HydrostatError:
+        return self._stopped(LinkState.FAULT, why)
+
+    def _stopped(self, state: LinkState, why: str) -> HydrostatError:
+        """Stop the motors, go to a state, and give the error that says why."""
+        self._bus.stop()
+        self.why = why
+        self._to(state)
+        return HydrostatError(why)
+
+    def _to(self, state: LinkState) -> None:
+        if state is not self.state:
+            self.state = state
+            self._say(f"{state}{f': {self.why}' if self.why and state is not LinkState.ARMED else ''}")
+
+    def _say(self, words: str) -> None:
+        with suppress(Exception):
+            self._log(f"{self._clock():.3f} s, {self._bus.kind}: {words}")

@@ -1,0 +1,319 @@
+"""`DynamixelBus`: servos of ROBOTIS' X series (XL330, XC330, XL430) by protocol 2.0.
+
+Source: ROBOTIS e-Manual, control tables of XL330-M288, XC330-T288, XL430-W250.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from math import pi
+from typing import ClassVar
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+from hydrostat.control.dynamixel_packets import (
+    ALL,
+    PING,
+    READ,
+    STATUS,
+    SYNC_READ,
+    SYNC_WRITE,
+    WRITE,
+    Packet,
+    PacketReader,
+    pack,
+)
+from hydrostat.errors import HydrostatError
+
+
+@dataclass(frozen=True)
+class DynamixelModel:
+    """What a model can do.
+
+    Attributes:
+        title: as it is sold.
+        measures: whether it measures its current, and bounds it; else it tells its load, of the stall current.
+        stall: current at stall [A].
+    """
+
+    title: str
+    measures: bool
+    stall: float
+
+
+MODELS = {
+    1190: DynamixelModel("XL330-M077", True, 1.47),
+    1200: DynamixelModel("XL330-M288", True, 1.47),
+    1210: DynamixelModel("XC330-T181", True, 0.8),
+    1220: DynamixelModel("XC330-T288", True, 0.8),
+    1230: DynamixelModel("XC330-M181", True, 1.8),
+    1240: DynamixelModel("XC330-M288", True, 1.8),
+    1060: DynamixelModel("XL430-W250", False, 1.4),
+}
+"""By the number that they answer a ping with."""
+
+MODE, TORQUE, HARDWARE, WATCHDOG, PWM, CURRENT, PROFILE, GOAL, STATE = 11, 64, 70, 98, 100, 102, 108, 116, 126
+"""Places in the control table: operating mode, torque on, hardware error, watchdog, goal PWM and current, profile
+acceleration (and velocity, goal position after it), goal position, present current (to temperature after it)."""
+STATE_BYTES = 21
+TICK = 2 * pi / 4096  # angle of a step [rad]
+TURNING = 0.229 * 2 * pi / 60  # speed of a step [rad/s]
+SPEEDING = 214.577 * 2 * pi / 3600  # acceleration of a step [rad/s^2]
+FULL_PWM = 885
+WATCH = 5  # of the watchdog [20 ms]: 100 ms
+ACCELERATION = 200.0  # at which they begin and end to turn [rad/s^2]
+FAULTS = {
+    0x01: "supply voltage out of range",
+    0x04: "too hot",
+    0x08: "encoder fault",
+    0x10: "electrical shock or too little power",
+    0x20: "overloaded",
+}
+PROOF = 8.0 * pi / 180.0
+"""Angle that each is asked to turn slowly while its watchdog is tried [rad]; it should turn a sixth of it at most."""
+
+
+class DynamixelBus(Bus):
+    """Servos in extended position mode, bounded in current where they can be (modes 5 and 4)."""
+
+    kind: ClassVar[str] = "dynamixel"
+
+    def __init__(
+        self,
+        port: Port,
+        numbers: Sequence[int],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        wait: Callable[[float], None] = time.sleep,
+        answer: float = 0.02,
+    ) -> None:
+        """Servos on a port, by their numbers.
+
+        Args:
+            port: an open serial line.
+            numbers: of the servos.
+            clock: that only runs forward [s].
+            wait: lets so much time pass [s].
+            answer: longest time for answers [s].
+        """
+        self._port, self._numbers, self._clock, self._wait, self._answer = port, tuple(numbers), clock, wait, answer
+        self._lock = threading.RLock()
+        self._models: dict[int, DynamixelModel] = {}
+        count = len(self._numbers)
+        self._reader, self._closed = PacketReader(), False
+        nothing = np.full(count, np.nan)
+        self._last = Reading(
+            angles=nothing,
+            currents=nothing,
+            temperatures=nothing,
+            volts=nothing,
+            stamps=np.full(count, -np.inf),
+            faults=("",) * count,
+        )
+
+    def identify(self) -> tuple[MotorFacts, ...]:
+        """Facts of the servos; each watchdog is armed and tried."""
+        with self._lock:
+            firmware = {number: self._pinged(number) for number in self._numbers}
+            for number in self._numbers:
+                self._set(number, TORQUE, 0, 1)
+                self._set(number, MODE, 5 if self._models[number].measures else 4, 1)
+            proved = self._prove()
+            return tuple(
+                MotorFacts(
+                    number=number,
+                    model=self._models[number].title,
+                    firmware=firmware[number],
+                    watchdog=number in proved,
+                )
+                for number in self._numbers
+            )
+
+    def arm(self, currents: Vector) -> None:
+        """Switch torque on where they stand."""
+        with self._lock:
+            self._stand()
+            for number, most in zip(self._numbers, currents.tolist(), strict=True):
+                self._set(number, WATCHDOG, 0, 1)  # one that has fired refuses goals until it is reset,
+                self._set(number, GOAL, self._steps(number), 4)  # and then goes on to the last
+                self._bound(number, most)
+                self._set(number, TORQUE, 1, 1)
+                self._set(number, WATCHDOG, WATCH, 1)
+
+    def read(self) -> Reading:
+        """What was last heard of each."""
+        with self._lock:
+            last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
+            stamps, faults = self._last.stamps.copy(), list(self._last.faults)
+            content = STATE.to_bytes(2, "little") + STATE_BYTES.to_bytes(2, "little") + bytes(self._numbers)
+            self._send(ALL, SYNC_READ, content)
+            for packet in self._answers(len(self._numbers)):
+                if len(packet.content) != 1 + STATE_BYTES or packet.number not in self._numbers:
+                    continue
+                index, told = self._numbers.index(packet.number), packet.content[1:]
+                model = self._models.get(packet.number, _UNKNOWN)
+                raw = _signed(told[0:2])
+                last["currents"][index] = 1e-3 * raw * (1.0 if model.measures else model.stall)
+                last["angles"][index] = TICK * _signed(told[6:10])
+                last["volts"][index], last["temperatures"][index] = 0.1 * _signed(told[18:20]), told[20]
+                stamps[index] = self._clock()
+                faults[index] = self._fault(packet)
+            self._last = Reading(**last, stamps=stamps, faults=tuple(faults))
+            return self._last
+
+    def write(self, angles: Vector, speeds: Vector) -> None:
+        """Send goals and speeds to all at once; none answers."""
+        steps = np.rint(angles / TICK).astype(int).tolist()
+        rates = np.clip(np.rint(np.abs(speeds) / TURNING), 1, 32767).astype(int).tolist()
+        rise = max(1, min(32767, round(ACCELERATION / SPEEDING)))
+        values = {
+            number: b"".join(value.to_bytes(4, "little", signed=True) for value in (rise, rate, step))
+            for number, rate, step in zip(self._numbers, rates, steps, strict=True)
+        }
+        with self._lock:
+            self._tell_all(PROFILE, values)
+
+    def stop(self) -> None:
+        """Let them stand; where one cannot be heard, the goal that it has is the last it was told."""
+        with suppress(Exception), self._lock:
+            if not self._closed and self._models:
+                self._stand()
+
+    def close(self) -> None:
+        """Stop; torque stays on, so that no load falls, and the watchdog armed."""
+        self.stop()
+        with suppress(Exception), self._lock:
+            self._closed = True
+            self._port.close()
+
+    def _bound(self, number: int, current: float) -> None:
+        """Bound the current of a servo [A]; its share of power where it does not measure that."""
+        model = self._models[number]
+        if model.measures:
+            self._set(number, CURRENT, max(1, round(1e3 * min(current, model.stall))), 2)
+        else:
+            self._set(number, PWM, max(1, round(FULL_PWM * min(current / model.stall, 1.0))), 2)
+
+    def _steps(self, number: int) -> int:
+        """Where a servo was last heard to be."""
+        return round(float(self._last.angles[self._numbers.index(number)]) / TICK)
+
+    def _stand(self) -> None:
+        """Goals where they are: asked three times, as an answer may be lost."""
+        before, known = self._clock(), np.zeros(len(self._numbers), dtype=bool)
+        for _ in range(3):
+            known = self.read().stamps >= before
+            if known.all():
+                break
+        heard = [number for number, fresh in zip(self._numbers, known.tolist(), strict=True) if fresh]
+        for _ in range(2):  # a watchdog that has fired refuses goals, whether it has stopped its motor or not
+            self._tell_all(WATCHDOG, {number: bytes(1) for number in self._numbers})
+            self._tell_all(GOAL, {number: self._steps(number).to_bytes(4, "little", signed=True) for number in heard})
+
+    def _tell_all(self, place: int, values: Mapping[int, bytes]) -> None:
+        """Write a register of several servos at once; none answers."""
+        size = len(next(iter(values.values()), b""))
+        content = b"".join(bytes([number]) + value for number, value in values.items())
+        self._send(ALL, SYNC_WRITE, place.to_bytes(2, "little") + size.to_bytes(2, "little") + content)
+
+    def _prove(self) -> set[int]:
+        """Servos that stop by themselves: asked to turn slowly and then told nothing, they are where they were soon.
+
+        A cable moves by less than a millimetre meanwhile.
+        """
+        self._stand()
+        begin = self._last.angles.copy()
+        for number in self._numbers:
+            self._set(number, WATCHDOG, 0, 1)
+            self._bound(number, 0.3 * self._models[number].stall)
+            self._set(number, TORQUE, 1, 1)
+            self._set(number, WATCHDOG, 2, 1)
+        self.write(begin + PROOF, np.full(len(begin), PROOF / 0.5))
+        self._wait(0.15)
+        first = self.read().angles.copy()
+        self._wait(0.1)
+        second = self.read().angles.copy()
+        still = (np.abs(second - first) <= 1.5 * TICK) & (np.abs(first - begin) < 0.5 * PROOF) & (first != begin)
+        for number in self._numbers:
+            self._set(number, WATCHDOG, 0, 1)
+        self.write(begin, np.full(len(begin), PROOF / 0.5))
+        self._wait(0.6)
+        for number in self._numbers:
+            self._set(number, TORQUE, 0, 1)
+        return {number for number, proved in zip(self._numbers, still.tolist(), strict=True) if proved}
+
+    def _pinged(self, number: int) -> int:
+        """Version of the firmware of a servo, after its model is known to be one of ours."""
+        for _ in range(3):
+            self._send(number, PING)
+            for packet in self._answers(1):
+                if packet.number == number and len(packet.content) == 4:
+                    model = int.from_bytes(packet.content[1:3], "little")
+                    if model not in MODELS:
+                        known = ", ".join(each.title for each in MODELS.values())
+                        raise HydrostatError(f"motor {number} is a servo of number {model}; known are {known}")
+                    self._models[number] = MODELS[model]
+                    return packet.content[3]
+        raise HydrostatError(
+            f"motor {number} does not answer; look at its power, its cable, its number and the baud rate"
+        )
+
+    def _fault(self, packet: Packet) -> str:
+        """What a servo reports with its answer, in words."""
+        if not packet.content[0] & 0x80:
+            return ""
+        told = self._get(packet.number, HARDWARE, 1)
+        words = [word for bit, word in FAULTS.items() if told is not None and told & bit]
+        return ", ".join(words) or "it reports an error of its hardware"
+
+    def _set(self, number: int, place: int, value: int, size: int) -> None:
+        """Write a register, and hear that it was taken."""
+        for _ in range(3):
+            self._send(number, WRITE, place.to_bytes(2, "little") + value.to_bytes(size, "little", signed=value < 0))
+            for packet in self._answers(1):
+                if packet.number == number and len(packet.content) >= 1 and not packet.content[0] & 0x7F:
+                    return
+        raise HydrostatError(f"motor {number} did not take {_NAMES.get(place, place)}; look at its power and cable")
+
+    def _get(self, number: int, place: int, size: int) -> int | None:
+        self._send(number, READ, place.to_bytes(2, "little") + size.to_bytes(2, "little"))
+        for packet in self._answers(1):
+            if packet.number == number and len(packet.content) == 1 + size:
+                return int.from_bytes(packet.content[1:], "little")
+        return None
+
+    def _send(self, number: int, instruction: int, content: bytes = b"") -> None:
+        try:
+            self._port.write(pack(number, instruction, content))
+        except (OSError, ValueError) as error:
+            raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+
+    def _answers(self, count: int) -> list[Packet]:
+        """Answers within the time, by the clock that only runs forward."""
+        until, found = self._clock() + self._answer, list[Packet]()
+        while len(found) < count and (left := until - self._clock()) > 0:
+            self._port.timeout = left
+            try:
+                data = self._port.read(1) + self._port.read(getattr(self._port, "in_waiting", 0))
+            except (OSError, ValueError, TypeError) as error:
+                raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+            found += [packet for packet in self._reader.feed(data) if packet.instruction == STATUS]
+        return found
+
+
+_UNKNOWN = DynamixelModel("", True, 1.0)
+_NAMES = {
+    MODE: "its mode",
+    TORQUE: "its torque switch",
+    WATCHDOG: "its watchdog",
+    PWM: "its bound of power",
+    CURRENT: "its bound of current",
+}
+
+
+def _signed(data: bytes) -> int:
+    return int.from_bytes(data, "little", signed=True)

@@ -1,0 +1,255 @@
+"""`EmulatedChain`: servos of the X series that are not there, which behave as badly as real ones."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from math import inf
+
+import numpy as np
+
+from hydrostat.control.dynamixel_bus import (
+    CURRENT,
+    GOAL,
+    HARDWARE,
+    MODE,
+    MODELS,
+    PROFILE,
+    PWM,
+    SPEEDING,
+    STATE,
+    TICK,
+    TORQUE,
+    TURNING,
+    WATCHDOG,
+)
+from hydrostat.control.dynamixel_packets import (
+    ALL,
+    PING,
+    READ,
+    REBOOT,
+    STATUS,
+    SYNC_READ,
+    SYNC_WRITE,
+    WRITE,
+    PacketReader,
+    pack,
+)
+
+
+@dataclass
+class Ails:
+    """What is wrong with a servo.
+
+    Attributes:
+        deaf: it hears nothing and says nothing, and goes on with what it was told.
+        stuck: it does not turn.
+        deaf_watchdog: its watchdog does not stop it (the 330 series).
+        hot: it reports that it is too hot, and its torque is off.
+    """
+
+    deaf: bool = False
+    stuck: bool = False
+    deaf_watchdog: bool = False
+    hot: bool = False
+
+
+@dataclass
+class EmulatedServo:
+    """A servo with its control table, gear and load.
+
+    Attributes:
+        number: on its bus.
+        model: number of the model.
+        angle: of its spool [rad].
+        speed: [rad/s].
+        load: torque of its cable by angle [N m], which pulls it back.
+        constant: torque by current [N m/A].
+        ails: what is wrong with it.
+    """
+
+    number: int
+    model: int = 1200
+    angle: float = 0.0
+    speed: float = 0.0
+    load: Callable[[float], float] = lambda _: 0.0
+    constant: float = 0.35
+    ails: Ails = field(default_factory=Ails)
+
+    def __post_init__(self) -> None:
+        self.table = bytearray(256)
+        self.set(0, self.model, 2)
+        self.set(6, 52, 1)
+        self.set(144, 50, 2)
+        self.table[146] = 30
+        self.heard, self.moved = -inf, 0.0
+
+    def get(self, place: int, size: int) -> int:
+        """A register."""
+        return int.from_bytes(self.table[place : place + size], "little", signed=True)
+
+    def set(self, place: int, value: int, size: int) -> None:
+        """Set a register."""
+        self.table[place : place + size] = int(value).to_bytes(size, "little", signed=value < 0)
+
+    @property
+    def torque(self) -> float:
+        """What the motor holds against [N m]."""
+        return self.load(self.angle)
+
+    @property
+    def most(self) -> float:
+        """Largest torque that its bounds allow [N m]."""
+        model = MODELS[self.model]
+        bound = 1e-3 * self.get(CURRENT, 2) if model.measures else model.stall * self.get(PWM, 2) / 885
+        return self.constant * min(bound, model.stall)
+
+    def take(self, place: int, data: bytes) -> int:
+        """Write registers as told over the bus; returns the error of the answer."""
+        fired = self.get(WATCHDOG, 1) == -1
+        if fired and place + len(data) > PWM and place < STATE:
+            return 0x07  # goals are read-only
+        if place in (MODE,) and self.table[TORQUE]:
+            return 0x07
+        self.table[place : place + len(data)] = data
+        if place == TORQUE:
+            self.set(GOAL, round(self.angle / TICK), 4)
+        return 0
+
+    def step(self, now: float, dt: float) -> None:
+        """Let time pass, to an instant [s]."""
+        watch = self.get(WATCHDOG, 1)
+        on = bool(self.table[TORQUE]) and not self.ails.hot
+        if watch > 0 and now - self.heard > 0.02 * watch:
+            self.set(WATCHDOG, -1, 1)
+        stopped = self.get(WATCHDOG, 1) == -1 and not self.ails.deaf_watchdog
+        goal = self.angle if stopped or not on else TICK * self.get(GOAL, 4)
+        limit, rise = TURNING * self.get(PROFILE + 4, 4), SPEEDING * self.get(PROFILE, 4)
+        limit = min(limit or 6.0, float(np.sqrt(2 * (rise or 1e3) * abs(goal - self.angle))))
+        wanted = np.clip((goal - self.angle) / dt, -limit, limit)
+        change = (rise or 1e3) * dt
+        speed = float(np.clip(wanted, self.speed - change, self.speed + change))
+        if self.ails.stuck or not on or stopped:
+            speed = 0.0
+        if speed > 0 and self.load(self.angle + speed * dt) > self.most:
+            speed = 0.0  # the bound of the current holds it
+        self.speed = speed
+        self.angle += speed * dt
+        if on and self.load(self.angle) > 1.0 * MODELS[self.model].stall * self.constant:
+            self.angle -= min(5.0, abs(self.angle)) * dt  # it gives way
+        self._show()
+
+    def _show(self) -> None:
+        model = MODELS[self.model]
+        current = min(self.torque / self.constant, model.stall) if self.table[TORQUE] and not self.ails.hot else 0.0
+        self.set(STATE, round(1e3 * current / (1.0 if model.measures else model.stall)), 2)
+        self.set(STATE + 6, round(self.angle / TICK), 4)
+        self.table[HARDWARE] = 0x04 if self.ails.hot else 0
+        self.table[146] = 85 if self.ails.hot else 35
+
+
+class EmulatedChain:
+    """A port with servos at its other end, in a time of its own, which passes while one waits or reads.
+
+    What happens to bytes on the way is up to `towards` and `back`, which may drop, flip or double them.
+
+    Attributes:
+        servos: at the other end.
+        now: its time [s].
+        gone: whether the line is unplugged.
+    """
+
+    timeout: float | None = 0.0
+    STEP = 1e-3
+
+    def __init__(self, servos: Sequence[EmulatedServo]) -> None:
+        """Servos that all hear the same line."""
+        self.servos, self.now, self.gone = tuple(servos), 0.0, False
+        self.towards: Callable[[bytes], bytes] = lambda data: data
+        self.back: Callable[[bytes], bytes] = lambda data: data
+        self.watch: Callable[[], None] = lambda: None
+        self._reader, self._told = PacketReader(), b""
+
+    def clock(self) -> float:
+        """Its time [s]."""
+        return self.now
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass."""
+        end = self.now + seconds
+        while self.now < end - 1e-12:
+            dt = min(self.STEP, end - self.now)
+            self.now += dt
+            for servo in self.servos:
+                servo.step(self.now, dt)
+            self.watch()
+
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that can be read at once."""
+        return len(self._told)
+
+    def write(self, data: bytes, /) -> int:
+        """Send bytes to all servos."""
+        if self.gone:
+            raise OSError("the device is not there")
+        for packet in self._reader.feed(self.towards(data)):
+            for servo in self.servos:
+                if not servo.ails.deaf and packet.number in (servo.number, ALL):
+                    servo.heard = self.now
+            self._told += self.back(self._answers(packet.number, packet.instruction, packet.content))
+        return len(data)
+
+    def read(self, size: int, /) -> bytes:
+        """Bytes of their answers."""
+        if self.gone:
+            raise OSError("the device is not there")
+        self.wait(self.STEP if self._told or not self.timeout else min(max(self.timeout, 1e-4), 0.005))
+        taken, self._told = self._told[:size], self._told[size:]
+        return taken
+
+    def close(self) -> None:
+        """Unplug it."""
+        self.gone = True
+
+    def _answers(self, number: int, instruction: int, content: bytes) -> bytes:
+        if instruction in (SYNC_READ, SYNC_WRITE):
+            return self._all(instruction, content)
+        told = b""
+        for servo in self.servos:
+            if servo.number == number and not servo.ails.deaf:
+                told += self._one(servo, instruction, content)
+        return told
+
+    def _all(self, instruction: int, content: bytes) -> bytes:
+        place, size, told = int.from_bytes(content[:2], "little"), int.from_bytes(content[2:4], "little"), b""
+        rest = content[4:]
+        if instruction == SYNC_READ:
+            for number in rest:
+                for servo in self.servos:
+                    if servo.number == number and not servo.ails.deaf:
+                        told += _status(servo, 0, bytes(servo.table[place : place + size]))
+            return told
+        for start in range(0, len(rest) - size, size + 1):
+            for servo in self.servos:
+                if servo.number == rest[start] and not servo.ails.deaf:
+                    servo.take(place, rest[start + 1 : start + 1 + size])
+        return told
+
+    def _one(self, servo: EmulatedServo, instruction: int, content: bytes) -> bytes:
+        if instruction == PING:
+            return _status(servo, 0, bytes([*servo.table[0:2], servo.table[6]]))
+        if instruction == READ:
+            place, size = int.from_bytes(content[:2], "little"), int.from_bytes(content[2:4], "little")
+            return _status(servo, 0, bytes(servo.table[place : place + size]))
+        if instruction == WRITE:
+            return _status(servo, servo.take(int.from_bytes(content[:2], "little"), content[2:]), b"")
+        if instruction == REBOOT:
+            model = servo.model
+            servo.table = bytearray(256)
+            servo.set(0, model, 2)
+            return _status(servo, 0, b"")
+        return _status(servo, 0x02, b"")
+
+
+def _status(servo: EmulatedServo, error: int, content: bytes) -> bytes:
+    alert = 0x80 if servo.ails.hot else 0
+    return pack(servo.number, STATUS, bytes([error | alert]) + content)

@@ -1,0 +1,76 @@
+"""`TensionGuard`: does each motor draw what the model says that its cable pulls?"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class GuardLimits:
+    """How far motors and model may differ.
+
+    Attributes:
+        times: a cable may pull so many times what the model says ...
+        more: ... and so much more [N]: friction of gear and cable.
+        pulls: a cable that the model pulls at by so much [N] must be felt ...
+        felt: ... by at least this share of it ...
+        seconds: ... within so long [s].
+    """
+
+    times: float = 1.5
+    more: float = 2.0
+    pulls: float = 2.0
+    felt: float = 0.2
+    seconds: float = 0.5
+
+
+class TensionGuard:
+    """Holds motors by what a simulation says of the tensions: too much is a jam, too little a slack or broken cable."""
+
+    def __init__(
+        self,
+        tensions: Callable[[Vector], Vector],
+        constants: Vector,
+        names: tuple[str, ...],
+        limits: GuardLimits | None = None,
+    ) -> None:
+        """A guard of winches.
+
+        Args:
+            tensions: what the cables of each winch pull together [N], by contractions [m].
+            constants: torque of each motor by its current [N m/A].
+            names: of the winches.
+            limits: how far they may differ.
+        """
+        self._tensions, self._constants, self._names = tensions, constants, names
+        self._limits = limits or GuardLimits()
+        self._missed = np.full(len(names), np.nan)  # since when a cable is not felt [s]
+
+    def fault(self, contractions: Vector, currents: Vector, radii: Vector, now: float) -> str:
+        """What is wrong, in words; empty for nothing.
+
+        Args:
+            contractions: that the winches have [m].
+            currents: that their motors draw [A]; what is not known is NaN, and not judged.
+            radii: at which the cables run on [m].
+            now: clock that only runs forward [s].
+        """
+        model, felt, limits = self._tensions(contractions), self._constants * currents / radii, self._limits
+        over = felt - (limits.times * np.maximum(model, 0.0) + limits.more)
+        if (worst := int(np.argmax(np.nan_to_num(over, nan=-np.inf)))) is not None and over[worst] > 0:
+            return (
+                f"{self._names[worst]} pulls by {felt[worst]:.1f} N where the model pulls by {model[worst]:.1f} N: "
+                "something holds its cable; the motors hold"
+            )
+        missed = (model >= limits.pulls) & (felt < limits.felt * model)
+        self._missed = np.where(missed, np.where(np.isnan(self._missed), now, self._missed), np.nan)
+        since = now - self._missed
+        for index in np.flatnonzero(np.nan_to_num(since, nan=-1.0) >= limits.seconds).tolist():
+            return (
+                f"cable of {self._names[index]} is slack or broken: its motor feels {max(felt[index], 0.0):.1f} N "
+                f"where the model pulls by {model[index]:.1f} N"
+            )
+        return ""

@@ -1,0 +1,125 @@
+"""Dynamixel's protocol 2.0. Oracles: ROBOTIS' own client and its manual's examples."""
+
+import os
+import threading
+import tty
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hydrostat.control import DynamixelBus, EmulatedChain, EmulatedServo
+from hydrostat.control.dynamixel_packets import PING, READ, STATUS, Packet, PacketReader, crc, pack
+from hydrostat.errors import HydrostatError
+
+sdk = pytest.importorskip("dynamixel_sdk", reason="dynamixel-sdk is not installed")
+
+
+def test_packets_are_those_of_the_manual() -> None:
+    assert pack(1, PING).hex() == "fffffd0001030001194e"
+    assert pack(1, READ, bytes([0x84, 0, 4, 0])).hex() == "fffffd0001070002840004001d15"
+    assert crc(bytes.fromhex("fffffd0001070002840004001d15")[:-2]) == 0x151D
+
+
+@given(st.binary(max_size=60), st.integers(0, 252))
+def test_what_is_packed_is_found_among_rubbish(content: bytes, number: int) -> None:
+    whole = pack(number, STATUS, content + b"\xff\xff\xfd\x00" + content)
+    reader = PacketReader()
+    found = [packet for data in (b"\xff\xfd", whole[:5], whole[5:], whole) for packet in reader.feed(data)]
+    assert found == 2 * [Packet(number, STATUS, content + b"\xff\xff\xfd\x00" + content)]
+
+
+@given(st.integers(0, 400), st.integers(1, 255))
+def test_a_flipped_byte_is_never_taken_for_an_answer(place: int, change: int) -> None:
+    whole = bytearray(pack(7, STATUS, bytes(range(40))))
+    whole[place % len(whole)] ^= change
+    assert list(PacketReader().feed(bytes(whole))) == []
+
+
+@pytest.fixture
+def served() -> Iterator[tuple[str, EmulatedChain]]:
+    """Emulated servos at the other end of a pseudo-terminal, in real time as far as bytes go."""
+    ours, theirs = os.openpty()
+    tty.setraw(theirs)
+    tty.setraw(ours)
+    chain = EmulatedChain([EmulatedServo(1, angle=1.5), EmulatedServo(4, model=1060, angle=-2.0)])
+    over = threading.Event()
+
+    def serve() -> None:
+        while not over.is_set():
+            try:
+                data = os.read(ours, 4096)
+            except OSError:
+                return
+            chain.write(data)
+            chain.timeout = None
+            os.write(ours, chain.read(4096))
+
+    threading.Thread(target=serve, daemon=True).start()
+    yield os.ttyname(theirs), chain
+    over.set()
+    chain.gone = True
+    os.close(theirs)
+    os.close(ours)
+
+
+def test_their_client_works_with_our_servos(served: tuple[str, EmulatedChain]) -> None:
+    name, chain = served
+    port, handler = sdk.PortHandler(name), sdk.PacketHandler(2.0)
+    assert port.openPort()
+    try:
+        assert handler.ping(port, 1) == (1200, sdk.COMM_SUCCESS, 0)
+        assert handler.ping(port, 4) == (1060, sdk.COMM_SUCCESS, 0)
+        assert handler.ping(port, 3)[1] == sdk.COMM_RX_TIMEOUT
+        assert handler.write1ByteTxRx(port, 1, 64, 1) == (sdk.COMM_SUCCESS, 0)
+        assert handler.read4ByteTxRx(port, 1, 132)[0] == round(1.5 / (2 * np.pi / 4096))
+        group = sdk.GroupSyncWrite(port, handler, 116, 4)
+        assert group.addParam(1, (3000).to_bytes(4, "little"))
+        assert group.txPacket() == sdk.COMM_SUCCESS
+        assert handler.read4ByteTxRx(port, 1, 116)[0] == 3000
+        several = sdk.GroupSyncRead(port, handler, 132, 4)
+        assert several.addParam(1)
+        assert several.addParam(4)
+        assert several.txRxPacket() == sdk.COMM_SUCCESS
+        assert several.getData(4, 132, 4) == 2**32 - round(2.0 / (2 * np.pi / 4096))
+    finally:
+        port.closePort()
+    assert chain.servos[0].table[64] == 1
+
+
+def test_our_client_works_on_a_serial_line(served: tuple[str, EmulatedChain]) -> None:
+    serial = pytest.importorskip("serial", reason="pyserial is not installed")
+    name, chain = served
+    line = serial.Serial(name, 57600, timeout=0.1)
+    bus = DynamixelBus(line, [1, 4], wait=chain.wait, answer=2.0)
+    facts = bus.identify()
+    assert [(fact.number, fact.model) for fact in facts] == [(1, "XL330-M288"), (4, "XL430-W250")]
+    bus.arm(np.array([0.3, 0.3]))
+    assert bus.read().angles == pytest.approx([servo.angle for servo in chain.servos], abs=2e-3)
+    bus.close()
+    with pytest.raises(HydrostatError, match="the line to the motors is gone"):
+        bus.write(np.zeros(2), np.ones(2))
+
+
+def test_another_model_is_refused() -> None:
+    chain = EmulatedChain([EmulatedServo(1)])
+    chain.servos[0].set(0, 350, 2)
+    bus = DynamixelBus(chain, [1], clock=chain.clock, wait=chain.wait)
+    with pytest.raises(HydrostatError, match="motor 1 is a servo of number 350; known are XL330-M077, XL330-M288"):
+        bus.identify()
+
+
+@pytest.mark.parametrize("model", [1200, 1060])
+def test_the_bound_of_the_current_bounds_the_pull(model: int) -> None:
+    servo = EmulatedServo(1, model=model, load=lambda angle: 0.05 * max(angle, 0.0))
+    chain = EmulatedChain([servo])
+    bus = DynamixelBus(chain, [1], clock=chain.clock, wait=chain.wait)
+    bus.identify()
+    bus.arm(np.array([0.2]))
+    for _ in range(200):
+        bus.write(np.array([3.0]), np.array([2.0]))
+        chain.wait(0.01)
+    assert servo.torque == pytest.approx(0.35 * 0.2, rel=0.05)
+    assert servo.torque < 1.05 * 0.35 * 0.2
