@@ -382,7 +382,7 @@ struct Listed {
     }
 };
 
-std::pair<double, Int> sweep(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges,
+std::pair<double, Int> sweep_boundary(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges,
                                     Counts<2> front, Counts<2> beside, Array<const bool, 1> kinds, Reals<2> nodes,
                                     Reals<2> move, Reals<2> rest, double kept, double reach, Array<Int, 2> stencils,
                                     Array<bool, 1> both) {
@@ -546,7 +546,7 @@ void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges,
 }  // namespace
 
 void add_contact(nb::module_& module) {
-    module.def("sweep", &sweep, given(), given(), given(), given(), given(), given(), given(), given(),
+    module.def("sweep_boundary", &sweep_boundary, given(), given(), given(), given(), given(), given(), given(), given(),
                given(), given(), given(), given(), filled(), filled());
     module.def("squared_distances", &squared_distances, given(), given(), given(), given(), filled());
     module.def("admissible_share", &admissible_share);

@@ -72,7 +72,7 @@ class BoundaryTree:
             reach: up to which distance pairs are told [m].
         """
         known = *self._parts, *self._at_rest
-        return self._filled(lambda *pairs: _sweep(*known, nodes, move, rest, kept, reach, *pairs))
+        return self._filled(lambda *pairs: _sweep_boundary(*known, nodes, move, rest, kept, reach, *pairs))
 
     def _filled(self, fill: Callable[[np.ndarray, np.ndarray], tuple[float, int]]) -> tuple[float, Pairs]:
         """What a loop tells, and the pairs that it fills in; again with more room where that was too little."""
@@ -178,7 +178,7 @@ def _tree(middles: Float[np.ndarray, "facets dim"]) -> Int[np.ndarray, "boxes 2"
 
 @Kernel
 @no_type_check
-def _sweep(children, facets, points, edges, front, beside, kinds, x, move, rest, kept, reach, stencils, both):
+def _sweep_boundary(children, facets, points, edges, front, beside, kinds, x, move, rest, kept, reach, stencils, both):
     """Fill in pairs that end within reach, as long as there is room; return the largest share and their number."""
     boxes, ways = np.zeros((children.shape[0], 6)), np.zeros((children.shape[0], 6))
     _fit_boxes(children, facets, x - 0.5 * reach, x + 0.5 * reach, boxes)

@@ -196,7 +196,7 @@ def twice(monkeypatch: pytest.MonkeyPatch) -> set[str]:
         assert self.by_core is not None, self.by_numba.__name__
         outcomes = self.by_core(*arguments), self.by_numba(*copies)
         lots = list(zip(arguments, copies, strict=True))
-        if self.by_numba.__name__ == "_sweep":  # what stands behind the pairs that it tells is room to work in
+        if self.by_numba.__name__ == "_sweep_boundary":  # what stands behind the pairs that it tells is room to work in
             lots[-2:] = [(core[: outcomes[0][1]], numba[: outcomes[1][1]]) for core, numba in lots[-2:]]
         for core, numba in (outcomes, *lots):
             if isinstance(numba, np.ndarray) and numba.dtype.kind == "f":
@@ -290,7 +290,7 @@ def test_a_tree_that_does_not_fit_its_facets_is_refused() -> None:
         beside: np.ndarray = beside,
     ) -> None:
         tree = children, facets, facets, edges, front, beside, kinds
-        kernel.native.sweep(*tree, nodes, 0 * nodes, nodes, 0.1, 9.0, *pairs)
+        kernel.native.sweep_boundary(*tree, nodes, 0 * nodes, nodes, 0.1, 9.0, *pairs)
 
     call(children, facets, edges)
     call(np.array([[1, 2], [-1, 0], [-1, 0]]), facets, edges)  # it finds nothing wrong, and nothing outside
