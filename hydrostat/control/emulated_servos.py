@@ -2,9 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from math import inf
-
-import numpy as np
+from math import inf, sqrt
 
 from hydrostat.control.dynamixel_bus import (
     CURRENT,
@@ -122,11 +120,10 @@ class EmulatedServo:
             self.set(WATCHDOG, -1, 1)
         stopped = self.get(WATCHDOG, 1) == -1 and not self.ails.deaf_watchdog
         goal = self.angle if stopped or not on else TICK * self.get(GOAL, 4)
-        limit, rise = TURNING * self.get(PROFILE + 4, 4), SPEEDING * self.get(PROFILE, 4)
-        limit = min(limit or 6.0, float(np.sqrt(2 * (rise or 1e3) * abs(goal - self.angle))))
-        wanted = np.clip((goal - self.angle) / dt, -limit, limit)
-        change = (rise or 1e3) * dt
-        speed = float(np.clip(wanted, self.speed - change, self.speed + change))
+        rise = SPEEDING * self.get(PROFILE, 4) or 1e3
+        limit = min(TURNING * self.get(PROFILE + 4, 4) or 6.0, sqrt(2 * rise * abs(goal - self.angle)))
+        wanted = max(-limit, min(limit, (goal - self.angle) / dt))
+        speed = max(self.speed - rise * dt, min(self.speed + rise * dt, wanted))
         if self.ails.stuck or not on or stopped:
             speed = 0.0
         if speed > 0 and self.load(self.angle + speed * dt) > self.most:

@@ -1,0 +1,41 @@
+"""Faults that are injected into emulated motors: do they stay within limits, stop in time, and is each told?
+
+    python benchmarks/motor_faults.py [--count 10000] [--seed 0]
+
+Three winches with emulated Dynamixel servos pull at springs while a host tells them goals 50 times a second. Bytes are
+dropped, flipped, doubled and delayed both ways; servos fall silent, get stuck, run hot, begin anew; lines are
+unplugged, hosts die or sleep; half of the servos have a watchdog that does not stop them, as those of the 330 series.
+Time is that of the emulation. Counted are motions beyond limits, pulls more than 5 % above what the bound of the
+current allows, motors that still turn 250 ms after the last command, and faults that no word was said of.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "control"))
+
+from fault_campaign import Campaign
+from machine import machine
+
+
+def main() -> None:
+    """Print what was injected, and what came of it."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=0)
+    given = parser.parse_args()
+    print(machine())
+    campaign, began = Campaign(np.random.default_rng(given.seed)), time.process_time()
+    while campaign.injected < given.count:
+        campaign.run()
+    for line in campaign.told():
+        print(line)
+    print(f"seed {given.seed}, {time.process_time() - began:.0f} s of CPU")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,56 @@
+"""Ten thousand injected faults, and three faults of ours that the campaign must catch. Oracle: the emulated servos."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from fault_campaign import HARD, Campaign
+
+from hydrostat.control import bus_link
+from hydrostat.control.bus_link import BusLink
+from hydrostat.control.dynamixel_packets import PacketReader
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+
+@pytest.mark.slow
+def test_ten_thousand_faults_leave_motors_within_limits_standing_in_time_and_told() -> None:
+    campaign = Campaign(np.random.default_rng(20), seconds=2.0, share=0.25)
+    while campaign.injected < 10_000:
+        campaign.run()
+    assert not campaign.wrong
+    assert min(campaign.count[kind] for kind in HARD) > 3
+
+
+def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
+    if bug == "goals far ahead":
+        monkeypatch.setattr(bus_link, "AHEAD", 5.0)
+    elif bug == "no limits":
+        initialise: Callable = BusLink.__init__
+
+        def without_limits(self: BusLink, *args: object, **more: object) -> None:
+            initialise(self, *args, **more)
+            self._low, self._high = self._low - 1.0, self._high + 1.0
+
+        monkeypatch.setattr(BusLink, "__init__", without_limits)
+    else:
+        monkeypatch.setattr(BusLink, "_judge", lambda self, now, armed: None)
+
+
+@pytest.mark.parametrize(
+    ("bug", "caught"), [("goals far ahead", "still turning"), ("no limits", "beyond"), ("blind guard", "told as")]
+)
+def test_a_bug_in_the_guard_is_caught(bug: str, caught: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken(monkeypatch, bug)
+    campaign = Campaign(np.random.default_rng(22), seconds=0.4)
+    for _ in range(40):
+        campaign.run()
+        if any(caught in word for word in campaign.wrong):
+            return
+    pytest.fail(f"not caught: {campaign.wrong}")
+
+
+def test_damaged_bytes_are_counted() -> None:
+    reader = PacketReader()
+    assert not list(reader.feed(b"\xff\xff\xfd\x00\x01\x04\x00\x55\x00\x00\x00" + bytes(20)))
+    assert reader.damaged == 1
