@@ -1,0 +1,100 @@
+"""`EmulatedFeetechChain`: servos of the STS series that are not there, which behave as badly as real ones."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, sqrt
+
+import numpy as np
+
+from hydrostat.control.dynamixel_packets import ALL, PING, READ, SYNC_READ, SYNC_WRITE, WRITE
+from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
+from hydrostat.control.feetech_bus import AMPERE, BOUND, FULL, GOAL, RISE, STALL, STATE, TICK, TORQUE
+from hydrostat.control.feetech_packets import SumReader, pack
+
+
+@dataclass
+class EmulatedSts(EmulatedServo):
+    """A servo of the STS series; it has no watchdog."""
+
+    model: int = 777
+
+    def __post_init__(self) -> None:
+        self.table = bytearray(80)
+        self.table[0:6] = bytes([3, 10, 0, *self.model.to_bytes(2, "little"), self.number])
+        self.table[BOUND : BOUND + 2] = FULL.to_bytes(2, "little")
+        self.heard, self.moved = -inf, 0.0
+        self.step(0.0, 1e-3)
+
+    @property
+    def most(self) -> float:
+        """Largest torque that its bound allows [N m]."""
+        return self.constant * STALL * int.from_bytes(self.table[BOUND : BOUND + 2], "little") / FULL
+
+    def take(self, place: int, data: bytes) -> int:
+        """Write registers as told over the bus; returns the error of the answer."""
+        if place + len(data) <= STATE:
+            self.table[place : place + len(data)] = data
+            if place == TORQUE and data[0] == 1:
+                self._put(GOAL, round(self.angle / TICK))
+        return 0
+
+    def step(self, now: float, dt: float) -> None:
+        """Let time pass, to an instant [s]."""
+        on = bool(self.table[TORQUE]) and not self.ails.hot
+        goal, rise = self._number(GOAL) * TICK, (self.table[RISE] or 1000) * 100 * TICK
+        limit = int.from_bytes(self.table[GOAL + 4 : GOAL + 6], "little") * TICK or 6.0
+        limit = min(limit, 6.0, sqrt(2 * rise * abs(goal - self.angle)))
+        wanted = float(np.clip((goal - self.angle) / dt, -limit, limit))
+        speed = float(np.clip(wanted, self.speed - rise * dt, self.speed + rise * dt))
+        if self.ails.stuck or not on or (speed > 0 and self.load(self.angle + speed * dt) > self.most):
+            speed = 0.0
+        self.speed = speed
+        self.angle += speed * dt
+        current = min(self.load(self.angle) / self.constant, STALL) if on else 0.0
+        self._put(STATE, round(self.angle / TICK))
+        self.table[STATE + 6 : STATE + 8] = bytes([74, 85 if self.ails.hot else 35])
+        self._put(STATE + 13, round(current / AMPERE))
+
+    def _number(self, place: int) -> int:
+        value = int.from_bytes(self.table[place : place + 2], "little")
+        return -(value & 0x7FFF) if value & 0x8000 else value
+
+    def _put(self, place: int, value: int) -> None:
+        self.table[place : place + 2] = (abs(value) | (0x8000 if value < 0 else 0)).to_bytes(2, "little")
+
+
+class EmulatedFeetechChain(EmulatedChain):
+    """A port with servos of the STS series at its other end."""
+
+    def __init__(self, servos: Sequence[EmulatedSts]) -> None:
+        """Servos that all hear the same line."""
+        super().__init__(servos)
+        self._reader = SumReader()
+
+    def _answers(self, number: int, instruction: int, content: bytes) -> bytes:
+        heard = [servo for servo in self.servos if not servo.ails.deaf]
+        if instruction == SYNC_READ:
+            place, size, *numbers = content
+            by_number = {servo.number: servo for servo in heard}
+            asked = [by_number[each] for each in numbers if each in by_number]
+            return b"".join(_status(servo, bytes(servo.table[place : place + size])) for servo in asked)
+        if instruction == SYNC_WRITE:
+            place, size, rest = content[0], content[1], content[2:]
+            for start in range(0, len(rest) - size, size + 1):
+                for servo in heard:
+                    if servo.number == rest[start]:
+                        servo.take(place, rest[start + 1 : start + 1 + size])
+            return b""
+        told = b""
+        for servo in heard:
+            if number in (servo.number, ALL):
+                if instruction == WRITE:
+                    servo.take(content[0], content[1:])
+                if number != ALL and instruction in (PING, READ, WRITE):
+                    read = servo.table[content[0] : content[0] + content[1]] if instruction == READ else b""
+                    told += _status(servo, bytes(read))
+        return told
+
+
+def _status(servo: EmulatedServo, content: bytes) -> bytes:
+    return pack(servo.number, 0x04 if servo.ails.hot else 0, content)

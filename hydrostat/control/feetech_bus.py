@@ -1,0 +1,235 @@
+"""`FeetechBus`: serial servos of Feetech's STS series (STS3215).
+
+Source: Feetech's own client (ftservo-python-sdk 2.0.1) for packets and registers from 40 on; its memory table of the
+STS3215 for the bounds of torque and of angle.
+
+These servos have **no watchdog**: told nothing, they go on to their last goal. A `BusLink` therefore keeps goals so
+close ahead that a dead host leaves them standing soon, and bounds of torque stay in the servo.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from math import pi
+from typing import ClassVar
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+from hydrostat.control.dynamixel_packets import ALL, READ, SYNC_READ, SYNC_WRITE, WRITE, Packet
+from hydrostat.control.feetech_packets import SumReader, pack, padded
+from hydrostat.errors import HydrostatError
+
+MODEL, LOW, MODE, TORQUE, RISE, GOAL, BOUND, STATE = 3, 9, 33, 40, 41, 42, 48, 56
+"""Registers: model, least and greatest angle, mode, torque on, acceleration (then goal, time and speed), goal, bound of
+torque, present angle (to current)."""
+STATE_BYTES = 15
+MODELS = {777: "STS3215"}
+"""By the number of the model."""
+TICK = 2 * pi / 4096  # angle of a step [rad]
+AMPERE = 6.5e-3  # current of a step [A]
+STALL = 2.7
+"""Current at stall [A], that of the strongest variant: bounds are shares of the torque at stall."""
+FULL = 1000  # bound of torque that bounds nothing
+STANDING = 2000  # speed at which they come back to where they shall stand [steps/s]
+FARTHEST = 30719  # step that a servo without limits of angle may go to
+FAULTS = {
+    0x01: "supply voltage out of range",
+    0x02: "encoder fault",
+    0x04: "too hot",
+    0x08: "current too large",
+    0x20: "overloaded",
+}
+
+
+class FeetechBus(Bus):
+    """Servos in position mode, bounded in torque."""
+
+    kind: ClassVar[str] = "feetech"
+
+    def __init__(
+        self,
+        port: Port,
+        numbers: Sequence[int],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        wait: Callable[[float], None] = time.sleep,
+        answer: float = 0.02,
+    ) -> None:
+        """Servos on a port, by their numbers.
+
+        Args:
+            port: an open serial line.
+            numbers: of the servos.
+            clock: that only runs forward [s].
+            wait: lets so much time pass [s].
+            answer: longest time for answers [s].
+        """
+        self._port, self._numbers, self._clock, self._wait, self._answer = port, tuple(numbers), clock, wait, answer
+        self._lock, self._reader = threading.RLock(), SumReader()
+        self._identified = self._closed = False
+        count = len(self._numbers)
+        self._low, self._high = np.zeros(count), np.zeros(count)  # steps that each may go to
+        nothing = np.full(count, np.nan)
+        self._last = Reading(
+            angles=nothing,
+            currents=nothing,
+            temperatures=nothing,
+            volts=nothing,
+            stamps=np.full(count, -np.inf),
+            faults=("",) * count,
+        )
+
+    def identify(self) -> tuple[MotorFacts, ...]:
+        """Facts of the servos; none has a watchdog, none is written to its lasting memory."""
+        with self._lock:
+            facts = tuple(self._fact(index, number) for index, number in enumerate(self._numbers))
+            self._identified = True
+            return facts
+
+    def arm(self, currents: Vector) -> None:
+        """Switch torque on where they stand; a bound of current is a share of the torque at stall."""
+        with self._lock:
+            for number, most in zip(self._numbers, currents.tolist(), strict=True):
+                share = max(1, round(FULL * min(most / STALL, 1.0)))
+                self._set(number, BOUND, share.to_bytes(2, "little"), "its bound of torque")
+            self._stand(all_heard=True)
+            for number in self._numbers:
+                self._set(number, TORQUE, b"\x01", "its torque switch")
+
+    def read(self) -> Reading:
+        """What was last heard of each."""
+        with self._lock:
+            last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
+            stamps, faults = self._last.stamps.copy(), list(self._last.faults)
+            self._send(ALL, SYNC_READ, bytes([STATE, STATE_BYTES, *self._numbers]))
+            for packet in self._answers(len(self._numbers), STATE_BYTES):
+                index, told = self._numbers.index(packet.number), packet.content
+                last["angles"][index] = TICK * _signed(told[0:2], 15)
+                last["currents"][index] = AMPERE * _signed(told[13:15], 15)
+                last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
+                stamps[index] = self._clock()
+                faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)
+            self._last = Reading(**last, stamps=stamps, faults=tuple(faults))
+            return self._last
+
+    def write(self, angles: Vector, speeds: Vector) -> None:
+        """Send goals and speeds to all at once; none answers."""
+        steps = np.rint(angles / TICK)
+        if beyond := np.flatnonzero((steps < self._low) | (steps > self._high)).tolist():
+            index = beyond[0]
+            raise HydrostatError(
+                f"motor {self._numbers[index]} turns from step {self._low[index]:.0f} to {self._high[index]:.0f} and "
+                f"was asked for {steps[index]:.0f}; set both its limits of angle to 0, so that it counts its turns"
+            )
+        rates = np.clip(np.rint(np.abs(speeds) / TICK), 1, 32767).astype(int).tolist()
+        self._go(steps.astype(int).tolist(), rates, self._numbers)
+
+    def stop(self) -> None:
+        """Let them stand; where one cannot be heard, the goal that it has is the last it was told."""
+        with suppress(Exception), self._lock:
+            if not self._closed and self._identified:
+                self._stand()
+
+    def close(self) -> None:
+        """Stop; torque stays on, so that no load falls."""
+        self.stop()
+        with suppress(Exception), self._lock:
+            self._closed = True
+            self._port.close()
+
+    def _stand(self, *, all_heard: bool = False) -> None:
+        """Goals where each was heard first, told at once and again: questions, answers and goals may be lost."""
+        before, goals, heard = self._clock(), np.full(len(self._numbers), np.nan), list[int]()
+        for attempt in range(3):
+            reading = self.read()
+            goals = np.where(np.isnan(goals) & (reading.stamps >= before), reading.angles, goals)
+            heard = np.flatnonzero(~np.isnan(goals)).tolist()
+            steps = np.rint(goals[heard] / TICK).astype(int).tolist()
+            self._go(steps, [STANDING] * len(steps), [self._numbers[index] for index in heard])
+            if attempt and len(heard) == len(goals):
+                return
+        if all_heard:
+            lost = next(number for index, number in enumerate(self._numbers) if index not in heard)
+            raise HydrostatError(f"motor {lost} does not answer; look at its power and cable")
+
+    def _go(self, steps: Sequence[int], rates: Sequence[int], numbers: Sequence[int]) -> None:
+        content = bytes([RISE, 7])
+        for number, step, rate in zip(numbers, steps, rates, strict=True):  # 0: no bound of acceleration, to stop soon
+            content += bytes([number, 0, *_magnitude(step), 0, 0, *rate.to_bytes(2, "little")])
+        with self._lock:
+            self._send(ALL, SYNC_WRITE, content)
+
+    def _fact(self, index: int, number: int) -> MotorFacts:
+        """Who a servo is, its torque off, and the angles that it may go to."""
+        told = self._get(number, 0, 13)
+        if told is None:
+            raise HydrostatError(
+                f"motor {number} does not answer; look at its power, its cable, its number and the baud rate"
+            )
+        model = int.from_bytes(told[MODEL : MODEL + 2], "little")
+        if model not in MODELS:
+            raise HydrostatError(f"motor {number} is a servo of number {model}; known are {', '.join(MODELS.values())}")
+        mode = self._get(number, MODE, 1)
+        if mode != b"\x00":
+            raise HydrostatError(f"motor {number} is not in position mode; set its register {MODE} to 0")
+        self._set(number, TORQUE, b"\x00", "its torque switch")
+        low, high = _signed(told[LOW : LOW + 2], 15), _signed(told[LOW + 2 : LOW + 4], 15)
+        self._low[index], self._high[index] = (low, high) if low < high else (-FARTHEST, FARTHEST)
+        return MotorFacts(number=number, model=MODELS[model], firmware=100 * told[0] + told[1], watchdog=False)
+
+    def _set(self, number: int, place: int, value: bytes, name: str) -> None:
+        """Write a register, and read that it was taken: an answer does not tell which question it is to."""
+        for _ in range(5):
+            self._send(number, WRITE, bytes([place]) + value)
+            self._answers(1, 0)
+            if self._get(number, place, len(value)) == value:
+                return
+        raise HydrostatError(f"motor {number} did not take {name}; look at its power and cable")
+
+    def _get(self, number: int, place: int, size: int) -> bytes | None:
+        for _ in range(3):
+            self._send(number, READ, bytes([place, size]))
+            for packet in self._answers(1, size):
+                if packet.number == number:
+                    return packet.content
+        return None
+
+    def _send(self, number: int, instruction: int, content: bytes = b"") -> None:
+        """Send a packet, and forget answers that came too late for what was asked before."""
+        try:
+            self._port.timeout = 0
+            self._port.read(getattr(self._port, "in_waiting", 0))
+            self._reader.clear()
+            self._port.write(padded(pack(number, instruction, content)))
+        except (OSError, ValueError, TypeError) as error:
+            raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+
+    def _answers(self, count: int, size: int) -> list[Packet]:
+        """Answers of such a size from servos that are ours, within the time."""
+        until, found = self._clock() + self._answer, list[Packet]()
+        while len(found) < count and (left := until - self._clock()) > 0:
+            self._port.timeout = left
+            try:
+                data = self._port.read(1) + self._port.read(getattr(self._port, "in_waiting", 0))
+            except (OSError, ValueError, TypeError) as error:
+                raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+            found += [
+                packet
+                for packet in self._reader.feed(data)
+                if packet.number in self._numbers and len(packet.content) == size
+            ]
+        return found
+
+
+def _signed(data: bytes, bit: int) -> int:
+    """A number with its sign in a bit of its own."""
+    value = int.from_bytes(data, "little")
+    return -(value & ~(1 << bit)) if value >> bit & 1 else value
+
+
+def _magnitude(value: int) -> bytes:
+    """A number with its sign in bit 15."""
+    return (abs(value) | (0x8000 if value < 0 else 0)).to_bytes(2, "little")

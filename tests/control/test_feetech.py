@@ -1,0 +1,176 @@
+"""Feetech's servos. Oracles: packets by Feetech's published sums, truth of the emulated servos, words told."""
+
+import random
+
+import numpy as np
+import pytest
+
+from hydrostat.control.bus_link import BusLink, LinkState
+from hydrostat.control.calibration import Calibration, Spool
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
+from hydrostat.control.emulated_servos import Ails
+from hydrostat.control.feetech_bus import BOUND, LOW, MODE, TICK, TORQUE, FeetechBus
+from hydrostat.control.feetech_packets import SumReader, pack, padded
+from hydrostat.errors import HydrostatError
+from hydrostat.robot import Winch
+
+RADIUS, TRAVEL = 0.008, 0.06
+NAMES = ("index flexor", "thumb")
+
+
+class Hand:
+    """Two winches on a link."""
+
+    def __init__(self) -> None:
+        def load(angle: float) -> float:
+            return RADIUS * 200.0 * max(RADIUS * angle, 0.0)
+
+        self.servos = [EmulatedSts(number, load=load) for number in (1, 2)]
+        self.chain = EmulatedFeetechChain(self.servos)
+        self.bus = FeetechBus(self.chain, [1, 2], clock=self.chain.clock, wait=self.chain.wait)
+        winches = [Winch(name=name, at=(0.0, 0.0), spool_radius=RADIUS, travel=TRAVEL) for name in NAMES]
+        spools = [
+            Spool(winch=name, number=number, zero=0.0, radius=RADIUS, current=0.5)
+            for number, name in enumerate(NAMES, 1)
+        ]
+        self.link = BusLink(self.bus, winches, Calibration(tuple(spools)), clock=self.chain.clock)
+
+    def go(self, goal: float, seconds: float) -> np.ndarray:
+        """Tell a goal [m] 50 times a second; returns where the link says that they are."""
+        end, places = self.chain.now + seconds, np.zeros(2)
+        while self.chain.now < end:
+            begin = self.chain.now
+            self.link.send(np.full(2, goal), begin, speed=0.05)
+            places = self.link.read(begin)
+            self.chain.wait(max(0.0, 0.02 - (self.chain.now - begin)))
+        return places
+
+    @property
+    def places(self) -> np.ndarray:
+        """Where they are in truth [m]."""
+        return np.array([RADIUS * servo.angle for servo in self.servos])
+
+
+def test_packets_are_those_of_the_makers_client() -> None:
+    # by hand: ping of 1 is FF FF 01 02 01 and ~(1 + 2 + 1) = FB; read 2 bytes from 56 of 1: ~(1 + 4 + 2 + 56 + 2) = BE
+    assert pack(1, 0x01) == bytes.fromhex("ffff010201fb")
+    assert pack(1, 0x02, bytes([56, 2])) == bytes.fromhex("ffff0104023802be")
+
+
+def test_packets_are_found_among_bytes_of_another_kind() -> None:
+    dice, reader = random.Random(5), SumReader()
+    sent = [pack(dice.randrange(254), dice.randrange(100), dice.randbytes(dice.randrange(30))) for _ in range(300)]
+    stream = b"".join(bytes(dice.randrange(200) for _ in range(dice.randrange(4))) + packet for packet in sent)
+    found = []
+    while stream:
+        size = dice.randrange(1, 20)
+        found += [pack(*packet) for packet in reader.feed(stream[:size])]
+        stream = stream[size:]
+    assert found == sent
+
+
+def test_no_single_byte_is_lost_unseen() -> None:
+    dice = random.Random(6)
+    for _ in range(200):
+        packet = pack(0xFE, 0x83, bytes([41, 7, 1, *dice.randbytes(7)]))
+        for place in range(len(packet)):
+            line = padded(packet)
+            reader = SumReader()
+            later = pack(2, 0x01)
+            found = list(reader.feed(line[:place] + line[place + 1 :] + later))
+            assert all(pack(*each) == later for each in found)
+
+
+def test_it_goes_where_it_is_told_past_a_whole_turn() -> None:
+    hand = Hand()
+    facts = hand.link.identify()
+    assert [(fact.model, fact.watchdog) for fact in facts] == [("STS3215", False)] * 2
+    hand.link.arm()
+    assert hand.go(0.058, 2.0) == pytest.approx(0.058, abs=2e-5)
+    assert hand.places == pytest.approx(0.058, abs=2e-5)
+    assert hand.places[0] / RADIUS > 2 * np.pi
+    reading = hand.link.reading
+    assert reading is not None
+    assert reading.currents == pytest.approx(RADIUS * 200.0 * 0.058 / 0.35, abs=0.01)
+    assert reading.volts == pytest.approx(7.4)
+
+
+def test_a_dead_host_leaves_motors_standing_though_they_have_no_watchdog() -> None:
+    hand = Hand()
+    hand.link.identify()
+    hand.link.arm()
+    hand.go(0.05, 0.4)
+    hand.chain.wait(0.25)
+    before = hand.places
+    hand.chain.wait(5.0)
+    assert np.abs(hand.places - before).max() == 0.0
+    assert (hand.places < 0.045).all()
+
+
+def test_its_torque_is_bounded_by_the_servo() -> None:
+    hand = Hand()
+    hand.link.identify()
+    hand.link.arm()
+    hand.bus.write(np.full(2, 7.0), np.full(2, 2.0))
+    for servo in hand.servos:
+        servo.load = lambda angle: 0.1 * max(angle, 0.0)
+    hand.chain.wait(5.0)
+    assert [servo.torque for servo in hand.servos] == pytest.approx([0.35 * 0.5] * 2, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("ails", "told"),
+    [
+        (Ails(deaf=True), "the motor of thumb has not answered for 0.2"),
+        (Ails(stuck=True), "thumb does not follow: it stands at"),
+        (Ails(hot=True), "the motor of thumb reports: too hot"),
+    ],
+)
+def test_a_motor_that_fails_is_named_and_all_stand(ails: Ails, told: str) -> None:
+    hand = Hand()
+    hand.link.identify()
+    hand.link.arm()
+    hand.go(0.02, 0.2)
+    hand.servos[1].ails = ails
+    with pytest.raises(HydrostatError, match=told):
+        hand.go(0.05, 3.0)
+    assert hand.link.state is LinkState.FAULT
+    hand.chain.wait(0.25)
+    before = hand.places
+    hand.chain.wait(2.0)
+    assert np.abs(hand.places - before).max() == 0.0
+
+
+def test_who_is_not_ready_is_told() -> None:
+    hand = Hand()
+    hand.servos[1].table[3:5] = (2825).to_bytes(2, "little")
+    with pytest.raises(HydrostatError, match="motor 2 is a servo of number 2825; known are STS3215"):
+        hand.bus.identify()
+    hand = Hand()
+    hand.servos[0].table[MODE] = 1
+    with pytest.raises(HydrostatError, match="motor 1 is not in position mode"):
+        hand.bus.identify()
+    hand = Hand()
+    hand.servos[0].ails = Ails(deaf=True)
+    with pytest.raises(HydrostatError, match="motor 1 does not answer"):
+        hand.bus.identify()
+
+
+def test_a_servo_that_counts_no_turns_is_never_sent_past_its_limits() -> None:
+    hand = Hand()
+    for servo in hand.servos:
+        servo.table[LOW : LOW + 4] = bytes([0, 0, 0xFF, 0x0F])
+    hand.bus.identify()
+    hand.bus.write(np.full(2, 4095 * TICK), np.ones(2))
+    with pytest.raises(HydrostatError, match=r"motor 1 turns from step 0 to 4095 and was asked for 4096; set both"):
+        hand.bus.write(np.full(2, 4096 * TICK), np.ones(2))
+
+
+def test_a_bound_that_was_not_taken_is_told() -> None:
+    hand = Hand()
+    hand.bus.identify()
+    lasting = hand.servos[1].take
+    hand.servos[1].take = lambda place, data: 0 if place == BOUND else lasting(place, data)
+    with pytest.raises(HydrostatError, match="motor 2 did not take its bound of torque"):
+        hand.bus.arm(np.full(2, 0.5))
+    assert not any(servo.table[TORQUE] for servo in hand.servos)
