@@ -10,7 +10,10 @@ from hydrostat.control.calibration import (
     write_calibration,
 )
 from hydrostat.control.dynamixel_bus import DynamixelBus
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
+from hydrostat.control.emulated_line import EmulatedLine
 from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.guard import GuardLimits, TensionGuard
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
 from hydrostat.control.motors import FASTEST, Motors
@@ -26,7 +29,11 @@ __all__ = [
     "Calibration",
     "DynamixelBus",
     "EmulatedChain",
+    "EmulatedFeetechChain",
+    "EmulatedLine",
     "EmulatedServo",
+    "EmulatedSts",
+    "FeetechBus",
     "GuardLimits",
     "Key",
     "Link",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrostat.control.bus_link import BusLink, LinkState
-from hydrostat.control.calibration import Calibration, Spool
+from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.control.emulated_servos import Ails
 from hydrostat.control.feetech_bus import BOUND, LOW, MODE, TICK, TORQUE, FeetechBus
@@ -29,11 +29,11 @@ class Hand:
         self.chain = EmulatedFeetechChain(self.servos)
         self.bus = FeetechBus(self.chain, [1, 2], clock=self.chain.clock, wait=self.chain.wait)
         winches = [Winch(name=name, at=(0.0, 0.0), spool_radius=RADIUS, travel=TRAVEL) for name in NAMES]
-        spools = [
-            Spool(winch=name, number=number, zero=0.0, radius=RADIUS, current=0.5)
+        motors = [
+            WinchMotor(winch=name, number=number, zero=0.0, radius=RADIUS, current=0.5)
             for number, name in enumerate(NAMES, 1)
         ]
-        self.link = BusLink(self.bus, winches, Calibration(tuple(spools)), clock=self.chain.clock)
+        self.link = BusLink(self.bus, winches, Calibration(tuple(motors)), clock=self.chain.clock)
 
     def go(self, goal: float, seconds: float) -> np.ndarray:
         """Tell a goal [m] 50 times a second; returns where the link says that they are."""
