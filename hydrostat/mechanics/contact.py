@@ -1,5 +1,6 @@
 """`ContactEnergy`: a body does not pass through itself."""
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, NamedTuple, Self
@@ -11,7 +12,7 @@ from hydrostat.geometry.boundary_tree import BoundaryTree, Pairs, facet_areas
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.pair_distances import admissible_share, squared_distances
 from hydrostat.mechanics.contact_pairs import barrier_energy, barrier_forces, barrier_hessian
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Pressed, Stencils
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Places, Pressed, Stencils
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -120,7 +121,7 @@ class ContactEnergy(Energy):
         return stencils, edges, self.skin.soft, self._begins, self.skin.weights(self.pairs, self._begins)
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        return float(barrier_energy(nodes, *self._law)[0])
+        return float(barrier_energy(nodes, *self._law)[0]) if len(self.stencils) else 0.0
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         blocks = np.empty((*self.stencils.shape, nodes.shape[1]))
@@ -136,6 +137,14 @@ class ContactEnergy(Energy):
         barrier_hessian(nodes, *self._law, share, blocks)
         return blocks
 
+    def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
+        if len(self.stencils):
+            super().add_gradient(nodes, controls, total)
+
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+        if len(self.stencils):
+            super().add_hessian(nodes, controls, share, places)
+
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         watch, skin = self.watch, self.skin
         if watch is not None and watch.serves(nodes) and watch.serves(nodes + move):
@@ -149,9 +158,16 @@ class ContactEnergy(Energy):
         watch = self.watch
         if watch is None or not watch.serves(nodes):
             watch = self._look_around(nodes)
-        if watch.pairs is self.pairs or self._felt(watch.pairs, nodes) == self._felt(self.pairs, nodes):
-            return self if watch is self.watch else ContactEnergy(self.skin, self.pairs, watch)
-        return ContactEnergy(self.skin, watch.pairs, watch)
+        elif watch.pairs is self.pairs:
+            return self
+        found = ContactEnergy(self.skin, watch.pairs, watch)
+        if found._felt(nodes) != self._felt(nodes):
+            return found
+        if watch is self.watch:
+            return self
+        same = copy(self)  # with all that is known of its pairs
+        same.watch, same.swept = watch, None
+        return same
 
     def pressed(self, nodes: Nodes) -> Pressed:
         """Where the body touches itself: half-way between both sides, with the normal force on the first of them."""
@@ -177,9 +193,9 @@ class ContactEnergy(Energy):
             pairs = self.skin.tree.pairs(nodes, self._reach)
         return Watch(nodes - margin, nodes + margin, pairs)
 
-    def _felt(self, pairs: Pairs, nodes: Nodes) -> int:
-        """How many of these pairs are felt."""
-        return int((self.skin.squared(nodes, pairs) < self.skin.begins(pairs)).sum())
+    def _felt(self, nodes: Nodes) -> int:
+        """How many of its pairs are felt."""
+        return int((self.skin.squared(nodes, self.pairs) < self._begins).sum()) if len(self.stencils) else 0
 
 
 _SOFT = 0.05

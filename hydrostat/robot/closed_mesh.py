@@ -55,8 +55,12 @@ def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
     """Read a thing from a surface file; a coordinate counts `unit` metres.
 
     Raises:
-        InputError: no surface, an open one, one that is inside out, or one with too many triangles.
+        InputError: no surface, an open one, one that is inside out or runs through itself, or too many triangles.
     """
+    from hydrostat.geometry.healing.faults import (
+        crossing_pairs,
+    )  # only here: a robot without such a thing starts sooner
+
     surface = read_surface(content, name=file, unit=unit)
     if len(surface.triangles) > MOST_TRIANGLES:
         count = len(surface.triangles)
@@ -68,4 +72,8 @@ def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
         raise InputError(f"{file}: is not closed, or its triangles do not all turn the same way; mend it first")
     if whole.volume <= 0:
         raise InputError(f"{file}: is inside out; turn its triangles round")
+    crossing = crossing_pairs(whole)
+    if len(crossing):
+        spot = ", ".join(f"{1e3 * x:.1f}" for x in whole.vertices[whole.triangles[crossing[0, 0]]].mean(axis=0))
+        raise InputError(f"{file}: runs through itself, for instance at ({spot}) mm; mend it first")
     return ClosedMesh(file=file, content=content, surface=whole)

@@ -102,6 +102,30 @@ def test_parallel_edges_have_a_hessian() -> None:
         np.testing.assert_allclose(block, slopes, atol=1e-6 * np.abs(slopes).max())
 
 
+@pytest.mark.parametrize("kind", ["node and edge", "node and triangle", "edges"])
+def test_blocks_to_eight_digits(kind: str) -> None:
+    """Pairs in all positions, by differences of sixth order; as exact at the best of some steps as they can be."""
+    dim = 2 if kind == "node and edge" else 3
+    rest, random = 9.0 * np.eye(dim + 1, dim), np.random.default_rng(3)
+    skin = replace(own(dim).skin, rest=rest, areas=np.ones(dim + 1), distance=1.0)
+    pair = ContactEnergy(skin, Pairs(np.arange(dim + 1)[None], np.array([kind == "edges"])))
+    felt = 0
+    while felt < 20:
+        nodes = random.uniform(-1, 1, (dim + 1, dim))
+        if not 0.01 < skin.squared(nodes, pair.pairs)[0] < 0.8:
+            continue
+        felt += 1
+        block, errors = pair.hessian(nodes, IDLE)[0], []
+        for step in (3e-3, 1e-3, 3e-4, 1e-4, 3e-5):
+            slopes = np.zeros_like(block)
+            for row, move in enumerate(step * np.eye(nodes.size).reshape(-1, *nodes.shape)):
+                for times, weight in ((1, 45), (2, -9), (3, 1)):
+                    ahead, behind = (pair.gradient(nodes + sign * times * move, IDLE).ravel() for sign in (1, -1))
+                    slopes[row] += weight * (ahead - behind) / (60 * step)
+            errors.append(np.abs(slopes - block).max() / np.abs(block).max())
+        assert min(errors) < 1e-8
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 def test_an_obstacle(dim: int) -> None:
     """A ball next to the upper prong, some of which it touches."""

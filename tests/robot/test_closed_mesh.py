@@ -106,12 +106,22 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     assert robot_hash(other) != robot_hash(robot)
 
 
+def two_blocks(apart: float) -> bytes:
+    """A block, and another so many of its sides away along all axes."""
+    return stl(np.vstack([40 * CORNERS, 40 * (CORNERS + apart)]), np.vstack([SIDES, SIDES + 8]))
+
+
+def test_a_thing_may_have_parts() -> None:
+    assert closed_mesh(two_blocks(1.2), "thing.stl").surface.volume == pytest.approx(2 * 0.04**3)
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [
         (block(triangles=SIDES[:-1]), "thing.stl: is not closed"),
         (block(triangles=SIDES[:, ::-1]), "thing.stl: is inside out"),
         (block(triangles=np.vstack([SIDES[:-1], SIDES[-1:, ::-1]])), "do not all turn the same way"),
+        (two_blocks(0.5), r"thing.stl: runs through itself, for instance at \(.*\) mm; mend it first$"),
         (b"solid nothing", "thing.stl"),
         (b"", "thing.stl: the file is empty"),
     ],
