@@ -40,7 +40,8 @@ def dress() -> ui.dark_mode:
 HABITS = """
 <script>
 addEventListener("click", (event) => {
-  if (event.detail) setTimeout(() => event.target.closest("button, [role=button]")?.blur());
+  const letGo = () => document.activeElement?.closest("button, [role=button]") && document.activeElement.blur();
+  if (event.detail) setTimeout(letGo);
 });
 addEventListener("keydown", (event) => {
   const typing = event.target.closest?.("input, textarea, select, [contenteditable=true]");

@@ -318,3 +318,65 @@ def test_every_stage_shows_without_a_complaint(studio: Studio, window: Open, rob
             go(page, stage)
             page.get_by_text(words).first.wait_for()
         assert complaints == []
+
+
+def test_a_class_each_with_a_robot_and_who_watches(studio: Studio, window: Open, tmp_path: Path) -> None:
+    """Two browsers have a robot each; a third watches one; its robot goes home and comes back; keys mean the robot."""
+    with studio(str(gallery_folder("starfish")), "--rooms") as address:
+        one, two = window(address), window(address)
+        for page in (one, two):
+            wait_for_view(page)
+        assert one.url != two.url
+        one.get_by_label("Share this room", exact=True).click()
+        watcher = window(one.get_by_test_id("share-watch").input_value())
+        one.keyboard.press("Escape")
+        wait_for_view(watcher)
+        watcher.get_by_test_id("watching").wait_for()
+        go(one, "edit")
+        watcher.get_by_text("You watch: Edit").wait_for()
+        assert not watcher.get_by_label("Undo", exact=True).count()
+        one.wait_for_function("__app.things.some(t => t.key === 'via:0:1')")
+        start = place(two, "marker:top")
+        drag(one, "marker:top", 0, 25)
+        watcher.wait_for_function("y => __app.things.find(t => t.key === 'marker:top').y > y + 10", arg=start[1])
+        assert np.allclose(place(two, "marker:top"), start, atol=1.0)
+        with one.expect_download() as told:
+            one.keyboard.press("Control+s")
+        home = tmp_path / "home.zip"
+        told.value.save_as(home)
+        with zipfile.ZipFile(home) as archive:
+            archive.extractall(tmp_path / "out")
+        moved = load_robot(tmp_path / "out" / "starfish").markers[0].at
+        go(two, "start")
+        two.locator("input[type=file]").first.set_input_files(str(home))
+        two.wait_for_function("y => __app.things.find(t => t.key === 'marker:top')?.y > y + 10", arg=start[1])
+        assert moved[1] < load_robot(gallery_folder("starfish")).markers[0].at[1] - 0.002
+        go(one, "edit")
+        one.keyboard.press("Control+a")
+        one.get_by_text("14 parts").wait_for()
+        assert one.evaluate("String(getSelection())") == ""
+        assert one.evaluate("document.documentElement.lang") == "en-US"
+        one.locator("[role=option]").first.focus()
+        one.keyboard.press("Tab")
+        assert one.evaluate("document.activeElement.getAttribute('role')") == "option"
+        for page in (one, two, watcher):
+            quiet(page)
+
+
+def test_space_plays_and_does_not_press_the_last_button_again(studio: Studio, window: Open) -> None:
+    with studio(str(gallery_folder("starfish"))) as address:
+        page = window(address)
+        wait_for_view(page)
+        go(page, "drive")
+        page.get_by_role("button", name="Add").click()
+        page.locator("svg[aria-label=Timeline] rect[data-key]").first.wait_for(state="attached")
+        seek(page, 2.0)
+        page.get_by_role("button", name="Add").click()
+        page.wait_for_function("document.querySelectorAll('svg[aria-label=Timeline] rect[data-key]').length === 2")
+        seek(page, 1.0)
+        page.get_by_role("button", name="Light or dark").click()
+        page.wait_for_function("Quasar.Dark.isActive")
+        page.wait_for_function("document.activeElement === document.body")
+        page.keyboard.press("Space")
+        page.get_by_text(re.compile(r"^1\.[1-9]\d s$")).first.wait_for()
+        assert page.evaluate("Quasar.Dark.isActive"), "the last button was pressed again"

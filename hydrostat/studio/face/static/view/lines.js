@@ -92,14 +92,16 @@ export function drawLines(pen, view) {
 export function drawClouds(pen, view) {
   const spot = [0, 0, 0];
   for (const { thing, array } of Object.values(view.clouds)) {
+    const held = thing.name === "pins"; // what is held is seen at once, what can be reached is a mist
+    const radius = held ? 2.1 : 1.7;
     for (const hidden of view.camera.flat ? [false] : [true, false]) {
-      pen.fillStyle = veil(thing.colour, hidden ? 0.16 : 0.5);
+      pen.fillStyle = veil(thing.colour, hidden ? 0.16 : held ? 0.85 : 0.5);
       pen.beginPath();
       for (let i = 0; i < array.length; i += 3) {
         view.camera.project(array[i], array[i + 1], array[i + 2], spot);
         if (!view.camera.flat && view.cover.layers(...spot) > 0 !== hidden) continue;
-        pen.moveTo(spot[0] + 1.7, spot[1]);
-        pen.arc(spot[0], spot[1], 1.7, 0, 7);
+        pen.moveTo(spot[0] + radius, spot[1]);
+        pen.arc(spot[0], spot[1], radius, 0, 7);
       }
       pen.fill();
     }
