@@ -14,6 +14,9 @@ namespace {
 using Int = int64_t;
 const double NONE = std::numeric_limits<double>::infinity();
 
+typedef float Four __attribute__((vector_size(16)));
+typedef int Mask __attribute__((vector_size(16)));
+
 double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Nearest points of a pair whose corners are at y: weights of the corners, and their slopes by what is free.
@@ -93,6 +96,41 @@ void place(const double* x, int dim, const Int* stencil, int corners, double (*y
         for (int k = 0; k < 3; k++) y[i][k] = k < dim ? x[stencil[i] * dim + k] : 0.0;
 }
 
+// Whether a plane across the line between the middles of two features, which move from somewhere by a straight way, keeps
+// them so far apart that they neither come within reach (given squared) nor lose more of their gap than is allowed.
+template <int DIM, int FIRST, class Number>
+auto parted_by(const Number (*from)[DIM], const Number (*way)[DIM], Number near, Number kept) {
+    typedef std::conditional_t<std::is_same_v<Number, double>, double, float> Real;
+    Number across[DIM], length{}, square{};
+    for (int k = 0; k < DIM; k++) {
+        Number before{}, turn{};
+        for (int i = 0; i <= DIM; i++) {
+            Real weight = i < FIRST ? Real(1) / FIRST : Real(-1) / (DIM + 1 - FIRST);
+            before += weight * from[i][k];
+            turn += weight * way[i][k];
+        }
+        across[k] = before + 0.5f * turn;
+        length += before * before, square += across[k] * across[k];
+    }
+    Number gap{};
+    for (int turn = 0; turn < 2; turn++) {
+        Number least{}, most{};
+        for (int i = 0; i <= DIM; i++) {
+            Number end{};
+            for (int k = 0; k < DIM; k++) end += across[k] * (turn ? from[i][k] + way[i][k] : from[i][k]);
+            if (i == 0) least = end;
+            else if (i < FIRST) least = end < least ? end : least;
+            else if (i == FIRST) most = end;
+            else most = end > most ? end : most;
+        }
+        Number between = least - most;
+        if (turn == 0) gap = between;
+        else gap = between < gap ? between : gap;
+    }
+    Number allowed = 1.44f * kept * kept * length;
+    return (gap > 0.0f) & (gap * gap > (near > allowed ? near : allowed) * square);
+}
+
 // A straight move of all nodes.
 struct Move {
     const double *x, *move, *rest;
@@ -152,49 +190,30 @@ struct Move {
         return pair.squared < reach * reach;
     }
 
-    // Whether a plane across the line between the middles of two features keeps them so far apart up to a share of
-    // the move that they neither come within reach nor lose more of their gap than is allowed.
+    // Whether a plane parts two features all the way, as said at `parted_by`.
     bool passes(const Int* stencil, int first, double limit, double reach) const {
-        return dim == 2 ? parted<2, 1>(stencil, limit, reach)
-                        : (first == 1 ? parted<3, 1>(stencil, limit, reach) : parted<3, 2>(stencil, limit, reach));
+        if (dim == 2) return apart<2, 1>(stencil, limit, reach);
+        return first == 1 ? apart<3, 1>(stencil, limit, reach) : apart<3, 2>(stencil, limit, reach);
     }
 
     template <int DIM, int FIRST>
-    bool parted(const Int* stencil, double limit, double reach) const {
-        double from[DIM + 1][DIM], to[DIM + 1][DIM], before[DIM], across[DIM];
+    bool apart(const Int* stencil, double limit, double reach) const {
+        double from[DIM + 1][DIM], to[DIM + 1][DIM];
         for (int i = 0; i <= DIM; i++)
             for (int k = 0; k < DIM; k++) {
                 from[i][k] = x[stencil[i] * DIM + k];
                 to[i][k] = limit * move[stencil[i] * DIM + k];
             }
-        double length = 0.0, square = 0.0;
-        for (int k = 0; k < DIM; k++) {
-            double turn = before[k] = 0.0;
-            for (int i = 0; i <= DIM; i++) {
-                double weight = i < FIRST ? 1.0 / FIRST : -1.0 / (DIM + 1 - FIRST);
-                before[k] += weight * from[i][k];
-                turn += weight * to[i][k];
-            }
-            across[k] = before[k] + 0.5 * turn;
-            length += before[k] * before[k], square += across[k] * across[k];
-        }
-        double least[2] = {NONE, NONE}, most[2] = {-NONE, -NONE};
-        for (int i = 0; i <= DIM; i++) {
-            double begin = 0.0, end = 0.0;
-            for (int k = 0; k < DIM; k++) begin += across[k] * from[i][k], end += across[k] * (from[i][k] + to[i][k]);
-            if (i < FIRST) least[0] = std::min(least[0], begin), least[1] = std::min(least[1], end);
-            else most[0] = std::max(most[0], begin), most[1] = std::max(most[1], end);
-        }
-        double gap = std::min(least[0] - most[0], least[1] - most[1]);
-        return gap > 0.0 && gap * gap > std::max(reach * reach, 1.44 * kept * kept * length) * square;
+        return parted_by<DIM, FIRST>(from, to, reach * reach, kept);
     }
 };
 
 // Boxes in single precision, wide enough for what rounding takes: lowest corner, and less the highest one.
-typedef float Four __attribute__((vector_size(16)));
-typedef int Mask __attribute__((vector_size(16)));
 
 bool any(Mask mask) {
+#ifdef __SSE__
+    return __builtin_ia32_movmskps((Four)mask) != 0;
+#endif
     typedef int64_t Halves __attribute__((vector_size(16)));
     Halves halves = (Halves)mask;
     return (halves[0] | halves[1]) != 0;
@@ -370,8 +389,44 @@ struct Listed {
           stencils(stencils.data()), edges(edges.data()) {
         demand((dim == 2 || dim == 3) && (int)stencils.shape(1) == corners && (Int)edges.shape(0) == count,
                "as many pairs of each");
-        for (Int i = 0; i < count * corners; i++)
-            demand(this->stencils[i] >= 0 && this->stencils[i] < nodes, "a corner is no node");
+        Int beyond = 0;
+        for (Int i = 0; i < count * corners; i++) beyond |= this->stencils[i] | (nodes - 1 - this->stencils[i]);
+        demand(beyond >= 0, "a corner is no node");
+    }
+
+    // Which pairs `parted_by` tells apart all the way, four at once in single precision; a few less than there are.
+    std::vector<bool> parted(const double* move, double kept, double reach) const {
+        std::vector<bool> found(count);
+        std::vector<float> from(x, x + nodes * dim), way(move, move + nodes * dim);
+        float widest = 0.0f;
+        for (Int i = 0; i < nodes * dim; i++) widest = std::max({widest, std::abs(from[i]), std::abs(way[i])});
+        float near = (float)reach + 1e-4f * widest;
+        for (Int pair = 0; pair + 4 <= count; pair += 4) {
+            const bool* kind = edges + pair;
+            if (kind[0] != kind[1] || kind[0] != kind[2] || kind[0] != kind[3]) continue;
+            Mask mask = dim == 2 ? four<2, 1>(from.data(), way.data(), pair, near, (float)kept)
+                                 : (kind[0] ? four<3, 2>(from.data(), way.data(), pair, near, (float)kept)
+                                            : four<3, 1>(from.data(), way.data(), pair, near, (float)kept));
+            for (int lane = 0; lane < 4; lane++) found[pair + lane] = mask[lane] != 0;
+        }
+        return found;
+    }
+
+    template <int DIM, int FIRST>
+    Mask four(const float* from, const float* way, Int pair, float near, float kept) const {
+        Four begin[DIM + 1][DIM], by[DIM + 1][DIM];
+        for (int i = 0; i <= DIM; i++) {
+            const float *at[4], *to[4];
+            for (int lane = 0; lane < 4; lane++) {
+                Int node = stencils[(pair + lane) * (DIM + 1) + i];
+                at[lane] = from + node * DIM, to[lane] = way + node * DIM;
+            }
+            for (int k = 0; k < DIM; k++) {
+                begin[i][k] = Four{at[0][k], at[1][k], at[2][k], at[3][k]};
+                by[i][k] = Four{to[0][k], to[1][k], to[2][k], to[3][k]};
+            }
+        }
+        return parted_by<DIM, FIRST>(begin, by, Four{} + near * near, Four{} + kept);
     }
 
     Nearest nearest(Int pair, double soft, double (*y)[3]) const {
@@ -412,8 +467,9 @@ std::pair<double, Int> sweep_boundary(Counts<2> children, Counts<2> facets, Coun
         }
         found++;
     };
+    std::vector<bool> parted = neighbours.parted(move.data(), kept, reach);
     for (Int pair = 0; pair < neighbours.count; pair++)
-        visit(neighbours.stencils + pair * (dim + 1), neighbours.edges[pair] ? 2 : 1);
+        if (!parted[pair]) visit(neighbours.stencils + pair * (dim + 1), neighbours.edges[pair] ? 2 : 1);
     descend(tree, front.data(), (Int)front.shape(0), Passing{boxes, rounded}, visit);
     if (found > room) return {limit, found};
     Int last = 0;
