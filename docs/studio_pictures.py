@@ -14,10 +14,10 @@ from os import environ
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFilter
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from hydrostat.robot import gallery_folder
+from hydrostat.robot import gallery_folder, load_robot
 
 PICTURES = Path(__file__).parent / "pictures"
 
@@ -104,6 +104,32 @@ def take_start(browser: Browser) -> None:
         keep(page, "start")
 
 
+def photograph(folder: Path) -> Path:
+    """A picture as from a telephone: the gallery's pig, cut from blue felt, with its shadow on grey paper."""
+    ring = load_robot(gallery_folder("pig")).body.outline
+    assert ring is not None
+    low, high = ring.exterior.min(axis=0), ring.exterior.max(axis=0)
+    scale = 800 / float(max(high - low))
+    points = [(120 + scale * (x - low[0]), 110 + scale * (high[1] - y)) for x, y in ring.exterior]
+    wide, tall = (int(scale * value) + 240 for value in high - low)
+    image, shade = Image.new("RGB", (wide, tall), (226, 223, 218)), Image.new("L", (wide, tall), 0)
+    ImageDraw.Draw(shade).polygon([(x + 16, y + 20) for x, y in points], fill=150)
+    image.paste((70, 68, 66), mask=shade.filter(ImageFilter.GaussianBlur(9)))
+    ImageDraw.Draw(image).polygon(points, fill=(52, 92, 168))
+    file = folder / "pig.jpg"
+    image.save(file, quality=92)
+    return file
+
+
+def take_photo(browser: Browser) -> None:
+    """A photograph, the outline that was read from it, and how it is read."""
+    with TemporaryDirectory() as folder, window(browser, None) as page:
+        page.locator("input[type=file]").first.set_input_files(str(photograph(Path(folder))))
+        page.locator(".start-photo svg").wait_for()
+        page.wait_for_timeout(1500)
+        keep(page, "photo")
+
+
 def take_starfish(browser: Browser) -> None:
     """Edit, pose, design, drive, export of a flat robot."""
     with window(browser, "starfish") as page:
@@ -114,6 +140,11 @@ def take_starfish(browser: Browser) -> None:
         page.wait_for_function("__app.things.some(t => t.key === 'via:0:2')")
         at = page.evaluate("__app.things.find(t => t.key === 'via:0:2')")
         page.mouse.click(at["x"], at["y"])
+        page.keyboard.down("Shift")
+        for key in ("marker:right", "winch:right"):
+            at = page.evaluate("key => __app.things.find(t => t.key === key)", key)
+            page.mouse.click(at["x"], at["y"])
+        page.keyboard.up("Shift")
         keep(page, "edit")
         go(page, "design")
         page.get_by_test_id("design-go").click()
@@ -156,7 +187,7 @@ def take_hand(browser: Browser) -> None:
         keep(page, "hand")
 
 
-TAKES = {"start": take_start, "starfish": take_starfish, "kit": take_kit, "hand": take_hand}
+TAKES = {"start": take_start, "photo": take_photo, "starfish": take_starfish, "kit": take_kit, "hand": take_hand}
 
 
 def main() -> None:
