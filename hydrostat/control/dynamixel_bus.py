@@ -3,18 +3,15 @@
 Source: ROBOTIS e-Manual, control tables of XL330-M288, XC330-T288, XL430-W250.
 """
 
-import threading
-import time
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+from hydrostat.control.bus import MotorFacts, Port, Reading
 from hydrostat.control.dynamixel_packets import (
     ALL,
     PING,
@@ -24,9 +21,9 @@ from hydrostat.control.dynamixel_packets import (
     SYNC_WRITE,
     WRITE,
     Packet,
-    PacketReader,
     pack,
 )
+from hydrostat.control.servo_bus import ServoBus
 from hydrostat.errors import HydrostatError
 
 
@@ -77,48 +74,21 @@ PROOF = 8.0 * pi / 180.0
 """Angle that each is asked to turn slowly while its watchdog is tried [rad]; it should turn a sixth of it at most."""
 
 
-class DynamixelBus(Bus):
+class DynamixelBus(ServoBus):
     """Servos in extended position mode, bounded in current where they can be (modes 5 and 4)."""
 
     kind: ClassVar[str] = "dynamixel"
 
-    def __init__(
-        self,
-        port: Port,
-        numbers: Sequence[int],
-        *,
-        clock: Callable[[], float] = time.monotonic,
-        wait: Callable[[float], None] = time.sleep,
-        answer: float = 0.02,
-    ) -> None:
-        """Servos on a port, by their numbers.
-
-        Args:
-            port: an open serial line.
-            numbers: of the servos.
-            clock: that only runs forward [s].
-            wait: lets so much time pass [s].
-            answer: longest time for answers [s].
-        """
-        self._port, self._numbers, self._clock, self._wait, self._answer = port, tuple(numbers), clock, wait, answer
-        self._lock = threading.RLock()
+    def __init__(self, port: Port, numbers: Sequence[int], **rest: Any) -> None:
+        """Servos on a port, by their numbers; the rest is as a `ServoBus` has it."""
+        super().__init__(port, numbers, **rest)
         self._models: dict[int, DynamixelModel] = {}
-        count = len(self._numbers)
-        self._reader, self._closed = PacketReader(), False
-        nothing = np.full(count, np.nan)
-        self._last = Reading(
-            angles=nothing,
-            currents=nothing,
-            temperatures=nothing,
-            volts=nothing,
-            stamps=np.full(count, -np.inf),
-            faults=("",) * count,
-        )
 
     def identify(self) -> tuple[MotorFacts, ...]:
         """Facts of the servos; each watchdog is armed and tried."""
         with self._lock:
             firmware = {number: self._pinged(number) for number in self._numbers}
+            self._known = True
             for number in self._numbers:
                 self._set(number, TORQUE, 0, 1)
                 self._set(number, MODE, 5 if self._models[number].measures else 4, 1)
@@ -142,18 +112,20 @@ class DynamixelBus(Bus):
                 self._set(number, GOAL, self._steps(number), 4)  # and then goes on to the last
                 self._bound(number, most)
                 self._set(number, TORQUE, 1, 1)
-                self._set(number, WATCHDOG, WATCH, 1)
+            armed = set[int]()
+            for _ in range(5):  # at last, and all at once: who waits for others to be armed would be told nothing
+                self._tell_all(WATCHDOG, {number: bytes([WATCH]) for number in self._numbers})
+                armed = {packet.number for packet in self._ask_all(WATCHDOG, 1) if packet.content[1] == WATCH}
+                if armed.issuperset(self._numbers):
+                    return
+            raise self._refused(min(set(self._numbers) - armed), WATCHDOG)
 
     def read(self) -> Reading:
         """What was last heard of each."""
         with self._lock:
             last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
             stamps, faults = self._last.stamps.copy(), list(self._last.faults)
-            content = STATE.to_bytes(2, "little") + STATE_BYTES.to_bytes(2, "little") + bytes(self._numbers)
-            self._send(ALL, SYNC_READ, content)
-            for packet in self._answers(len(self._numbers)):
-                if len(packet.content) != 1 + STATE_BYTES or packet.number not in self._numbers:
-                    continue
+            for packet in self._ask_all(STATE, STATE_BYTES):
                 index, told = self._numbers.index(packet.number), packet.content[1:]
                 model = self._models.get(packet.number, _UNKNOWN)
                 raw = _signed(told[0:2])
@@ -177,19 +149,6 @@ class DynamixelBus(Bus):
         with self._lock:
             self._tell_all(PROFILE, values)
 
-    def stop(self) -> None:
-        """Let them stand; where one cannot be heard, the goal that it has is the last it was told."""
-        with suppress(Exception), self._lock:
-            if not self._closed and self._models:
-                self._stand()
-
-    def close(self) -> None:
-        """Stop; torque stays on, so that no load falls, and the watchdog armed."""
-        self.stop()
-        with suppress(Exception), self._lock:
-            self._closed = True
-            self._port.close()
-
     def _bound(self, number: int, current: float) -> None:
         """Bound the current of a servo [A]; its share of power where it does not measure that."""
         model = self._models[number]
@@ -202,17 +161,11 @@ class DynamixelBus(Bus):
         """Where a servo was last heard to be."""
         return round(float(self._last.angles[self._numbers.index(number)]) / TICK)
 
-    def _stand(self) -> None:
-        """Goals where they are: asked three times, as an answer may be lost."""
-        before, known = self._clock(), np.zeros(len(self._numbers), dtype=bool)
-        for _ in range(3):
-            known = self.read().stamps >= before
-            if known.all():
-                break
-        heard = [number for number, fresh in zip(self._numbers, known.tolist(), strict=True) if fresh]
-        for _ in range(2):  # a watchdog that has fired refuses goals, whether it has stopped its motor or not
-            self._tell_all(WATCHDOG, {number: bytes(1) for number in self._numbers})
-            self._tell_all(GOAL, {number: self._steps(number).to_bytes(4, "little", signed=True) for number in heard})
+    def _hold(self, angles: dict[int, float]) -> None:
+        # a watchdog that has fired refuses goals, whether it has stopped its motor or not
+        self._tell_all(WATCHDOG, {number: bytes(1) for number in self._numbers})
+        steps = {number: round(angle / TICK).to_bytes(4, "little", signed=True) for number, angle in angles.items()}
+        self._tell_all(GOAL, steps)
 
     def _tell_all(self, place: int, values: Mapping[int, bytes]) -> None:
         """Write a register of several servos at once; none answers."""
@@ -258,9 +211,7 @@ class DynamixelBus(Bus):
                         raise HydrostatError(f"motor {number} is a servo of number {model}; known are {known}")
                     self._models[number] = MODELS[model]
                     return packet.content[3]
-        raise HydrostatError(
-            f"motor {number} does not answer; look at its power, its cable, its number and the baud rate"
-        )
+        raise self._silent(number)
 
     def _fault(self, packet: Packet) -> str:
         """What a servo reports with its answer, in words."""
@@ -271,13 +222,26 @@ class DynamixelBus(Bus):
         return ", ".join(words) or "it reports an error of its hardware"
 
     def _set(self, number: int, place: int, value: int, size: int) -> None:
-        """Write a register, and hear that it was taken."""
-        for _ in range(3):
+        """Write a register, and read that it was taken: an answer does not tell which question it is to."""
+        for _ in range(5):
             self._send(number, WRITE, place.to_bytes(2, "little") + value.to_bytes(size, "little", signed=value < 0))
-            for packet in self._answers(1):
-                if packet.number == number and len(packet.content) >= 1 and not packet.content[0] & 0x7F:
-                    return
-        raise HydrostatError(f"motor {number} did not take {_NAMES.get(place, place)}; look at its power and cable")
+            self._answers(1)
+            if self._get(number, place, size) == value % (1 << 8 * size):
+                return
+        raise self._refused(number, place)
+
+    def _refused(self, number: int, place: int) -> HydrostatError:
+        return HydrostatError(f"motor {number} did not take {_NAMES.get(place, place)}; look at its power and cable")
+
+    def _ask_all(self, place: int, size: int) -> list[Packet]:
+        """Answers of all that answer to one question for a register."""
+        self._send(ALL, SYNC_READ, place.to_bytes(2, "little") + size.to_bytes(2, "little") + bytes(self._numbers))
+        return self._hear(
+            len(self._numbers),
+            lambda packet: (
+                packet.instruction == STATUS and packet.number in self._numbers and len(packet.content) == 1 + size
+            ),
+        )
 
     def _get(self, number: int, place: int, size: int) -> int | None:
         self._send(number, READ, place.to_bytes(2, "little") + size.to_bytes(2, "little"))
@@ -287,22 +251,10 @@ class DynamixelBus(Bus):
         return None
 
     def _send(self, number: int, instruction: int, content: bytes = b"") -> None:
-        try:
-            self._port.write(pack(number, instruction, content))
-        except (OSError, ValueError) as error:
-            raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+        self._put(pack(number, instruction, content))
 
     def _answers(self, count: int) -> list[Packet]:
-        """Answers within the time, by the clock that only runs forward."""
-        until, found = self._clock() + self._answer, list[Packet]()
-        while len(found) < count and (left := until - self._clock()) > 0:
-            self._port.timeout = left
-            try:
-                data = self._port.read(1) + self._port.read(getattr(self._port, "in_waiting", 0))
-            except (OSError, ValueError, TypeError) as error:
-                raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
-            found += [packet for packet in self._reader.feed(data) if packet.instruction == STATUS]
-        return found
+        return self._hear(count, lambda packet: packet.instruction == STATUS)
 
 
 _UNKNOWN = DynamixelModel("", True, 1.0)

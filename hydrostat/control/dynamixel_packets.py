@@ -42,6 +42,10 @@ class PacketReader:
         self._kept = b""
         self.damaged = 0
 
+    def clear(self) -> None:
+        """Forget what has come of a packet that is not whole."""
+        self._kept = b""
+
     def feed(self, data: bytes) -> Iterator[Packet]:
         """Give each whole packet that these bytes complete."""
         self._kept += data

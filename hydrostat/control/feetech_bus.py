@@ -7,19 +7,17 @@ These servos have **no watchdog**: told nothing, they go on to their last goal. 
 close ahead that a dead host leaves them standing soon, and bounds of torque stay in the servo.
 """
 
-import threading
-import time
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Sequence
 from math import pi
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+from hydrostat.control.bus import MotorFacts, Port, Reading
 from hydrostat.control.dynamixel_packets import ALL, READ, SYNC_READ, SYNC_WRITE, WRITE, Packet
 from hydrostat.control.feetech_packets import SumReader, pack, padded
+from hydrostat.control.servo_bus import ServoBus
 from hydrostat.errors import HydrostatError
 
 MODEL, LOW, MODE, TORQUE, RISE, GOAL, BOUND, STATE = 3, 9, 33, 40, 41, 42, 48, 56
@@ -44,49 +42,22 @@ FAULTS = {
 }
 
 
-class FeetechBus(Bus):
+class FeetechBus(ServoBus):
     """Servos in position mode, bounded in torque."""
 
     kind: ClassVar[str] = "feetech"
+    packets = SumReader
 
-    def __init__(
-        self,
-        port: Port,
-        numbers: Sequence[int],
-        *,
-        clock: Callable[[], float] = time.monotonic,
-        wait: Callable[[float], None] = time.sleep,
-        answer: float = 0.02,
-    ) -> None:
-        """Servos on a port, by their numbers.
-
-        Args:
-            port: an open serial line.
-            numbers: of the servos.
-            clock: that only runs forward [s].
-            wait: lets so much time pass [s].
-            answer: longest time for answers [s].
-        """
-        self._port, self._numbers, self._clock, self._wait, self._answer = port, tuple(numbers), clock, wait, answer
-        self._lock, self._reader = threading.RLock(), SumReader()
-        self._identified = self._closed = False
-        count = len(self._numbers)
-        self._low, self._high = np.zeros(count), np.zeros(count)  # steps that each may go to
-        nothing = np.full(count, np.nan)
-        self._last = Reading(
-            angles=nothing,
-            currents=nothing,
-            temperatures=nothing,
-            volts=nothing,
-            stamps=np.full(count, -np.inf),
-            faults=("",) * count,
-        )
+    def __init__(self, port: Port, numbers: Sequence[int], **rest: Any) -> None:
+        """Servos on a port, by their numbers; the rest is as a `ServoBus` has it."""
+        super().__init__(port, numbers, **rest)
+        self._low, self._high = np.zeros(len(self._numbers)), np.zeros(len(self._numbers))  # steps they may go to
 
     def identify(self) -> tuple[MotorFacts, ...]:
         """Facts of the servos; none has a watchdog, none is written to its lasting memory."""
         with self._lock:
             facts = tuple(self._fact(index, number) for index, number in enumerate(self._numbers))
-            self._identified = True
+            self._known = True
             return facts
 
     def arm(self, currents: Vector) -> None:
@@ -127,33 +98,9 @@ class FeetechBus(Bus):
         rates = np.clip(np.rint(np.abs(speeds) / TICK), 1, 32767).astype(int).tolist()
         self._go(steps.astype(int).tolist(), rates, self._numbers)
 
-    def stop(self) -> None:
-        """Let them stand; where one cannot be heard, the goal that it has is the last it was told."""
-        with suppress(Exception), self._lock:
-            if not self._closed and self._identified:
-                self._stand()
-
-    def close(self) -> None:
-        """Stop; torque stays on, so that no load falls."""
-        self.stop()
-        with suppress(Exception), self._lock:
-            self._closed = True
-            self._port.close()
-
-    def _stand(self, *, all_heard: bool = False) -> None:
-        """Goals where each was heard first, told at once and again: questions, answers and goals may be lost."""
-        before, goals, heard = self._clock(), np.full(len(self._numbers), np.nan), list[int]()
-        for attempt in range(3):
-            reading = self.read()
-            goals = np.where(np.isnan(goals) & (reading.stamps >= before), reading.angles, goals)
-            heard = np.flatnonzero(~np.isnan(goals)).tolist()
-            steps = np.rint(goals[heard] / TICK).astype(int).tolist()
-            self._go(steps, [STANDING] * len(steps), [self._numbers[index] for index in heard])
-            if attempt and len(heard) == len(goals):
-                return
-        if all_heard:
-            lost = next(number for index, number in enumerate(self._numbers) if index not in heard)
-            raise HydrostatError(f"motor {lost} does not answer; look at its power and cable")
+    def _hold(self, angles: dict[int, float]) -> None:
+        steps = [round(angle / TICK) for angle in angles.values()]
+        self._go(steps, [STANDING] * len(steps), tuple(angles))
 
     def _go(self, steps: Sequence[int], rates: Sequence[int], numbers: Sequence[int]) -> None:
         content = bytes([RISE, 7])
@@ -166,9 +113,7 @@ class FeetechBus(Bus):
         """Who a servo is, its torque off, and the angles that it may go to."""
         told = self._get(number, 0, 13)
         if told is None:
-            raise HydrostatError(
-                f"motor {number} does not answer; look at its power, its cable, its number and the baud rate"
-            )
+            raise self._silent(number)
         model = int.from_bytes(told[MODEL : MODEL + 2], "little")
         if model not in MODELS:
             raise HydrostatError(f"motor {number} is a servo of number {model}; known are {', '.join(MODELS.values())}")
@@ -198,30 +143,11 @@ class FeetechBus(Bus):
         return None
 
     def _send(self, number: int, instruction: int, content: bytes = b"") -> None:
-        """Send a packet, and forget answers that came too late for what was asked before."""
-        try:
-            self._port.timeout = 0
-            self._port.read(getattr(self._port, "in_waiting", 0))
-            self._reader.clear()
-            self._port.write(padded(pack(number, instruction, content)))
-        except (OSError, ValueError, TypeError) as error:
-            raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+        self._put(padded(pack(number, instruction, content)))
 
     def _answers(self, count: int, size: int) -> list[Packet]:
-        """Answers of such a size from servos that are ours, within the time."""
-        until, found = self._clock() + self._answer, list[Packet]()
-        while len(found) < count and (left := until - self._clock()) > 0:
-            self._port.timeout = left
-            try:
-                data = self._port.read(1) + self._port.read(getattr(self._port, "in_waiting", 0))
-            except (OSError, ValueError, TypeError) as error:
-                raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
-            found += [
-                packet
-                for packet in self._reader.feed(data)
-                if packet.number in self._numbers and len(packet.content) == size
-            ]
-        return found
+        """Answers of such a size from servos that are ours."""
+        return self._hear(count, lambda packet: packet.number in self._numbers and len(packet.content) == size)
 
 
 def _signed(data: bytes, bit: int) -> int:

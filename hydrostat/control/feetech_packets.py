@@ -4,9 +4,7 @@ Source: Feetech's own client (ftservo-python-sdk 2.0.1, MIT): header FF FF, numb
 parameters, and the complement of the sum of all after the header. Nothing is stuffed, and the sum has 8 bits only.
 """
 
-from collections.abc import Iterator
-
-from hydrostat.control.dynamixel_packets import Packet
+from hydrostat.control.dynamixel_packets import Packet, PacketReader
 
 HEADER = b"\xff\xff"
 
@@ -26,40 +24,30 @@ def padded(packet: bytes) -> bytes:
     return packet + bytes([next(value for value in range(256) if value not in packet)])
 
 
-class SumReader:
-    """Finds packets in a stream of bytes; what is damaged is left out, and counted."""
+class SumReader(PacketReader):
+    """Finds packets in a stream of bytes; what is damaged is left out, and counted.
 
-    def __init__(self) -> None:
-        self._kept = b""
-        self.damaged = 0
+    The instruction of an answer is its error.
+    """
 
-    def clear(self) -> None:
-        """Forget what has come of a packet that is not whole."""
-        self._kept = b""
-
-    def feed(self, data: bytes) -> Iterator[Packet]:
-        """Give each whole packet that these bytes complete; its instruction is the error of an answer."""
-        self._kept += data
+    def _next(self) -> Packet | None:
         while (start := self._kept.find(HEADER)) >= 0:
             self._kept = self._kept[start:]
             if len(self._kept) < 4:
-                return
+                return None
             number, length = self._kept[2], self._kept[3]
             if number > 0xFE or length < 2:
                 self._skip()
             elif len(self._kept) < 4 + length:
-                return
+                return None
             elif _sum(self._kept[2 : 3 + length]) != self._kept[3 + length]:
                 self._skip()
             else:
                 packet = Packet(number, self._kept[4], self._kept[5 : 3 + length])
                 self._kept = self._kept[4 + length :]
-                yield packet
+                return packet
         self._kept = self._kept[-1:]
-
-    def _skip(self) -> None:
-        self.damaged += 1
-        self._kept = self._kept[1:]
+        return None
 
 
 def _sum(data: bytes) -> int:

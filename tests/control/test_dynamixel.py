@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hydrostat.control import DynamixelBus, EmulatedChain, EmulatedServo
+from hydrostat.control.dynamixel_bus import TORQUE, WATCH, WATCHDOG
 from hydrostat.control.dynamixel_packets import PING, READ, STATUS, Packet, PacketReader, crc, pack
 from hydrostat.errors import HydrostatError
 
@@ -123,3 +124,38 @@ def test_the_bound_of_the_current_bounds_the_pull(model: int) -> None:
         chain.wait(0.01)
     assert servo.torque == pytest.approx(0.35 * 0.2, rel=0.05)
     assert servo.torque < 1.05 * 0.35 * 0.2
+
+
+def test_every_watchdog_waits_when_all_are_armed_however_long_that_took() -> None:
+    """Arming takes longer than a watchdog waits, as every second answer is lost."""
+    servos = [EmulatedServo(number) for number in range(1, 9)]
+    chain = EmulatedChain(servos)
+    bus = DynamixelBus(chain, range(1, 9), clock=chain.clock, wait=chain.wait)
+    bus.identify()
+    turns = iter(range(10_000))
+    chain.back = lambda data: data if not data or next(turns) % 2 else b""
+    begin = chain.now
+    bus.arm(np.full(8, 0.3))
+    assert chain.now - begin > 0.02 * WATCH
+    assert [servo.get(WATCHDOG, 1) for servo in servos] == [WATCH] * 8
+
+
+def test_an_answer_that_comes_late_is_not_taken_for_another() -> None:
+    servo = EmulatedServo(1)
+    chain = EmulatedChain([servo])
+    bus = DynamixelBus(chain, [1], clock=chain.clock, wait=chain.wait)
+    bus.identify()
+    late, lasting = b"", servo.take
+
+    def delayed(data: bytes) -> bytes:
+        nonlocal late
+        data, late = late, data
+        return data
+
+    def refuses(place: int, data: bytes) -> int:
+        return 0x07 if place == TORQUE and data == b"\x01" else lasting(place, data)
+
+    chain.back = delayed
+    servo.take = refuses
+    with pytest.raises(HydrostatError, match="motor 1 did not take"):
+        bus.arm(np.full(1, 0.3))

@@ -1,0 +1,111 @@
+"""`ServoBus`: what servos on one serial line share, whatever their packets are."""
+
+import threading
+import time
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import ClassVar
+
+import numpy as np
+
+from hydrostat.control.bus import Bus, Port, Reading
+from hydrostat.control.dynamixel_packets import Packet, PacketReader
+from hydrostat.errors import HydrostatError
+
+
+class ServoBus(Bus):
+    """Servos on a serial line that answer when they are asked."""
+
+    packets: ClassVar[type[PacketReader]] = PacketReader
+
+    def __init__(
+        self,
+        port: Port,
+        numbers: Sequence[int],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        wait: Callable[[float], None] = time.sleep,
+        answer: float = 0.02,
+    ) -> None:
+        """Servos on a port, by their numbers.
+
+        Args:
+            port: an open serial line.
+            numbers: of the servos.
+            clock: that only runs forward [s].
+            wait: lets so much time pass [s].
+            answer: longest time for answers [s].
+        """
+        self._port, self._numbers, self._clock, self._wait, self._answer = port, tuple(numbers), clock, wait, answer
+        self._lock, self._reader = threading.RLock(), self.packets()
+        self._known = self._closed = False  # whether it is known who they are, and whether the line is let go
+        nothing = np.full(len(self._numbers), np.nan)
+        self._last = Reading(
+            angles=nothing,
+            currents=nothing,
+            temperatures=nothing,
+            volts=nothing,
+            stamps=np.full(len(self._numbers), -np.inf),
+            faults=("",) * len(self._numbers),
+        )
+
+    def stop(self) -> None:
+        """Let them stand; where one cannot be heard, the goal that it has is the last it was told."""
+        with suppress(Exception), self._lock:
+            if not self._closed and self._known:
+                self._stand()
+
+    def close(self) -> None:
+        """Stop; torque stays on, so that no load falls, and a watchdog armed."""
+        self.stop()
+        with suppress(Exception), self._lock:
+            self._closed = True
+            self._port.close()
+
+    def _stand(self, *, all_heard: bool = False) -> None:
+        """Goals where each was heard first, told at once and again: questions, answers and goals may be lost."""
+        before, goals, heard = self._clock(), np.full(len(self._numbers), np.nan), list[int]()
+        for attempt in range(3):
+            reading = self.read()
+            goals = np.where(np.isnan(goals) & (reading.stamps >= before), reading.angles, goals)
+            heard = np.flatnonzero(~np.isnan(goals)).tolist()
+            if heard:
+                self._hold({self._numbers[index]: float(goals[index]) for index in heard})
+            if attempt and len(heard) == len(goals):
+                return
+        if all_heard and len(heard) < len(goals):
+            lost = next(number for index, number in enumerate(self._numbers) if index not in heard)
+            raise self._silent(lost)
+
+    @abstractmethod
+    def _hold(self, angles: dict[int, float]) -> None:
+        """Tell servos, by their numbers, to stand at angles [rad]; none answers."""
+
+    def _silent(self, number: int) -> HydrostatError:
+        """Error that says who does not answer."""
+        return HydrostatError(
+            f"motor {number} does not answer; look at its power, its cable, its number and the baud rate"
+        )
+
+    def _put(self, packet: bytes) -> None:
+        """Send bytes, and forget answers that came too late for what was asked before."""
+        try:
+            self._port.timeout = 0
+            self._port.read(getattr(self._port, "in_waiting", 0))
+            self._reader.clear()
+            self._port.write(packet)
+        except (OSError, ValueError, TypeError) as error:
+            raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+
+    def _hear(self, count: int, wanted: Callable[[Packet], bool]) -> list[Packet]:
+        """So many answers that are wanted, or fewer after the time, by the clock that only runs forward."""
+        until, found = self._clock() + self._answer, list[Packet]()
+        while len(found) < count and (left := until - self._clock()) > 0:
+            self._port.timeout = left
+            try:
+                data = self._port.read(1) + self._port.read(getattr(self._port, "in_waiting", 0))
+            except (OSError, ValueError, TypeError) as error:
+                raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+            found += [packet for packet in self._reader.feed(data) if wanted(packet)]
+        return found
