@@ -18,6 +18,8 @@ from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from hydrostat.control import Motors, Player
+    from hydrostat.robot import Robot
+    from hydrostat.simulation import Profile
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: on a terminal, and where lines are kept
 
@@ -27,11 +29,15 @@ def play(
     moves: Annotated[Path, typer.Argument(metavar="MOVES.csv", help="Columns time_s, WINCH ... [mm].")],
     loop: Annotated[int, typer.Option(metavar="N", help="How many times; 0: until it is stopped.")] = 1,
     speed: Annotated[float, typer.Option(metavar="TIMES", help="So many times the speed of the table.")] = 1.0,
+    port: Annotated[
+        str | None, typer.Option(metavar="KIND:PORT", help="Real motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
+    ] = None,
 ) -> None:
     """Play a table of contractions on the motors of a robot, in real time.
 
-    The motors are simulated: nothing turns, and every line says so. The table is what `hydrostat trajectory` and the
-    studio write. Motors stop at its end, on Ctrl-C, on SIGTERM and on any error.
+    Without --port the motors are simulated: nothing turns, and every line says so. The table is what `hydrostat
+    trajectory` and the studio write. Motors stop at its end, on Ctrl-C, on SIGTERM and on any error; with --port also
+    when a cable pulls much harder than the simulation says, or not at all.
 
     Example: hydrostat play examples/starfish build/dance/trajectory.csv --loop 3
     """
@@ -40,6 +46,8 @@ def play(
     from hydrostat import control
     from hydrostat.simulation import ProfileTable
 
+    if port is not None:
+        control.check_port(port)
     if loop < 0:
         raise InputError(f"--loop {loop}: must be a number of times, or 0 to play until it is stopped")
     player = control.Player()
@@ -51,32 +59,66 @@ def play(
     loaded = read_robot(robot)
     if not loaded.winches:
         raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
-    motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))))
-    table = ProfileTable.open(moves, loaded)
+    table, kind = ProfileTable.open(moves, loaded), "simulated" if port is None else port.partition(":")[0]
+    simulated = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))))
+    simulated.check(table, speed=speed)
+    motors = simulated if port is None else _real_motors(robot, loaded, table.profile, port)
     motors.check(table, speed=speed)
     seconds = float(table.profile.times[-1])
     often = {0: "until it is stopped", 1: "once"}.get(loop, f"{loop} times")
-    _say(f"{moves} on {loaded.name}, {counted(len(motors.names), 'winch')}: {seconds:.2f} s, {often}, at {speed:g}x")
+    winches = counted(len(motors.names), "winch")
+    _say(kind, f"{moves} on {loaded.name}, {winches}: {seconds:.2f} s, {often}, at {speed:g}x")
     back = float(np.abs(table.profile.values[-1] - table.profile.at(0.0)).max())
     if loop != 1 and back > 1e-6:
-        _say(f"note: it does not end where it begins; each time anew a winch has {1e3 * back:.1f} mm to go at once")
-    tell, newline = _progress(motors, player, seconds)
+        _say(
+            kind, f"note: it does not end where it begins; each time anew a winch has {1e3 * back:.1f} mm to go at once"
+        )
+    tell, newline = _progress(kind, motors, player, seconds)
     try:
         with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
             control.play(motors, table.profile, player, tell=tell)
     except (KeyboardInterrupt, SystemExit) as stop:
         newline()
-        _say(f"stopped at {player.time:.2f} s; the motors hold at {_places(motors)}")
+        _say(kind, f"stopped at {player.time:.2f} s; the motors hold at {_places(motors)}")
         code = 130 if isinstance(stop, KeyboardInterrupt) else stop.code
         raise typer.Exit(code if isinstance(code, int) else 1) from None
     except HydrostatError as error:
         newline()
-        raise HydrostatError(f"simulated: the motors stopped at {player.time:.2f} s: {error}") from None
+        raise HydrostatError(f"{kind}: the motors stopped at {player.time:.2f} s: {error}") from None
+    finally:
+        motors.link.close()
     newline()
-    _say(f"played; the motors hold at {_places(motors)}")
+    _say(kind, f"played; the motors hold at {_places(motors)}")
 
 
-def _progress(motors: "Motors", player: "Player", seconds: float) -> tuple[Callable[[], None], Callable[[], None]]:
+def _real_motors(folder: Path, robot: "Robot", profile: "Profile", port: str) -> "Motors":
+    """Motors on a port, armed, with a guard that knows what they should feel along a profile."""
+    import numpy as np
+
+    from hydrostat import control
+
+    if port == control.EMULATED and not (folder / control.CALIBRATION).exists():
+        calibration = control.usual_calibration(robot).known()
+    else:
+        calibration = control.read_calibration(folder, robot)
+    tensions = control.tensions_along(robot, profile)
+    bus = control.open_bus(port, calibration, tensions)
+    link = control.BusLink(bus, robot.winches, calibration, log=lambda line: print(line, flush=True))
+    try:
+        constants = np.array([fact.constant for fact in link.identify()])
+        link.guard = control.TensionGuard(tensions, constants, tuple(winch.name for winch in robot.winches))
+        link.arm()
+        link.watch()
+        places = link.read(time.monotonic())
+    except BaseException:
+        link.close()
+        raise
+    return control.Motors(robot.winches, link, places=places, fastest=link.limits.speed)
+
+
+def _progress(
+    kind: str, motors: "Motors", player: "Player", seconds: float
+) -> tuple[Callable[[], None], Callable[[], None]]:
     """Give what to call after each command, and what to call before another line is printed."""
     shown, terminal = -inf, sys.stdout.isatty()
 
@@ -88,7 +130,7 @@ def _progress(motors: "Motors", player: "Player", seconds: float) -> tuple[Calla
         shown = now
         which = "" if player.rounds == 1 else f", round {min(player.done + 1, player.rounds):g}"
         which += f" of {player.rounds:g}" if 1 < player.rounds < inf else ""
-        text = f"simulated: {player.time:6.2f} of {seconds:.2f} s{which}: {_places(motors)}"
+        text = f"{kind}: {player.time:6.2f} of {seconds:.2f} s{which}: {_places(motors)}"
         if terminal:
             width = shutil.get_terminal_size().columns - 1
             print(f"\r{text[:width]:<{width}}", end="", flush=True)
@@ -107,5 +149,5 @@ def _places(motors: "Motors") -> str:
     return ", ".join(f"{name} {1e3 * taken:.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True))
 
 
-def _say(text: str) -> None:
-    print(f"simulated: {text}", flush=True)
+def _say(kind: str, text: str) -> None:
+    print(f"{kind}: {text}", flush=True)

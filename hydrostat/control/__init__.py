@@ -3,6 +3,7 @@
 from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
 from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
 from hydrostat.control.calibration import (
+    CALIBRATION,
     Calibration,
     WinchMotor,
     read_calibration,
@@ -16,11 +17,15 @@ from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
 from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.guard import GuardLimits, TensionGuard
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
+from hydrostat.control.model_tensions import tensions_along
 from hydrostat.control.motors import FASTEST, Motors
+from hydrostat.control.open_bus import EMULATED, check_port, open_bus
 from hydrostat.control.player import Player, play
 from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_table
 
 __all__ = [
+    "CALIBRATION",
+    "EMULATED",
     "FASTEST",
     "SILENCE",
     "Ails",
@@ -48,9 +53,12 @@ __all__ = [
     "TensionGuard",
     "Timeline",
     "WinchMotor",
+    "check_port",
+    "open_bus",
     "play",
     "read_calibration",
     "read_timeline",
+    "tensions_along",
     "timeline_table",
     "usual_calibration",
     "write_calibration",

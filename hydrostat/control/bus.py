@@ -16,12 +16,14 @@ class MotorFacts:
         model: in words.
         firmware: its version.
         watchdog: whether it was seen, just now, to stop by itself when it was told nothing.
+        constant: torque by current, of its stall [N m/A]; NaN where that is not known.
     """
 
     number: int
     model: str
     firmware: int
     watchdog: bool
+    constant: float = float("nan")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -68,7 +68,12 @@ class BusLink(Link):
         facts: of the motors, once identified.
         why: it stopped, in words.
         reading: the newest.
+        limits: of speeds.
+        near: what steps of motors and friction may leave [m].
+        guard: what compares currents with a model, if there is one.
     """
+
+    near = 3e-4
 
     def __init__(
         self,
@@ -82,18 +87,19 @@ class BusLink(Link):
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """A closed link (InputError: the calibration is of other winches)."""
-        if [spool.winch for spool in calibration.spools] != [winch.name for winch in winches]:
+        if [spool.winch for spool in calibration.motors] != [winch.name for winch in winches]:
             raise InputError("the calibration is of other winches than these")
         self.state, self.why = LinkState.CLOSED, ""
         self.facts: tuple[MotorFacts, ...] = ()
         self.reading: Reading | None = None
-        self._bus, self._calibration, self._guard, self._log, self._clock = bus, calibration, guard, log, clock
-        self._limits, self._names = limits or LinkLimits(), [winch.name for winch in winches]
+        self._bus, self._calibration, self.guard, self._log, self._clock = bus, calibration, guard, log, clock
+        self.limits, self._names = limits or LinkLimits(), [winch.name for winch in winches]
         self._low = np.array([-winch.release for winch in winches], dtype=float)
         self._high = np.array([winch.travel for winch in winches], dtype=float)
         self._places = self._goal = np.zeros(len(winches))
         self._speed, self._sent = 0.0, -np.inf
         self._mark, self._marked = np.zeros(len(winches)), np.zeros(len(winches))  # a place [m], and when it was [s]
+        self._began = clock()
         self._lock, self._over = threading.RLock(), threading.Event()
         self._watch: threading.Thread | None = None
 
@@ -119,7 +125,7 @@ class BusLink(Link):
             try:
                 self.reading = self._bus.read()
                 self._judge(self._clock(), armed=False)
-                self._bus.arm(np.array([spool.current for spool in self._calibration.spools]))
+                self._bus.arm(np.array([spool.current for spool in self._calibration.motors]))
             except HydrostatError as error:
                 raise self._fault(str(error)) from None
             self._goal, self._speed, self._sent, self.why = self._places.copy(), 0.0, self._clock(), ""
@@ -134,7 +140,7 @@ class BusLink(Link):
             if since > DEADLINE:
                 raise self._stopped(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
             self._goal = np.clip(contractions, self._low, self._high)
-            self._speed = min(speed, self._limits.speed, self._speed + self._limits.rise * max(since, 1e-3))
+            self._speed = min(speed, self.limits.speed, self._speed + self.limits.rise * max(since, 1e-3))
             ahead = self._speed * AHEAD
             near = np.clip(self._goal, self._places - ahead, self._places + ahead)
             if (np.abs(near - self._goal) == 0).all() and np.abs(self._goal - self._places).max(initial=0.0) < 1e-4:
@@ -219,9 +225,9 @@ class BusLink(Link):
             )
         if armed:
             self._judge_following(now)
-        if armed and self._guard is not None:
+        if armed and self.guard is not None:
             radii = self._calibration.radii(self._places)
-            if words := self._guard.fault(self._places, self._taking(reading), radii, now):
+            if words := self.guard.fault(self._places, self._taking(reading), radii, now):
                 raise HydrostatError(words)
 
     def _judge_following(self, now: float) -> None:
@@ -239,7 +245,7 @@ class BusLink(Link):
 
     def _taking(self, reading: Reading) -> Vector:
         """Currents, positive as cable is taken in [A]."""
-        return reading.currents * [spool.turns for spool in self._calibration.spools]
+        return reading.currents * [spool.turns for spool in self._calibration.motors]
 
     def _must_be_armed(self) -> None:
         if self.state is not LinkState.ARMED:
@@ -262,4 +268,4 @@ class BusLink(Link):
 
     def _say(self, words: str) -> None:
         with suppress(Exception):
-            self._log(f"{self._clock():.3f} s, {self._bus.kind}: {words}")
+            self._log(f"{self._bus.kind}: {self._clock() - self._began:.3f} s: {words}")

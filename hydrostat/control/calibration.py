@@ -1,6 +1,6 @@
 """`Calibration`: which motor turns which winch, and what its angle says of the cable; kept as motors.toml."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, replace_file
 
-FILE = "motors.toml"
+CALIBRATION = "motors.toml"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,37 +68,41 @@ class WinchMotor:
 class Calibration:
     """Motors in the order of the winches of a robot."""
 
-    spools: tuple[WinchMotor, ...]
+    motors: tuple[WinchMotor, ...]
+
+    def known(self) -> "Calibration":
+        """The same with motors that count from 0, where no zero is known: for motors that are not there."""
+        return Calibration(tuple(replace(each, zero=each.zero or 0.0) for each in self.motors))
 
     @property
     def done(self) -> bool:
         """Whether all zeros are known."""
-        return all(spool.zero is not None for spool in self.spools)
+        return all(spool.zero is not None for spool in self.motors)
 
     def check(self, robot: Robot) -> None:
         """Check that these are the winches of a robot (InputError: another, one missing, or a number twice)."""
-        wanted, given = [winch.name for winch in robot.winches], [spool.winch for spool in self.spools]
+        wanted, given = [winch.name for winch in robot.winches], [spool.winch for spool in self.motors]
         for name in wanted:
             if name not in given:
-                raise InputError(f'{FILE}: winch "{name}" has no motor; add [[motor]] with winch = "{name}"')
+                raise InputError(f'{CALIBRATION}: winch "{name}" has no motor; add [[motor]] with winch = "{name}"')
         for name in given:
             if name not in wanted:
-                raise InputError(f'{FILE}: there is no winch "{name}"; there are: {", ".join(wanted)}')
-        numbers = [spool.number for spool in self.spools]
+                raise InputError(f'{CALIBRATION}: there is no winch "{name}"; there are: {", ".join(wanted)}')
+        numbers = [spool.number for spool in self.motors]
         if len(set(numbers)) < len(numbers) or len(set(given)) < len(given):
-            raise InputError(f"{FILE}: each winch has one motor, and each motor a number of its own")
+            raise InputError(f"{CALIBRATION}: each winch has one motor, and each motor a number of its own")
 
     def contractions(self, angles: Vector) -> Vector:
         """Cable taken in by each winch [m]."""
-        return np.array([spool.contraction(angle) for spool, angle in zip(self.spools, angles.tolist(), strict=True)])
+        return np.array([spool.contraction(angle) for spool, angle in zip(self.motors, angles.tolist(), strict=True)])
 
     def angles(self, contractions: Vector) -> Vector:
         """Angle of each motor [rad], in its own count."""
-        return np.array([spool.angle(taken) for spool, taken in zip(self.spools, contractions.tolist(), strict=True)])
+        return np.array([spool.angle(taken) for spool, taken in zip(self.motors, contractions.tolist(), strict=True)])
 
     def radii(self, contractions: Vector) -> Vector:
         """Radius at which each cable runs on [m]."""
-        return np.array([spool.reach(taken) for spool, taken in zip(self.spools, contractions.tolist(), strict=True)])
+        return np.array([spool.reach(taken) for spool, taken in zip(self.motors, contractions.tolist(), strict=True)])
 
 
 def usual_calibration(robot: Robot) -> Calibration:
@@ -111,11 +115,11 @@ def read_calibration(folder: Path, robot: Robot) -> Calibration:
     """The motors of a robot folder (InputError: no motors.toml, or a wrong one, with the line of what is wrong)."""
     import tomllib
 
-    file = folder / FILE
+    file = folder / CALIBRATION
     try:
         table = tomllib.loads(file.read_text("utf-8"))
     except FileNotFoundError:
-        raise InputError(f"{folder} has no {FILE}; `hydrostat calibrate` makes it") from None
+        raise InputError(f"{folder} has no {CALIBRATION}; `hydrostat calibrate` makes it") from None
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{file}: {error}") from None
     entries = table.get("motor")
@@ -130,7 +134,7 @@ def read_calibration(folder: Path, robot: Robot) -> Calibration:
 def write_calibration(folder: Path, calibration: Calibration) -> Path:
     """Write motors.toml beside robot.toml, whole or not at all; returns its path."""
     lines = ["# Which motor turns which winch. Made by hydrostat calibrate; zero and growth are of this one robot.\n"]
-    for spool in calibration.spools:
+    for spool in calibration.motors:
         lines += ["\n[[motor]]\n", f'winch = "{spool.winch}"\n', f"number = {spool.number}\n"]
         if spool.zero is not None:
             lines.append(f"zero = {spool.zero!r}  # angle with nothing taken in [rad]\n")
@@ -139,7 +143,7 @@ def write_calibration(folder: Path, calibration: Calibration) -> Path:
             f"growth = {spool.growth!r}  # of the radius [m/rad]\n",
             f"current = {spool.current!r}  # at most [A]\n",
         ]
-    return replace_file(folder / FILE, "".join(lines).encode())
+    return replace_file(folder / CALIBRATION, "".join(lines).encode())
 
 
 _KEYS: dict[str, tuple[type, ...]] = {

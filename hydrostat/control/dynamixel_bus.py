@@ -35,23 +35,25 @@ class DynamixelModel:
         title: as it is sold.
         measures: whether it measures its current, and bounds it; else it tells its load, of the stall current.
         stall: current at stall [A].
+        torque: at stall [N m].
     """
 
     title: str
     measures: bool
     stall: float
+    torque: float
 
 
 MODELS = {
-    1190: DynamixelModel("XL330-M077", True, 1.47),
-    1200: DynamixelModel("XL330-M288", True, 1.47),
-    1210: DynamixelModel("XC330-T181", True, 0.8),
-    1220: DynamixelModel("XC330-T288", True, 0.8),
-    1230: DynamixelModel("XC330-M181", True, 1.8),
-    1240: DynamixelModel("XC330-M288", True, 1.8),
-    1060: DynamixelModel("XL430-W250", False, 1.4),
+    1190: DynamixelModel("XL330-M077", True, 1.47, 0.228),
+    1200: DynamixelModel("XL330-M288", True, 1.47, 0.52),
+    1210: DynamixelModel("XC330-T181", True, 0.8, 0.76),
+    1220: DynamixelModel("XC330-T288", True, 0.8, 0.92),
+    1230: DynamixelModel("XC330-M181", True, 1.8, 0.6),
+    1240: DynamixelModel("XC330-M288", True, 1.8, 0.93),
+    1060: DynamixelModel("XL430-W250", False, 1.4, 1.5),
 }
-"""By the number that they answer a ping with."""
+"""By the number that they answer a ping with; stall at 5 V, of the T types at 11.1 V: to be checked on yours."""
 
 MODE, TORQUE, HARDWARE, WATCHDOG, PWM, CURRENT, PROFILE, GOAL, STATE = 11, 64, 70, 98, 100, 102, 108, 116, 126
 """Places in the control table: operating mode, torque on, hardware error, watchdog, goal PWM and current, profile
@@ -99,6 +101,7 @@ class DynamixelBus(ServoBus):
                     model=self._models[number].title,
                     firmware=firmware[number],
                     watchdog=number in proved,
+                    constant=self._models[number].torque / self._models[number].stall,
                 )
                 for number in self._numbers
             )
@@ -257,7 +260,7 @@ class DynamixelBus(ServoBus):
         return self._hear(count, lambda packet: packet.instruction == STATUS)
 
 
-_UNKNOWN = DynamixelModel("", True, 1.0)
+_UNKNOWN = DynamixelModel("", True, 1.0, 1.0)
 _NAMES = {
     MODE: "its mode",
     TORQUE: "its torque switch",

@@ -1,5 +1,6 @@
 """`EmulatedChain`: servos of the X series that are not there, which behave as badly as real ones."""
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import inf, sqrt
@@ -245,6 +246,32 @@ class EmulatedChain:
             servo.set(0, model, 2)
             return _status(servo, 0, b"")
         return _status(servo, 0x02, b"")
+
+
+class LiveChain(EmulatedChain):
+    """The same in real time, for programs that run as they would with motors."""
+
+    def __init__(self, servos: Sequence[EmulatedServo]) -> None:
+        """Servos from now on."""
+        super().__init__(servos)
+        self.now = time.monotonic()
+
+    def write(self, data: bytes, /) -> int:
+        """Send bytes to all servos as they are by now."""
+        self._catch_up()
+        return super().write(data)
+
+    def read(self, size: int, /) -> bytes:
+        """Bytes of their answers."""
+        if not self._told and self.timeout:
+            time.sleep(min(self.timeout, self.STEP))
+        self._catch_up()
+        taken, self._told = self._told[:size], self._told[size:]
+        return taken
+
+    def _catch_up(self) -> None:
+        self.wait(min(time.monotonic() - self.now, 5.0))
+        self.now = max(self.now, time.monotonic())
 
 
 def _status(servo: EmulatedServo, error: int, content: bytes) -> bytes:

@@ -26,7 +26,12 @@ class Link(ABC):
     if this process has died, so the watch is on the side of the motors; they stop on any error of theirs, and on
     `stop`, and hold what they have; no command makes them move beyond the limits of their winch, or faster than it
     says, which `Motors` asks for too.
+
+    Attributes:
+        near: motors this close to a command are where they shall be [m].
     """
+
+    near: float = 1e-7
 
     @abstractmethod
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:

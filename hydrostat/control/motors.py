@@ -58,7 +58,7 @@ class Motors:
     @property
     def moving(self) -> bool:
         """Tell whether they are not yet where they shall be."""
-        return bool(np.abs(self.places - self.command).max(initial=0.0) > NEAR)
+        return bool(np.abs(self.places - self.command).max(initial=0.0) > self.link.near)
 
     def set_fastest(self, speed: float) -> None:
         """Let the cables be so fast [m/s] (InputError: that is too slow or too fast)."""

@@ -37,6 +37,34 @@ def test_it_plays_in_real_time_and_says_that_it_is_simulated(run: Run, starfish:
 
 
 @pytest.mark.slow
+def test_it_plays_on_emulated_motors(run: Run, starfish: Path, wave: Path) -> None:
+    code, out, err = run("play", starfish, wave, "--port", "emulated", "--speed", 0.5)
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert all(line.startswith("emulated: ") for line in lines)
+    assert any(line.endswith("left: motor 2, XC330-M288, firmware 52, stops by itself") for line in lines)
+    played = next(line for line in lines if "played" in line)
+    places = [float(word) for word in re.findall(r"(-?[0-9.]+) mm", played)]
+    assert places == pytest.approx([0.0, 3.0, 0.0], abs=0.4)
+    assert any(line.endswith("closed: stopped") for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("port", "told"),
+    [
+        ("nonsense", "--port nonsense: write emulated, or one such as dynamixel:/dev/ttyUSB0"),
+        ("dynamixel:", "--port dynamixel:: write emulated"),
+        ("dynamixel:/dev/ttyUSB0@fast", "the baud rate after @ must be a number"),
+        ("dynamixel:/dev/ttyUSB0", "has no motors.toml; `hydrostat calibrate` makes it"),
+    ],
+)
+def test_ports_that_are_none(run: Run, starfish: Path, wave: Path, port: str, told: str) -> None:
+    code, _, err = run("play", starfish, wave, "--port", port)
+    assert code == 2
+    assert told in err
+
+
+@pytest.mark.slow
 def test_on_a_terminal_one_line_is_updated(starfish: Path, wave: Path) -> None:
     import pty
 

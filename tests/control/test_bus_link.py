@@ -209,7 +209,7 @@ def test_the_log_tells_each_state_once() -> None:
     rig.begin()
     rig.go(0.01, 0.5)
     rig.link.close()
-    words = [line.split(": ", 1)[1] for line in rig.log]
+    words = [line.split(": ", 2)[2] for line in rig.log]
     assert [word.split(":")[0] for word in words if word.split(":")[0] not in NAMES] == [
         "calibrated",
         "armed",

@@ -4,6 +4,7 @@ import os
 import threading
 import tty
 from collections.abc import Iterator
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -54,9 +55,10 @@ def served() -> Iterator[tuple[str, EmulatedChain]]:
                 data = os.read(ours, 4096)
             except OSError:
                 return
-            chain.write(data)
-            chain.timeout = None
-            os.write(ours, chain.read(4096))
+            with suppress(OSError):  # the other end is closed
+                chain.write(data)
+                chain.timeout = None
+                os.write(ours, chain.read(4096))
 
     threading.Thread(target=serve, daemon=True).start()
     yield os.ttyname(theirs), chain

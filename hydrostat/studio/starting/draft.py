@@ -25,7 +25,7 @@ SMOOTHINGS = (0.0, 20.0)  # likewise how far the edge is smoothed [pixels]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reading:
+class PhotoReading:
     """How a person has a picture read; all as it comes by default."""
 
     threshold: float | None = None  # what differs from the ground by more is body; None: found in the picture
@@ -54,7 +54,7 @@ class BodyDraft:
     nodes: int | None = None  # about so many; not used with an element size
     thickness: float | None = None  # of a flat body [m]
     inflate: float | None = None  # thickness to blow a drawing up to [m]
-    reading: Reading = Reading()  # of a picture
+    reading: PhotoReading = PhotoReading()  # of a picture
 
     def __post_init__(self) -> None:
         find_material(self.material)

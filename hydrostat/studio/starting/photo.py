@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter
 from hydrostat.geometry.files.outline_file import read_drawing
 from hydrostat.geometry.files.silhouette import contrast
 from hydrostat.geometry.outline import Outline
-from hydrostat.studio.starting.draft import Reading
+from hydrostat.studio.starting.draft import PhotoReading
 
 LONGEST = 1600  # a picture is read with so many pixels along its longer side, as `read_image` does
 SHOWN = 900  # and shown with so many
@@ -29,7 +29,7 @@ class Backdrop:
     high: float  # of it [mm]
 
 
-def cut_out(content: bytes, reading: Reading) -> bytes:
+def cut_out(content: bytes, reading: PhotoReading) -> bytes:
     """The picture as a PNG that is see-through where the body is not, as a person has it read."""
     image = _upright(content)
     if image.has_transparency_data:

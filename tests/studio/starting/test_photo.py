@@ -11,7 +11,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry.files.outline_file import read_outline
 from hydrostat.robot import Robot
 from hydrostat.studio.session import Session
-from hydrostat.studio.starting.draft import BodyDraft, Reading, new_draft
+from hydrostat.studio.starting.draft import BodyDraft, PhotoReading, new_draft
 from hydrostat.studio.starting.photo import backdrop, cut_out, overlay
 from hydrostat.studio.starting.sketch import Sketch, make_sketch
 
@@ -43,7 +43,7 @@ def strayed(content: bytes) -> float:
 
 def test_a_threshold_leaves_a_strong_shadow_out() -> None:
     content = photograph(shadow=True)
-    loose, tight = (cut_out(content, Reading(threshold=value)) for value in (40.0, 215.0))
+    loose, tight = (cut_out(content, PhotoReading(threshold=value)) for value in (40.0, 215.0))
     assert strayed(loose) > 0.05, "the shadow is in this one"
     assert strayed(tight) < 0.02
 
@@ -56,7 +56,7 @@ def test_smoothing_rounds_the_edge() -> None:
         draw.ellipse((x - 3, y - 3, x + 3, y + 3), fill=(30, 70, 190))
     buffer = io.BytesIO()
     image.save(buffer, "PNG")
-    bumpy, smooth = strayed(buffer.getvalue()), strayed(cut_out(buffer.getvalue(), Reading(smoothing=10.0)))
+    bumpy, smooth = strayed(buffer.getvalue()), strayed(cut_out(buffer.getvalue(), PhotoReading(smoothing=10.0)))
     assert smooth < 0.5 * bumpy
 
 
@@ -72,8 +72,10 @@ def test_the_picture_lies_where_the_body_is() -> None:
     assert svg.count("<path") == 2
 
 
-@pytest.mark.parametrize("wrong", [Reading(threshold=1.0), Reading(threshold=999.0), Reading(smoothing=-1.0)])
-def test_numbers_out_of_range_are_refused(wrong: Reading) -> None:
+@pytest.mark.parametrize(
+    "wrong", [PhotoReading(threshold=1.0), PhotoReading(threshold=999.0), PhotoReading(smoothing=-1.0)]
+)
+def test_numbers_out_of_range_are_refused(wrong: PhotoReading) -> None:
     draft = new_draft("p.png", photograph())
     with pytest.raises(InputError, match=r"(threshold|smoothing): must be from"):
         replace(draft, reading=wrong)
@@ -99,7 +101,7 @@ def test_a_photograph_that_was_corrected_by_hand_becomes_the_robot() -> None:
     session = Session()
     starter, begun = session.starter, []
     session.jobs.start = lambda *arguments, **_: begun.append(arguments)  # type: ignore[method-assign]
-    draft = replace(new_draft("fish.png", photograph(shadow=True)), reading=Reading(threshold=215.0), name="fish")
+    draft = replace(new_draft("fish.png", photograph(shadow=True)), reading=PhotoReading(threshold=215.0), name="fish")
     starter.draft, starter.sketch = draft, sketch_of(replace(draft, thickness=0.033))
     starter.draft = starter.sketch.draft
     assert starter.sketch.behind is not None

@@ -12,7 +12,7 @@ from hydrostat.studio.face.dialogs import may_leave
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.starting.draft import SMOOTHINGS, THRESHOLDS, BodyDraft, Reading, material_words, young_words
+from hydrostat.studio.starting.draft import SMOOTHINGS, THRESHOLDS, BodyDraft, PhotoReading, material_words, young_words
 from hydrostat.studio.starting.photo import overlay
 from hydrostat.studio.starting.sketch import Sketch
 
@@ -117,7 +117,7 @@ class _Reading:
             self._slider.props(f'aria-label="{words}"').mark(f"reading-{key}")
         self._slider.on("change", lambda event: self._ask(sent_number(event.args)), args=[None])
 
-    def show(self, reading: Reading) -> None:
+    def show(self, reading: PhotoReading) -> None:
         """Show what is asked for."""
         value = getattr(reading, self._key)
         found = value is None or (self._key == "smoothing" and value == 0)

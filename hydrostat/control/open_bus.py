@@ -1,0 +1,90 @@
+"""`open_bus`: motors by words such as dynamixel:/dev/ttyUSB0."""
+
+from collections.abc import Callable
+from typing import cast
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.bus import Bus, Port
+from hydrostat.control.calibration import Calibration
+from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
+from hydrostat.control.emulated_servos import EmulatedServo, LiveChain
+from hydrostat.control.feetech_bus import FeetechBus
+from hydrostat.errors import HydrostatError, InputError
+
+EMULATED = "emulated"
+"""What is written for motors that are not there, but behave like servos."""
+
+
+class EmulatedBus(DynamixelBus):
+    """Servos that are not there, in real time; every line says so."""
+
+    kind = EMULATED
+
+
+def open_bus(text: str, calibration: Calibration, tensions: Callable[[Vector], Vector]) -> Bus:
+    """A bus to the motors of a calibration.
+
+    Args:
+        text: KIND:PORT or KIND:PORT@BAUD, or "emulated".
+        calibration: of the motors.
+        tensions: what the cables of each winch pull together [N], by contractions [m]: the load of emulated motors.
+
+    Raises:
+        InputError: no such kind.
+        HydrostatError: the port cannot be opened, or pyserial is not there.
+    """
+    check_port(text)
+    if text == EMULATED:
+        return _emulated(calibration, tensions)
+    kind, _, place = text.partition(":")
+    make, usual = _KINDS[kind]
+    name, _, baud = place.partition("@")
+    return make(_line(name, int(baud or usual)), [motor.number for motor in calibration.motors])
+
+
+def check_port(text: str) -> None:
+    """Check words for motors, as in `open_bus` (InputError: no such kind, no port, or no baud rate)."""
+    kind, _, place = text.partition(":")
+    if text != EMULATED and (kind not in _KINDS or not place):
+        shown = ", ".join(f"{each}:/dev/ttyUSB0" for each in _KINDS)
+        raise InputError(f"--port {text}: write {EMULATED}, or one such as {shown}")
+    _, at, baud = place.partition("@")
+    if at and not baud.isdecimal():
+        raise InputError(f"--port {text}: the baud rate after @ must be a number, such as 57600")
+
+
+def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:
+    """Servos that stand where nothing is taken in, each with the load of its cables."""
+    servos = [EmulatedServo(each.number, angle=each.zero or 0.0, model=1240) for each in calibration.motors]
+
+    def load(index: int) -> Callable[[float], float]:
+        def torque(angle: float) -> float:
+            taken = np.array([m.contraction(s.angle) for m, s in zip(calibration.motors, servos, strict=True)])
+            taken[index] = calibration.motors[index].contraction(angle)
+            return calibration.motors[index].reach(taken[index]) * float(tensions(taken)[index])
+
+        return torque
+
+    for index, servo in enumerate(servos):
+        servo.load, servo.constant = load(index), MODELS[servo.model].torque / MODELS[servo.model].stall
+    return EmulatedBus(LiveChain(servos), [servo.number for servo in servos])
+
+
+def _line(name: str, baud: int) -> Port:
+    try:
+        import serial
+    except ModuleNotFoundError:
+        raise HydrostatError('serial lines need pyserial; install it: pip install "hydrostat[motors]"') from None
+    try:
+        return cast(Port, serial.Serial(name, baud, timeout=0.02, write_timeout=0.1, exclusive=True))
+    except (OSError, ValueError) as error:
+        raise HydrostatError(f"{name} cannot be opened ({error}); look at the plug, the name and your rights") from None
+
+
+_KINDS: dict[str, tuple[Callable[[Port, list[int]], Bus], int]] = {
+    "dynamixel": (DynamixelBus, 57600),
+    "feetech": (FeetechBus, 1_000_000),
+}
+"""What makes a bus of a line, and its usual baud rate."""
