@@ -81,6 +81,13 @@ class EmulatedServo:
         self.table[146] = 30
         self.heard, self.moved = -inf, 0.0
 
+    def begin_anew(self) -> None:
+        """Lose power for a moment: what is not lasting is as when it is switched on, torque off."""
+        mode = self.table[MODE]
+        self.__post_init__()
+        self.table[MODE] = mode
+        self.speed = 0.0
+
     def get(self, place: int, size: int) -> int:
         """A register."""
         return int.from_bytes(self.table[place : place + size], "little", signed=True)
@@ -241,9 +248,7 @@ class EmulatedChain:
         if instruction == WRITE:
             return _status(servo, servo.take(int.from_bytes(content[:2], "little"), content[2:]), b"")
         if instruction == REBOOT:
-            model = servo.model
-            servo.table = bytearray(256)
-            servo.set(0, model, 2)
+            servo.begin_anew()
             return _status(servo, 0, b"")
         return _status(servo, 0x02, b"")
 

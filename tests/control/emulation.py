@@ -5,7 +5,9 @@ import numpy as np
 from hydrostat.control.bus_link import BusLink
 from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.dynamixel_bus import DynamixelBus
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
+from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.guard import TensionGuard
 from hydrostat.robot import Winch
 
@@ -26,11 +28,18 @@ class Rig:
         def load(angle: float) -> float:
             return RADIUS * SPRING * max(RADIUS * (angle - 1.0), 0.0)
 
-        self.servos = [
-            EmulatedServo(n + 1, model=model, angle=1.0, load=load, constant=CONSTANT) for n, model in enumerate(models)
-        ]
-        self.chain, self.log = EmulatedChain(self.servos), list[str]()
-        self.bus = DynamixelBus(self.chain, [1, 2, 3], clock=self.chain.clock, wait=self.chain.wait)
+        if models[0] == 777:
+            self.servos = [EmulatedSts(n + 1, angle=1.0, load=load, constant=CONSTANT) for n in range(3)]
+            self.chain = EmulatedFeetechChain(self.servos)
+            bus = FeetechBus
+        else:
+            self.servos = [
+                EmulatedServo(n + 1, model=model, angle=1.0, load=load, constant=CONSTANT)
+                for n, model in enumerate(models)
+            ]
+            self.chain, bus = EmulatedChain(self.servos), DynamixelBus
+        self.log = list[str]()
+        self.bus = bus(self.chain, [1, 2, 3], clock=self.chain.clock, wait=self.chain.wait)
         winches = [Winch(name=name, at=(0.0, 0.0), spool_radius=RADIUS, travel=0.04, release=0.002) for name in NAMES]
         spools = [
             WinchMotor(winch=name, number=n + 1, zero=1.0, radius=RADIUS, current=CURRENT)

@@ -6,7 +6,6 @@ import numpy as np
 from emulation import CONSTANT, CURRENT, RADIUS, Rig
 
 from hydrostat.control.bus_link import BEYOND, LinkState
-from hydrostat.control.dynamixel_bus import TORQUE
 from hydrostat.control.emulated_servos import Ails
 from hydrostat.errors import HydrostatError
 
@@ -64,7 +63,8 @@ class Campaign:
 
     def rig(self) -> Rig:
         """Motors of a run."""
-        return Rig(models=tuple(self.random.choice([1200, 1220, 1060], 3).tolist()))
+        feetech = self.random.random() < 0.3
+        return Rig(models=(777,) * 3 if feetech else tuple(self.random.choice([1200, 1220, 1060], 3).tolist()))
 
     def run(self) -> None:
         """Let motors run through noise, then one hard fault."""
@@ -106,7 +106,9 @@ class Campaign:
 
     def _hard(self, rig: Rig) -> None:
         kind, servo = HARD[self.random.integers(len(HARD))], rig.servos[int(self.random.integers(3))]
-        if rig.link.state is not LinkState.ARMED:
+        for _ in range(5):  # what noise has left behind is over before something else goes wrong
+            if rig.link.state is LinkState.ARMED and not self._drive(rig, 0.3):
+                break
             self._again(rig)
         self._drive(rig, float(self.random.uniform(0.02, 0.3)))
         self.count[kind] += 1
@@ -114,7 +116,7 @@ class Campaign:
         if kind in ("deaf", "stuck", "hot"):
             servo.ails = Ails(**{kind: True, "deaf_watchdog": servo.ails.deaf_watchdog})
         elif kind == "anew":
-            servo.table[TORQUE:140] = bytes(140 - TORQUE)
+            servo.begin_anew()
         elif kind == "unplugged":
             rig.chain.gone = True
         if kind == "host sleeps":
