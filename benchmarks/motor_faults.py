@@ -2,9 +2,10 @@
 
     python benchmarks/motor_faults.py [--count 10000] [--seed 0] [--seconds 600]
 
-Three winches with emulated servos, of Dynamixel in seven runs of ten and of Feetech in three, pull at springs while a host tells them goals 50 times a second. Bytes are
-dropped, flipped, doubled and delayed both ways; servos fall silent, get stuck, run hot, begin anew; lines are
-unplugged, hosts die or sleep; half of the servos have a watchdog that does not stop them, as those of the 330 series.
+Three winches with emulated servos pull at springs, in seven runs of ten those of Dynamixel, else those of Feetech,
+while a host tells them goals 50 times a second. Bytes are dropped, flipped, doubled and delayed both ways; servos fall
+silent, get stuck, run hot, begin anew; lines are unplugged, hosts die or sleep; half of the servos have a watchdog that
+does not stop them, as those of the 330 series, and Feetech's have none.
 Time is that of the emulation. Counted are motions beyond limits, pulls more than 5 % above what the bound of the
 current allows, motors that still turn 250 ms after the last command, and faults that no word was said of.
 """
