@@ -21,6 +21,7 @@ from hydrostat.control.model_tensions import tensions_along
 from hydrostat.control.motors import FASTEST, Motors
 from hydrostat.control.open_bus import EMULATED, check_port, open_bus
 from hydrostat.control.player import Player, play
+from hydrostat.control.take_up import TakenUp, take_up_slack
 from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_table
 
 __all__ = [
@@ -50,6 +51,7 @@ __all__ = [
     "Port",
     "Reading",
     "SimulatedLink",
+    "TakenUp",
     "TensionGuard",
     "Timeline",
     "WinchMotor",
@@ -58,6 +60,7 @@ __all__ = [
     "play",
     "read_calibration",
     "read_timeline",
+    "take_up_slack",
     "tensions_along",
     "timeline_table",
     "usual_calibration",

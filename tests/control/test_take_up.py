@@ -1,0 +1,136 @@
+"""Slack taken up by emulated winches. Oracles: slacks, friction and noise that only the emulated winches know."""
+
+import numpy as np
+import pytest
+
+from hydrostat.control.calibration import WinchMotor
+from hydrostat.control.dynamixel_bus import DynamixelBus
+from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+from hydrostat.control.take_up import APART, GENTLE, TakenUp, find_edge, take_up_slack
+from hydrostat.errors import HydrostatError
+
+RADIUS, CONSTANT = 0.008, 0.35  # [m], [N m/A]
+SLACKS = np.array([0.0, 0.0012, 0.0045, 0.0085, 0.013, 0.017, 0.0031, 0.022, -0.0012, -0.004])  # hidden [m]
+STIFF = np.array([300, 500, 200, 900, 400, 1500, 250, 350, 600, 300])  # of what the cables pull at [N/m]
+
+
+class Winches:
+    """Emulated winches with hidden slacks, friction and noisy currents."""
+
+    def __init__(self, slacks: np.ndarray = SLACKS, *, noise: float = 2e-3) -> None:
+        rng, self.slacks, count = np.random.default_rng(7), slacks, len(slacks)
+        self.pulls = STIFF[:count].astype(float)
+        self.hardest = 0.0
+        self.begin = rng.uniform(-3, 3, count)  # where each motor stands at first [rad]
+        self.servos = [EmulatedServo(n + 1, model=1240, angle=float(self.begin[n])) for n in range(count)]
+
+        def load(index: int):
+            def torque(angle: float) -> float:
+                pull = self.pulls[index] * max(RADIUS * (angle - self.begin[index]) - slacks[index], 0.0)
+                self.hardest = max(self.hardest, pull)
+                return RADIUS * pull + CONSTANT * (0.01 + noise * float(rng.normal()))
+
+            return torque
+
+        for index, servo in enumerate(self.servos):
+            servo.load, servo.constant = load(index), CONSTANT
+        self.chain = EmulatedChain(self.servos)
+        self.chain.STEP = 2e-3
+        numbers = [servo.number for servo in self.servos]
+        self.bus = DynamixelBus(self.chain, numbers, clock=self.chain.clock, wait=self.chain.wait)
+        self.motors = [WinchMotor(winch=f"winch {n}", number=n, radius=RADIUS) for n in numbers]
+        self.found: list[TakenUp] = []
+
+    def take_up(self, taut: np.ndarray | None = None) -> tuple[TakenUp, ...]:
+        self.bus.identify()
+        taut = np.zeros(len(self.motors)) if taut is None else taut
+        clock, wait = self.chain.clock, self.chain.wait
+        return take_up_slack(self.bus, self.motors, taut, self.found.append, clock=clock, wait=wait)
+
+    def zeros(self) -> np.ndarray:
+        return self.begin + self.slacks / RADIUS
+
+
+def test_ten_hidden_slacks_are_found_to_half_a_millimetre_within_a_minute() -> None:
+    winches = Winches()
+    taken = winches.take_up()
+    errors = RADIUS * (np.array([each.motor.zero for each in taken]) - winches.zeros())
+    assert np.abs(errors).max() < 5e-4
+    assert [each.slack for each in taken] == pytest.approx(winches.slacks, abs=5e-4)
+    assert winches.chain.now < 60.0
+    assert winches.hardest < CONSTANT * (GENTLE + 0.01) / RADIUS + 1.5  # as far as a step goes beyond the bound
+    gains = [each.gain for each in taken]
+    assert gains == pytest.approx(winches.pulls * RADIUS / CONSTANT, rel=0.25)
+    stands = np.array([servo.angle for servo in winches.servos])
+    assert pytest.approx(stands, abs=0.02) == [each.motor.zero for each in taken]
+    winches.chain.wait(2.0)
+    assert [servo.angle for servo in winches.servos] == pytest.approx(stands, abs=2e-3)
+
+
+def test_what_the_model_has_slack_is_no_part_of_the_zero_and_spools_grow() -> None:
+    winches = Winches(np.array([0.004]))
+    winches.motors = [WinchMotor(winch="flexor", number=1, radius=RADIUS, growth=1e-4)]
+    (taken,) = winches.take_up(np.array([0.003]))
+    assert taken.motor.contraction(winches.begin[0] + 0.004 / RADIUS) == pytest.approx(0.003, abs=3e-4)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (lambda w: w.pulls.__setitem__(1, 0.0), "winch 2: no pull is felt after 40 mm"),
+        (lambda w: w.servos[0].__setattr__("ails", Ails(hot=True)), "winch 1 reports"),
+        (lambda w: w.pulls.__setitem__(0, 2.0), "winch 1: "),
+    ],
+)
+def test_what_is_wrong_is_named_and_the_motors_stand(spoil, told: str) -> None:
+    winches = Winches(np.array([0.002, 0.002]))
+    winches.bus.identify()
+    spoil(winches)
+    with pytest.raises(HydrostatError, match=told):
+        winches.take_up()
+    before = [servo.angle for servo in winches.servos]
+    winches.chain.wait(1.0)
+    assert [servo.angle for servo in winches.servos] == pytest.approx(before, abs=0.02)
+
+
+def test_a_motor_that_turns_the_other_way_is_told() -> None:
+    winches = Winches(np.array([0.002]))
+    winches.motors = [WinchMotor(winch="flexor", number=1, radius=RADIUS, turns=-1)]
+    with pytest.raises(HydrostatError, match=r"turns = 1\)"):
+        winches.take_up()
+
+
+def test_a_motor_that_is_unplugged_midway_is_told_and_what_was_found_is_kept() -> None:
+    winches = Winches(SLACKS[:3])
+    winches.motors = winches.motors[:3]
+
+    def found(taken: TakenUp) -> None:
+        winches.found.append(taken)
+        winches.servos[2].ails = Ails(deaf=True)
+
+    winches.bus.identify()
+    clock, wait = winches.chain.clock, winches.chain.wait
+    with pytest.raises(HydrostatError, match="motor of winch 3 does not answer"):
+        take_up_slack(winches.bus, winches.motors, np.zeros(3), found, clock=clock, wait=wait)
+    assert [each.motor.winch for each in winches.found] == ["winch 1"]
+
+
+def test_a_spool_that_slips_is_told() -> None:
+    winches = Winches(np.array([0.002]))
+    torque = winches.servos[0].load
+    winches.bus.identify()
+    begin = winches.chain.now
+
+    def slips(angle: float) -> float:
+        return torque(angle - (0.25 if winches.chain.now - begin > 3.0 else 0.0))
+
+    winches.servos[0].load = slips
+    assert RADIUS * 0.25 > 2 * APART
+    with pytest.raises(HydrostatError, match="mm apart in two measurements"):
+        winches.take_up()
+
+
+def test_an_edge_is_where_the_line_begins() -> None:
+    places = np.linspace(-0.003, 0.004, 60)
+    edge, slope, floor = find_edge(places, 0.01 + 5.0 * np.maximum(places - 0.00123, 0.0))
+    assert (edge, slope, floor) == pytest.approx((0.00123, 5.0, 0.01), abs=2e-5, rel=1e-2)
