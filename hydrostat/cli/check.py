@@ -37,6 +37,10 @@ def check(
     print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
     if words := face_words(found):
         print(f"cables: {words}")
+    if found.cables:
+        from hydrostat.design import craft_of
+
+        print(f"to build its network: {craft_of(found, ())}; more if poses ask for stronger ones")
     if filled:
         _print_filled(found)
     elif words:

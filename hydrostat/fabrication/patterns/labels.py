@@ -13,6 +13,7 @@ from hydrostat.fabrication.patterns.marks import place
 from hydrostat.fabrication.patterns.opening import Opening
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, Place, Shape
 from hydrostat.fabrication.patterns.stitches import CableStitches
+from hydrostat.fabrication.winch_marks import marked_name
 from hydrostat.robot import Robot
 
 _CLEARANCE = 1.2  # empty cloth kept round whatever is placed [mm]
@@ -152,10 +153,12 @@ class PanelLabels:
         self._beside(f"C{cable}", at, gap=4.5)
 
     def winch_names(self, robot: Robot) -> None:
-        """The name of each winch beside it."""
+        """The mark and the name of each winch beside it."""
         for winch in robot.winches:
             if self._seam.contains(Point(place(winch.at))):
-                self._beside(winch.name, place(winch.at), gap=1e3 * robot.largest_spool(winch) + 1.5)
+                self._beside(
+                    marked_name(robot, winch.name), place(winch.at), gap=1e3 * robot.largest_spool(winch) + 1.5
+                )
 
     def hole_numbers(self, stitches: Iterable[CableStitches]) -> None:
         """Small figures beside the holes of each cable, from 2 on, in stitch order; none where there is no room."""

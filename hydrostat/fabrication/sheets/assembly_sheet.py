@@ -7,15 +7,17 @@ from importlib.resources import files
 from hydrostat.drawing.camera import Camera
 from hydrostat.drawing.canvas import Canvas
 from hydrostat.fabrication.kit_options import Method, Paper
-from hydrostat.fabrication.sheets.cable_map import body_solid, flat_map, space_map, winch_mark
+from hydrostat.fabrication.sheets.cable_map import body_solid, flat_map, space_map
 from hydrostat.fabrication.sheets.legible import Legible, minds
 from hydrostat.fabrication.sheets.list_facts import piece_numbers
 from hydrostat.fabrication.sheets.schemes import skin_scheme, stitch_scheme, stopper_scheme
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts, shown_stitches
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.sight import best_views
+from hydrostat.fabrication.sheets.single_maps import single_maps
 from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portrait, undercut_picture
 from hydrostat.fabrication.sheets.steps import CableDepths
+from hydrostat.fabrication.winch_marks import winch_marks_of
 
 _TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ", "words.typ")
 
@@ -44,7 +46,7 @@ WIDE, HALF = 182.0, 88.0  # widths of a page and of half a page without its marg
 def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
     """Pictures by name, in millimetres of paper."""
     tight = 18.0 if given.paper is Paper.LETTER else 0.0
-    told = minds(given.problems, given.warnings)
+    told = minds(given.problems, given.warnings, given.robot)
     boxed = 4.0 * sum(math.ceil(len(words) / 130) for words in told) + (4.0 if told else 0.0)
     robot = given.robot
     views = best_views(robot, body_solid(robot)) if robot.body.mesh.dim == 3 else ()
@@ -59,6 +61,9 @@ def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
     pictures["calibration"] = stopper_scheme(
         cloth="cloth" if given.method is Method.PLUSH else "skin", width=HALF, height=26.0
     )
+    if robot.cables and given.method is not Method.FOAM:
+        pages = single_maps(robot, given.stitches, width=WIDE, height=235.0 - tight, view=views[0] if views else None)
+        pictures |= {f"single_{number}": page for number, page in enumerate(pages, start=1)}
     left = 195.0 - tight - boxed - pictures["map"].height
     return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
 
@@ -74,8 +79,8 @@ def _schemes(given: SheetInput) -> dict[str, Canvas]:
     shown = shown_stitches(given)
     if shown is None:
         return {}
-    place = [winch.name for winch in given.robot.winches].index(shown.winch)
-    return {"stitches": stitch_scheme(shown, winch_mark(place), width=HALF, height=38.0)}
+    mark = winch_marks_of(given.robot)[shown.winch]
+    return {"stitches": stitch_scheme(shown, mark, width=HALF, height=38.0)}
 
 
 def _parts(given: SheetInput, height: float) -> dict[str, Canvas]:

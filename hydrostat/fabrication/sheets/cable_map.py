@@ -1,6 +1,6 @@
 """`flat_map`, `space_map`: the very robot with its cables, holes, winches and stoppers, numbered."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,10 +22,12 @@ from hydrostat.drawing.canvas import (
     text_size,
 )
 from hydrostat.drawing.line_drawing import DrawnSolid, LineDrawing, line_drawing
+from hydrostat.drawing.palette import WINCHES
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.fabrication.sheets.label_places import LabelPlaces, box_round
 from hydrostat.fabrication.sheets.sight import Sight
-from hydrostat.robot import Mount, Robot
+from hydrostat.fabrication.winch_marks import winch_marks_of
+from hydrostat.robot import Mount, Point, Robot
 
 _MARGIN = 7.0  # room round the body for labels [mm]
 _HOLE = 0.65  # radius of a drawn hole [mm]
@@ -35,11 +37,6 @@ _SOFT = 0.008  # over what share of the picture the light on a body is blurred
 
 
 _MANY = 6  # more winches than this have smaller marks
-
-
-def winch_mark(index: int) -> str:
-    """Mark of a winch on the sheet: W1, W2, ... as single letters are notches of the pattern."""
-    return f"W{index + 1}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +49,11 @@ class CableRun:
     sheathed: Sequence[bool]  # which of them run in a tube
     holes: Sequence[bool]  # at which points it goes through the skin or is held by it
     twin: int | None = None  # number of the cable behind it, on the other panel
+
+    @property
+    def colour(self) -> str:
+        """Its colour on paper: that of no cable near it in number."""
+        return WINCHES[(self.cable - 1) % len(WINCHES)]
 
 
 def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float) -> Canvas:
@@ -70,18 +72,23 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
     for ring in rings:
         labels.take_line(frame.way([*ring, ring[0]]), weight=3)
-    near = [sewn for sewn in stitches if sewn.panel == stitches[0].panel]
-    behind = [sewn.cable for sewn in stitches if sewn.panel != stitches[0].panel]
-    twins: Sequence[int | None] = behind or [None] * len(near)
-    runs = [_stitched(robot, sewn, frame, twin) for sewn, twin in zip(near, twins, strict=True)] or [
-        _within(robot, index, frame) for index in range(len(robot.cables))
-    ]
-    _put_runs(canvas, labels, runs, [frame.on(1e3 * np.array(winch.at)) for winch in robot.winches])
+    runs = front_runs(robot, stitches, frame)
+    _put_runs(canvas, labels, runs, {mark: frame.on(1e3 * np.array(at)) for mark, at in _stands(robot).items()})
     return canvas
 
 
+def front_runs(robot: Robot, stitches: Sequence[CableStitches], frame: CanvasFrame) -> list[CableRun]:
+    """The cables of a flat body as they are seen from the front; of pairs those in front."""
+    near = [sewn for sewn in stitches if sewn.panel == stitches[0].panel]
+    behind = [sewn.cable for sewn in stitches if sewn.panel != stitches[0].panel]
+    twins: Sequence[int | None] = behind or [None] * len(near)
+    return [_stitched(robot, sewn, frame, twin) for sewn, twin in zip(near, twins, strict=True)] or [
+        _within(robot, index, frame) for index in range(len(robot.cables))
+    ]
+
+
 @dataclass(frozen=True, eq=False)
-class _Pane:
+class SightedBody:
     """A body in space and all that belongs to it, as they are seen."""
 
     drawing: LineDrawing
@@ -94,7 +101,7 @@ class _Pane:
 def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Camera]) -> Canvas:
     """A body in space from several places, side by side, at most so high [mm]; dashed is what lies in its far half."""
     pixels = round(PIXELS * max(width / len(views), height))
-    panes = [_pane(robot, view, pixels) for view in views]
+    panes = [pane_of(robot, view, pixels) for view in views]
     breadths = np.array([float(np.ptp(pane.box[:, 0])) for pane in panes])
     rooms = breadths / breadths.sum() * (width - 2 * _MARGIN * len(views))
     inner = max(snug(pane.box, float(room), height - 2 * _MARGIN) for pane, room in zip(panes, rooms, strict=True))
@@ -105,25 +112,27 @@ def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Came
     return canvas
 
 
-def _pane(robot: Robot, camera: Camera, pixels: int) -> _Pane:
+def pane_of(robot: Robot, camera: Camera, pixels: int) -> SightedBody:
+    """A body in space and its cables and winches [mm], as a camera sees them."""
     body = body_solid(robot)
     drawing = line_drawing([body], camera, soft=_SOFT, pixels=pixels)
     cables = [camera.see(1e3 * np.array(cable.points)) for cable in robot.cables]
     winches = [camera.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
     places = np.concatenate([drawing.box, *(way[:, :2] for way in cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
-    return _Pane(drawing, Sight.of(body, camera), cables, winches, box)
+    return SightedBody(drawing, Sight.of(body, camera), cables, winches, box)
 
 
-def _put_pane(canvas: Canvas, robot: Robot, pane: _Pane, room: Box) -> None:
+def _put_pane(canvas: Canvas, robot: Robot, pane: SightedBody, room: Box) -> None:
     left, top, right, bottom = room
     frame = CanvasFrame.fit(pane.box, (left + _MARGIN, top + _MARGIN, right - _MARGIN, bottom - _MARGIN))
     canvas.drawing(pane.drawing, frame)
     labels = LabelPlaces((left + 0.2, top + 0.2, right - 0.2, bottom - 0.2))
     for way in pane.drawing.outlines:
         labels.take_line(frame.way(way), weight=3)
-    runs = [_sighted(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
-    _put_runs(canvas, labels, runs, [frame.on(stand) for stand in pane.winches])
+    runs = [sighted(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
+    stands = {mark: frame.on(stand) for mark, stand in zip(_stands(robot), pane.winches, strict=True)}
+    _put_runs(canvas, labels, runs, stands)
 
 
 def _stitched(robot: Robot, sewn: CableStitches, frame: CanvasFrame, twin: int | None) -> CableRun:
@@ -143,17 +152,20 @@ def _within(robot: Robot, index: int, frame: CanvasFrame) -> CableRun:
     return CableRun(index + 1, way, [True] * (count - 1), (~cable.bare).tolist(), holes)
 
 
-def _sighted(
-    robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Sight, frame: CanvasFrame
-) -> CableRun:
-    """A cable in space."""
+def sighted(robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Sight, frame: CanvasFrame) -> CableRun:
+    """A cable in space, its way as a camera sees it [mm]."""
     cable = robot.cables[index]
     solid = sight.in_front((way[:-1] + way[1:]) / 2).tolist()
     holes = [robot.winch(cable.winch).mount is Mount.BODY, *[True] * (len(cable.points) - 1)]
     return CableRun(index + 1, frame.way(way), solid, (~cable.bare).tolist(), holes)
 
 
-def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], stands: Sequence[Spot]) -> None:
+def _stands(robot: Robot) -> dict[str, Point]:
+    """Where each winch stands [m], by its mark."""
+    return {mark: robot.winch(name).at for name, mark in winch_marks_of(robot).items()}
+
+
+def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], stands: Mapping[str, Spot]) -> None:
     """Cables, then holes and stoppers on them, then winches, then all words where they fit."""
     for run in runs:
         _put_cable(canvas, run)
@@ -170,16 +182,32 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], sta
         words = f"C{run.cable}" if run.twin is None else f"C{run.cable} C{run.twin}"
         middle = labels.beside(run.spots[-1], text_size(words, 9.0), gap=1.7)
         if middle is not None:
-            canvas.text(middle, words, size=9.0, bold=True, halo=True)
+            canvas.text(middle, words, size=9.0, bold=True, halo=True, colour=run.colour)
     _put_numbers(canvas, labels, runs)
 
 
-def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Sequence[Spot]) -> None:
+def put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str) -> None:
+    """One cable alone, with its winch and the numbers of all of its holes."""
+    _put_cable(canvas, run)
+    labels.take_line(run.spots)
+    for spot, hole in zip(run.spots[:-1], run.holes[:-1], strict=True):
+        if hole:
+            canvas.disc(spot, _HOLE)
+            labels.take_box(box_round(spot, _HOLE))
+    _put_stopper(canvas, run)
+    labels.take_box(box_round(run.spots[-1], 1.4))
+    canvas.balloon(run.spots[0], mark, dark=True, size=7.5)
+    labels.take_box(box_round(run.spots[0], balloon_radius(mark, 7.5)))
+    for place, hole in enumerate(run.holes[:-1]):
+        if hole and place:
+            _put_number(canvas, labels, run, place, led=True, words=str(place + 1))
+
+
+def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Mapping[str, Spot]) -> None:
     """A mark on each winch; where one is on another already, beside it, led to its place by a line."""
     taken: list[Spot] = []
     size = 9.0 if len(stands) <= _MANY else 7.5
-    for index, stand in enumerate(stands):
-        letter = winch_mark(index)
+    for letter, stand in stands.items():
         radius, at = balloon_radius(letter, size), stand
         if any(np.hypot(*np.subtract(stand, other)) < 2 * radius for other in taken):
             at = labels.beside(stand, (2 * radius, 2 * radius), gap=0.8) or stand
@@ -191,37 +219,40 @@ def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Sequence[Spot]) ->
 
 
 def _put_numbers(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun]) -> None:
-    """The first and the last number of each cable, led to its hole if need be; others as far as there is room."""
+    """The first and the last number of each cable with its name, led to its hole if need be; others where is room."""
     # The first point is at the winch.
     numbered = [[place for place, hole in enumerate(run.holes[:-1]) if hole and place] for run in runs]
     for run, places in zip(runs, numbered, strict=True):
         for place in dict.fromkeys((*places[:1], *places[-1:])):
-            _put_number(canvas, labels, str(place + 1), run.spots[place], led=True)
+            _put_number(canvas, labels, run, place, led=True)
     for first in (2, 1):
         for run, places in zip(runs, numbered, strict=True):
             for place in places[1:-1][first - 1 :: 2]:
-                _put_number(canvas, labels, str(place + 1), run.spots[place])
+                _put_number(canvas, labels, run, place)
 
 
-def _put_number(canvas: Canvas, labels: LabelPlaces, words: str, spot: Spot, *, led: bool = False) -> None:
-    """A number beside its hole, or with `led` further away with a line to it."""
-    size = text_size(words, 7.5)
+def _put_number(
+    canvas: Canvas, labels: LabelPlaces, run: CableRun, place: int, *, led: bool = False, words: str = ""
+) -> None:
+    """A number beside its hole, or with `led` and the cable's name further away with a line to it."""
+    words = words or (f"C{run.cable}-{place + 1}" if led else str(place + 1))
+    size, spot = text_size(words, 7.5), run.spots[place]
     middle = labels.beside(spot, size, gap=0.75, most=40 if led else 3, rings=4 if led else 2)
     if middle is None:
         return
     if np.hypot(*np.subtract(middle, spot)) > _NEAR:
         canvas.line([[middle, spot]], width=0.12, grey=0.35)
-    canvas.text(middle, words, size=7.5, halo=led)
+    canvas.text(middle, words, size=7.5, halo=led, colour=run.colour)
 
 
 def _put_cable(canvas: Canvas, run: CableRun) -> None:
     for start, end, solid, sheathed in zip(run.spots[:-1], run.spots[1:], run.solid, run.sheathed, strict=True):
         if sheathed:
-            canvas.line([[start, end]], width=1.25)
+            canvas.line([[start, end]], width=1.25, colour=run.colour)
             canvas.line([[start, end]], width=0.8, grey=1.0)
-            canvas.line([[start, end]], width=THIN, dash=None if solid else (1.0, 0.7))
+            canvas.line([[start, end]], width=THIN, dash=None if solid else (1.0, 0.7), colour=run.colour)
         else:
-            canvas.line([[start, end]], width=MIDDLE, dash=None if solid else (1.1, 0.8))
+            canvas.line([[start, end]], width=THICK, dash=None if solid else (1.1, 0.8), colour=run.colour)
 
 
 def _put_stopper(canvas: Canvas, run: CableRun) -> None:

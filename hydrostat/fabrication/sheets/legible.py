@@ -6,7 +6,7 @@ from typing import Any
 
 import typst
 
-from hydrostat.fabrication.sheets.cable_map import winch_mark
+from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Robot
 from hydrostat.robot.in_words import in_words
 
@@ -34,7 +34,7 @@ class Legible:
     """
 
     def __init__(self, robot: Robot) -> None:
-        marks = {winch.name: winch_mark(index) for index, winch in enumerate(robot.winches) if lacking(winch.name)}
+        marks = {name: mark for name, mark in winch_marks_of(robot).items() if lacking(name)}
         self._marks = dict(sorted(marks.items(), key=lambda mark: (-len(mark[0]), mark[0])))
         self._robot = robot
 
@@ -107,13 +107,21 @@ _CLOTH = re.compile(r"\b(cloth|seam|felt|fabric|snip|notch|skin)", re.IGNORECASE
 _MOTOR = re.compile(r"\b(motor|torque|N mm)\b")
 
 
-def minds(problems: tuple[str, ...], warnings: tuple[str, ...]) -> list[str]:
+def minds(problems: tuple[str, ...], warnings: tuple[str, ...], robot: Robot | None = None) -> list[str]:
     """Problems first, then what motors bear, then what else must fit, then cloth; how many more there are."""
-    ordered = [in_words(words) for words in (*merged(problems), *sorted(merged(warnings), key=_rank))]
+    ordered = [_marked(in_words(words), robot) for words in (*merged(problems), *sorted(merged(warnings), key=_rank))]
     shown = [shortened(sentence(words), _SENTENCE) for words in ordered[:_MOST]]
     if len(ordered) > _MOST:
         shown.append(f"… and {len(ordered) - _MOST} more in manifest.json")
     return shown
+
+
+def _marked(words: str, robot: Robot | None) -> str:
+    """Words with the mark of each winch before its name, as it stands on the map."""
+    for name, mark in (winch_marks_of(robot) if robot else {}).items():
+        if not lacking(name):  # else the mark will stand in its place
+            words = words.replace(f'"{name}"', f'{mark} "{name}"')
+    return words
 
 
 def _rank(words: str) -> int:

@@ -8,11 +8,11 @@ from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets import foam_steps, mould_steps, plush_steps
-from hydrostat.fabrication.sheets.cable_map import winch_mark
 from hydrostat.fabrication.sheets.legible import minds, sentence, shortened
 from hydrostat.fabrication.sheets.list_facts import Facts, bill_facts, cost_text, piece_facts, winch_files
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
+from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.units import counted
 
 _NAME, _SHORT = 60, 26  # longest name of the robot, of a winch, in letters
@@ -38,7 +38,7 @@ def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
         "flat": given.robot.body.mesh.dim == 2,
         "kind": "Plush robot" if plush else "Foam robot",
         "facts": _about(given, steps),
-        "mind": minds(given.problems, (*((letters,) if letters else ()), *given.warnings)),
+        "mind": minds(given.problems, (*((letters,) if letters else ()), *given.warnings), given.robot),
         "forced": bool(given.problems),
         "bill": bill_facts(given),
         "cables": _table(given, "cable_cuts", _CABLES),
@@ -111,10 +111,10 @@ def _table(given: SheetInput, name: str, titles: Mapping[str, str]) -> Facts | N
 
 def _winches(given: SheetInput) -> list[Facts]:
     """Mark, name, cables and spool of each winch."""
-    robot = given.robot
+    robot, marks = given.robot, winch_marks_of(given.robot)
     return [
         {
-            "mark": winch_mark(index),
+            "mark": marks[winch.name],
             "files": ", ".join(winch_files(given, winch.name)),
             "name": shortened(winch.name, _SHORT),
             "cables": ", ".join(
@@ -123,7 +123,7 @@ def _winches(given: SheetInput) -> list[Facts]:
             "spool": f"{2e3 * robot.largest_spool(winch):.3g}",
             "travel": f"{1e3 * winch.travel:.0f}",
         }
-        for index, winch in enumerate(robot.winches)
+        for winch in robot.winches
     ]
 
 

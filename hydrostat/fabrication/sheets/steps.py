@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.lists.stitching import SKIN
-from hydrostat.fabrication.sheets.cable_map import winch_mark
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot
 from hydrostat.units import counted
 
@@ -108,7 +108,8 @@ def cables_text(cables: Iterable[str]) -> str:
 
 def marks_on(given: SheetInput, mount: Mount) -> tuple[str, ...]:
     """Marks of the winches that are mounted so."""
-    return tuple(winch_mark(index) for index, winch in enumerate(given.robot.winches) if winch.mount is mount)
+    marks = winch_marks_of(given.robot)
+    return tuple(marks[winch.name] for winch in given.robot.winches if winch.mount is mount)
 
 
 def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:

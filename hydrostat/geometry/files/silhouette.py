@@ -116,10 +116,10 @@ def shaded_part(seen: Contrast, level: float) -> ShadedPart | None:
     """What of the body may be its shadow; None where it is little, or where all of the body has such a colour."""
     body = seen.field > level
     shaded = body & seen.shaded
-    depth = distance_transform_edt(shaded)
+    depth = np.asarray(distance_transform_edt(shaded))
     wide = shaded & (depth > _SHADE_DEPTH)
     share = float(shaded.sum() / max(body.sum(), 1))
-    outer = distance_transform_edt(body)[wide].min(initial=np.inf)
+    outer = float(np.asarray(distance_transform_edt(body))[wide].min(initial=np.inf))
     if not (wide.any() and _SHADE_LEAST < share < _SHADE_MOST and outer < 2 * _SHADE_DEPTH):
         return None
     row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)

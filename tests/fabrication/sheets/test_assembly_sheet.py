@@ -151,10 +151,10 @@ def test_long_names_are_shortened(name):
 
 
 @pytest.mark.parametrize(
-    ("make", "pages", "paper"), [(plush, 2, Paper.A4), (plush, 2, Paper.LETTER), (foam, 4, Paper.LETTER)]
+    ("make", "pages", "paper"), [(plush, 4, Paper.A4), (plush, 4, Paper.LETTER), (foam, 4, Paper.LETTER)]
 )
 @pytest.mark.slow
-def test_a_crowded_sheet_has_no_more_pages(make, pages, paper):
+def test_a_crowded_sheet_has_no_more_pages_but_of_maps(make, pages, paper):
     long = "The spool of winch “pull 1” takes 71 mm of cable, but its travel asks for 740 mm; " * 4
     given = make(
         winches=12,

@@ -1,0 +1,65 @@
+"""A small map for each cable, and the marks of winches. Oracles: the words and the colours of the SVG."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from builders import gallery_robot
+
+from hydrostat.drawing.palette import WINCHES
+from hydrostat.fabrication.kit_options import PatternOptions
+from hydrostat.fabrication.patterns.skin import flat_skin
+from hydrostat.fabrication.patterns.stitches import cable_stitches
+from hydrostat.fabrication.sheets.cable_map import flat_map
+from hydrostat.fabrication.sheets.legible import minds
+from hydrostat.fabrication.sheets.single_maps import single_maps
+from hydrostat.fabrication.winch_marks import marked_name, winch_marks_of
+from hydrostat.robot import Robot
+
+
+def words(svg: str) -> list[str]:
+    return re.findall(r">([^<>]+)</text>", svg)
+
+
+def stitched(name: str) -> tuple[Robot, tuple]:
+    robot = gallery_robot(name)
+    return robot, cable_stitches(robot, flat_skin(robot.body, PatternOptions()).seam)
+
+
+def renamed(robot: Robot, names: list[str]) -> Robot:
+    known = dict(zip((winch.name for winch in robot.winches), names, strict=True))
+    winches = [replace(winch, name=known[winch.name]) for winch in robot.winches]
+    return robot.with_network(winches, [replace(cable, winch=known[cable.winch]) for cable in robot.cables])
+
+
+def test_a_winch_has_one_mark_everywhere() -> None:
+    """Those whose names are numbers keep these, in whatever order they stand."""
+    robot = gallery_robot("starfish")
+    assert winch_marks_of(robot) == {"right": "W1", "left": "W2", "feet": "W3"}
+    crossed = renamed(robot, ["winch_2", "winch_3", "winch_1"])
+    assert winch_marks_of(crossed) == {"winch_2": "W2", "winch_3": "W3", "winch_1": "W1"}
+    assert marked_name(crossed, "winch_2") == "W2 winch_2"
+    assert winch_marks_of(renamed(robot, ["a1", "b1", "c"])) == {"a1": "W1", "b1": "W2", "c": "W3"}
+    assert minds(('winch "left" is hot',), (), robot) == ['Winch W2 "left" is hot.']
+
+
+def test_the_map_tells_cables_apart() -> None:
+    """A colour for each, and the cable's name at the first and the last hole that is numbered."""
+    robot, stitches = stitched("starfish")
+    svg = flat_map(robot, stitches, width=112.0, height=119.0).svg
+    assert all(colour in svg for colour in WINCHES[: len(robot.cables)])
+    assert {f"C{number}-2" for number in range(1, 6)} <= set(words(svg))
+
+
+@pytest.mark.parametrize(("name", "pages"), [("starfish", 1), ("squid", 1), ("pig", 0)])
+def test_each_cable_has_a_map_with_all_of_its_numbers(name: str, pages: int) -> None:
+    robot, stitches = stitched(name)
+    found = single_maps(robot, stitches, width=182.0, height=235.0)
+    assert len(found) == pages
+    said = [word for canvas in found for word in words(canvas.svg)]
+    if pages:
+        marks = winch_marks_of(robot)
+        titles = [f"C{number} from {marks[cable.winch]}" for number, cable in enumerate(robot.cables, start=1)]
+        assert [word for word in said if " from " in word] == titles
+        assert said.count("2") + said.count("3") >= len(robot.cables)
+        assert max(canvas.height for canvas in found) <= 235.0
