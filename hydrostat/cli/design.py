@@ -211,13 +211,13 @@ def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) 
 
 
 def _tell_count(network: "Network", request: "DesignRequest") -> None:
-    """Say it if there are fewer than were asked for, or what each number gains where that was left open."""
+    """Say it if there are fewer than there may be, or what each number gains where that was left open."""
     from hydrostat.design import AUTO
 
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
         words = f"{counted(request.winches, 'winch')} and {counted(request.cables, 'cable')}"
-        print(f"fewer than the {words} asked for: more would not help, or could not be built")
+        print(f"of at most {words}: more would not help, or could not be built")
     if request.winches == AUTO:
         print_front(network)
 

@@ -97,9 +97,16 @@ def reshaped(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshape
     if old.thickness is None or old.element_size is None:
         raise InputError("only flat bodies have an outline that can be edited")
     file = old.file if old.file.lower().endswith(".svg") else "outline.svg"
-    numbers = {"element_size": old.element_size, "thickness": old.thickness}
-    body = outline_body(drawing, file=file, material=old.material, volume=old.volume, **numbers)
-    x, y = read_drawing(drawing, name=file).page.origin
+    body = outline_body(
+        drawing,
+        file=file,
+        material=old.material,
+        element_size=old.element_size,
+        thickness=old.thickness,
+        volume=old.volume,
+        inner=old.inner,
+    )
+    x, y = read_drawing(drawing, name=file, inner=old.inner).page.origin
     middle = np.array([1e-3 * (corner[0] + x), 1e-3 * (corner[1] - y)])
 
     def move(point: Point) -> Point:
