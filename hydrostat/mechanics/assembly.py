@@ -69,6 +69,21 @@ class Assembly:
         """
         return self.with_terms([energy.near(nodes) for energy in self.energies])
 
+    def continuing(self, other: "Assembly | None") -> "Assembly":
+        """This sum with the terms that come and go of another one made from it, and its pattern; itself where none do.
+
+        So a solve that begins where one ended analyses no pattern. One that has grown by much on its way is left alone.
+        """
+        if other is None or other.token is not self.token:
+            return self
+        if len(other.pattern.entries) > _GROWN * len(self.pattern.entries):
+            return self
+        pairs = list(zip(self.energies, other.energies, strict=True))
+        energies = [old if new.continues(old) else new for new, old in pairs]
+        if any(new.stencils is not old.stencils for new, old in zip(energies, other.energies, strict=True)):
+            return self
+        return other.with_energies(energies)
+
     def with_terms(self, energies: Sequence[Energy]) -> "Assembly":
         """Sum of other energies, some with other stencils, as those of contact have; itself if all are the same."""
         if all(new is old for new, old in zip(energies, self.energies, strict=True)):
@@ -193,7 +208,7 @@ class Assembly:
         if shift:
             values[self.pattern.diagonal] += shift * values[self.pattern.diagonal].max()
         factors = self.pattern.analysis.factorise(values)
-        return Stiffness(factors, self.coupling(nodes, controls), token=self.token)
+        return Stiffness(factors, self.coupling(nodes, controls), token=self.token, source=self)
 
     def control_derivative(self, nodes: Nodes, controls: Vector) -> csc_array:
         """d2E/dx da, sparse, (nodes x dim, controls)."""
@@ -241,3 +256,7 @@ class Assembly:
             if energy.quadratic:
                 energy.add_hessian(rest, idle, 0.0, Places(slots, self.pattern.strides, data))
         return data
+
+
+_GROWN = 1.25
+"""A pattern with so many times the entries of the one without terms that come and go serves no other solve."""

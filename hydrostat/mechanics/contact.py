@@ -169,6 +169,9 @@ class ContactEnergy(Energy):
         same.watch, same.swept = watch, None
         return same
 
+    def continues(self, other: Energy) -> bool:
+        return isinstance(other, ContactEnergy) and other.skin is self.skin
+
     def pressed(self, nodes: Nodes) -> Pressed:
         """Where the body touches itself: half-way between both sides, with the normal force on the first of them."""
         here = self.near(nodes)

@@ -181,6 +181,10 @@ class Energy(ABC):
         """Energy with the terms that count near `nodes`, where these come and go; itself where they never change."""
         return self
 
+    def continues(self, other: "Energy") -> bool:
+        """Whether another one is the same but for the terms that count, so that it may stand in its place and go on."""
+        return False
+
     def pressed(self, nodes: Nodes) -> Pressed | None:
         """Where what it stands for touches the body at `nodes`; None for what touches nothing, whatever the nodes."""
         return None

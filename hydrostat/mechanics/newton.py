@@ -103,7 +103,7 @@ class _EnergyDescent:
 
     def run(self, start: Nodes, known: Stiffness | None) -> NewtonResult:
         """Newton from `start` to a reason to stop."""
-        assembly = self.assembly.near(start)
+        assembly = self.assembly.continuing(None if known is None else known.source).near(start)
         energy = assembly.value(start, self.controls)
         if not np.isfinite(energy):
             place = _Iterate(assembly, start, energy, np.full(start.size, np.inf))

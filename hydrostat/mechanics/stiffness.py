@@ -2,12 +2,16 @@
 
 from copy import copy
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float
 
 from hydrostat.mechanics.energy import Columns, Compliance, Coupling, Small
 from hydrostat.mechanics.factorisation import Factorisation
+
+if TYPE_CHECKING:
+    from hydrostat.mechanics.assembly import Assembly
 
 
 class Stiffness:
@@ -26,16 +30,23 @@ class Stiffness:
         weights: D.
         token: what the assembly is known by that it is the Hessian of; factors serve no other one.
         compliance: M [m/N].
+        source: the sum of energies that it is the Hessian of, if known; it goes to no other process.
     """
 
-    def __init__(self, factors: Factorisation, coupling: Coupling, *, token: object = None) -> None:
+    def __init__(
+        self, factors: Factorisation, coupling: Coupling, *, token: object = None, source: "Assembly | None" = None
+    ) -> None:
         """Take the factors of K, and G and D."""
-        self.factors, self.token, self.coupling = factors, token, coupling
+        self.factors, self.token, self.coupling, self.source = factors, token, coupling, source
         self.columns = columns = coupling.columns
         if not factors.singular:
             self._reduced = factors.reduce(columns) if columns.size else columns
             self.compliance = factors.inner(self._reduced, self._reduced)
         self._weigh(coupling.weights)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is sent to another process."""
+        return self.__dict__ | {"source": None}
 
     def with_coupling(self, coupling: Coupling) -> "Stiffness":
         """The same with the springs as they are now: their D, their elongations and law, but the G that it has."""
