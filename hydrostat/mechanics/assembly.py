@@ -69,12 +69,12 @@ class Assembly:
         """
         return self.with_terms([energy.near(nodes) for energy in self.energies])
 
-    def continuing(self, other: "Assembly | None") -> "Assembly":
+    def continuing(self, other: object) -> "Assembly":
         """This sum with the terms that come and go of another one made from it, and its pattern; itself where none do.
 
         So a solve that begins where one ended analyses no pattern. One that has grown by much on its way is left alone.
         """
-        if other is None or other.token is not self.token:
+        if not isinstance(other, Assembly) or other.token is not self.token:
             return self
         if len(other.pattern.entries) > _GROWN * len(self.pattern.entries):
             return self

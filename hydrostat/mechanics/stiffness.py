@@ -2,16 +2,13 @@
 
 from copy import copy
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from hydrostat.mechanics.energy import Columns, Compliance, Coupling, Small
 from hydrostat.mechanics.factorisation import Factorisation
-
-if TYPE_CHECKING:
-    from hydrostat.mechanics.assembly import Assembly
 
 
 class Stiffness:
@@ -30,11 +27,11 @@ class Stiffness:
         weights: D.
         token: what the assembly is known by that it is the Hessian of; factors serve no other one.
         compliance: M [m/N].
-        source: the sum of energies that it is the Hessian of, if known; it goes to no other process.
+        source: the `Assembly` that it is the Hessian of, if known; it goes to no other process.
     """
 
     def __init__(
-        self, factors: Factorisation, coupling: Coupling, *, token: object = None, source: "Assembly | None" = None
+        self, factors: Factorisation, coupling: Coupling, *, token: object = None, source: object = None
     ) -> None:
         """Take the factors of K, and G and D."""
         self.factors, self.token, self.coupling, self.source = factors, token, coupling, source
