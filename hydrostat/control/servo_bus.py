@@ -91,8 +91,8 @@ class ServoBus(Bus):
     def _put(self, packet: bytes) -> None:
         """Send bytes, and forget answers that came too late for what was asked before."""
         try:
-            self._port.timeout = 0
-            self._port.read(getattr(self._port, "in_waiting", 0))
+            if waiting := getattr(self._port, "in_waiting", 0):
+                self._port.read(waiting)
             self._reader.clear()
             self._port.write(packet)
         except (OSError, ValueError, TypeError) as error:

@@ -1,0 +1,55 @@
+"""A program that turns motors on a serial line until something happens to it; `test_processes` starts it."""
+
+import itertools
+import signal
+import sys
+import time
+
+import numpy as np
+import serial
+from emulation import NAMES, RADIUS
+
+from hydrostat.cli.waiting import one_interrupt
+from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, WinchMotor, play
+from hydrostat.errors import HydrostatError
+from hydrostat.robot import Winch
+from hydrostat.simulation import Profile
+
+
+def main(path: str, kind: str, event: str) -> None:
+    """Play one slow pull, and say how it ended."""
+    line = serial.Serial(path, 57600, timeout=0.02, write_timeout=0.1)
+    bus = (FeetechBus if kind == "feetech" else DynamixelBus)(line, [1, 2, 3], answer=0.1)
+    winches = [Winch(name=name, at=(0.0, 0.0), spool_radius=RADIUS, travel=0.04, release=0.002) for name in NAMES]
+    spools = [WinchMotor(winch=name, number=n, zero=1.0, radius=RADIUS, current=0.3) for n, name in enumerate(NAMES, 1)]
+    link = BusLink(bus, winches, Calibration(tuple(spools)))
+    link.identify()
+    link.arm()
+    link.watch()
+    motors = Motors(winches, link, places=link.read(time.monotonic()), fastest=0.05)
+    if event == "clock jumps":
+        jumps = itertools.cycle((0.0, 3.15e7, -3.15e7))
+        real = time.time
+        time.time = lambda: real() + next(jumps)
+    ticks, player = itertools.count(), Player()
+    player.rounds = 1
+
+    def tell() -> None:
+        if event == "crash" and next(ticks) > 40:
+            raise ZeroDivisionError
+
+    seconds = 0.8 if event == "clock jumps" else 2.5
+    profile = Profile(times=np.array([0.0, seconds]), values=np.outer([0.0, 0.012 * seconds], np.ones(3)))
+    try:
+        with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
+            play(motors, profile, player, tell=tell)
+    finally:
+        link.close()
+    sys.stdout.write("played\n")
+
+
+if __name__ == "__main__":
+    try:
+        main(*sys.argv[1:])
+    except HydrostatError as error:
+        sys.exit(str(error))

@@ -1,0 +1,110 @@
+"""Programs that turn motors and die, sleep or lose their line. Oracle: when emulated servos outside them last moved."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from emulation import RADIUS
+
+from hydrostat.control import Ails, EmulatedChain, EmulatedFeetechChain, EmulatedLine, EmulatedServo, EmulatedSts
+
+STANDS = 0.25  # motors stand so long after the last command [s]
+HOST = Path(__file__).with_name("host.py")
+
+
+def chain(kind: str) -> EmulatedChain:
+    """Servos at the other end; of Dynamixel's one has a watchdog that does not stop it."""
+    if kind == "feetech":
+        made: EmulatedChain = EmulatedFeetechChain([EmulatedSts(number, angle=1.0) for number in (1, 2, 3)])
+    else:
+        ails = [Ails(), Ails(deaf_watchdog=True), Ails()]
+        models = (1200, 1220, 1060)
+        made = EmulatedChain(
+            [EmulatedServo(n + 1, model=models[n], angle=1.0, ails=ails[n]) for n in range(3)],
+        )
+    made.STEP = 4e-3
+    return made
+
+
+def until(done: Callable[[], object], seconds: float = 60.0) -> None:
+    """Wait for something."""
+    end = time.monotonic() + seconds
+    while not done():
+        assert time.monotonic() < end, "it never came to that"
+        time.sleep(0.01)
+
+
+def happens(event: str, process: subprocess.Popen[str], line: EmulatedLine) -> None:
+    """Let it happen."""
+    if event == "unplugged":
+        line.unplug()
+    elif event in ("SIGINT", "SIGTERM", "SIGKILL", "SIGSTOP"):
+        os.kill(process.pid, getattr(signal, event))
+
+
+TOLD = {
+    "SIGKILL": (-9, ""),
+    "SIGINT": (-2, "KeyboardInterrupt"),
+    "SIGTERM": (143, ""),
+    "SIGSTOP": (1, "told nothing for"),
+    "crash": (1, "ZeroDivisionError"),
+    "unplugged": (1, "the line to the motors is gone"),
+}
+
+
+def ends(event: str, kind: str) -> tuple[int, str, list[float]]:
+    """How a program ends to which that happens, its last words, and where the motors then are [m].
+
+    Whatever else it says, the motors must stand in time.
+    """
+    with EmulatedLine(chain(kind)) as line:
+        servos = line.chain.servos
+        process = subprocess.Popen(
+            [sys.executable, HOST, line.path, kind, event], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        try:
+            until(lambda: process.poll() is not None or RADIUS * (servos[0].angle - 1.0) > 0.003)
+            happens(event, process, line)
+            at = line.chain.now
+            if event == "SIGSTOP":
+                until(lambda: line.chain.now > at + 1.0)
+                os.kill(process.pid, signal.SIGCONT)
+            out, told = process.communicate(timeout=60)
+        finally:
+            process.kill()
+        until(lambda: line.chain.now > at + 1.5)
+        last = at if event in TOLD and event != "crash" else max(servo.heard for servo in servos)
+        assert max(line.moved) - last < STANDS
+        return process.returncode, out + told, [RADIUS * (servo.angle - 1.0) for servo in servos]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("event", "kind"),
+    [(event, "dynamixel") for event in TOLD] + [("SIGKILL", "feetech"), ("unplugged", "feetech")],
+)
+def test_motors_stand_whatever_happens_to_the_program(event: str, kind: str) -> None:
+    told = ""
+    for _ in range(3):  # a machine that is too busy lets motors stop for want of commands, before anything happens
+        code, told, places = ends(event, kind)
+        assert "played" not in told
+        assert max(places) < 0.025
+        if code == TOLD[event][0] and TOLD[event][1] in told:
+            return
+    pytest.fail(told)
+
+
+@pytest.mark.slow
+def test_a_clock_that_jumps_by_a_year_changes_nothing() -> None:
+    told = ""
+    for _ in range(3):
+        code, told, places = ends("clock jumps", "dynamixel")
+        if code == 0 and told.strip() == "played":
+            assert places == pytest.approx([0.0096] * 3, abs=5e-5)
+            return
+    pytest.fail(told)
