@@ -90,17 +90,12 @@ class BoundaryTree:
 
         So no sweep goes down the tree from its root again, to facets that are neighbours anyway.
         """
-        children = self.children
-        low, high = (np.empty((len(children), self.facets.shape[1])) for _ in range(2))
-        for box in range(len(children) - 1, -1, -1):
-            left, right = children[box]
-            low[box] = self._rest[self.facets[right]].min(axis=0) if left < 0 else np.minimum(low[left], low[right])
-            high[box] = self._rest[self.facets[right]].max(axis=0) if left < 0 else np.maximum(high[left], high[right])
+        children, leaf = self.children, self.children[:, 0] < 0
+        low, high = self._boxes_at_rest()
         pairs = np.zeros((min(len(children), 1), 2), np.int64)
         apart, met = [np.empty((0, 2), np.int64)], [np.empty((0, 2), np.int64)]
         while len(pairs):
-            same, leaf = pairs[:, 0] == pairs[:, 1], children[:, 0] < 0
-            one, other = pairs.T
+            same, (one, other) = pairs[:, 0] == pairs[:, 1], pairs.T
             free = ((low[one] > high[other]) | (low[other] > high[one])).any(axis=1)
             ends = leaf[one] & leaf[other]
             apart.append(pairs[free])
@@ -115,21 +110,33 @@ class BoundaryTree:
         listed, kinds = self._features_of(children[np.concatenate(met), 1])
         return front[np.lexsort(front.T)], listed, kinds
 
+    def _boxes_at_rest(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest corner of each box at rest [m], (boxes, dim), level by level from the leaves."""
+        children, leaf = self.children, self.children[:, 0] < 0
+        corners = self._rest[self.facets[np.where(leaf, children[:, 1], 0)]] if len(children) else self._rest[:0, None]
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        levels = [np.arange(min(len(children), 1))]
+        while len(levels[-1]):
+            levels.append(children[levels[-1][~leaf[levels[-1]]]].ravel())
+        for level in reversed(levels):
+            inner = level[~leaf[level]]
+            one, other = children[inner].T
+            low[inner], high[inner] = np.minimum(low[one], low[other]), np.maximum(high[one], high[other])
+        return low, high
+
     def _features_of(self, met: Int[np.ndarray, "pairs 2"]) -> Pairs:
         """All pairs of features that belong to pairs of facets and have no node in common."""
         dim, (one, other) = self.facets.shape[1], met.T
-        lone = [
-            np.column_stack([self.points[f, corner], self.facets[g]])
-            for f, g in ((one, other), (other, one))
-            for corner in range(dim)
-        ]
         edges = self.edges.reshape(len(self.facets), -1, 2)
-        rows = range(edges.shape[1])
-        both = [np.column_stack([edges[one, i], edges[other, j]]) for i in rows for j in rows]
-        kept = []
-        for stencils, first in ((np.concatenate(lone), 1), (np.concatenate([np.empty((0, dim + 1), int), *both]), 2)):
+        rows, kept = range(edges.shape[1]), []
+        lone = [(self.points[f, i, None], self.facets[g]) for f, g in ((one, other), (other, one)) for i in range(dim)]
+        both = [(edges[one, i], edges[other, j]) for i in rows for j in rows]
+        for features, first in ((lone, 1), (both, 2)):
+            there = [(left[:, 0] >= 0) & (right[:, 0] >= 0) for left, right in features]
+            chosen = [np.hstack([left[own], right[own]]) for (left, right), own in zip(features, there, strict=True)]
+            stencils = np.concatenate([np.empty((0, dim + 1), np.int64), *chosen])
             shared = (stencils[:, :first, None] == stencils[:, None, first:]).any(axis=(1, 2))
-            kept.append(stencils[~shared & (stencils >= 0).all(axis=1)])
+            kept.append(stencils[~shared])
         return Pairs(np.concatenate(kept), np.repeat([False, True], [len(part) for part in kept]))
 
     @property
