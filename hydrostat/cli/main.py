@@ -11,6 +11,7 @@ import typer
 
 from hydrostat.cli.animate import animate
 from hydrostat.cli.branches import branches
+from hydrostat.cli.calibrate import calibrate
 from hydrostat.cli.check import check
 from hydrostat.cli.design import design
 from hydrostat.cli.fabricate import fabricate
@@ -66,6 +67,7 @@ for command in (
     branches,
     pose,
     trajectory,
+    calibrate,
     play,
     animate,
     design,

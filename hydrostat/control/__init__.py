@@ -17,7 +17,7 @@ from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
 from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.guard import GuardLimits, TensionGuard
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
-from hydrostat.control.model_tensions import tensions_along
+from hydrostat.control.model_tensions import WinchPull, tensions_along, winch_pulls
 from hydrostat.control.motors import FASTEST, Motors
 from hydrostat.control.open_bus import EMULATED, check_port, open_bus
 from hydrostat.control.player import Player, play
@@ -55,6 +55,7 @@ __all__ = [
     "TensionGuard",
     "Timeline",
     "WinchMotor",
+    "WinchPull",
     "check_port",
     "open_bus",
     "play",
@@ -64,5 +65,6 @@ __all__ = [
     "tensions_along",
     "timeline_table",
     "usual_calibration",
+    "winch_pulls",
     "write_calibration",
 ]

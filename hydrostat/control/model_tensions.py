@@ -1,6 +1,7 @@
-"""`tensions_along`: what motors should feel while a robot plays, from its simulation."""
+"""`tensions_along`, `winch_pulls`: what motors should feel while a robot plays, or one winch turns, by simulation."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,6 +11,33 @@ from hydrostat.simulation import Profile, Simulation
 
 SAMPLES = 80
 """Equilibria along a way, at most."""
+STEPS = 8
+"""Equilibria for the pull of one winch."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WinchPull:
+    """What a winch feels when it alone takes cable in.
+
+    Attributes:
+        taut: contraction at which its first cable begins to pull at rest [m].
+        places: contractions, rising, two at least [m].
+        pulls: what its cables pull there together [N].
+    """
+
+    taut: float
+    places: Vector
+    pulls: Vector
+
+    def at(self, contractions: Vector | float) -> Vector:
+        """Pull at contractions [N]; beyond the last it rises on as before it."""
+        last = max(float(self.pulls[-1] - self.pulls[-2]), 0.0) / float(self.places[-1] - self.places[-2])
+        beyond = np.maximum(np.asarray(contractions) - self.places[-1], 0.0)
+        return np.interp(contractions, self.places, self.pulls) + last * beyond
+
+    def stiffness(self, beyond: float) -> float:
+        """Pull so far beyond where it is taut, by that way [N/m]."""
+        return float(self.at(self.taut + beyond)) / beyond
 
 
 def tensions_along(robot: Robot, profile: Profile) -> Callable[[Vector], Vector]:
@@ -50,3 +78,26 @@ def _by_winch(robot: Robot, tensions: Vector) -> Vector:
     for cable, ratio, tension in zip(robot.cables, robot.spool_ratios, tensions.tolist(), strict=True):
         pulls[cable.winch] += ratio * tension
     return np.array(list(pulls.values()))
+
+
+def winch_pulls(robot: Robot, most: float = 0.02) -> tuple[WinchPull, ...]:
+    """What each winch feels when it alone takes cable in, up to so much beyond its edge [m], by simulation."""
+    simulation, found = Simulation(robot), []
+    for index, winch in enumerate(robot.winches):
+        slack = [
+            cable.slack / ratio
+            for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
+            if cable.winch == winch.name
+        ]
+        taut, pose = min(slack, default=0.0), None
+        places, pulls = [-1.0, taut], [0.0, 0.0]
+        for taken in np.linspace(taut, min(taut + most, max(winch.travel, taut + 1e-3)), STEPS + 1)[1:].tolist():
+            contractions = np.zeros(len(robot.winches))
+            contractions[index] = taken
+            solved = simulation.solve(contractions, start=pose, strict=False)
+            if solved.result.converged:
+                pose = solved
+                places.append(taken)
+                pulls.append(float(_by_winch(robot, solved.tensions)[index]))
+        found.append(WinchPull(taut=taut, places=np.array(places), pulls=np.array(pulls)))
+    return tuple(found)

@@ -6,12 +6,18 @@ import pytest
 from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.dynamixel_bus import DynamixelBus
 from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+from hydrostat.control.model_tensions import WinchPull
 from hydrostat.control.take_up import APART, GENTLE, TakenUp, find_edge, take_up_slack
 from hydrostat.errors import HydrostatError
 
 RADIUS, CONSTANT = 0.008, 0.35  # [m], [N m/A]
 SLACKS = np.array([0.0, 0.0012, 0.0045, 0.0085, 0.013, 0.017, 0.0031, 0.022, -0.0012, -0.004])  # hidden [m]
 STIFF = np.array([300, 500, 200, 900, 400, 1500, 250, 350, 600, 300])  # of what the cables pull at [N/m]
+
+
+def straight(taut: float = 0.0) -> WinchPull:
+    """A model whose cables pull by 100 N/m from an edge on."""
+    return WinchPull(taut=taut, places=np.array([-1.0, taut, taut + 1.0]), pulls=np.array([0.0, 0.0, 100.0]))
 
 
 class Winches:
@@ -44,8 +50,9 @@ class Winches:
     def take_up(self, taut: np.ndarray | None = None) -> tuple[TakenUp, ...]:
         self.bus.identify()
         taut = np.zeros(len(self.motors)) if taut is None else taut
+        model = [straight(float(place)) for place in taut]
         clock, wait = self.chain.clock, self.chain.wait
-        return take_up_slack(self.bus, self.motors, taut, self.found.append, clock=clock, wait=wait)
+        return take_up_slack(self.bus, self.motors, model, self.found.append, clock=clock, wait=wait)
 
     def zeros(self) -> np.ndarray:
         return self.begin + self.slacks / RADIUS
@@ -60,7 +67,7 @@ def test_ten_hidden_slacks_are_found_to_half_a_millimetre_within_a_minute() -> N
     assert winches.chain.now < 60.0
     assert winches.hardest < CONSTANT * (GENTLE + 0.01) / RADIUS + 1.5  # as far as a step goes beyond the bound
     gains = [each.gain for each in taken]
-    assert gains == pytest.approx(winches.pulls * RADIUS / CONSTANT, rel=0.25)
+    assert gains == pytest.approx(winches.pulls / 100 * RADIUS / CONSTANT, rel=0.25)
     stands = np.array([servo.angle for servo in winches.servos])
     assert pytest.approx(stands, abs=0.02) == [each.motor.zero for each in taken]
     winches.chain.wait(2.0)
@@ -79,6 +86,7 @@ def test_what_the_model_has_slack_is_no_part_of_the_zero_and_spools_grow() -> No
     [
         (lambda w: w.pulls.__setitem__(1, 0.0), "winch 2: no pull is felt after 40 mm"),
         (lambda w: w.servos[0].__setattr__("ails", Ails(hot=True)), "winch 1 reports"),
+        (lambda w: w.servos[0].__setattr__("ails", Ails(stuck=True)), "winch 1: its motor does not follow"),
         (lambda w: w.pulls.__setitem__(0, 2.0), "winch 1: "),
     ],
 )
@@ -111,18 +119,53 @@ def test_a_motor_that_is_unplugged_midway_is_told_and_what_was_found_is_kept() -
     winches.bus.identify()
     clock, wait = winches.chain.clock, winches.chain.wait
     with pytest.raises(HydrostatError, match="motor of winch 3 does not answer"):
-        take_up_slack(winches.bus, winches.motors, np.zeros(3), found, clock=clock, wait=wait)
+        take_up_slack(winches.bus, winches.motors, [straight()] * 3, found, clock=clock, wait=wait)
     assert [each.motor.winch for each in winches.found] == ["winch 1"]
+
+
+def test_a_body_that_stiffens_is_no_later_edge() -> None:
+    winches = Winches(np.array([0.006]))
+    winches.servos[0].load = lambda angle: RADIUS * curve(RADIUS * (angle - winches.begin[0]) - 0.006)
+
+    def curve(way: float) -> float:
+        return 180.0 * max(way, 0.0) + 6e3 * max(way, 0.0) ** 2
+
+    places = np.array([-1.0, 0.0, *np.linspace(0.002, 0.02, 10)])
+    model = WinchPull(taut=0.0, places=places, pulls=1.7 * np.array([curve(place) for place in places.tolist()]))
+    winches.bus.identify()
+    clock, wait = winches.chain.clock, winches.chain.wait
+    (taken,) = take_up_slack(winches.bus, winches.motors, [model], winches.found.append, clock=clock, wait=wait)
+    assert taken.slack == pytest.approx(0.006, abs=3e-4)
+    assert taken.gain == pytest.approx(RADIUS / CONSTANT / 1.7, rel=0.1)
+
+
+def test_a_busy_computer_only_takes_longer() -> None:
+    winches = Winches(np.array([0.006]))
+    winches.bus.identify()
+    turns = [0]
+
+    def wait(seconds: float) -> None:
+        turns[0] += 1
+        winches.chain.wait(0.4 if turns[0] in (40, 90) else seconds)
+
+    clock = winches.chain.clock
+    (taken,) = take_up_slack(winches.bus, winches.motors, [straight()], winches.found.append, clock=clock, wait=wait)
+    assert turns[0] > 90
+    assert taken.slack == pytest.approx(0.006, abs=4e-4)
+    slow = lambda _: winches.chain.wait(0.2)  # noqa: E731
+    with pytest.raises(HydrostatError, match="too busy"):
+        take_up_slack(winches.bus, winches.motors, [straight()], winches.found.append, clock=clock, wait=slow)
 
 
 def test_a_spool_that_slips_is_told() -> None:
     winches = Winches(np.array([0.002]))
-    torque = winches.servos[0].load
-    winches.bus.identify()
-    begin = winches.chain.now
+    torque, felt = winches.servos[0].load, [False, False]
 
     def slips(angle: float) -> float:
-        return torque(angle - (0.25 if winches.chain.now - begin > 3.0 else 0.0))
+        pull = torque(angle - (0.25 if all(felt) else 0.0)) / CONSTANT
+        felt[0] |= pull > 0.05
+        felt[1] |= felt[0] and pull < 0.02  # when it is let out again
+        return CONSTANT * pull
 
     winches.servos[0].load = slips
     assert RADIUS * 0.25 > 2 * APART
@@ -132,5 +175,5 @@ def test_a_spool_that_slips_is_told() -> None:
 
 def test_an_edge_is_where_the_line_begins() -> None:
     places = np.linspace(-0.003, 0.004, 60)
-    edge, slope, floor = find_edge(places, 0.01 + 5.0 * np.maximum(places - 0.00123, 0.0))
-    assert (edge, slope, floor) == pytest.approx((0.00123, 5.0, 0.01), abs=2e-5, rel=1e-2)
+    edge, slope, floor = find_edge(places, 0.01 + 5.0 * np.maximum(places - 0.00123, 0.0), straight())
+    assert (edge, slope, floor) == pytest.approx((0.00123, 0.05, 0.01), abs=2e-5, rel=1e-2)

@@ -1,0 +1,83 @@
+"""`write_calibration_page`: what calibration has found on each winch, for a browser."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from hydrostat.arrays import Vector
+from hydrostat.control import TakenUp, WinchPull
+from hydrostat.drawing.palette import MUTED, WINCHES
+from hydrostat.drawing.svg import tag
+from hydrostat.plot.chart import new_chart
+from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
+from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.robot import Robot, replace_file
+
+
+def write_calibration_page(
+    robot: Robot,
+    found: Sequence[TakenUp],
+    model: Sequence[WinchPull],
+    constants: Vector,
+    notes: Sequence[str],
+    path: Path,
+) -> Path:
+    """Write a page: a table of the winches, what each motor felt beside what the simulation says, and notes.
+
+    Args:
+        robot: that was calibrated.
+        found: on each winch.
+        model: of each winch.
+        constants: torque of each motor by its current [N m/A]; NaN where it is not known.
+        notes: what a person should look at.
+        path: of the page.
+    """
+    rows, pictures = [], []
+    for index, (each, wanted, constant) in enumerate(zip(found, model, constants.tolist(), strict=True)):
+        stiff = wanted.stiffness(reach(each))
+        felt = stiff * each.gain * constant / each.motor.radius
+        rows.append(
+            (
+                each.motor.winch,
+                str(each.motor.number),
+                number(MILLIMETRES * each.slack, 1),
+                number(MILLIMETRES * each.apart, 2),
+                f"{felt:.0f}" if np.isfinite(felt) else "not known",
+                f"{stiff:.0f}",
+                f"{each.seconds:.1f}",
+            )
+        )
+        words = ": each point is a reading; the line is the simulation"
+        pictures.append(picture(_draw(each, wanted, constant), f"winch{index}", each.motor.winch, words))
+    heads = ("winch", "motor", "taken up [mm]", "apart [mm]", "felt [N/m]", "model [N/m]", "seconds")
+    told = [tag("p", note, class_="note") for note in notes] or [tag("p", "Nothing stands out.", class_="note")]
+    content = (
+        tag("p", "hydrostat \N{MIDDLE DOT} calibration", class_="eyebrow"),
+        tag("h1", robot.name),
+        tag("p", "Each motor took up the slack of its cables at low current, twice, while the others stood."),
+        *told,
+        table(heads, rows, numbers=range(1, len(heads))),
+        grid(*pictures),
+    )
+    return replace_file(path, page(f"{robot.name}: calibration", tag("section", *content)).encode())
+
+
+def reach(found: TakenUp) -> float:
+    """How far beyond the edge a winch was pulled [m]."""
+    return max(float(found.places.max()), 1e-3)
+
+
+def _draw(found: TakenUp, model: WinchPull, constant: float) -> Figure:
+    """Pull by cable taken in; current where the motor's constant is not known."""
+    known = np.isfinite(constant)
+    figure, axes = new_chart(
+        "cable beyond the edge [mm]", "pull [N]" if known else "current [mA]", width=NARROW, height=2.4
+    )
+    scale = constant / found.motor.radius if known else 1e3
+    axes.plot(MILLIMETRES * found.places, scale * (found.currents - found.floor), ".", color=WINCHES[0], markersize=4)
+    if known:
+        way = np.linspace(min(0.0, float(found.places.min())), reach(found), 40)
+        axes.plot(MILLIMETRES * way, model.at(model.taut + way), color=MUTED, linewidth=1.2)
+    return figure
