@@ -54,6 +54,10 @@ def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
         if part.exists():
             _remove(out, stale)
             _move_files(part, out)
+    except InputError as error:
+        if str(part) not in str(error):
+            raise
+        raise InputError(str(error).replace(str(part), str(out))) from None
     finally:
         shutil.rmtree(part, ignore_errors=True)
 

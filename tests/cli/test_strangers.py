@@ -89,6 +89,7 @@ def test_outlines_that_wind_are_refused_at_once(case: str) -> None:
 SURFACES = {
     "a fan": (lambda: strangers.fan(20_000), "20000 triangles meet at one edge"),
     "a soup": (lambda: strangers.soup(25_000, 0.5), "falls into 25000 loose parts, at most 20000"),
+    "shells in shells": (lambda: strangers.nested(1500), "lie about each other, as in shells within shells"),
     "a tangle": (lambda: strangers.soup(15_000, 30.0), "run through each other everywhere"),
 }
 
@@ -195,6 +196,15 @@ def test_two_writers_of_one_folder(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out"]
     assert unfinished(out / "a") != replace_file(out / "a", b"x")
     assert sorted(path.name for path in out.iterdir()) == ["a", "a.txt", "made"]
+
+
+def test_complaints_name_the_folder_that_was_asked_for(tmp_path: Path) -> None:
+    with (
+        pytest.raises(InputError, match=rf"^{tmp_path}/out/a\.gif: cannot be written$"),
+        result_folder(tmp_path / "out") as part,
+    ):
+        raise InputError(f"{part}/a.gif: cannot be written")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_name_as_long_as_any_may_be_can_be_written(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from hydrostat.errors import SurfaceError
 from hydrostat.geometry.healing.mend import Holes, Welded, sides_of
 from hydrostat.geometry.healing.shells import Role, Shells
 from hydrostat.geometry.surface import Surface
@@ -13,6 +14,7 @@ from hydrostat.units import counted
 
 _PAIRS = 1_000_000  # about as many are looked at at once
 _BOXES = 4096  # and no more triangles, for the next may cross many more others
+_MOST_SEEN, _SEEN_EACH = 3_000_000, 60  # pairs whose boxes meet, in all, and for each triangle of a large surface
 MOST_PAIRS = 100_000  # where so many pairs cross, no more are looked for
 
 _NEAR = 1e-9  # of the size of the surface: what is nearer to a plane than this touches it, and does not cross it
@@ -26,10 +28,17 @@ def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
     """Pairs of triangles of which a side of one runs through the other, or that are folded flat on each other.
 
     Triangles that touch each other, or lie in one plane and overlap there without a common edge, do not count. Ends
-    early where a surface is nothing but crossings.
+    early where a surface is nothing but crossings. Raises SurfaceError: so much of it lies about itself, as shells
+    within shells do, that the search would not end in time.
     """
-    found = [np.zeros((0, 2), dtype=np.int64)]
+    found, seen = [np.zeros((0, 2), dtype=np.int64)], 0
     for pairs in _candidates(surface):
+        seen += len(pairs)
+        if seen > max(_MOST_SEEN, _SEEN_EACH * len(surface.triangles)):
+            raise SurfaceError(
+                "most of its triangles lie about each other, as in shells within shells: this is no surface of a body; "
+                "in the program it comes from, keep the outer one, and export it again"
+            )
         first, second = (surface.triangles[side] for side in pairs.T)
         same = first[:, :, None] == second[:, None, :]
         shared = same.sum(axis=(1, 2))
