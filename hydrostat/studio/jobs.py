@@ -52,7 +52,7 @@ class Jobs:
 
     def __init__(self, bell: Bell, slots: Slots | None = None) -> None:
         """Work beside other sessions that share slots, where no process stands ready; None: there are no others."""
-        self._slots = slots
+        self.slots = slots  # that other sessions share; None: there are no others
         self.state: JobState | None = None  # of the work that runs or ran last; None before the first
         self._bell = bell
         self._lock = Lock()
@@ -71,7 +71,7 @@ class Jobs:
         with self._lock:
             if self._spare is not None and self._spare.process.is_alive():
                 return
-            if self._closed or self._slots is not None:
+            if self._closed or self.slots is not None:
                 return
             self._spare = _Worker.started()
             self._spare.pipe.send(("import", modules))
@@ -99,8 +99,8 @@ class Jobs:
                 raise InputError(f"{self.state.title} is still in progress; wait for it or stop it")
             if self._closed:
                 raise InputError("the studio is closing")
-            if self._slots is not None:
-                self._slots.take()
+            if self.slots is not None:
+                self.slots.take()
             spare, self._spare = self._spare, None
             worker = spare if spare is not None and spare.process.is_alive() else _Worker.started()
             self._worker, self.state = worker, JobState(title=title)
@@ -159,8 +159,8 @@ class Jobs:
         worker.end(patience)
         if error and self.state is not None and self.state.stopping:
             error = "stopped"
-        if self._slots is not None:
-            self._slots.give()
+        if self.slots is not None:
+            self.slots.give()
         self._note(running=False, error=error)
         on_end(error)
 

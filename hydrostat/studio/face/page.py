@@ -19,10 +19,14 @@ Refresh = Callable[[], Any]
 
 
 class WindowPage:
-    """One browser window: its view, its panel, and what is to be drawn again when something changes."""
+    """One browser window: its view, its panel, and what is to be drawn again when something changes.
 
-    def __init__(self, session: Session) -> None:
+    A silent one tells no notes of the session.
+    """
+
+    def __init__(self, session: Session, *, silent: bool = False) -> None:
         self.session = session  # that all windows share
+        self._silent = silent
         self._lasting: dict[Topic, list[Refresh]] = defaultdict(list)
         self._passing: dict[Topic, list[Refresh]] = defaultdict(list)
         self._rung: set[Topic] = set()
@@ -108,7 +112,8 @@ class WindowPage:
         for note in list(self.session.notes):
             if note.number > self._told:
                 self._told = note.number
-                self.tell(note.text, note.tone)
+                if not self._silent:
+                    self.tell(note.text, note.tone)
 
     def close(self) -> None:
         """End: the window is gone."""

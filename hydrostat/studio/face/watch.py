@@ -14,7 +14,7 @@ from hydrostat.studio.session import Session
 
 def build_watch(session: Session, stream: str) -> WindowPage:
     """Build the page of a browser window that watches a session by the path of its stream."""
-    page = WindowPage(session)
+    page = WindowPage(session, silent=True)
     dress()
     with ui.header().classes("studio-header"):
         ui.label("hydrostat").classes("studio-brand")

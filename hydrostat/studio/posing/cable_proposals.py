@@ -8,6 +8,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
+from hydrostat.studio.jobs import Slots
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.posing.propose_work import Moment, Sketched, propose_work
@@ -30,9 +31,9 @@ class CableProposals:
     Asking costs the thread that moves the body nothing but two assignments.
     """
 
-    def __init__(self, document: Document) -> None:
-        """None are made before they are switched on."""
-        self._document = document
+    def __init__(self, document: Document, slots: Slots | None = None) -> None:
+        """None are made before they are switched on; then they are one of the long works that slots are for, if any."""
+        self._document, self._slots = document, slots
         self._news = Condition()
         self._newest: _Question | None = None
         self._found: tuple[Robot, Sketched] | None = None
@@ -41,10 +42,12 @@ class CableProposals:
         self.on = False  # whether networks are proposed
 
     def switch(self, on: bool) -> None:
-        """Begin to propose networks, or end it and forget what there is."""
+        """Begin to propose networks, or end it and forget what there is (InputError: all slots are taken)."""
         with self._news:
             if on == self.on:
                 return
+            if self._slots is not None:
+                (self._slots.take if on else self._slots.give)()
             self.on, self._newest, self._found = on, None, None
             self._run += 1
             self._news.notify_all()

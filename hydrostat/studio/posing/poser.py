@@ -50,7 +50,7 @@ class Poser(Stage):
         self._document = document
         self.reach = MarkerReach(document, jobs)  # all that a marker can reach
         self._lock = RLock()
-        self.proposals = CableProposals(document)  # cables for what the muscles do
+        self.proposals = CableProposals(document, jobs.slots)  # cables for what the muscles do
         self._movers = Movers(document)
         self._now: Now | None = None
         self._done: tuple[Robot, Wish, float] | None = None

@@ -19,6 +19,7 @@ from hydrostat.robot import gallery_folder
 from hydrostat.studio.face import rooms as rooms_module
 from hydrostat.studio.face.rooms import Room, Rooms, new_key
 from hydrostat.studio.jobs import Jobs, Slots
+from hydrostat.studio.posing.cable_proposals import CableProposals
 from hydrostat.studio.session import Session
 from hydrostat.studio.view.picture import opened
 
@@ -82,7 +83,15 @@ def test_long_work_waits_for_a_slot() -> None:
     with pytest.raises(InputError, match="busy with the work of other rooms"):
         jobs.start("Counting", len, [])
     assert not jobs.running
+    proposals = CableProposals(session.document, slots)
+    with pytest.raises(InputError, match="busy"):
+        proposals.switch(True)
+    assert not proposals.on
     slots.give()
+    proposals.switch(True)
+    with pytest.raises(InputError, match="busy"):
+        slots.take()
+    proposals.switch(False)
     slots.take()
     session.close()
 

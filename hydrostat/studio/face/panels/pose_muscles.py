@@ -5,6 +5,7 @@ from nicegui import ui
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.view.colouring import Colouring
 from hydrostat.units import counted
 
@@ -41,9 +42,14 @@ def muscles_card(page: WindowPage) -> None:
             return "Looking for cables" if poser.held else "Hold a point, and drag it."
         if not found.cables:
             return f"{found.words[:1].upper()}{found.words[1:]}"
-        off = "" if found.error is None else f", {1e3 * found.error:.1f} mm off"
+        off = "" if found.error is None else f", {told_error(found.error)} off"
         return f"{counted(len(found.winches), 'winch')}, {counted(len(found.cables), 'cable')}{off}"
 
     colours.on_value_change(lambda event: colour(bool(event.value)))
-    propose.on_value_change(lambda event: page.act(poser.proposals.switch, bool(event.value)))
+
+    def switch(on: bool) -> None:
+        page.act(poser.proposals.switch, on)
+        propose.set_value(poser.proposals.on)
+
+    propose.on_value_change(lambda event: switch(bool(event.value)))
     page.on((Topic.THINGS, Topic.ROBOT), show)

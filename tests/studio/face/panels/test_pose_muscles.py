@@ -34,7 +34,7 @@ def test_muscles_are_shown_and_cables_proposed(starfish: Robot, monkeypatch: pyt
         found = Sketched(winches=robot.winches[:1], cables=cables, error=0.0123)
         poser.proposals._take(poser.proposals._run, robot, found)
         await desk.follow()
-        assert desk.one("pose-proposed").text == f"1 winch, {counted(len(cables), 'cable')}, 12.3 mm off"
+        assert desk.one("pose-proposed").text == f"1 winch, {counted(len(cables), 'cable')}, 12 mm off"
         await desk.press("pose-keep")
         assert desk.robot.cables == cables
         assert not desk.one("pose-keep").enabled
