@@ -13,6 +13,7 @@ current allows, motors that still turn 250 ms after the last command, and faults
 import argparse
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -32,8 +33,9 @@ def main() -> None:
     given = parser.parse_args()
     print(machine())
     campaign, began = Campaign(np.random.default_rng(given.seed), seconds=2.0, share=0.25), time.process_time()
-    while campaign.injected < given.count and time.process_time() - began < given.seconds:
-        campaign.run()
+    with suppress(KeyboardInterrupt):
+        while campaign.injected < given.count and time.process_time() - began < given.seconds:
+            campaign.run()
     for line in campaign.told():
         print(line)
     print(f"seed {given.seed}, {time.process_time() - began:.0f} s of CPU")

@@ -45,7 +45,7 @@ class DynamixelModel:
 
 
 MODELS = {
-    1190: DynamixelModel("XL330-M077", True, 1.47, 0.228),
+    1190: DynamixelModel("XL330-M077", True, 1.47, 0.215),
     1200: DynamixelModel("XL330-M288", True, 1.47, 0.52),
     1210: DynamixelModel("XC330-T181", True, 0.8, 0.76),
     1220: DynamixelModel("XC330-T288", True, 0.8, 0.92),
@@ -85,6 +85,7 @@ class DynamixelBus(ServoBus):
         """Servos on a port, by their numbers; the rest is as a `ServoBus` has it."""
         super().__init__(port, numbers, **rest)
         self._models: dict[int, DynamixelModel] = {}
+        self._proved = set[int]()  # whose watchdog was seen to stop them
 
     def identify(self) -> tuple[MotorFacts, ...]:
         """Facts of the servos; each watchdog is armed and tried."""
@@ -94,13 +95,14 @@ class DynamixelBus(ServoBus):
             for number in self._numbers:
                 self._set(number, TORQUE, 0, 1)
                 self._set(number, MODE, 5 if self._models[number].measures else 4, 1)
-            proved = self._prove()
+            self._proved = set()
+            self._proved = self._prove()
             return tuple(
                 MotorFacts(
                     number=number,
                     model=self._models[number].title,
                     firmware=firmware[number],
-                    watchdog=number in proved,
+                    watchdog=number in self._proved,
                     constant=self._models[number].torque / self._models[number].stall,
                 )
                 for number in self._numbers
@@ -165,8 +167,10 @@ class DynamixelBus(ServoBus):
         return round(float(self._last.angles[self._numbers.index(number)]) / TICK)
 
     def _hold(self, angles: dict[int, float]) -> None:
-        # a watchdog that has fired refuses goals, whether it has stopped its motor or not
-        self._tell_all(WATCHDOG, {number: bytes(1) for number in self._numbers})
+        # A watchdog that has fired refuses goals, whether it has stopped its motor or not. Where it has, it is let be:
+        # without it the motor would go on to its last goal until the new one comes.
+        if doubtful := {number: bytes(1) for number in self._numbers if number not in self._proved}:
+            self._tell_all(WATCHDOG, doubtful)
         steps = {number: round(angle / TICK).to_bytes(4, "little", signed=True) for number, angle in angles.items()}
         self._tell_all(GOAL, steps)
 
@@ -187,7 +191,7 @@ class DynamixelBus(ServoBus):
             self._set(number, WATCHDOG, 0, 1)
             self._bound(number, 0.3 * self._models[number].stall)
             self._set(number, TORQUE, 1, 1)
-            self._set(number, WATCHDOG, 2, 1)
+        self._tell_all(WATCHDOG, dict.fromkeys(self._numbers, b"\x02"))  # all at once, as they wait so short
         self.write(begin + PROOF, np.full(len(begin), PROOF / 0.5))
         self._wait(0.15)
         first = self.read().angles.copy()

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hydrostat.control import DynamixelBus, EmulatedChain, EmulatedServo
+from hydrostat.control import Ails, DynamixelBus, EmulatedChain, EmulatedServo
 from hydrostat.control.dynamixel_bus import TORQUE, WATCH, WATCHDOG
 from hydrostat.control.dynamixel_packets import PING, READ, STATUS, Packet, PacketReader, crc, pack
 from hydrostat.errors import HydrostatError
@@ -161,3 +161,17 @@ def test_an_answer_that_comes_late_is_not_taken_for_another() -> None:
     servo.take = refuses
     with pytest.raises(HydrostatError, match="motor 1 did not take"):
         bus.arm(np.full(1, 0.3))
+
+
+def test_watchdogs_are_proved_on_a_slow_line() -> None:
+    """Of eight servos, as slow as at 57,600 baud, the third does not stop by itself."""
+    servos = [EmulatedServo(number, ails=Ails(deaf_watchdog=number == 3)) for number in range(1, 9)]
+    chain = EmulatedChain(servos)
+    bus = DynamixelBus(chain, range(1, 9), clock=chain.clock, wait=chain.wait, answer=0.1)
+
+    def slowly(data: bytes) -> bytes:
+        chain.wait(len(data) * 10 / 57_600 + 5e-4)
+        return data
+
+    chain.towards = chain.back = slowly
+    assert [fact.watchdog for fact in bus.identify()] == [number != 3 for number in range(1, 9)]

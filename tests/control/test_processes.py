@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from emulation import RADIUS
 
+import hydrostat
 from hydrostat.control import Ails, EmulatedChain, EmulatedFeetechChain, EmulatedLine, EmulatedServo, EmulatedSts
 
 STANDS = 0.25  # motors stand so long after the last command [s]
@@ -65,7 +66,11 @@ def ends(event: str, kind: str) -> tuple[int, str, list[float]]:
     with EmulatedLine(chain(kind)) as line:
         servos = line.chain.servos
         process = subprocess.Popen(
-            [sys.executable, HOST, line.path, kind, event], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+            [sys.executable, HOST, line.path, kind, event],
+            stderr=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env=os.environ | {"PYTHONPATH": str(Path(hydrostat.__file__).parents[1])},
         )
         try:
             until(lambda: process.poll() is not None or RADIUS * (servos[0].angle - 1.0) > 0.003)
