@@ -26,7 +26,7 @@ import hydrostat as hs
 from hydrostat.learning import METHODS, Compared, compare, read_samples
 
 QUANTILES = {"median": 0.5, "p90": 0.9, "p99": 0.99, "max": 1.0}
-HEAD = f"{'samples':>7}  {'way':16}{'mean':>8}{'%':>8}" + "".join(f"{name:>8}" for name in QUANTILES) + "  lost  CPU s"
+HEAD = f"{'samples':>7}  {'way':18}{'mean':>8}{'%':>8}" + "".join(f"{name:>8}" for name in QUANTILES) + "  lost  CPU s"
 
 Row = dict[str, float | str]
 
@@ -43,10 +43,12 @@ def row_of(found: Compared) -> Row:
 def line(row: Row, size: float) -> str:
     """A row as text; the body's size in metres."""
     numbers = "".join(f"{row[name]:8.3f}" for name in QUANTILES)
-    text = f"{row['samples']:7}  {row['method']:16}{row['mean']:8.3f}{0.1 * float(row['mean']) / size:8.3f}{numbers}"
+    text = f"{row['samples']:7}  {row['method']:18}{row['mean']:8.3f}{0.1 * float(row['mean']) / size:8.3f}{numbers}"
     text += f"{row['lost']:6}{row['seconds']:7.0f}"
     if "microseconds" in row:
         text += f"  {row['microseconds']:.0f} us"
+    if "milliseconds" in row:
+        text += f"  {row['milliseconds']:.0f} ms for the step"
     if "expected" in row:
         text += f", expects {1e3 * float(row['expected']):.3f}"
     if "doubt" in row:

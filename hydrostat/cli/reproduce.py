@@ -2,9 +2,11 @@
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -14,7 +16,10 @@ from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.learning import Compared
+    from matplotlib.figure import Figure
+
+    from hydrostat.learning import Study, StudyRow
+    from hydrostat.robot import Robot
 
 
 class Size(StrEnum):
@@ -26,77 +31,208 @@ class Size(StrEnum):
 
 
 def reproduce(
-    what: Annotated[str, typer.Argument(metavar="TABLE", help="What to reproduce: table-5.1.")],
+    what: Annotated[list[str], typer.Argument(metavar="TABLE...", help="table-5.1 table-5.2 figure-5.3 ...; or all.")],
     out: OutFolder,
     size: Annotated[str, typer.Option(metavar="minutes|hour|full", help="How much is sampled.")] = "minutes",
-    draw: Annotated[str, typer.Option(metavar="WAY", help="How contractions are drawn: box, antagonist.")] = "box",
-    jobs: Annotated[int, typer.Option(metavar="N", help="Processes; -1: one on each core.")] = -1,
+    draw: Annotated[str, typer.Option(metavar="WAY,WAY", help="How contractions are drawn: box, antagonist.")] = "box",
+    robots: Annotated[str | None, typer.Option(metavar="NAME,NAME", help="Robots of the gallery, or folders.")] = None,
+    counts: Annotated[str | None, typer.Option(metavar="N,N", help="Numbers of samples to learn from.")] = None,
+    targets: Annotated[int | None, typer.Option(metavar="N", help="How many targets.")] = None,
+    seeds: Annotated[int | None, typer.Option(metavar="N", help="How often networks begin at random.")] = None,
+    jobs: Annotated[int, typer.Option(metavar="N", help="Processes that sample; -1: one on each core.")] = -1,
 ) -> None:
-    """Make a table of the thesis again, on our hand and with our simulator, and add ours.
+    """Make tables and figures of the thesis again, with our hand and simulator, and ways to learn that it had not.
 
-    Table 5.1 is the mean error of each fingertip after contractions by a network were rolled out in the simulator.
-    Samples go to DIR and are used again; the table is written there as CSV. The thesis had another hand, and another
-    range of motion.
+    There are table-5.1 (mean error of each fingertip), table-5.2 (mean, deviation, largest, and quantiles), figure-5.3
+    (learning curves), figure-5.4 (poses asked for and reached) and figure-5.14 (error over samples, and over CPU time).
+    Each answer is rolled out in the simulator. Samples and results go to DIR and are used again. The thesis had another
+    hand, and another range of motion.
 
-    Example: hydrostat reproduce table-5.1 --out build/table
+    Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
-    from dataclasses import replace
+    asked = THINGS if "all" in what else tuple(what)
+    for name in asked:
+        if name not in THINGS:
+            raise InputError(f"there is no {name!r}; there are: all, {', '.join(THINGS)}")
+    from hydrostat.learning import run_study
 
-    from hydrostat.learning import Draw, compare, plan_samples, read_samples, sample_robot
-    from hydrostat.robot import Contact, load_robot, replace_file
+    study, bodies = _study(member(Size, size, what="--size"), draw, robots, counts, targets, seeds)
+    require_folder(out)
+    loaded, rows = [_robot(name) for name in bodies], list["StudyRow"]()
+    out.mkdir(parents=True, exist_ok=True)
+    for robot in loaded:
+        for row in run_study(study, robot, out, jobs=jobs, tell=told()):
+            if not rows or _group(rows[-1]) != _group(row):
+                print(f"\n{_head(row)}\n{_WORDS}")
+            print(_line(row), flush=True)
+            rows.append(row)
+    for name in asked:
+        _write(name, rows, {robot.name: robot for robot in loaded}, out)
+
+
+def _study(
+    size: Size, draw: str, robots: str | None, counts: str | None, targets: int | None, seeds: int | None
+) -> "tuple[Study, list[str]]":
+    """What is compared, and on which robots."""
+    from hydrostat.learning import Draw, LearnOptions, Study
+
+    usual = _SIZES[size]
+    study = Study(
+        draws=tuple(member(Draw, each.strip(), what="--draw") for each in draw.split(",")),
+        counts=tuple(usual.counts if counts is None else _numbers(counts)),
+        targets=usual.targets if targets is None else targets,
+        seeds=usual.seeds if seeds is None else seeds,
+        options=LearnOptions(steps=usual.steps, inverse_steps=usual.inverse_steps),
+    )
+    return study, list(usual.robots) if robots is None else [name.strip() for name in robots.split(",")]
+
+
+def _numbers(text: str) -> list[int]:
+    parts = [part.strip() for part in text.split(",")]
+    if not all(part.isdecimal() and int(part) for part in parts):
+        raise InputError(f"--counts {text}: write numbers above 0, for example 100,1000")
+    return [int(part) for part in parts]
+
+
+def _robot(name: str) -> "Robot":
+    """A robot of the gallery or of a folder, which feels itself."""
+    from hydrostat.robot import Contact, load_robot
     from hydrostat.robot.gallery import gallery_folder
+
+    robot = load_robot(Path(name) if Path(name).is_dir() else gallery_folder(name))
+    return robot if robot.contact is not None else replace(robot, contact=Contact())
+
+
+def _group(row: "StudyRow") -> tuple[str, str]:
+    return row.robot, row.draw
+
+
+def _head(row: "StudyRow") -> str:
+    return (
+        f"{row.robot}, drawn by {row.draw}: {row.targets} targets, {1e3 * row.moved:.1f} mm from the mean\n"
+        f"place of their markers; errors in mm, and in % of the body's {1e3 * row.size:.0f} mm"
+    )
+
+
+def _line(row: "StudyRow") -> str:
+    """A row as text."""
+    mean = row.errors["mean"]
+    numbers = "".join(f"{1e3 * row.errors[name]:9.3f}" for name in ("median", "p90", "p99", "max"))
+    text = f"{row.samples:7}{row.seed:5}  {row.method:22}{1e3 * mean:8.3f}{100 * mean / row.size:8.3f}{numbers}"
+    return f"{text}{row.lost:6}{row.sampling:9.0f}{row.learning:9.1f}"
+
+
+def _write(name: str, rows: "Sequence[StudyRow]", robots: "dict[str, Robot]", out: Path) -> None:
+    """A table as CSV, a figure as PNG for each robot and draw."""
+    from hydrostat.plot import draw_errors, draw_losses, save_png
+    from hydrostat.robot import replace_file
+
+    if name.startswith("table"):
+        replace_file(out / f"{name}.csv", _csv(_per_marker(rows) if name == "table-5.1" else _spread(rows)))
+        print(f"Wrote {out / name}.csv")
+        return
+    groups = dict.fromkeys(_group(row) for row in rows)
+    for group in groups:
+        some = [row for row in rows if _group(row) == group]
+        file = out / (f"{name}.png" if len(groups) == 1 else f"{name}-{group[0]}-{group[1]}.png")
+        if name == "figure-5.3":
+            figure = draw_losses([row for row in some if row.curve and row.seed == 0])
+        elif name == "figure-5.14":
+            figure = draw_errors(some)
+        else:
+            figure = _poses(some, robots[group[0]], out)
+        print(f"Wrote {save_png(figure, file)}")
+
+
+def _per_marker(rows: "Sequence[StudyRow]") -> list[list[str]]:
+    """Mean errors of each marker, and of all [cm]."""
+    table: list[list[str]] = []
+    for place, row in enumerate(rows):
+        if place == 0 or row.robot != rows[place - 1].robot:
+            table.append(["robot", "drawn by", "samples", "seed", "way", *row.markers, "mean", "lost"])
+            table += [list(line) for line in _THESIS] if row.robot == _HAND else []
+        means = [*row.markers.values(), row.errors["mean"]]
+        numbers = [f"{100 * mean:.4f}" for mean in means]
+        table.append([row.robot, row.draw, str(row.samples), str(row.seed), row.method, *numbers, str(row.lost)])
+    return table
+
+
+def _spread(rows: "Sequence[StudyRow]") -> list[list[str]]:
+    """Mean, deviation, quantiles and largest error [mm], shares of the size, CPU times [s]."""
+    names = list(rows[0].errors)
+    head = ["robot", "drawn by", "samples", "seed", "way", *(f"{name} [mm]" for name in names)]
+    table = [[*head, "mean [% of size]", "targets", "lost", "sampling [s]", "learning [s]"]]
+    for words, mean, deviation, largest in _EARLIER:
+        told = {"mean": mean, "deviation": deviation, "max": largest}
+        table.append([words, "", "", "", "", *(told.get(name, "") for name in names)])
+    for row in rows:
+        numbers = [f"{1e3 * error:.4f}" for error in row.errors.values()]
+        ends = [f"{100 * row.errors['mean'] / row.size:.4f}", str(row.targets), str(row.lost)]
+        ends += [f"{row.sampling:.1f}", f"{row.learning:.1f}"]
+        table.append([row.robot, row.draw, str(row.samples), str(row.seed), row.method, *numbers, *ends])
+    return table
+
+
+def _poses(rows: "Sequence[StudyRow]", robot: "Robot", out: Path) -> "Figure":
+    """Targets, and where two networks bring the hand, from the most samples."""
+    from hydrostat.learning import read_samples
+    from hydrostat.plot import draw_side_by_side
     from hydrostat.simulation import Simulation
 
-    if what not in TABLES:
-        raise InputError(f"there is no {what!r}; there is: {', '.join(TABLES)}")
-    counts, targets = _SIZES[member(Size, size, what="--size")]
-    way = member(Draw, draw, what="--draw")
-    require_folder(out)
-    robot = replace(load_robot(gallery_folder("cupping_hand")), contact=Contact())
-    folders = {"train": (max(counts), 0), "test": (targets, 1)}
-    for name, (count, seed) in folders.items():
-        plan = plan_samples(robot, count, seed=seed, draws=(way,))
-        sample_robot(plan, out / f"{name}-{way}-{count}", jobs=jobs, tell=told())
-    train, test = (read_samples(out / f"{name}-{way}-{count}") for name, (count, _) in folders.items())
-    simulation, names = Simulation(robot), train.facts["markers"]
-    rows = [list(row) for row in _THESIS]
-    _print(["", *names, "mean"], rows)
-    for count in counts:
-        for found in compare(simulation, train.first(min(count, len(train))), test, _WAYS):
-            rows.append(_row(found))
-            _print([], rows[-1:])
-    replace_file(out / f"{what}.csv", _csv(["way", *names, "mean"], rows))
-    print(f"Wrote {out / what}.csv")
+    most = max(row.samples for row in rows)
+    best = {row.method: row for row in rows if row.samples == most and row.seed == 0}
+    test = read_samples(out / f"{robot.name}-{rows[0].draw}-test-{rows[0].targets}")
+    count = len(best["thesis"].shown)
+    shown = {"asked for": test.contractions[:count].tolist(), "thesis's network": best["thesis"].shown}
+    shown |= {"our networks": best["search"].shown}
+    simulation = Simulation(robot)
+    columns = {name: [simulation.solve(row, strict=False).nodes for row in some] for name, some in shown.items()}
+    return draw_side_by_side(robot, columns)
 
 
-def _row(found: "Compared") -> list[str]:
-    """Mean errors of each finger, and of all [cm]."""
-    means = 100 * found.found.mean(axis=0)
-    title = f"{found.method}, {found.samples}" + (f", {found.lost} lost" if found.lost else "")
-    return [title, *(f"{mean:.4f}" for mean in means), f"{means.mean():.4f}"]
-
-
-def _print(head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    for row in [head, *rows] if head else rows:
-        print(f"{row[0]:24}" + "".join(f"{text:>9}" for text in row[1:]), flush=True)
-
-
-def _csv(head: Sequence[str], rows: Iterable[Sequence[str]]) -> bytes:
+def _csv(rows: Sequence[Sequence[str]]) -> bytes:
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([head, *rows])
+    csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue().encode()
 
 
-TABLES = ("table-5.1",)
+class _Usual(NamedTuple):
+    """What a size stands for."""
+
+    robots: tuple[str, ...]
+    counts: tuple[int, ...]
+    targets: int
+    seeds: int
+    steps: int | None
+    inverse_steps: int
+
+
+_HAND = "cupping_hand"
+
+_SIZES = {
+    Size.MINUTES: _Usual((_HAND,), (100, 300), 24, 1, 2000, 1500),
+    Size.HOUR: _Usual((_HAND,), (100, 300, 1000, 3000), 300, 1, None, 4000),
+    Size.FULL: _Usual((_HAND, "extended_hand", "trunk"), (100, 300, 1000, 3000, 10_000, 100_000), 5000, 5, None, 4000),
+}
+"""Robots, numbers of samples, targets, seeds, and how long our networks learn."""
+
+THINGS = ("table-5.1", "table-5.2", "figure-5.3", "figure-5.4", "figure-5.14")
 """What can be reproduced."""
 
-_SIZES = {Size.MINUTES: ((300,), 60), Size.HOUR: ((1000, 3000), 500), Size.FULL: ((1000, 10_000, 100_000), 5000)}
-"""Samples to learn from, and targets."""
-
-_WAYS = ("constant", "thesis", "ridge", "1-NN", "inverse", "search", "search, step")
+_WORDS = (
+    f"{'samples':>7}{'seed':>5}  {'way':22}{'mean':>8}{'%':>8}"
+    f"{'median':>9}{'p90':>9}{'p99':>9}{'max':>9}{'lost':>6}{'sampled':>9}{'learned [CPU s]':>9}"
+)
 
 _THESIS = (
-    ("in the thesis, 10000", "0.4559", "0.5780", "0.5498", "0.8395", "0.6245", "0.6095"),
-    ("in the thesis, 100000", "0.4438", "0.5878", "0.5213", "0.7869", "0.5848", "0.5849"),
+    ["in the thesis", "", "10000", "", "thesis", "0.4559", "0.5780", "0.5498", "0.8395", "0.6245", "0.6095", ""],
+    ["in the thesis", "", "100000", "", "thesis", "0.4438", "0.5878", "0.5213", "0.7869", "0.5848", "0.5849", ""],
 )
 """Table 5.1 as it stands there: thumb, index, middle, ring, pinky, mean [cm] (N9)."""
+
+_EARLIER = (
+    ("its [20], another robot", "7.35", "4.72", "22.22"),
+    ("its [19], another robot", "4.2", "2.8", "12.3"),
+    ("in the thesis", "6.095", "0.607", "7.352"),
+)
+"""Table 5.2 as it stands there: mean, deviation, largest [mm] (N11); grouped in a way that is not told (E37)."""

@@ -95,17 +95,17 @@ def _part(text: str | None) -> tuple[int, int]:
 
 def told() -> Callable[[str, int, int], None]:
     """A function that tells how much is done, how fast, and how long the rest will take."""
-    begin: list[tuple[float, int]] = []
+    begin: dict[str, tuple[float, int]] = {}
     last = [0.0]
 
     def tell(stage: str, done: int, total: int) -> None:
         now = time.monotonic()
-        begin.append((now, done)) if not begin else None
+        since, first = begin.setdefault(stage, (now, done))
         terminal = sys.stderr.isatty()
         if done < total and now - last[0] < (_OFTEN if terminal else _SELDOM):
             return
         last[0] = now
-        seconds, made = now - begin[0][0], done - begin[0][1]
+        seconds, made = now - since, done - first
         words = f"{stage}: {done} of {total}"
         if made and seconds > 0:
             rate = made / seconds

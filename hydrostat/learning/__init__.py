@@ -14,6 +14,7 @@ from hydrostat.learning.sample_plan import SamplePlan, physics_hash, plan_sample
 from hydrostat.learning.sample_robot import BACKENDS, sample_robot
 from hydrostat.learning.sample_shard import sample_shard
 from hydrostat.learning.samples import Samples, read_samples
+from hydrostat.learning.study import Study, StudyRow, run_study
 
 __all__ = [
     "BACKENDS",
@@ -27,6 +28,8 @@ __all__ = [
     "SampleFolder",
     "SamplePlan",
     "Samples",
+    "Study",
+    "StudyRow",
     "Tier",
     "certify",
     "compare",
@@ -36,6 +39,7 @@ __all__ = [
     "physics_hash",
     "plan_samples",
     "read_samples",
+    "run_study",
     "sample_robot",
     "sample_shard",
     "save_model",

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrostat.ik import InverseOptions, Limits, Tracker, solve_ik
+from hydrostat.ik import InverseOptions, Limits, Targets, Tracker, solve_ik
 from hydrostat.learning.learned_model import LearnedModel
 from hydrostat.learning.learned_pose import LearnedPose, Tier
 from hydrostat.simulation import Simulation, SolvedPose
@@ -27,14 +27,24 @@ def certify(simulation: Simulation, model: LearnedModel, answer: LearnedPose, *,
     """
     model.check(simulation.robot)
     pose = answer.pose or simulation.solve(answer.contractions, strict=False)
-    if steps and pose.result.converged:
-        tracker = Tracker(simulation, start=pose)
-        for _ in range(steps):
-            pose = tracker.update(answer.target, seconds=1.0).pose
+    pose = exact_steps(simulation, pose, answer.target, steps)
     tier = Tier.STEP if steps else answer.tier
     found = model.judged(answer.target, pose.contractions, tier)
     certified = _missed(answer, pose) if pose.result.converged else None
     return replace(found, certified=certified, reason=pose.result.reason, pose=pose)
+
+
+def exact_steps(simulation: Simulation, pose: SolvedPose, target: Targets, steps: int) -> SolvedPose:
+    """The pose after updates of `Tracker` towards a target; the same where it is no equilibrium.
+
+    Raises:
+        InputError: as for `Tracker.update`.
+    """
+    if steps and pose.result.converged:
+        tracker = Tracker(simulation, start=pose)
+        for _ in range(steps):
+            pose = tracker.update(target, seconds=1.0).pose
+    return pose
 
 
 def solve_exactly(

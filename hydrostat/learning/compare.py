@@ -8,15 +8,15 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import InputError
-from hydrostat.learning.certify import certify
+from hydrostat.learning.certify import exact_steps
 from hydrostat.learning.learn_model import learn_model
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel
-from hydrostat.learning.learned_pose import LearnedPose
 from hydrostat.learning.others import OTHERS
 from hydrostat.learning.samples import Samples
+from hydrostat.learning.thesis_network import Answers, train_thesis_network
 from hydrostat.robot import Point
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, SolvedPose
 
 Distances = Float[np.ndarray, "targets markers"]
 
@@ -30,14 +30,20 @@ class Compared:
         samples: how many it learned from.
         distances: of each marker from its target in the simulator [m]; NaN where there is no equilibrium.
         seconds: of learning, CPU time of this process.
+        contractions: what it answered [m]; where a step was taken, what that led to.
         facts: more that is known of it.
+        curve: of its learning, as in `ThesisNetwork`; for the thesis's network alone.
+        doubts: what it expects to miss of each marker, and how far its networks disagree, together [m]; of the search.
     """
 
     method: str
     samples: int
     distances: Distances
     seconds: float
+    contractions: Answers
     facts: Mapping[str, float] = field(default_factory=dict)
+    curve: Float[np.ndarray, "epochs 2"] | None = None
+    doubts: Distances | None = None
 
     @property
     def lost(self) -> int:
@@ -64,8 +70,8 @@ def compare(
         simulation: of the robot that was sampled, with contact if the samples know it.
         train: to learn from.
         test: whose markers are the targets; nothing is learned from them.
-        methods: which ways, of `METHODS`.
-        options: of our networks.
+        methods: which ways, of `METHODS`; "..., step" is the same and one exact step.
+        options: of our networks; its seed is that of the thesis's network too.
 
     Raises:
         InputError: a way that there is not.
@@ -73,24 +79,9 @@ def compare(
     for name in methods:
         if name not in METHODS:
             raise InputError(f"there is no way to learn called {name!r}; there are: {', '.join(METHODS)}")
-    goals = test.markers.reshape(len(test), -1)
-    for name in (name for name in OTHERS if name in methods):
-        began = time.process_time()
-        answers = OTHERS[name](train, goals)
-        seconds = time.process_time() - began
-        yield Compared(method=name, samples=len(train), distances=_rolled(simulation, test, answers), seconds=seconds)
-    chosen = options or LearnOptions()
-    if "values" in methods:
-        model = learn_model(train, options=replace(chosen, slopes=0.0))
-        rows = np.array([model.solve(target).contractions for target in targets_of(test)])
-        seconds = model.facts["seconds"]
-        yield Compared(method="values", samples=len(train), distances=_rolled(simulation, test, rows), seconds=seconds)
-    if set(methods) & set(OURS):
-        model = learn_model(train, options=chosen)
-        if "inverse" in methods and model.inverse is not None:
-            yield _inverse(simulation, model, test)
-        if {"search", "search, step"} & set(methods):
-            yield from (one for one in _searches(simulation, model, test) if one.method in methods)
+    asked = {name.removesuffix(STEP) for name in methods}
+    for found in _learned(train, test, asked, options or LearnOptions()):
+        yield from _rolled(simulation, test, found, set(methods))
 
 
 def targets_of(samples: Samples) -> list[dict[str, Point]]:
@@ -99,52 +90,95 @@ def targets_of(samples: Samples) -> list[dict[str, Point]]:
     return [dict(zip(names, (tuple(place) for place in places.tolist()), strict=True)) for places in samples.markers]
 
 
-def _inverse(simulation: Simulation, model: LearnedModel, test: Samples) -> Compared:
-    """The inverse network alone."""
-    model.inverted(test.markers[0].ravel())
-    began = time.process_time()
-    rows = np.array([model.inverted(places.ravel()) for places in test.markers])
-    facts = {"microseconds": 1e6 * (time.process_time() - began) / len(test)}
-    rolled, seconds = _rolled(simulation, test, rows), model.facts["seconds"]
-    return Compared(method="inverse", samples=model.facts["samples"], distances=rolled, seconds=seconds, facts=facts)
+def _learned(train: Samples, test: Samples, asked: set[str], options: LearnOptions) -> Iterator[Compared]:
+    """What each way answers; not rolled out."""
+    goals, none = test.markers.reshape(len(test), -1), np.full(test.markers.shape[:2], np.nan)
+
+    def told(method: str, answers: Answers, seconds: float, **more: object) -> Compared:
+        one = Compared(method=method, samples=len(train), distances=none, seconds=seconds, contractions=answers)
+        return replace(one, **more)  # pyright: ignore[reportArgumentType]
+
+    for name in (name for name in OTHERS if name in asked):
+        began = time.process_time()
+        yield told(name, OTHERS[name](train, goals), time.process_time() - began)
+    if "thesis" in asked:
+        began = time.process_time()
+        network = train_thesis_network(train, seed=options.seed)
+        yield told("thesis", network.answers(goals), time.process_time() - began, curve=network.curve)
+    if "values" in asked:
+        model = learn_model(train, options=replace(options, slopes=0.0))
+        yield told("values", _searched(model, test)[0], model.facts["seconds"])
+    if asked & set(OURS):
+        model = learn_model(train, options=options)
+        seconds = model.facts["seconds"]
+        if "inverse" in asked and model.inverse is not None:
+            model.inverted(goals[0])
+            began = time.process_time()
+            answers = np.array([model.inverted(goal) for goal in goals])
+            each = 1e6 * (time.process_time() - began) / len(test)
+            yield told("inverse", answers, seconds, facts={"microseconds": each})
+        if "search" in asked:
+            answers, doubts, facts = _searched(model, test)
+            yield told("search", answers, seconds, facts=facts, doubts=doubts)
 
 
-def _searches(simulation: Simulation, model: LearnedModel, test: Samples) -> Iterator[Compared]:
-    """The search on the networks, and one exact step from there."""
-    targets, seconds, count = targets_of(test), model.facts["seconds"], model.facts["samples"]
+def _searched(model: LearnedModel, test: Samples) -> tuple[Answers, Distances, dict[str, float]]:
+    """Answers of the search on the networks, what they doubt, and means of what they expect and of their time."""
+    targets = targets_of(test)
     model.solve(targets[0])
     began = time.process_time()
     answers = [model.solve(target) for target in targets]
     each = 1e6 * (time.process_time() - began) / len(test)
-    once: list[np.ndarray] = []
-    stepped: list[np.ndarray] = []
-    for answer in answers:
-        whole = certify(simulation, model, answer)
-        once.append(_certified(whole))
-        stepped.append(_certified(certify(simulation, model, whole, steps=1)))
     expected = np.array([list(answer.errors.values()) for answer in answers])
-    doubts = np.array([list(answer.spread.values()) for answer in answers])
-    within = np.mean(np.array(once) < 2 * (doubts + expected))
-    facts = {"microseconds": each, "expected": float(expected.mean()), "doubt": float(doubts.mean())}
-    facts |= {"within": float(within)}
-    yield Compared(method="search", samples=count, distances=np.array(once), seconds=seconds, facts=facts)
-    yield Compared(method="search, step", samples=count, distances=np.array(stepped), seconds=seconds)
+    spread = np.array([list(answer.spread.values()) for answer in answers])
+    facts = {"microseconds": each, "expected": float(expected.mean()), "doubt": float(spread.mean())}
+    return np.array([answer.contractions for answer in answers]), expected + spread, facts
 
 
-def _certified(answer: LearnedPose) -> np.ndarray:
-    """Errors of the markers; NaN where there is no equilibrium."""
-    some = np.full(len(answer.errors), np.nan)
-    return some if answer.certified is None else np.array([answer.certified[name] for name in answer.errors])
+def _rolled(simulation: Simulation, test: Samples, found: Compared, methods: set[str]) -> Iterator[Compared]:
+    """What is asked of an answer in the simulator: from rest, and after one exact step for each target."""
+    poses = list[SolvedPose]()
+    for row in found.contractions:
+        same = poses and np.array_equal(row, poses[-1].contractions)
+        poses.append(poses[-1] if same else simulation.solve(row, strict=False).without_factors())
+    if found.method in methods:
+        rolled, facts = _distances(poses, test), dict(found.facts)
+        if found.doubts is not None:
+            facts["within"] = float(np.mean(rolled < 2 * found.doubts))
+        yield replace(found, distances=rolled, facts=facts)
+    if found.method + STEP not in methods:
+        return
+    began = time.process_time()
+    poses = [exact_steps(simulation, pose, goal, 1) for pose, goal in zip(poses, targets_of(test), strict=True)]
+    yield Compared(
+        method=found.method + STEP,
+        samples=found.samples,
+        distances=_distances(poses, test),
+        seconds=found.seconds,
+        facts={"milliseconds": 1e3 * (time.process_time() - began) / len(test)},
+        contractions=np.array([pose.contractions for pose in poses]),
+    )
 
 
-def _rolled(simulation: Simulation, test: Samples, answers: np.ndarray) -> Distances:
-    """Distances of the markers from their targets at contractions, from rest [m]."""
-    same = (answers == answers[0]).all()
-    found = simulation.solve_many(answers[:1] if same else answers, jacobians=False, threads=1).markers
-    return np.linalg.norm(found.reshape(-1, *test.markers.shape[1:]) - test.markers, axis=-1)
+def _distances(poses: Sequence[SolvedPose], test: Samples) -> Distances:
+    """How far the markers are from where they are in samples [m]; NaN where there is no equilibrium."""
+    names = test.facts["markers"]
+    rows = [
+        np.linalg.norm(np.array([pose.markers[name] for name in names]) - places, axis=1)
+        if pose.result.converged
+        else np.full(len(names), np.nan)
+        for pose, places in zip(poses, test.markers, strict=True)
+    ]
+    return np.array(rows)
 
 
-OURS = ("inverse", "search", "search, step")
+STEP = ", step"
+"""What the name of a way ends in after which an exact step is taken."""
 
-METHODS = (*OTHERS, "values", *OURS)
+OURS = ("inverse", "search")
+
+WAYS = (*OTHERS, "thesis", "values", *OURS)
 """Ways to learn, by their names in tables: others', networks without slopes, ours."""
+
+METHODS = tuple(name for way in WAYS for name in (way, way + STEP))
+"""The same, and each with one exact step."""

@@ -47,10 +47,10 @@ def lesson_of(samples: Samples) -> Lesson:
     Raises:
         InputError: there are fewer than `LEAST`.
     """
-    count, facts = len(samples), samples.facts
+    count = len(samples)
     if count < LEAST:
         raise InputError(f"there are {count} samples; learning takes {LEAST} or more")
-    low, high = -np.array(facts["release"], dtype=float), np.array(facts["travel"], dtype=float)
+    low, high = samples.limits
     span = span_of(low, high)
     inputs = 2.0 * (samples.contractions - low) / span - 1.0
     markers = samples.markers.reshape(count, -1)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning.sample_folder import read_manifest
 from hydrostat.learning.sample_shard import REASONS
@@ -43,6 +44,11 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.contractions)
+
+    @property
+    def limits(self) -> tuple[Vector, Vector]:
+        """Least and largest contraction of each winch [m]."""
+        return -np.array(self.facts["release"], dtype=float), np.array(self.facts["travel"], dtype=float)
 
     def first(self, count: int) -> "Samples":
         """The first samples, by their number (InputError: there are not so many)."""

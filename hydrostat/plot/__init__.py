@@ -8,6 +8,7 @@ from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames,
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.grasp_figure import draw_pull, pull_frames
 from hydrostat.plot.healing_figure import draw_healing
+from hydrostat.plot.learning_figures import draw_calibration, draw_errors, draw_losses, draw_side_by_side
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
 from hydrostat.plot.picture_file import inline_svg, save_png
@@ -22,10 +23,13 @@ __all__ = [
     "Stop",
     "draw_activation",
     "draw_branches",
+    "draw_calibration",
     "draw_candidates",
+    "draw_errors",
     "draw_front",
     "draw_growth",
     "draw_healing",
+    "draw_losses",
     "draw_motion",
     "draw_network",
     "draw_portrait",
@@ -34,6 +38,7 @@ __all__ = [
     "draw_reach",
     "draw_reached",
     "draw_rest",
+    "draw_side_by_side",
     "draw_target",
     "draw_trajectory",
     "draw_trees",

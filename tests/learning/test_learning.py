@@ -17,7 +17,6 @@ from hydrostat.errors import InputError
 from hydrostat.ik import InverseReason
 from hydrostat.learning import (
     METHODS,
-    Compared,
     LearnedModel,
     LearnOptions,
     Samples,
@@ -32,7 +31,7 @@ from hydrostat.learning import (
     save_model,
     solve_exactly,
 )
-from hydrostat.learning.compare import targets_of
+from hydrostat.learning.compare import WAYS, targets_of
 from hydrostat.learning.lesson import linear_map
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.mechanics import Reason
@@ -154,7 +153,8 @@ def test_ways_to_learn_side_by_side(samples: Samples, simulation: hs.Simulation,
     assert means["1-NN"] < means["constant"]
     assert means["1-NN, Jacobian"] < means["1-NN"]
     assert means["search"] < min(means[name] for name in ("constant", "1-NN", "ridge", "thesis"))
-    assert means["search, step"] < means["search"]
+    assert all(means[way + ", step"] < means[way] for way in WAYS)
+    assert [name for name, found in rows.items() if found.curve is not None] == ["thesis"]
     answer = certify(simulation, model, model.solve(targets_of(new)[0]))
     assert rows["search"].distances[0, 0] == pytest.approx(answer.error, rel=1e-6)
     with pytest.raises(InputError, match="no way to learn called 'magic'"):
@@ -345,26 +345,3 @@ def test_the_commands(
     pose(tmp_path / "strip", tmp_path / "out", model=save_model(model, tmp_path / "good.model"))
     assert "far: networks expect" in (printed := capsys.readouterr().out)
     assert "every goal is reached" in printed
-
-
-def test_the_table_of_the_thesis(
-    robot: Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Oracle: rows made by hand, in centimetres, means over the targets that have an equilibrium."""
-    from hydrostat.cli import reproduce
-
-    def rows(*_: object, **__: object) -> list[Compared]:
-        distances = np.array([[0.01], [0.02], [np.nan]])
-        return [Compared(method="search", samples=30, distances=distances, seconds=1.0)]
-
-    monkeypatch.setattr("hydrostat.robot.load_robot", lambda path: robot)
-    monkeypatch.setattr("hydrostat.learning.compare", rows)
-    monkeypatch.setattr(reproduce, "_SIZES", {reproduce.Size.MINUTES: ((30,), 3)})
-    reproduce.reproduce("table-5.1", tmp_path, jobs=1)
-    assert "search, 30, 1 lost         1.5000   1.5000" in capsys.readouterr().out
-    text = (tmp_path / "table-5.1.csv").read_text()
-    assert '"search, 30, 1 lost",1.5000,1.5000' in text
-    assert '"in the thesis, 10000",0.4559' in text
-    assert len(read_samples(tmp_path / "train-box-30")) == 30
-    with pytest.raises(InputError, match="there is no 'table-9'"):
-        reproduce.reproduce("table-9", tmp_path)
