@@ -48,7 +48,7 @@ def line(row: Row, size: float) -> str:
     if "microseconds" in row:
         text += f"  {row['microseconds']:.0f} us"
     if "milliseconds" in row:
-        text += f"  {row['milliseconds']:.0f} ms for the step"
+        text += f"  {row['milliseconds']:.0f} ms for {row['steps']:.2f} steps"
     if "expected" in row:
         text += f", expects {1e3 * float(row['expected']):.3f}"
     if "doubt" in row:

@@ -24,6 +24,7 @@ MANY_PARAMETERS = {
     "hydrostat/cli/new.py:new": "a parameter is an option of the command line",
     "hydrostat/cli/pose.py:pose": "a parameter is an option of the command line",
     "hydrostat/cli/grasp.py:grasp": "a parameter is an option of the command line",
+    "hydrostat/cli/reproduce.py:reproduce": "a parameter is an option of the command line",
     "hydrostat/cli/sample.py:sample": "a parameter is an option of the command line",
     "hydrostat/cli/simulate.py:simulate": "a parameter is an option of the command line",
     "hydrostat/cli/trajectory.py:trajectory": "a parameter is an option of the command line",

@@ -21,6 +21,10 @@ def learn(
         int | None, typer.Option(metavar="N", help="Of training; more take longer and err a little less.")
     ] = None,
     seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
+    start: Annotated[
+        Path | None,
+        typer.Option("--from", metavar="MODEL", help="A model of a coarser mesh, to be corrected by the samples."),
+    ] = None,
     threads: Annotated[int, typer.Option(metavar="N", help="Cores to train on.")] = 1,
 ) -> None:
     """Learn from samples where a robot's markers go, and how to bring them somewhere.
@@ -28,9 +32,12 @@ def learn(
     Writes one file that needs no simulator and no PyTorch to be used: hydrostat pose ROBOT --model MODEL, or in Python
     hydrostat.learning.load_model(MODEL).solve(targets). Ctrl-C ends it early; the file then holds the best so far.
 
+    With --from the networks of a model learn on: a model of many samples of a coarse mesh, and a few samples of the
+    same robot with a finer one, make a model of the finer one.
+
     Example: hydrostat learn build/samples --out build/starfish.model
     """
-    from hydrostat.learning import LearnOptions, learn_model, read_samples, save_model
+    from hydrostat.learning import LearnOptions, correct_model, learn_model, load_model, read_samples, save_model
 
     if out.is_dir() or not out.parent.is_dir():
         raise InputError(f"--out {out}: {'is a folder' if out.is_dir() else 'its folder is not there'}; name a file")
@@ -38,6 +45,15 @@ def learn(
     options = LearnOptions(seed=seed, threads=threads, **{name: n for name, n in chosen.items() if n is not None})
     samples = read_samples(data)
     samples = samples if count is None else samples.first(count)
+    if start is not None:
+        if chosen != {"members": None, "steps": None}:
+            raise InputError("--from keeps the networks of its model: leave out --members and --steps")
+        known = load_model(start)
+        with one_interrupt("stopping; what was learned so far is kept"):
+            model = correct_model(known, samples, tell=told())
+            save_model(model, out)
+        print(f"{len(samples)} samples: markers are expected within {1e3 * model.facts['error']:.3f} mm\nWrote {out}")
+        return
     with one_interrupt("stopping; what was learned so far is kept"):
         model = learn_model(samples, options=options, tell=told())
         save_model(model, out)

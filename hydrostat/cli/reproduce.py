@@ -221,7 +221,7 @@ THINGS = ("table-5.1", "table-5.2", "figure-5.3", "figure-5.4", "figure-5.14")
 
 _WORDS = (
     f"{'samples':>7}{'seed':>5}  {'way':22}{'mean':>8}{'%':>8}"
-    f"{'median':>9}{'p90':>9}{'p99':>9}{'max':>9}{'lost':>6}{'sampled':>9}{'learned [CPU s]':>9}"
+    f"{'median':>9}{'p90':>9}{'p99':>9}{'max':>9}{'lost':>6}{'sampled':>9}{'learned':>9}  [CPU s]"
 )
 
 _THESIS = (

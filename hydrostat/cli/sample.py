@@ -100,6 +100,8 @@ def told() -> Callable[[str, int, int], None]:
 
     def tell(stage: str, done: int, total: int) -> None:
         now = time.monotonic()
+        if done < begin.get(stage, (now, 0))[1]:
+            del begin[stage]  # the next one of its kind
         since, first = begin.setdefault(stage, (now, done))
         terminal = sys.stderr.isatty()
         if done < total and now - last[0] < (_OFTEN if terminal else _SELDOM):

@@ -2,6 +2,7 @@
 
 from hydrostat.learning.certify import certify, solve_exactly
 from hydrostat.learning.compare import METHODS, Compared, compare
+from hydrostat.learning.correct_model import correct_model
 from hydrostat.learning.draw import Draw
 from hydrostat.learning.export import EXPORTS, export_samples
 from hydrostat.learning.learn_model import learn_model
@@ -33,6 +34,7 @@ __all__ = [
     "Tier",
     "certify",
     "compare",
+    "correct_model",
     "export_samples",
     "learn_model",
     "load_model",

@@ -1,16 +1,21 @@
 """`certify`: what the simulator says of a learned answer, and how much nearer exact steps bring it."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from hydrostat.ik import InverseOptions, Limits, Targets, Tracker, solve_ik
+from hydrostat.ik import InverseOptions, InverseReason, Limits, Targets, Tracker, solve_ik
+from hydrostat.ik.objectives.marker_goal import named_targets
 from hydrostat.learning.learned_model import LearnedModel
 from hydrostat.learning.learned_pose import LearnedPose, Tier
+from hydrostat.robot import Point, Pose
 from hydrostat.simulation import Simulation, SolvedPose
 
 
-def certify(simulation: Simulation, model: LearnedModel, answer: LearnedPose, *, steps: int = 0) -> LearnedPose:
+def certify(
+    simulation: Simulation, model: LearnedModel, answer: LearnedPose, *, steps: int = 0, enough: float = 0.0
+) -> LearnedPose:
     """A learned answer with the error that the simulator finds, if asked after exact Gauss-Newton steps from there.
 
     The contractions are solved from rest, unless the answer was certified before; each step goes on from the pose
@@ -20,31 +25,55 @@ def certify(simulation: Simulation, model: LearnedModel, answer: LearnedPose, *,
         simulation: of the robot that the model was learned of.
         model: whose answer it is.
         answer: what `LearnedModel.solve` or this gave.
-        steps: exact steps to take.
+        steps: exact steps to take at most.
+        enough: mean error below which none is taken [m]: a certificate that says so saves what a step costs.
 
     Raises:
         InputError: a model of another robot.
     """
     model.check(simulation.robot)
     pose = answer.pose or simulation.solve(answer.contractions, strict=False)
-    pose = exact_steps(simulation, pose, answer.target, steps)
+    pose, _ = exact_steps(simulation, pose, answer.target, steps, enough=enough)
     tier = Tier.STEP if steps else answer.tier
     found = model.judged(answer.target, pose.contractions, tier)
     certified = _missed(answer, pose) if pose.result.converged else None
     return replace(found, certified=certified, reason=pose.result.reason, pose=pose)
 
 
-def exact_steps(simulation: Simulation, pose: SolvedPose, target: Targets, steps: int) -> SolvedPose:
-    """The pose after updates of `Tracker` towards a target; the same where it is no equilibrium.
+def exact_steps(
+    simulation: Simulation, pose: SolvedPose, target: Targets, steps: int, *, enough: float = 0.0
+) -> tuple[SolvedPose, int]:
+    """The pose after exact steps towards a target, each an update of `Tracker`, and how many were taken.
+
+    An update that finds no better pose is tried again with a shorter step, a few times. Where the pose is no
+    equilibrium, it stays.
+
+    Args:
+        simulation: of the robot.
+        pose: to begin from.
+        target: where markers should go [m].
+        steps: to take at most.
+        enough: mean error below which none is taken [m].
 
     Raises:
         InputError: as for `Tracker.update`.
     """
-    if steps and pose.result.converged:
-        tracker = Tracker(simulation, start=pose)
-        for _ in range(steps):
-            pose = tracker.update(target, seconds=1.0).pose
-    return pose
+    if not (steps and pose.result.converged):
+        return pose, 0
+    goals = dict(named_targets(target)) if not isinstance(target, Pose) else target.targets
+    tracker, taken, tried = Tracker(simulation, start=pose), 0, 0
+    while taken < steps and tried < _TRIES and _mean_error(pose, goals) > enough:
+        reached = tracker.update(target, seconds=1.0)
+        moved = not np.array_equal(reached.pose.contractions, pose.contractions)
+        pose, taken, tried = reached.pose, taken + moved, 0 if moved else tried + 1
+        if not moved and reached.reason in (InverseReason.REACHED, InverseReason.OPTIMAL):
+            break
+    return pose, taken
+
+
+def _mean_error(pose: SolvedPose, goals: Mapping[str, Point]) -> float:
+    """Mean distance of the markers from their targets [m]."""
+    return float(np.mean([np.linalg.norm(pose.markers[name] - np.asarray(goal)) for name, goal in goals.items()]))
 
 
 def solve_exactly(
@@ -83,3 +112,7 @@ def _residual(answer: LearnedPose, pose: SolvedPose) -> np.ndarray:
 def _missed(answer: LearnedPose, pose: SolvedPose) -> dict[str, float]:
     distances = np.linalg.norm(_residual(answer, pose), axis=1).tolist()
     return dict(zip(answer.target.targets, distances, strict=True))
+
+
+_TRIES = 3
+"""So many updates in a row may find nothing better; each tries shorter steps than the one before."""

@@ -70,7 +70,7 @@ def compare(
         simulation: of the robot that was sampled, with contact if the samples know it.
         train: to learn from.
         test: whose markers are the targets; nothing is learned from them.
-        methods: which ways, of `METHODS`; "..., step" is the same and one exact step.
+        methods: which ways, of `METHODS`; "..., step" is the same and one exact step, "..., steps" up to three.
         options: of our networks; its seed is that of the thesis's network too.
 
     Raises:
@@ -79,9 +79,14 @@ def compare(
     for name in methods:
         if name not in METHODS:
             raise InputError(f"there is no way to learn called {name!r}; there are: {', '.join(METHODS)}")
-    asked = {name.removesuffix(STEP) for name in methods}
+    asked = {way_of(name) for name in methods}
     for found in _learned(train, test, asked, options or LearnOptions()):
         yield from _rolled(simulation, test, found, set(methods))
+
+
+def way_of(method: str) -> str:
+    """The way to learn of a method, without the steps that it may take after."""
+    return method.removesuffix(STEPS).removesuffix(STEP)
 
 
 def targets_of(samples: Samples) -> list[dict[str, Point]]:
@@ -146,18 +151,23 @@ def _rolled(simulation: Simulation, test: Samples, found: Compared, methods: set
         if found.doubts is not None:
             facts["within"] = float(np.mean(rolled < 2 * found.doubts))
         yield replace(found, distances=rolled, facts=facts)
-    if found.method + STEP not in methods:
-        return
-    began = time.process_time()
-    poses = [exact_steps(simulation, pose, goal, 1) for pose, goal in zip(poses, targets_of(test), strict=True)]
-    yield Compared(
-        method=found.method + STEP,
-        samples=found.samples,
-        distances=_distances(poses, test),
-        seconds=found.seconds,
-        facts={"milliseconds": 1e3 * (time.process_time() - began) / len(test)},
-        contractions=np.array([pose.contractions for pose in poses]),
-    )
+    for ending, most, enough in ((STEP, 1, 0.0), (STEPS, _MOST, _ENOUGH)):
+        if found.method + ending not in methods:
+            continue
+        began = time.process_time()
+        stepped = [
+            exact_steps(simulation, pose, goal, most, enough=enough)
+            for pose, goal in zip(poses, targets_of(test), strict=True)
+        ]
+        each = 1e3 * (time.process_time() - began) / len(test)
+        yield Compared(
+            method=found.method + ending,
+            samples=found.samples,
+            distances=_distances([pose for pose, _ in stepped], test),
+            seconds=found.seconds,
+            contractions=np.array([pose.contractions for pose, _ in stepped]),
+            facts={"milliseconds": each, "steps": float(np.mean([taken for _, taken in stepped]))},
+        )
 
 
 def _distances(poses: Sequence[SolvedPose], test: Samples) -> Distances:
@@ -172,13 +182,16 @@ def _distances(poses: Sequence[SolvedPose], test: Samples) -> Distances:
     return np.array(rows)
 
 
-STEP = ", step"
-"""What the name of a way ends in after which an exact step is taken."""
+STEP, STEPS = ", step", ", steps"
+"""What the name of a way ends in after which an exact step is taken, or a few."""
 
 OURS = ("inverse", "search")
 
 WAYS = (*OTHERS, "thesis", "values", *OURS)
 """Ways to learn, by their names in tables: others', networks without slopes, ours."""
 
-METHODS = tuple(name for way in WAYS for name in (way, way + STEP))
-"""The same, and each with one exact step."""
+METHODS = (*(name for way in WAYS for name in (way, way + STEP)), "search, steps")
+"""The same, each with one exact step, and ours with up to three, as long as more than 0.01 mm is left."""
+
+_MOST, _ENOUGH = 3, 1e-5
+"""Most steps, and mean error [m] that is enough."""

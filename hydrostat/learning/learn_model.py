@@ -31,7 +31,7 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
     """
     from hydrostat.learning.train import train_forward, train_inverse
 
-    options, told = options or LearnOptions(), tell or _silent
+    options, told = options or LearnOptions(), tell or silent
     began, lesson, dim = time.process_time(), lesson_of(samples), samples.facts["dim"]
     length = float(lesson.unit[0])
     forward = train_forward(lesson, dim, options, told)
@@ -41,7 +41,7 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
         raise InputError("the networks learned nothing: try a smaller rate")
     inverse = None if forward.stopped else train_inverse(lesson, dim, forward.networks, options, told)
     some = np.linspace(0, len(samples) - 1, min(len(samples), KNOWN)).astype(int)
-    facts = {name: samples.facts[name] for name in _KEPT} | {
+    facts = kept_facts(samples) | {
         "version": version("hydrostat"),
         "samples": len(samples),
         "lost": samples.lost,
@@ -65,7 +65,12 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
     )
 
 
-def _silent(stage: str, done: int, total: int) -> None:
+def kept_facts(samples: Samples) -> dict[str, object]:
+    """What a model tells of the robot that it was learned of."""
+    return {name: samples.facts[name] for name in _KEPT}
+
+
+def silent(stage: str, done: int, total: int) -> None:
     """Tell nothing."""
     del stage, done, total
 

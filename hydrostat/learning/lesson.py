@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.learning.learned_model import span_of
+from hydrostat.learning.learned_model import LearnedModel, span_of
 from hydrostat.learning.samples import Samples
 
 
@@ -41,15 +41,15 @@ class Lesson:
         return self.slopes.shape[1]
 
 
-def lesson_of(samples: Samples) -> Lesson:
-    """What there is to learn from samples.
+def lesson_of(samples: Samples, like: LearnedModel | None = None) -> Lesson:
+    """What there is to learn from samples; in the units of a model if its networks are to learn on.
 
     Raises:
-        InputError: there are fewer than `LEAST`.
+        InputError: there are fewer than `LEAST`, or `FEWEST` where a model learns on.
     """
-    count = len(samples)
-    if count < LEAST:
-        raise InputError(f"there are {count} samples; learning takes {LEAST} or more")
+    count, least = len(samples), LEAST if like is None else FEWEST
+    if count < least:
+        raise InputError(f"there are {count} samples; learning takes {least} or more")
     low, high = samples.limits
     span = span_of(low, high)
     inputs = 2.0 * (samples.contractions - low) / span - 1.0
@@ -58,6 +58,8 @@ def lesson_of(samples: Samples) -> Lesson:
     middle, coordinates = found.mean(axis=0), markers.shape[1]
     length, force = (_spread(part) for part in np.split(found - middle, [coordinates], axis=1))
     unit = np.r_[np.full(coordinates, length), np.full(found.shape[1] - coordinates, force)]
+    if like is not None:
+        middle, unit, length = like.middle, like.unit, float(like.unit[0])
     slopes = samples.jacobians.reshape(count, coordinates, -1) * (0.5 * span / length)
     outputs = (found - middle) / unit
     return Lesson(
@@ -85,5 +87,8 @@ def _spread(part: np.ndarray) -> float:
 
 LEAST = 20
 """Fewer samples teach nothing."""
+
+FEWEST = 5
+"""So many correct a model."""
 
 _RIDGE = 1e-3

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.learning.compare import METHODS, STEP, Compared, compare
+from hydrostat.learning.compare import METHODS, Compared, compare, way_of
 from hydrostat.learning.draw import Draw
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.sample_plan import SamplePlan, plan_samples
@@ -162,7 +162,7 @@ class _Wanted:
     @property
     def methods(self) -> list[str]:
         """Ways to be tried with this seed."""
-        return [name for name in self.study.methods if self.seed == 0 or name.removesuffix(STEP) in SEEDED]
+        return [name for name in self.study.methods if self.seed == 0 or way_of(name) in SEEDED]
 
     @property
     def key(self) -> dict[str, object]:

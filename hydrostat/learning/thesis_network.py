@@ -60,7 +60,7 @@ def train_thesis_network(train: Samples, *, seed: int = 0, epochs: int = 300) ->
             loss = (network(inputs[rows]) - actions[rows]).square().mean()
             loss.backward()
             optimiser.step()
-            curve[epoch, 0] += float(loss) * len(rows) / kept
+            curve[epoch, 0] += loss.item() * len(rows) / kept
         with torch.no_grad():
             curve[epoch, 1] = float((network(inputs[held]) - actions[held]).square().mean())
         if curve[epoch, 1] < least:

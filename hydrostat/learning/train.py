@@ -38,13 +38,21 @@ class Trained:
     stopped: bool
 
 
-def train_forward(lesson: Lesson, dim: int, options: LearnOptions, tell: Tell) -> Trained:
-    """Networks from contractions to markers and tensions; each holds out other samples."""
+def train_forward(
+    lesson: Lesson, dim: int, options: LearnOptions, tell: Tell, *, start: Perceptrons | None = None
+) -> Trained:
+    """Networks from contractions to markers and tensions; each holds out other samples.
+
+    With networks to start from they are as many, of the same shape, and learn on from there.
+    """
     torch.set_num_threads(options.threads)
     draw = torch.Generator().manual_seed(options.seed)
     inputs, outputs, slopes = (_tensor(part) for part in (lesson.inputs, lesson.outputs, lesson.slopes))
-    sizes = [inputs.shape[1], *[options.width] * options.depth, outputs.shape[1]]
-    numbers = _begin(sizes, options.members, lesson.linear, draw)
+    if start is None:
+        sizes = [inputs.shape[1], *[options.width] * options.depth, outputs.shape[1]]
+        numbers = _begin(sizes, options.members, lesson.linear, draw)
+    else:
+        sizes, numbers = start.sizes.tolist(), tensors_of(start)
     learned, held = _folds(len(inputs), options, draw)
     batches = _batches(learned, options.batch, draw)
     coordinates = lesson.coordinates

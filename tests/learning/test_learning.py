@@ -23,6 +23,7 @@ from hydrostat.learning import (
     Tier,
     certify,
     compare,
+    correct_model,
     learn_model,
     load_model,
     plan_samples,
@@ -31,6 +32,7 @@ from hydrostat.learning import (
     save_model,
     solve_exactly,
 )
+from hydrostat.learning.certify import exact_steps
 from hydrostat.learning.compare import WAYS, targets_of
 from hydrostat.learning.lesson import linear_map
 from hydrostat.learning.perceptrons import Perceptrons
@@ -154,11 +156,56 @@ def test_ways_to_learn_side_by_side(samples: Samples, simulation: hs.Simulation,
     assert means["1-NN, Jacobian"] < means["1-NN"]
     assert means["search"] < min(means[name] for name in ("constant", "1-NN", "ridge", "thesis"))
     assert all(means[way + ", step"] < means[way] for way in WAYS)
+    assert means["search, steps"] <= means["search, step"]
+    assert 0 < rows["search, step"].facts["steps"] <= 1
     assert [name for name, found in rows.items() if found.curve is not None] == ["thesis"]
     answer = certify(simulation, model, model.solve(targets_of(new)[0]))
     assert rows["search"].distances[0, 0] == pytest.approx(answer.error, rel=1e-6)
     with pytest.raises(InputError, match="no way to learn called 'magic'"):
         next(compare(simulation, known, new, ["magic"]))
+
+
+@pytest.mark.slow
+def test_a_few_samples_of_a_finer_mesh_correct_a_model(model: LearnedModel, tmp_path: Path) -> None:
+    """Oracle: samples of the finer mesh that nothing was learned from; the model as it was."""
+    finer = strip_robot(columns=16, rows=4)
+    found = read_samples(sample_robot(plan_samples(finer, 20), tmp_path / "finer").path)
+    known, new = found.only(np.arange(8)), found.only(np.arange(8, 20))
+    better = correct_model(model, known)
+    better.check(finer)
+    missed = [
+        np.linalg.norm(
+            np.array([one.expect(row)[0][:2] for row in new.contractions]) - new.markers[:, 0], axis=1
+        ).mean()
+        for one in (model, better)
+    ]
+    assert missed[1] < 0.5 * missed[0]
+    assert better.facts["corrected"] == 8
+    assert load_model(save_model(better, tmp_path / "finer.model")).facts["physics"] == better.facts["physics"]
+    with pytest.raises(InputError, match="there are 3 samples; learning takes 5"):
+        correct_model(model, known.first(3))
+    other = replace(known, facts={**known.facts, "markers": ["elsewhere"]})
+    with pytest.raises(InputError, match="other markers"):
+        correct_model(model, other)
+
+
+def test_a_step_that_finds_nothing_is_tried_shorter(simulation: hs.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: a tracker whose first two updates stay where they are."""
+    goal = {"tip": simulation.solve(np.array([0.3, 0.0]) * simulation.robot.winches[0].travel).markers["tip"]}
+    update, calls = hs.Tracker.update, []
+
+    def lazy(self: hs.Tracker, target: object, *, seconds: float) -> object:
+        calls.append(seconds)
+        if len(calls) > 2:
+            return update(self, target, seconds=seconds)  # type: ignore[arg-type]
+        stayed = update(hs.Tracker(simulation, start=self.pose), target, seconds=seconds)  # type: ignore[arg-type]
+        return replace(stayed, pose=self.pose, reason=InverseReason.STUCK)
+
+    monkeypatch.setattr(hs.Tracker, "update", lazy)
+    pose, taken = exact_steps(simulation, simulation.rest, goal, 1)
+    assert (taken, len(calls)) == (1, 3)
+    assert pose.contractions[0] > 0
+    assert exact_steps(simulation, pose, goal, 5, enough=1.0) == (pose, 0)
 
 
 @pytest.mark.slow

@@ -1,0 +1,60 @@
+"""`correct_model`: a model of one body, corrected by a few samples of another that is nearer to the truth."""
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.learning.learn_model import kept_facts, silent
+from hydrostat.learning.learn_options import LearnOptions
+from hydrostat.learning.learned_model import LearnedModel
+from hydrostat.learning.lesson import lesson_of
+from hydrostat.learning.sample_robot import Tell
+from hydrostat.learning.samples import Samples
+
+
+def correct_model(
+    model: LearnedModel, samples: Samples, *, options: LearnOptions | None = None, tell: Tell | None = None
+) -> LearnedModel:
+    """A model whose forward networks have learned on from a few samples of another body: a finer mesh, or the robot.
+
+    What they know of the first body stays where the samples say nothing against it. The inverse network stays as it
+    is, as a place for the search to begin; so answers are found by the search. Needs PyTorch.
+
+    Args:
+        model: of the first body.
+        samples: of the other, with the same winches, markers, cables and travel.
+        options: how; its members, width and depth are the model's.
+        tell: as for `learn_model`.
+
+    Raises:
+        InputError: too few samples, of a robot with other winches, markers, cables or travel, or no PyTorch.
+    """
+    from hydrostat.learning.train import train_forward
+
+    for name in ("winches", "markers", "cables", "dim", "contact"):
+        if list(np.atleast_1d(samples.facts[name])) != list(np.atleast_1d(model.facts[name])):
+            raise InputError(f"the samples are of a robot with other {name} than the model's")
+    if not all(np.allclose(one, other) for one, other in zip(samples.limits, (model.low, model.high), strict=True)):
+        raise InputError("the samples are of a robot whose winches have another travel than the model's")
+    options = replace(options or LearnOptions(steps=_STEPS, rate=_RATE), members=len(model.forward))
+    began, lesson = time.process_time(), lesson_of(samples, model)
+    trained = train_forward(lesson, model.facts["dim"], options, tell or silent, start=model.forward)
+    if not np.isfinite(trained.error):
+        raise InputError("the networks learned nothing: try a smaller rate")
+    facts = (
+        dict(model.facts)
+        | kept_facts(samples)
+        | {
+            "corrected": len(samples),
+            "error": float(lesson.unit[0]) * trained.error,
+            "stopped": trained.stopped,
+            "seconds": model.facts["seconds"] + time.process_time() - began,
+        }
+    )
+    return replace(model, facts=facts, forward=trained.networks)
+
+
+_STEPS, _RATE = 1500, 2e-3
+"""How long and how fast networks learn on, unless told."""
