@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from hydrostat.errors import InputError
-from hydrostat.robot import load_robot
 
 
 def studio(
@@ -40,6 +39,8 @@ def studio(
 
     if rooms:
         if robot is not None:
+            from hydrostat.robot import load_robot
+
             load_robot(robot)  # what is wrong with it is told now, not to each who comes
         served = Rooms(state=state_folder(), first=robot)
     else:

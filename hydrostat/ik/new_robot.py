@@ -29,7 +29,7 @@ class NewRobotWish:
     thickness: float | None = None  # of a flat body
     inflate: float | None = None  # blow a drawing up to a body in space so thick
     material: str | None = None  # a name of the table
-    inner: Inner | None = None  # whether shapes in a drawn body are holes, or drawn on it
+    inner: Inner | str | None = None  # whether shapes in a drawn body are holes, or drawn on it
 
     def __post_init__(self) -> None:
         if self.nodes is not None and self.element_size is not None:
@@ -61,7 +61,7 @@ class _Wished(TypedDict, total=False):
     thickness: float
     inflate: float
     material: str
-    inner: Inner
+    inner: Inner | str
 
 
 def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:

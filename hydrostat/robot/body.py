@@ -62,7 +62,9 @@ class Body:
     inner: Inner = Inner.HOLES  # what shapes within the outer line of a drawing are
     mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
     outline: Outline | None = field(default=None, compare=False, repr=False)  # of a flat body that was drawn
-    marks: tuple[Points, ...] = field(default=(), compare=False, repr=False)  # lines drawn on a flat body [m]
+    marks: tuple[Float[np.ndarray, "_ 2"], ...] = field(
+        default=(), compare=False, repr=False
+    )  # lines drawn on a flat body [m]
     # of a body in space that came as a surface: that surface closed, and what that took
     healing: Healing | None = field(default=None, compare=False, repr=False)
 
