@@ -26,6 +26,7 @@ MANY_PARAMETERS = {
     "hydrostat/cli/grasp.py:grasp": "a parameter is an option of the command line",
     "hydrostat/cli/reproduce.py:reproduce": "a parameter is an option of the command line",
     "hydrostat/cli/sample.py:sample": "a parameter is an option of the command line",
+    "hydrostat/cli/train.py:train": "a parameter is an option of the command line",
     "hydrostat/cli/simulate.py:simulate": "a parameter is an option of the command line",
     "hydrostat/cli/trajectory.py:trajectory": "a parameter is an option of the command line",
     "hydrostat/robot/sketch.py:sketch_robot": "a parameter is a number that a person may leave out",

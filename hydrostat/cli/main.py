@@ -26,6 +26,7 @@ from hydrostat.cli.sample import sample
 from hydrostat.cli.scale import scale
 from hydrostat.cli.simulate import simulate
 from hydrostat.cli.studio import studio
+from hydrostat.cli.train import train
 from hydrostat.cli.trajectory import trajectory
 from hydrostat.cli.waiting import heed_interrupts
 from hydrostat.errors import HydrostatError, InputError
@@ -75,6 +76,7 @@ for command in (
     grasp,
     sample,
     learn,
+    train,
     reproduce,
     studio,
     materials,

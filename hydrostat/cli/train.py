@@ -1,0 +1,95 @@
+"""`hydrostat train`."""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.folders import RobotFolder
+from hydrostat.cli.waiting import one_interrupt, read_robot
+from hydrostat.errors import HydrostatError, InputError
+
+if TYPE_CHECKING:
+    from hydrostat.learning import LearnedModel
+    from hydrostat.robot import Robot
+    from hydrostat.training import CurvePoint, World
+
+
+def train(
+    robot: RobotFolder,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="For curve.json, checkpoints and the policy.")],
+    method: Annotated[str, typer.Option(metavar="NAME", help="sac-her, td3-her or ddpg-her.")] = "sac-her",
+    steps: Annotated[int, typer.Option(metavar="N", help="Actions to learn from.")] = 10_000,
+    horizon: Annotated[int, typer.Option(metavar="T", help="Actions in an episode.")] = 1,
+    model: Annotated[
+        Path | None, typer.Option(metavar="MODEL", help="Learn in the networks that hydrostat learn wrote.")
+    ] = None,
+    exact: Annotated[int, typer.Option(metavar="N", help="With --model: every Nth episode exact; 0: none.")] = 0,
+    tolerance: Annotated[str, typer.Option(metavar="LENGTH", help="Mean distance that is a success.")] = "5 mm",
+    goals: Annotated[int, typer.Option(metavar="N", help="Unseen goals that policies are judged by.")] = 100,
+    seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
+    contact: Annotated[bool, typer.Option("--contact", help="The body feels itself.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint in DIR.")] = False,
+) -> None:
+    """Learn by trial and error (reinforcement learning) to bring the markers of a robot to goals.
+
+    Without --model every action is an equilibrium of the simulator. Policies are always judged by the simulator itself,
+    on goals that they have not seen. Needs the extra rl. For a body that stands still, inverse kinematics and
+    `hydrostat learn` are better and cheaper; this is for comparison, and for tasks that have no other way.
+
+    Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
+    """
+    try:
+        from hydrostat import training
+    except ModuleNotFoundError as error:
+        raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    from hydrostat.learning import save_model
+    from hydrostat.units import LENGTH, parse_quantity
+
+    methods = [str(each) for each in training.TrainMethod]
+    if method not in methods:
+        raise InputError(f"--method {method}: there are: {', '.join(methods)}")
+    if exact and model is None:
+        raise InputError("--exact is for networks, with --model; without, every episode is exact")
+    loaded = read_robot(robot)
+    reach = training.ReachOptions(steps=horizon, tolerance=parse_quantity(tolerance, LENGTH))
+    judged = training.ReachEnv(loaded, options=reach, contact=contact)
+    networks = None if model is None else _networks(model, judged.robot)
+    env = training.ReachEnv(judged.robot, world=_world(networks, judged.robot, exact), options=reach)
+    wanted = training.held_out_goals(judged, goals, seed)
+    size, began = judged.unit, time.process_time()
+    print("    actions  equilibria  mean     median   worst    within  CPU", flush=True)
+
+    def tell(point: "CurvePoint") -> None:
+        lengths = "  ".join(f"{1e3 * value:4.2f} mm" for value in (point.mean, point.median, point.worst))
+        share = f"{100 * point.success:3.0f} %"
+        spent = f"{time.process_time() - began:.0f} s"
+        print(f"{point.steps:11}{point.equilibria:12}  {lengths}  {share}   {spent}", flush=True)
+
+    options = training.TrainOptions(
+        method=training.TrainMethod(method), steps=steps, seed=seed, every=max(1, steps // 10)
+    )
+    with one_interrupt("stopping; the last checkpoint is kept, --resume goes on"):
+        trained, curve = training.train(env, wanted, options, out, resume=resume, judge_in=judged, tell=tell)
+    last = curve[-1]
+    print(f"{1e3 * last.mean:.2f} mm, {100 * last.mean / size:.2f} % of the size, on {goals} unseen goals")
+    if networks is not None and horizon == 1:
+        print(f"Wrote {save_model(training.portable_policy(trained, env, networks), out / 'policy.model')}")
+
+
+def _networks(path: Path, robot: "Robot") -> "LearnedModel":
+    from hydrostat.learning import load_model
+
+    networks = load_model(path)
+    networks.check(robot)
+    return networks
+
+
+def _world(networks: "LearnedModel | None", robot: "Robot", exact: int) -> "World":
+    from hydrostat.training import ExactWorld, LearnedWorld, MixedWorld
+
+    if networks is None:
+        return ExactWorld(robot)
+    learned = LearnedWorld(networks)
+    return MixedWorld(learned, ExactWorld(robot), every=exact) if exact else learned

@@ -1,0 +1,242 @@
+"""`ReachEnv`: a robot brings its markers to a goal (gymnasium, goal-based)."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.robot import Contact, Robot, load_robot
+from hydrostat.simulation import Simulation
+from hydrostat.training.worlds import ExactWorld, World
+
+BEYOND = 1.02
+"""An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReachOptions:
+    """How a robot reaches.
+
+    Attributes:
+        markers: that shall reach; all if empty.
+        pairs: winches that work against one another, moved by one number of the action; others are moved alone.
+        steps: actions in an episode (T).
+        incremental: whether an action adds to the contractions, a tenth of their range at most.
+        tolerance: largest mean distance of the markers that is a success [m].
+        shaped: reward is minus the mean distance in units of the tolerance; else 0 for success and -1.
+
+    Raises:
+        InputError: no step, or a tolerance that is not above 0.
+    """
+
+    markers: Sequence[str] = ()
+    pairs: Sequence[Sequence[str]] = ()
+    steps: int = 1
+    incremental: bool = False
+    tolerance: float = 5e-3
+    shaped: bool = True
+
+    def __post_init__(self) -> None:
+        if self.steps < 1:
+            raise InputError(f"steps must be 1 or more, not {self.steps}")
+        if not 0 < self.tolerance < np.inf:
+            raise InputError(f"tolerance must be above 0 m, not {self.tolerance:g}")
+
+
+class ReachEnv(gymnasium.Env):
+    """Goal-based environment: actions are contractions, goals are where markers are at contractions drawn at random.
+
+    Observations hold the contractions (from -1 to 1), where the markers are and where they should be, counted from rest
+    in units of the body's size. Goals are reached by an equilibrium each; they are counted with the others.
+
+    Attributes:
+        robot: that reaches.
+        world: that is asked where markers go.
+        options: of the task.
+        seen: which coordinates of all markers are looked at.
+        unit: of places in observations [m].
+        rest: coordinates of all markers at rest [m].
+        uncounted: equilibria that judged a policy, and are no cost of learning it.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 4}  # type: ignore[misc]
+
+    def __init__(
+        self,
+        robot: Robot | str,
+        *,
+        world: World | None = None,
+        options: ReachOptions | None = None,
+        contact: bool = False,
+        render_mode: str | None = None,
+    ) -> None:
+        """A robot that reaches.
+
+        Args:
+            robot: itself, its folder, or a name such as gallery:cupping_hand.
+            world: that is asked where markers go; the exact simulator if left out.
+            options: of the task.
+            contact: whether the body feels itself, where robot.toml says nothing of it.
+            render_mode: "rgb_array", or None.
+
+        Raises:
+            InputError: a robot without winches or markers, or names that it does not have.
+        """
+        self.robot = _with_contact(_loaded(robot), contact)
+        self.world = world or ExactWorld(self.robot)
+        self.options, self.render_mode = options or ReachOptions(), render_mode
+        robot_ = self.robot
+        if not robot_.winches or not robot_.markers:
+            raise InputError(f"robot {robot_.name!r} needs a winch to be moved by and a marker to be looked at")
+        self._groups = _groups(robot_, self.options.pairs)
+        self._low = np.array([-winch.release for winch in robot_.winches], dtype=float)
+        self._high = np.array([winch.travel for winch in robot_.winches], dtype=float)
+        names = [marker.name for marker in robot_.markers]
+        for name in self.options.markers:
+            if name not in names:
+                raise InputError(f'robot {robot_.name!r} has no marker "{name}"; it has: {", ".join(names)}')
+        rows = [names.index(name) for name in self.options.markers or names]
+        self._dim = robot_.body.mesh.dim
+        self.seen = (self._dim * np.array(rows)[:, None] + np.arange(self._dim)).ravel()
+        self.rest = np.array([marker.at for marker in robot_.markers], dtype=float).ravel()
+        self.unit = robot_.body.mesh.size
+        many, coordinates = len(self._groups), len(self.seen)
+        self.action_space = spaces.Box(-1.0, 1.0, (many,), np.float32)
+        place = spaces.Box(-10.0, 10.0, (coordinates,), np.float64)
+        self.observation_space = spaces.Dict(
+            observation=spaces.Box(-1.0, 1.0, (len(robot_.winches),), np.float64),
+            achieved_goal=place,
+            desired_goal=place,
+        )
+        self.uncounted = 0
+        self._taken, self._at, self._goal, self._step = np.zeros(len(self._low)), self.rest, self.rest, 0
+
+    def reset(
+        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[dict[str, Vector], dict[str, Any]]:
+        """Go to rest, with a new goal; or with the goal given in `options` as "goal", coordinates [m]."""
+        super().reset(seed=seed)
+        self.world.begin()
+        given = (options or {}).get("goal")
+        goal = None if given is None else np.asarray(given, dtype=float).ravel()
+        while goal is None:
+            drawn = self.world.reach(self.contractions(self.np_random.uniform(-1.0, 1.0, len(self._groups))))
+            goal = None if drawn is None else drawn[self.seen]
+        self._goal = self.rest.copy()
+        self._goal[self.seen] = goal
+        self._taken, self._at, self._step = np.clip(np.zeros(len(self._low)), self._low, self._high), self.rest, 0
+        return self._observation(), self._info()
+
+    def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
+        """Take in cable by an action; an episode is cut off after its steps."""
+        self._step += 1
+        action = np.asarray(action, dtype=float)
+        if self.options.incremental:
+            change = 0.1 * (self._high - self._low) * self._spread(np.clip(action, -1.0, 1.0))
+            taken = np.clip(self._taken + change, self._low, self._high)
+        else:
+            taken = self.contractions(action)
+        reached = self.world.reach(taken)
+        if reached is not None:  # where no equilibrium is found the robot stays
+            self._taken, self._at = taken, reached
+        observation, info = self._observation(), self._info()
+        reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))
+        return observation, reward, False, self._step >= self.options.steps, info
+
+    def compute_reward(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> float | np.ndarray:
+        """Reward of places for goals, one or a row each; nothing else decides about it."""
+        far = self.distances(achieved, desired)
+        tolerance = self.options.tolerance
+        return -far / tolerance if self.options.shaped else -np.asarray(far >= tolerance, dtype=float)
+
+    def compute_terminated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
+        """Whether an episode has come to its end: never before its steps."""
+        return np.zeros(np.shape(achieved)[:-1], dtype=bool)
+
+    def compute_truncated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
+        """Whether an episode is cut off here."""
+        return np.full(np.shape(achieved)[:-1], self._step >= self.options.steps)
+
+    def distances(self, achieved: np.ndarray, desired: np.ndarray) -> float | np.ndarray:
+        """Mean distance of the markers [m], one or a row each, of places as they are observed."""
+        apart = self.unit * (np.asarray(achieved) - np.asarray(desired))
+        return np.linalg.norm(apart.reshape(*apart.shape[:-1], -1, self._dim), axis=-1).mean(axis=-1)
+
+    def contractions(self, action: np.ndarray) -> Vector:
+        """Contractions of an action [m]: alone from release to travel, or one of two winches from 0 to travel."""
+        taken = np.zeros(len(self._low))
+        for value, group in zip(
+            np.clip(BEYOND * np.asarray(action, dtype=float), -1, 1).tolist(), self._groups, strict=True
+        ):
+            one = group[0]
+            if len(group) == 1:
+                taken[one] = self._low[one] + 0.5 * (value + 1.0) * (self._high[one] - self._low[one])
+            else:
+                taken[one], taken[group[1]] = max(value, 0.0) * self._high[one], max(-value, 0.0) * self._high[group[1]]
+        return taken
+
+    def render(self) -> np.ndarray | None:
+        """The picture of where the robot is, (height, width, 3), bytes."""
+        if self.render_mode != "rgb_array":
+            return None
+        import matplotlib.pyplot as plt
+
+        from hydrostat.plot import draw_pose
+        from hydrostat.plot.picture_file import figure_pixels
+
+        pose = Simulation(self.robot).solve(self._taken, strict=False)
+        figure = draw_pose(self.robot, pose)
+        try:
+            return (255 * figure_pixels(figure)[..., :3]).astype(np.uint8)
+        finally:
+            plt.close(figure)
+
+    def _spread(self, action: np.ndarray) -> Vector:
+        changes = np.zeros(len(self._low))
+        for value, group in zip(action.tolist(), self._groups, strict=True):
+            changes[group[0]] = value
+            if len(group) == 2:
+                changes[group[1]] = -value
+        return changes
+
+    def _observation(self) -> dict[str, Vector]:
+        span = np.where(self._high > self._low, self._high - self._low, 1.0)
+        return {
+            "observation": np.clip(2.0 * (self._taken - self._low) / span - 1.0, -1.0, 1.0),
+            "achieved_goal": ((self._at - self.rest) / self.unit)[self.seen],
+            "desired_goal": ((self._goal - self.rest) / self.unit)[self.seen],
+        }
+
+    def _info(self) -> dict[str, Any]:
+        far = float(np.linalg.norm((self._at - self._goal)[self.seen].reshape(-1, self._dim), axis=1).mean())
+        return {"distance": far, "is_success": far < self.options.tolerance}
+
+
+def _loaded(robot: Robot | str) -> Robot:
+    return robot if isinstance(robot, Robot) else load_robot(robot)
+
+
+def _with_contact(robot: Robot, contact: bool) -> Robot:
+    return replace(robot, contact=Contact()) if contact and robot.contact is None else robot
+
+
+def _groups(robot: Robot, pairs: Sequence[Sequence[str]]) -> tuple[tuple[int, ...], ...]:
+    """Winches moved by one number of the action each (InputError: no such winch, one twice, or no pair)."""
+    names = [winch.name for winch in robot.winches]
+    used: list[int] = []
+    for pair in pairs:
+        for name in pair:
+            if name not in names:
+                raise InputError(f'robot {robot.name!r} has no winch "{name}"; it has: {", ".join(names)}')
+            used.append(names.index(name))
+        if len(pair) != 2:
+            raise InputError(f"a pair has two winches, not {len(pair)}: {', '.join(pair)}")
+    if len(set(used)) < len(used):
+        raise InputError("a winch belongs to one pair only")
+    paired = [tuple(names.index(name) for name in pair) for pair in pairs]
+    return tuple(sorted([*paired, *((index,) for index in range(len(names)) if index not in used)]))

@@ -1,0 +1,228 @@
+"""`train`: reinforcement learning of a policy by stable-baselines3, with progress, checkpoints and resumption."""
+
+import json
+import pickle
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import replace_file
+from hydrostat.training.reach_env import ReachEnv
+
+
+class TrainMethod(StrEnum):
+    """How a policy is learned; all with hindsight experience replay (HER)."""
+
+    DDPG = "ddpg-her"  # the thesis's
+    TD3 = "td3-her"
+    SAC = "sac-her"
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrainOptions:
+    """How a policy is learned.
+
+    Attributes:
+        method: which.
+        steps: actions, each an equilibrium of the world; each goal that is drawn is one more.
+        seed: of all that is drawn.
+        layers: hidden layers of actor and critic.
+        batch: transitions of an update.
+        updates: after each action.
+        rate: of learning.
+        noise: standard deviation of what is added to actions (DDPG, TD3).
+        every: actions from one evaluation to the next.
+
+    Raises:
+        InputError: a number that cannot be.
+    """
+
+    method: TrainMethod = TrainMethod.SAC
+    steps: int = 10_000
+    seed: int = 0
+    layers: tuple[int, ...] = (256, 256, 256)
+    batch: int = 256
+    updates: int = 1
+    rate: float = 1e-3
+    noise: float = 0.1
+    every: int = 1_000
+
+    def __post_init__(self) -> None:
+        for name in ("steps", "batch", "updates", "every"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
+        if not 0 <= self.noise <= 1:
+            raise InputError(f"noise must be from 0 to 1, not {self.noise:g}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvePoint:
+    """How good a policy was.
+
+    Attributes:
+        steps: actions by then.
+        equilibria: of the exact simulator by then, drawn goals included.
+        mean: distance of the markers from goals that were not learned from [m].
+        median: [m].
+        worst: the largest [m].
+        success: share of the goals within the tolerance.
+    """
+
+    steps: int
+    equilibria: int
+    mean: float
+    median: float
+    worst: float
+    success: float
+
+
+def held_out_goals(env: ReachEnv, count: int, seed: int) -> list[Vector]:
+    """Goals that training does not see, from a generator of their own [m]; they are counted nowhere."""
+    before, goals = env.world.equilibria, []
+    random = np.random.default_rng([seed, 77])
+    env.world.begin()
+    while len(goals) < count:
+        goal = env.world.reach(env.contractions(random.uniform(-1.0, 1.0, env.action_space.shape[0])))  # type: ignore[index]
+        if goal is not None:
+            goals.append(goal[env.seen])
+    _uncount(env, before)
+    return goals
+
+
+def judge(env: ReachEnv, act: Callable[[dict[str, Vector]], np.ndarray], goals: list[Vector]) -> Vector:
+    """Mean distance of the markers at the end of an episode for each goal [m]; equilibria are counted nowhere."""
+    before, left = env.world.equilibria, []
+    for goal in goals:
+        observation, info = env.reset(options={"goal": goal})
+        over = False
+        while not over:
+            observation, _, _, over, info = env.step(act(observation))
+        left.append(info["distance"])
+    _uncount(env, before)
+    return np.array(left)
+
+
+def _uncount(env: ReachEnv, before: int) -> None:
+    """Equilibria that judge a policy are no cost of learning it."""
+    env.uncounted += env.world.equilibria - before
+
+
+def train(
+    env: ReachEnv,
+    goals: list[Vector],
+    options: TrainOptions,
+    out: Path,
+    *,
+    resume: bool = False,
+    judge_in: ReachEnv | None = None,
+    tell: Callable[[CurvePoint], None] = lambda _: None,
+) -> tuple[Any, list[CurvePoint]]:
+    """Learn a policy; `out` gets curve.json and a checkpoint after each evaluation.
+
+    Args:
+        env: what is learned in.
+        goals: that a policy is judged by [m].
+        options: how.
+        out: folder, made if need be.
+        judge_in: where policies are judged, such as the exact simulator; in `env` if left out.
+        resume: go on from the checkpoint in `out`: the same curve as without a break.
+        tell: called after each evaluation.
+
+    Returns:
+        The model of stable-baselines3 and the curve.
+
+    Raises:
+        HydrostatError: stable-baselines3 is not there.
+        InputError: there is no checkpoint to go on from.
+    """
+    try:
+        import torch
+        from stable_baselines3 import DDPG, SAC, TD3, HerReplayBuffer
+        from stable_baselines3.common.noise import NormalActionNoise
+    except ModuleNotFoundError as error:
+        raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    out.mkdir(parents=True, exist_ok=True)
+    torch.set_num_threads(1)
+    steps, size = env.options.steps, env.action_space.shape[0]  # type: ignore[index]
+    more: dict[str, Any] = {}
+    if options.method is not TrainMethod.SAC:
+        more["action_noise"] = NormalActionNoise(np.zeros(size), np.full(size, options.noise))
+    made = {TrainMethod.DDPG: DDPG, TrainMethod.TD3: TD3, TrainMethod.SAC: SAC}[options.method]
+    model = made(
+        "MultiInputPolicy",
+        env,
+        replay_buffer_class=HerReplayBuffer,
+        replay_buffer_kwargs={"n_sampled_goal": 4, "goal_selection_strategy": "future"},
+        policy_kwargs={"net_arch": list(options.layers), "activation_fn": torch.nn.SiLU},
+        learning_rate=options.rate,
+        batch_size=options.batch,
+        gamma=max(1.0 - 1.0 / steps, 0.0),
+        gradient_steps=options.updates,
+        learning_starts=max(100, 2 * steps),
+        buffer_size=max(options.steps, 1_000),
+        seed=options.seed,
+        device="cpu",
+        **more,
+    )
+    curve: list[CurvePoint] = []
+    if resume:
+        model, curve = _resumed(made, env, out)
+    while (done := model.num_timesteps) < options.steps:
+        model._last_obs = None  # each stretch begins with an episode of its own
+        model.learn(min(options.every, options.steps - done), reset_num_timesteps=False)
+        left = judge(judge_in or env, lambda seen: model.predict(seen, deterministic=True)[0], goals)
+        point = CurvePoint(
+            steps=model.num_timesteps,
+            equilibria=env.world.equilibria - env.uncounted,
+            mean=float(left.mean()),
+            median=float(np.median(left)),
+            worst=float(left.max()),
+            success=float((left < env.options.tolerance).mean()),
+        )
+        curve.append(point)
+        told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
+        replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
+        _keep(model, env, out)
+        tell(point)
+    return model, curve
+
+
+def _keep(model: Any, env: ReachEnv, out: Path) -> None:
+    """Write all that the next step depends on."""
+    import torch
+
+    model.save(out / "model.zip")
+    model.save_replay_buffer(out / "experience.pkl")
+    state = {
+        "numpy": np.random.get_state(legacy=False),  # noqa: NPY002
+        "torch": torch.get_rng_state(),
+        "env": env.np_random.bit_generator.state,
+        "actions": model.action_space.np_random.bit_generator.state,
+        "equilibria": (env.world.equilibria, env.uncounted),
+    }
+    replace_file(out / "state.pkl", pickle.dumps(state))
+
+
+def _resumed(made: Any, env: ReachEnv, out: Path) -> tuple[Any, list[CurvePoint]]:
+    """Bring everything to where a checkpoint of one's own was; gives the model and the curve until then."""
+    import torch
+
+    if not (out / "state.pkl").exists():
+        raise InputError(f"{out}: there is no checkpoint to go on from; begin anew, without --resume")
+    curve = [CurvePoint(**each) for each in json.loads((out / "curve.json").read_text())["curve"]]
+    model = made.load(out / "model.zip", env=env, device="cpu")
+    model.env._reset_seeds()  # or the next episode would begin as the first
+    model.load_replay_buffer(out / "experience.pkl", truncate_last_traj=False)
+    state = pickle.loads((out / "state.pkl").read_bytes())
+    np.random.set_state(state["numpy"])  # noqa: NPY002
+    torch.set_rng_state(state["torch"])
+    env.np_random.bit_generator.state = state["env"]
+    model.action_space.np_random.bit_generator.state = state["actions"]
+    env.world.equilibria, env.uncounted = state["equilibria"]
+    return model, curve

@@ -1,0 +1,200 @@
+"""Environments in which robots reach. Oracles: the simulator, sums by hand, the checkers of those who use them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import gallery_robot
+
+from hydrostat.errors import InputError
+from hydrostat.simulation import Simulation
+
+gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
+
+from hydrostat.arrays import Vector  # noqa: E402
+from hydrostat.training import (  # noqa: E402
+    ExactWorld,
+    MixedWorld,
+    ReachEnv,
+    ReachOptions,
+    TrainMethod,
+    TrainOptions,
+    World,
+    held_out_goals,
+    judge,
+    portable_policy,
+    train,
+)
+from hydrostat.training.worlds import LearnedWorld  # noqa: E402
+
+
+class Straight(LearnedWorld):
+    """Markers go with winches along straight lines."""
+
+    def __init__(self, env_robot: object = None) -> None:
+        robot = gallery_robot("starfish")
+        self.rest = np.array([marker.at for marker in robot.markers]).ravel()
+        self.matrix = np.random.default_rng(0).normal(size=(len(self.rest), len(robot.winches)))
+
+    def reach(self, contractions: Vector) -> Vector:
+        return self.rest + self.matrix @ contractions
+
+
+def straight(**options: object) -> ReachEnv:
+    return ReachEnv(gallery_robot("starfish"), world=Straight(), options=ReachOptions(**options))
+
+
+@pytest.mark.parametrize("incremental", [False, True])
+def test_checkers_of_both_libraries_pass(incremental: bool) -> None:
+    from gymnasium.utils.env_checker import check_env
+
+    made = gymnasium.make(
+        "hydrostat/Reach-v0",
+        robot=gallery_robot("starfish"),
+        world=Straight(),
+        options=ReachOptions(steps=5, incremental=incremental),
+    )
+    check_env(made.unwrapped, skip_render_check=True)
+    checker = pytest.importorskip("stable_baselines3.common.env_checker", reason="no stable-baselines3")
+    checker.check_env(made.unwrapped)
+
+
+def test_exact_episodes_are_equilibria_and_are_counted() -> None:
+    robot = gallery_robot("starfish")
+    env = ReachEnv(robot, options=ReachOptions(steps=2))
+    observation, _ = env.reset(seed=4)
+    assert env.world.equilibria == 1  # of the goal
+    action = np.array([0.3, -0.5, 0.1])
+    observation, _, _, over, _ = env.step(action)
+    high, low = (np.array([getattr(winch, name) for winch in robot.winches]) for name in ("travel", "release"))
+    pose = Simulation(robot).solve(-low + 0.5 * (1.02 * action + 1.0) * (high + low))
+    places = env.unit * observation["achieved_goal"] + env.rest[env.seen]
+    assert places == pytest.approx(np.array(list(pose.markers.values())).ravel(), abs=1e-9)
+    assert (env.world.equilibria, over) == (2, False)
+    assert env.step(action)[3]
+
+
+def test_rewards_and_distances_by_hand() -> None:
+    env = straight(tolerance=0.01)
+    count = len(env.seen)
+    near, far = np.zeros(count), np.zeros(count)
+    far[0], far[1] = 0.03 / env.unit, 0.04 / env.unit  # one of several markers is 50 mm away
+    mean = 0.05 / (count / 2)
+    both = np.array([near, far])
+    assert env.distances(both, np.zeros((2, count))) == pytest.approx([0.0, mean])
+    assert env.compute_reward(both, np.zeros((2, count)), [{}, {}]) == pytest.approx([0.0, -mean / 0.01])
+    sparse = straight(tolerance=mean * 1.01, shaped=False)
+    assert sparse.compute_reward(both, np.zeros((2, count)), [{}, {}]).tolist() == [0.0, 0.0]
+    sparse = straight(tolerance=mean * 0.99, shaped=False)
+    assert sparse.compute_reward(both, np.zeros((2, count)), [{}, {}]).tolist() == [0.0, -1.0]
+
+
+def test_pairs_move_one_of_two_winches_and_increments_add_up() -> None:
+    robot = gallery_robot("starfish")
+    names, travel = [winch.name for winch in robot.winches], [winch.travel for winch in robot.winches]
+    env = straight(pairs=[names[:2]])
+    assert env.action_space.shape == (2,)
+    assert env.contractions(np.array([0.5, -1.0])) == pytest.approx([0.51 * travel[0], 0.0, -robot.winches[2].release])
+    assert env.contractions(np.array([-0.5, 1.0])) == pytest.approx([0.0, 0.51 * travel[1], travel[2]])
+    env = straight(steps=3, incremental=True)
+    env.reset(seed=0)
+    for _ in range(3):
+        observation = env.step(np.array([1.0, 0.5, -1.0]))[0]
+    begin = np.array([2 * winch.release / (winch.travel + winch.release) - 1 for winch in robot.winches])
+    assert observation["observation"] == pytest.approx(np.clip(begin + np.array([0.6, 0.3, -0.6]), -1, 1))
+
+
+def test_markers_that_are_not_asked_for_are_not_looked_at() -> None:
+    robot = gallery_robot("starfish")
+    env = straight(markers=[robot.markers[1].name])
+    assert env.seen.tolist() == [2, 3]
+    assert env.reset(seed=0)[0]["desired_goal"].shape == (2,)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"steps": 0}, "steps must be 1 or more"),
+        ({"tolerance": 0.0}, "tolerance must be above 0"),
+        ({"markers": ["nose"]}, 'has no marker "nose"'),
+        ({"pairs": [["a", "b"]]}, 'has no winch "a"'),
+        ({"pairs": [["left"]]}, "a pair has two winches"),
+    ],
+)
+def test_what_is_wrong_is_told(options: dict, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        straight(**options)
+
+
+def test_a_mixed_world_counts_exact_episodes_only() -> None:
+    exact = ExactWorld(gallery_robot("starfish"))
+    world: World = MixedWorld(Straight(), exact, every=3)
+    for _ in range(7):
+        world.begin()
+        world.reach(np.zeros(3))
+    assert world.equilibria == 3
+
+
+@pytest.fixture
+def goals() -> list[Vector]:
+    return held_out_goals(straight(), 20, 0)
+
+
+def test_judging_costs_no_equilibria(goals: list[Vector]) -> None:
+    env = straight()
+    env.world.equilibria = 0
+    left = judge(env, lambda seen: np.zeros(3), goals)
+    middle = Straight().reach(env.contractions(np.zeros(3)))
+    by_hand = [np.linalg.norm((middle - goal).reshape(-1, 2), axis=1).mean() for goal in goals]
+    assert left == pytest.approx(by_hand)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+def test_it_learns_and_a_run_that_was_killed_goes_on_the_same_way(goals: list[Vector], tmp_path: Path) -> None:
+    pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+
+    def run(steps: int, out: str, *, resume: bool = False) -> list:
+        options = TrainOptions(method=TrainMethod.SAC, steps=steps, every=150, layers=(32, 32), batch=64, rate=3e-3)
+        return train(straight(), goals, options, tmp_path / out, resume=resume)[1]
+
+    whole = run(450, "whole")
+    assert whole[-1].mean < 0.95 * judge(straight(), lambda seen: np.zeros(3), goals).mean()
+    run(300, "broken")
+    assert run(450, "broken", resume=True) == whole
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+@pytest.mark.parametrize("method", ["SAC", "DDPG"])
+def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: list[Vector]) -> None:
+    library = pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+    from hydrostat.learning import LearnedModel, physics_hash
+    from hydrostat.learning.perceptrons import Perceptrons
+
+    env, random = straight(), np.random.default_rng(5)
+    count = len(env.seen)
+    trained = getattr(library, method)("MultiInputPolicy", env, seed=3, device="cpu", policy_kwargs=silu())
+    nothing = Perceptrons(sizes=np.array([3, count]), numbers=np.zeros((1, 3 * count * 2 + count)))
+    model = LearnedModel(
+        facts={"physics": physics_hash(env.robot), "contact": False, "markers": [m.name for m in env.robot.markers]},
+        low=np.array([-winch.release for winch in env.robot.winches]),
+        high=np.array([winch.travel for winch in env.robot.winches]),
+        middle=env.rest[env.seen] + 0.01 * random.normal(size=count),
+        unit=0.01 * random.uniform(0.5, 2.0, count),
+        forward=nothing,
+        inverse=None,
+        known=np.zeros((1, 3)),
+        reached=np.zeros((1, count)),
+    )
+    object.__setattr__(model, "facts", {**model.facts, "dim": 2})
+    alone = portable_policy(trained, env, model)
+    for goal in goals[:5]:
+        observation, _ = env.reset(options={"goal": goal})
+        asked = env.contractions(trained.predict(observation, deterministic=True)[0])
+        assert alone.inverted(goal) == pytest.approx(asked, abs=1e-7)
+
+
+def silu() -> dict:
+    import torch
+
+    return {"net_arch": [16, 16], "activation_fn": torch.nn.SiLU}
