@@ -1,0 +1,96 @@
+"""`CyberGlove`: a glove with 22 bend sensors on a serial line; `EmulatedGlove`: one that is not there."""
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control import Port
+from hydrostat.errors import HydrostatError
+from hydrostat.teleop.hand_source import HandReading, HandSource
+
+BAUD = 115200
+SENSORS = 22
+ASKS = 3
+"""How often it is asked before it is silent."""
+_FINGERS = ("index", "middle", "ring", "pinky")
+_THUMB = ("thumb roll", "thumb inner", "thumb outer", "thumb abduction")
+_SPREADS = {"middle": "middle-index abduction", "ring": "ring-middle abduction", "pinky": "pinky-ring abduction"}
+
+
+def _names() -> tuple[str, ...]:
+    """Sensors in the order in which the glove tells them."""
+    names = list(_THUMB)
+    for finger in _FINGERS:
+        names += [f"{finger} inner", f"{finger} middle", f"{finger} outer"]
+        names += [_SPREADS[finger]] if finger in _SPREADS else []
+    return (*names, "palm arch", "wrist pitch", "wrist yaw")
+
+
+class CyberGlove(HandSource):
+    """A glove that is asked with G, and answers G, a byte from 1 to 255 of each of its 22 sensors, and a zero.
+
+    So do open programs read it; no glove of ours has answered yet.
+    """
+
+    names = _names()
+
+    def __init__(self, port: Port, *, clock: Callable[[], float] = time.monotonic) -> None:
+        """A glove on an open serial line, of 115200 baud."""
+        self._port, self._clock = port, clock
+        self._port.timeout = 0.05
+
+    def read(self) -> HandReading:
+        """The newest values; one answer that is cut short or spoilt is asked for again."""
+        try:
+            for _ in range(ASKS):
+                while self._port.read(64):  # what is left of an answer that came late
+                    pass
+                self._port.write(b"G")
+                answer = self._port.read(SENSORS + 2)
+                if len(answer) == SENSORS + 2 and answer[:1] == b"G" and answer[-1] == 0 and 0 not in answer[1:-1]:
+                    values = (np.frombuffer(answer[1:-1], np.uint8) - 1.0) / 254.0
+                    return HandReading(values, self._clock())
+        except OSError as error:
+            raise HydrostatError(f"the glove is gone ({error}); look at its cable") from None
+        raise HydrostatError(f"the glove does not answer with {SENSORS} sensors; look at its power and its port")
+
+    def close(self) -> None:
+        """Let the line go."""
+        with suppress(Exception):
+            self._port.close()
+
+
+class EmulatedGlove:
+    """The other end of a line to a glove that is not there.
+
+    Attributes:
+        values: of the hand in it, each from 0 to 1.
+        spoil: what happens to each answer on its way.
+    """
+
+    timeout: float | None = 0.0
+
+    def __init__(self, values: Vector, *, noise: float = 0.0, seed: int = 0) -> None:
+        """A glove on a hand, whose sensors are noisy by a standard deviation."""
+        self.values = values
+        self.spoil: Callable[[bytes], bytes] = lambda answer: answer
+        self._noise, self._random, self._told = noise, np.random.default_rng(seed), b""
+
+    def write(self, data: bytes, /) -> int:
+        """Hear what is asked."""
+        for _ in range(data.count(b"G")):
+            shown = self.values + self._noise * self._random.normal(size=len(self.values))
+            told = np.clip(np.rint(1 + 254 * shown), 1, 255).astype(np.uint8)
+            self._told += self.spoil(b"G" + told.tobytes() + b"\0")
+        return len(data)
+
+    def read(self, size: int, /) -> bytes:
+        """Bytes of its answers."""
+        taken, self._told = self._told[:size], self._told[size:]
+        return taken
+
+    def close(self) -> None:
+        """Nothing is let go."""

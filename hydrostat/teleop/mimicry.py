@@ -1,0 +1,142 @@
+"""`Mimicry`: poses of a robot and what a glove told while a person mimicked them, or while the robot wore it."""
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import replace_file
+from hydrostat.teleop.ridge import Ridge, Table, fit_ridge, folded_error, left_out_error
+
+
+class Mimicry:
+    """Pairs of what sensors told and what a robot did: its contractions, or the places of its fingertips.
+
+    Both ways to such pairs end here: the robot takes a pose and a person mimics it, or the robot wears the glove.
+    A pose may be told more than once; its rows are left out together when errors are asked for.
+
+    Attributes:
+        sensors: their names.
+        outputs: names of what is to be told by them.
+        poses: pose of each row.
+    """
+
+    def __init__(self, sensors: Sequence[str], outputs: Sequence[str]) -> None:
+        """No pairs yet."""
+        self.sensors, self.outputs = tuple(sensors), tuple(outputs)
+        self.poses: list[int] = []
+        self._inputs: list[Vector] = []
+        self._answers: list[Vector] = []
+
+    @property
+    def inputs(self) -> Table:
+        """What the sensors told (rows, sensors)."""
+        return np.array(self._inputs).reshape(-1, len(self.sensors))
+
+    @property
+    def answers(self) -> Table:
+        """What the robot did (rows, outputs)."""
+        return np.array(self._answers).reshape(-1, len(self.outputs))
+
+    def add(self, pose: int, sensors: Vector, answer: Vector) -> None:
+        """Store a pair of a pose (InputError: of another size, or not finite)."""
+        if sensors.shape != (len(self.sensors),) or answer.shape != (len(self.outputs),):
+            raise InputError(f"a pair has {len(self.sensors)} sensors and {len(self.outputs)} outputs")
+        if not (np.isfinite(sensors).all() and np.isfinite(answer).all()):
+            raise InputError("sensors and outputs must be finite")
+        self.poses.append(pose)
+        self._inputs.append(sensors.copy())
+        self._answers.append(answer.copy())
+
+    def forget(self, pose: int) -> None:
+        """Drop a pose that went wrong."""
+        for index in reversed(range(len(self.poses))):
+            if self.poses[index] == pose:
+                del self.poses[index], self._inputs[index], self._answers[index]
+
+    def learn(self) -> Ridge:
+        """From sensors to outputs by ridge regression (InputError: fewer than two poses)."""
+        return fit_ridge(self.inputs, self.answers, self.poses)
+
+    def errors(self, known: Ridge) -> tuple[float, float]:
+        """Root mean square error of poses left out one by one, and of five folds."""
+        table = self.inputs, self.answers, self.poses, known.penalty
+        return left_out_error(*table), folded_error(*table)
+
+    def next_pose(self, candidates: Table) -> int:
+        """Which of the candidates to mimic next: that which makes the determinant of the information largest.
+
+        Information is that of a straight map with a constant between candidates (rows, outputs) and sensors, so that
+        nothing has to be known of the sensors.
+        """
+        known = np.column_stack([np.ones(len(self.poses)), self.answers])
+        ways = np.column_stack([np.ones(len(candidates)), candidates])
+        least = 1e-3 * max(float(np.mean(ways**2)), 1e-12)
+        information = known.T @ known + least * np.eye(known.shape[1])
+        return int(np.argmax(np.einsum("ij,ij->i", ways, np.linalg.solve(information, ways.T).T)))
+
+    def save(self, path: Path) -> Path:
+        """Write a table with a row for each pair, as text."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(["pose", *(f"sensor {name}" for name in self.sensors), *self.outputs])
+        for pose, sensors, answer in zip(self.poses, self._inputs, self._answers, strict=True):
+            writer.writerow([pose, *map(repr, sensors.tolist()), *map(repr, answer.tolist())])
+        return replace_file(path, text.getvalue().encode())
+
+    @classmethod
+    def open(cls, path: Path) -> "Mimicry":
+        """Read such a table (InputError: it is none, with the line)."""
+        try:
+            rows = list(csv.reader(path.read_text("utf-8").splitlines()))
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{path}: cannot be read ({error})") from None
+        if not rows or rows[0][:1] != ["pose"]:
+            raise InputError(f"{path}: is no table of mimicked poses; its first column is pose")
+        heads = rows[0][1:]
+        sensors = [name.removeprefix("sensor ") for name in heads if name.startswith("sensor ")]
+        made = cls(sensors, heads[len(sensors) :])
+        for count, row in enumerate(rows[1:], 2):
+            try:
+                values = np.array([float(cell) for cell in row[1:]])
+                made.add(int(row[0]), values[: len(sensors)], values[len(sensors) :])
+            except (ValueError, IndexError, InputError) as error:
+                raise InputError(f"{path}, line {count}: {error}") from None
+        return made
+
+
+def write_mcap(path: Path, mimicry: Mimicry, stamps: Sequence[float]) -> Path:
+    """Write pairs as MCAP with JSON schemas, which Foxglove and ROS 2 tools read; a channel each for glove and robot.
+
+    Args:
+        path: of the file.
+        mimicry: the pairs.
+        stamps: when each row was told [s].
+
+    Raises:
+        HydrostatError: the package mcap is not there.
+    """
+    try:
+        from mcap.writer import Writer
+    except ModuleNotFoundError:
+        raise HydrostatError('MCAP files need mcap; install it: pip install "hydrostat[teleop]"') from None
+    buffer = io.BytesIO()
+    writer = Writer(buffer)
+    writer.start(library="hydrostat")
+    tables = {"glove": (mimicry.sensors, mimicry.inputs), "robot": (mimicry.outputs, mimicry.answers)}
+    for topic, (names, rows) in tables.items():
+        numbers = {"pose": {"type": "integer"}} | {name: {"type": "number"} for name in names}
+        schema = json.dumps({"type": "object", "properties": numbers}).encode()
+        known = writer.register_schema(f"hydrostat.{topic}", "jsonschema", schema)
+        channel = writer.register_channel(f"/{topic}", "json", known)
+        for pose, row, stamp in zip(mimicry.poses, rows.tolist(), stamps, strict=True):
+            data = json.dumps({"pose": pose} | dict(zip(names, row, strict=True))).encode()
+            when = round(1e9 * stamp)
+            writer.add_message(channel, when, data, when)
+    writer.finish()
+    return replace_file(path, buffer.getvalue())
