@@ -11,7 +11,7 @@ from touching import DISTANCE, fork_robot
 from hydrostat.errors import InputError
 from hydrostat.geometry.crossings import find_crossings
 from hydrostat.ik import solve_ik
-from hydrostat.mechanics import ContactEnergy, NewtonOptions
+from hydrostat.mechanics import Assembly, ContactEnergy, NewtonOptions
 from hydrostat.robot import Contact, Obstacle, Pose, Robot
 from hydrostat.simulation import Simulation
 
@@ -93,6 +93,24 @@ def test_slopes_through_contact(dim: int) -> None:
         assert np.abs(slopes[:, :, number] - wanted).max() < 1e-6 * np.abs(wanted).max()
     found = simulation.adjoint(pose, weights).contractions
     np.testing.assert_allclose(found, np.einsum("nd,ndw->w", weights, slopes), rtol=1e-8)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_what_a_pose_knows_of_its_pairs_serves_the_next_solve(dim: int) -> None:
+    """The same pose, without a new pattern; what is sent to another process takes none along."""
+    simulation = Simulation(fork_robot(dim))
+    pose, onward = simulation.solve(PULLED), {name: 1.002 * pull for name, pull in PULLED.items()}
+    found = simulation.solve(onward, start=pose)
+    anew = simulation.solve(onward, start=pose.without_factors())
+    np.testing.assert_allclose(found.nodes, anew.nodes, atol=1e-8)
+    sources = [each.result.stiffness.source for each in (pose, found)]
+    assert isinstance(sources[0], Assembly)
+    assert isinstance(sources[1], Assembly)
+    assert sources[1].pattern.entries is sources[0].pattern.entries
+    assert len(sources[1].pattern.entries) > len(simulation.assembly.pattern.entries)
+    assert pickle.loads(pickle.dumps(pose)).result.stiffness.source is None
+    other = Simulation(fork_robot(dim))
+    assert other.assembly.continuing(sources[0]) is other.assembly
 
 
 def test_inverse_kinematics_keeps_prongs_apart() -> None:
