@@ -4,13 +4,14 @@ import itertools
 import signal
 import sys
 import time
+from typing import cast
 
 import numpy as np
 import serial
 from emulation import NAMES, RADIUS
 
 from hydrostat.cli.waiting import one_interrupt
-from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, WinchMotor, play
+from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, Port, WinchMotor, play
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch
 from hydrostat.simulation import Profile
@@ -18,7 +19,7 @@ from hydrostat.simulation import Profile
 
 def main(path: str, kind: str, event: str) -> None:
     """Play one slow pull, and say how it ended."""
-    line = serial.Serial(path, 57600, timeout=0.02, write_timeout=0.1)
+    line = cast(Port, serial.Serial(path, 57600, timeout=0.02, write_timeout=0.1))
     bus = (FeetechBus if kind == "feetech" else DynamixelBus)(line, [1, 2, 3], answer=0.1)
     winches = [Winch(name=name, at=(0.0, 0.0), spool_radius=RADIUS, travel=0.04, release=0.002) for name in NAMES]
     spools = [WinchMotor(winch=name, number=n, zero=1.0, radius=RADIUS, current=0.3) for n, name in enumerate(NAMES, 1)]

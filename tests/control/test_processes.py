@@ -64,7 +64,7 @@ def ends(event: str, kind: str) -> tuple[int, str, list[float]]:
     Whatever else it says, the motors must stand in time.
     """
     with EmulatedLine(chain(kind)) as line:
-        servos = line.chain.servos
+        servos, asleep = line.chain.servos, list[float]()
         process = subprocess.Popen(
             [sys.executable, HOST, line.path, kind, event],
             stderr=subprocess.PIPE,
@@ -78,12 +78,17 @@ def ends(event: str, kind: str) -> tuple[int, str, list[float]]:
             at = line.chain.now
             if event == "SIGSTOP":
                 until(lambda: line.chain.now > at + 1.0)
+                assert max(line.moved) - at < STANDS
+                asleep = [servo.angle for servo in servos]
                 os.kill(process.pid, signal.SIGCONT)
             out, told = process.communicate(timeout=60)
         finally:
             process.kill()
         until(lambda: line.chain.now > at + 1.5)
-        last = at if event in TOLD and event != "crash" else max(servo.heard for servo in servos)
+        if event == "SIGSTOP":  # awake again it tells them to stand, for which a watchdog may have to be reset
+            assert [servo.angle for servo in servos] == pytest.approx(asleep, abs=2e-4 / RADIUS)
+        told_late = event in ("crash", "SIGSTOP", "clock jumps")
+        last = max(servo.heard for servo in servos) if told_late else at
         assert max(line.moved) - last < STANDS
         return process.returncode, out + told, [RADIUS * (servo.angle - 1.0) for servo in servos]
 
