@@ -11,8 +11,10 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from hydrostat.arrays import Nodes
 from hydrostat.drawing.palette import INK, MUTED, WINCHES
+from hydrostat.learning.compare import STEP, way_of
 from hydrostat.learning.study import StudyRow
-from hydrostat.plot.chart import DASHES, new_chart, plain_axes
+from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.chart import new_chart, plain_axes
 from hydrostat.plot.robot_figures import SMALL, draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
 from hydrostat.plot.skin import outer_points
@@ -27,10 +29,14 @@ def draw_errors(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
     height = 4.2
     figure = new_figure(width, height)
     lower, tall, wide = 1.25 / height, (height - 1.45) / height, 0.41
-    panes = [figure.add_axes((left, lower, wide, tall)) for left in (0.085, 0.575)]
+    panes = [figure.add_axes((left, lower, wide, tall)) for left in (0.1, 0.565)]
     methods = list(dict.fromkeys(row.method for row in rows))
-    for number, name in enumerate(methods):
-        colour, dashes = WINCHES[number % len(WINCHES)], DASHES[number // len(WINCHES) % len(DASHES)]
+    ways = list(dict.fromkeys(way_of(name) for name in methods))
+    colours = dict(zip(ways, (MUTED, *WINCHES), strict=False))
+    for name in methods:
+        way = way_of(name)
+        colour, label = colours.get(way, INK), way if name == way else None
+        dashes = "-" if name == way else "--" if name.endswith(STEP) else ":"
         mine = [row for row in rows if row.method == name]
         counts = sorted({row.samples for row in mine})
         groups = [[row for row in mine if row.samples == count] for count in counts]
@@ -38,13 +44,15 @@ def draw_errors(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
         seconds = [float(np.mean([row.sampling + row.learning for row in group])) for group in groups]
         for axes, across in zip(panes, (counts, seconds), strict=True):
             means = [float(np.mean(each)) for each in errors]
-            axes.plot(across, means, dashes, color=colour, linewidth=1.4, marker="o", markersize=3, label=name)
+            axes.plot(across, means, dashes, color=colour, linewidth=1.4, marker="o", markersize=3, label=label)
             low, high = [min(each) for each in errors], [max(each) for each in errors]
             axes.fill_between(across, low, high, color=colour, alpha=0.15, linewidth=0)
-    for axes, words in zip(panes, ("samples", "CPU time of sampling and learning [s]"), strict=True):
-        _logarithmic(axes, words, "mean error [mm]")
+    _logarithmic(panes[0], "samples", "mean error [mm]")
+    _logarithmic(panes[1], "CPU time of sampling and learning [s]", "")
+    panes[0].plot([], [], "--", color=INK, linewidth=1.4, label="and one exact step")
+    panes[0].plot([], [], ":", color=INK, linewidth=1.4, label="and up to three")
     handles, names = panes[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="lower center", ncol=5, frameon=False, fontsize=7, labelcolor=INK)
+    figure.legend(handles, names, loc="lower center", ncol=5, frameon=False, fontsize=7, handlelength=3, labelcolor=INK)
     return figure
 
 
@@ -68,7 +76,9 @@ def draw_losses(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
 def draw_side_by_side(robot: Robot, columns: Mapping[str, Sequence[Nodes]], *, width: float = SMALL) -> Figure:
     """Poses as pictures in columns with a head each, a row for each pose [m]; width of one in inches."""
     every = [nodes for poses in columns.values() for nodes in poses]
-    frame = np.concatenate(outer_points(robot.body, every))
+    carried = Attachments(robot)
+    hardware = [points for nodes in every for points in (*carried.cables(nodes), carried.winches(nodes))]
+    frame = np.concatenate([*outer_points(robot.body, every), *hardware])
     pictures = {name: [_picture(robot, nodes, frame, width) for nodes in poses] for name, poses in columns.items()}
     some = next(iter(pictures.values()))
     tall, head = width * some[0].shape[0] / some[0].shape[1], 0.3
