@@ -3,7 +3,7 @@
     python benchmarks/learned_steps.py examples/cupping_hand build/hand.model build/test [--targets 300]
 
 Targets are the markers of samples that nothing was learned from. Columns: errors of the markers in the simulator in mm,
-CPU time for a target beyond the row above "one step" [ms], steps taken. Up to three: as long as more than 0.01 mm is
+CPU time for a target beyond that from rest [ms], steps taken. Up to three: as long as more than 0.01 mm is
 left on average.
 """
 
