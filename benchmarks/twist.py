@@ -41,6 +41,18 @@ class Twist:
     at: tuple[float, float, float]  # middle of the ball [mm]
     radius: float  # of the ball [mm]
     keys: dict[str, dict[str, float]]
+    robot: str = ""  # if it has another name than the twist
+    length: float = 0.0  # of the straight part of an upright rod with round ends, in place of a ball [mm]
+
+    def thing(self, friction: float) -> Obstacle:
+        """What is turned."""
+        known = {"name": "ball", "radius": 1e-3 * self.radius, "mass": 0.03, "friction": friction}
+        middle, half = 1e-3 * np.array(self.at), 5e-4 * self.length * np.eye(3)[2]
+        if not self.length:
+            return Obstacle(shape="sphere", at=tuple(middle.tolist()), **known)
+        return Obstacle(
+            shape="capsule", at=tuple((middle - half).tolist()), to=tuple((middle + half).tolist()), **known
+        )
 
     def contractions(self, robot: Robot, key: str) -> Vector:
         """What each winch takes in at a key [m]."""
@@ -50,17 +62,28 @@ class Twist:
         return taken
 
 
+_SWING = {
+    "swung back": {" a": 14, " b": 0},
+    "closed there": {" a": 24, " b": 10},
+    "swung round": {" a": 10, " b": 24},
+    "opened there": {" a": 0, " b": 14},
+}
 TWISTS = {
     "caging_gripper": Twist(
         (0, 0, 78),
         33.5,
+        {**_SWING, "open": {}},
+    ),
+    "rod": Twist(
+        (0, 0, 88),
+        24,
         {
-            "swung back": {" a": 14, " b": 0},
-            "closed there": {" a": 24, " b": 10},
-            "swung round": {" a": 10, " b": 24},
-            "opened there": {" a": 0, " b": 14},
+            **_SWING,
+            **{f"{word}, again": keys for word, keys in _SWING.items()},
             "open": {},
         },
+        robot="caging_gripper",
+        length=50,
     ),
     "cupping_hand": Twist(
         (24, -43, 115),
@@ -99,15 +122,13 @@ class Held:
     """A robot and a ball that it turns, from keyframe to keyframe."""
 
     def __init__(self, robot: Robot, twist: Twist, friction: float) -> None:
-        at = tuple(1e-3 * value for value in twist.at)
-        self.ball = Obstacle(
-            name="ball", shape="sphere", at=at, radius=1e-3 * twist.radius, mass=0.03, friction=friction
-        )
+        self.ball = twist.thing(friction)
+        self.begun, self.begin = self.ball.frame()
         body = replace(robot.body, material=replace(robot.body.material, viscosity=VISCOSITY))
         self.robot = replace(robot, body=body, contact=Contact(), obstacles=(self.ball,))
         physics = BodyPhysics(self.robot)
         self.carriage = physics.carriages[0]
-        guide = GuideEnergy(self.carriage, place=np.array(at), axes=np.eye(3), along=HOLD * np.eye(3), turning=0.0)
+        guide = GuideEnergy(self.carriage, place=self.begun, axes=self.begin, along=HOLD * np.eye(3), turning=0.0)
         self.simulation = Simulation(self.robot, body=physics, energies=[guide])
         self.motion = self.simulation.still()
 
@@ -119,7 +140,7 @@ class Held:
     @property
     def turned(self) -> Vector:
         """How far the ball has turned, about each axis [degree]; small enough to be a vector."""
-        return np.rad2deg(Rotation.from_matrix(_rotation(self._axes).T).as_rotvec())
+        return np.rad2deg(Rotation.from_matrix(_rotation(self._axes).T @ self.begin).as_rotvec())
 
     @property
     def place(self) -> Vector:
@@ -129,11 +150,10 @@ class Held:
 
     def drawn(self) -> list[Obstacle]:
         """The ball where it is, with dots on it, which show how it turns."""
-        ways = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]) @ _rotation(self._axes)
-        radius = self.ball.radius or 0.0
-        dots = self.place + 0.94 * radius * ways
+        axes, radius = _rotation(self._axes), self.ball.radius or 0.0
+        dots = self.place + 0.94 * radius * np.concatenate([axes, -axes])[:: 1 if self.ball.to is None else 2]
         made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots.tolist()]
-        return [replace(self.ball, at=tuple(self.place.tolist())), *made]
+        return [self.ball.moved(self.place, axes), *made]
 
     @property
     def _axes(self) -> np.ndarray:
@@ -149,7 +169,8 @@ def _rotation(axes: np.ndarray) -> np.ndarray:
 
 def run(name: str, friction: float, step: float, films: Path | None) -> None:
     """Print a row for each keyframe of a hand, and write a film if asked."""
-    twist, robot = TWISTS[name], hs.load_robot(EXAMPLES / name)
+    twist = TWISTS[name]
+    robot = hs.load_robot(EXAMPLES / (twist.robot or name))
     held, frames, began = Held(robot, twist, friction), [], time.process_time()
     goal = np.zeros(len(robot.winches))
     count = max(1, round(SECONDS / step))
@@ -161,7 +182,7 @@ def run(name: str, friction: float, step: float, films: Path | None) -> None:
             words = f"{key}: the ball has turned by {np.linalg.norm(held.turned):.0f} degrees"
             frames.append(Frame.of(motion, words=words, things=held.drawn()))
         x, y, z = held.turned
-        away = 1e3 * float(np.linalg.norm(held.place - held.ball.at))
+        away = 1e3 * float(np.linalg.norm(held.place - held.begun))
         print(
             f"| {name} | {friction:g} | {key} | {x:.1f}, {y:.1f}, {z:.1f} | {np.linalg.norm(held.turned):.1f} | "
             f"{away:.1f} | {time.process_time() - began:.0f} |",

@@ -137,11 +137,11 @@ def write_calibration(folder: Path, calibration: Calibration) -> Path:
     for spool in calibration.motors:
         lines += ["\n[[motor]]\n", f'winch = "{spool.winch}"\n', f"number = {spool.number}\n"]
         if spool.zero is not None:
-            lines.append(f"zero = {spool.zero!r}  # angle with nothing taken in [rad]\n")
+            lines.append(f"zero = {float(spool.zero)!r}  # angle with nothing taken in [rad]\n")
         lines += [f"turns = {spool.turns}\n", f'radius = "{units.format_quantity(spool.radius, units.LENGTH)}"\n']
         lines += [
-            f"growth = {spool.growth!r}  # of the radius [m/rad]\n",
-            f"current = {spool.current!r}  # at most [A]\n",
+            f"growth = {float(spool.growth)!r}  # of the radius [m/rad]\n",
+            f"current = {float(spool.current)!r}  # at most [A]\n",
         ]
     return replace_file(folder / CALIBRATION, "".join(lines).encode())
 
