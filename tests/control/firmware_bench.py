@@ -1,0 +1,133 @@
+"""The firmware run by simavr with emulated motors: a serial port in memory, on the clock of the chip."""
+
+import ctypes
+import shutil
+import subprocess
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).with_name("winch_bench.c")
+FIRMWARE = Path(__file__).parents[2] / "hydrostat" / "control" / "firmware" / "winches.c"
+HEADER = Path("/usr/include/simavr/sim_avr.h")
+
+
+class Plant(ctypes.Structure):
+    """A winch with its motor; see `winch_bench.c`. Places are counts of the encoder."""
+
+    _fields_ = (
+        *[(name, ctypes.c_int) for name in ("duty", "control", "bit", "port", "direction", "adc")],
+        ("encoder", ctypes.c_char),
+        *[(name, ctypes.c_int) for name in ("channel", "block")],
+        *[
+            (name, ctypes.c_double)
+            for name in ("angle", "speed", "current", "stiffness", "slack", "wire", "fastest", "least", "most")
+        ],
+        ("cut", ctypes.c_int),
+    )
+
+
+@cache
+def folder() -> Path:
+    """Where this run of the tests builds."""
+    if not (shutil.which("avr-gcc") and shutil.which("gcc") and HEADER.exists()):
+        pytest.skip("avr-gcc, gcc or libsimavr-dev is not installed")
+    made = Path(tempfile.mkdtemp(prefix="winches"))
+    options = ["-O2", "-shared", "-fPIC", "-o", str(made / "bench.so"), str(SOURCE)]
+    subprocess.run(["gcc", *options, "-lsimavr", "-lm"], check=True)
+    return made
+
+
+@cache
+def program(chip: str) -> Path:
+    """The firmware of two winches, built."""
+    path = folder() / f"{chip}.elf"
+    options = ["-std=gnu11", "-Os", "-Wall", "-Wextra", "-Werror", "-DF_CPU=16000000UL", f"-mmcu={chip}"]
+    subprocess.run(["avr-gcc", *options, "-o", str(path), str(FIRMWARE), "-lm"], check=True)
+    return path
+
+
+class Board:
+    """A board that is switched on; as a serial port it has pyserial's methods."""
+
+    def __init__(self, chip: str = "atmega328p") -> None:
+        """Start the firmware on a chip."""
+        self._bench = ctypes.CDLL(str(folder() / "bench.so"))
+        self._bench.bench_plant.restype = ctypes.POINTER(Plant)
+        self._bench.bench_seconds.restype = ctypes.c_double
+        assert self._bench.bench_start(str(program(chip)).encode(), chip.encode()) == 0
+        self.winches = [self._bench.bench_plant(index).contents for index in range(2)]
+        self.timeout: float | None = 0.02
+        self._got = b""
+        self.number = 0
+        self.run(0.01)
+
+    def run(self, seconds: float) -> None:
+        """Let so much of its time pass."""
+        assert self._bench.bench_run(round(1e6 * seconds)) == 0
+        into = ctypes.create_string_buffer(1 << 16)
+        count = self._bench.bench_heard(into, len(into))
+        self._got += into.raw[:count]
+
+    def clock(self) -> float:
+        """Its time [s]."""
+        return self._bench.bench_seconds()
+
+    def write(self, data: bytes) -> int:
+        """Send bytes to it."""
+        self._bench.bench_send(data, len(data))
+        return len(data)
+
+    def read(self, size: int) -> bytes:
+        """Bytes from it."""
+        until = self.clock() + (self.timeout or 0.0)
+        while len(self._got) < size and self.clock() < until:
+            self.run(0.5e-3)
+        found, self._got = self._got[:size], self._got[size:]
+        return found
+
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that are here."""
+        return len(self._got)
+
+    def close(self) -> None:
+        """Let it go."""
+
+    def hang(self) -> None:
+        """Let its program hang."""
+        self._bench.bench_hang()
+
+    def ask(self, words: str, *, number: int | None = None) -> str:
+        """What it answers to a line, without number and checksum."""
+        self.number = (self.number + 1) % 256 if number is None else number
+        return self.ask_bytes(line(f"{self.number} {words}"))
+
+    def ask_bytes(self, data: bytes) -> str:
+        """What it answers to bytes."""
+        self._got = b""
+        self.write(data)
+        self.run(40e-6 * len(data) + 10e-3)
+        text, self._got = self._got.decode(), b""
+        assert all(line(each.partition("*")[0]).decode() == each for each in text.splitlines(keepends=True)), text
+        return " ".join(each.partition("*")[0].partition(" ")[2] for each in text.splitlines())
+
+    def keep(self, seconds: float, words: str = "R") -> str:
+        """Talk to it for so long, 25 times a second."""
+        said = ""
+        for _ in range(round(25 * seconds)):
+            said = self.ask(words)
+            self.run(0.03)
+        return said
+
+
+def line(text: str) -> bytes:
+    """A line with its checksum, CRC-16 of Modbus, computed here bit by bit."""
+    check = 0xFFFF
+    for byte in text.encode():
+        check ^= byte
+        for _ in range(8):
+            check = check >> 1 ^ (0xA001 if check & 1 else 0)
+    return f"{text}*{check:04X}\n".encode()

@@ -1,0 +1,151 @@
+"""The firmware in closed loop. Oracles: motors by their own equations (`winch_bench.c`), limits it was built with."""
+
+import pytest
+from firmware_bench import Board, line
+
+FULL = "A 1500 1500"  # armed with all the current that its settings allow
+DEADLINE = 0.25  # motors stand so long after the last good line [s]
+
+
+@pytest.mark.parametrize("chip", ["atmega328p", "atmega2560"])
+def test_two_winches_reach_their_goals_against_springs(chip: str) -> None:
+    """Within four counts of 4,000, at no more than the speeds asked for and 20 %, with little overshoot."""
+    board = Board(chip)
+    name = {"atmega328p": "uno", "atmega2560": "mega"}[chip]
+    assert board.ask("I") == f"ok hydrostat 1 {name} trial 2 200 started"
+    assert board.ask(FULL) == "ok"
+    for winch in board.winches:
+        winch.stiffness, winch.slack = 5e-4, 100.0
+    assert board.ask("G 900 2000 400 1000") == "ok"
+    said = board.keep(2.0).split()
+    assert said[:3] == ["ok", "armed", "0"]
+    for told, goal, fastest, winch in zip(said[3::2], (900, 400), (2000, 1000), board.winches, strict=True):
+        assert abs(int(told) - goal) <= 4
+        assert winch.angle == pytest.approx(int(told) + 0.5, abs=1.0)
+        assert 0.8 * fastest < winch.fastest < 1.2 * fastest
+        assert winch.most < goal + 25
+    assert 0.25 < board.winches[0].current < 0.6  # what the spring pulls, 0.4 A, give or take friction
+    assert int(said[4]) == pytest.approx(1000 * abs(board.winches[0].current), abs=150)
+
+
+def test_silence_stops_motors() -> None:
+    """A board that hears nothing good stands within the deadline, says so, and takes no goals until it is armed."""
+    board = Board()
+    board.ask(FULL)
+    board.ask("G 4000 1000 4000 1000")
+    board.run(0.1)
+    assert board.winches[0].speed > 800
+    for _ in range(6):  # lines that are not good are no sign of life
+        board.ask_bytes(b"7 R*0000\n")
+        board.run(0.005)
+    board.run(DEADLINE - 0.1 - 6 * 0.0134)
+    where = board.winches[0].angle
+    board.run(0.2)
+    assert abs(board.winches[0].angle - where) < 6  # one that went on would be 200 farther
+    assert board.winches[0].angle < 500
+    assert board.ask("R").startswith("ok silent 0 ")
+    assert board.ask("G 100 100 100 100") == "no silent"
+    assert board.ask(FULL) == "ok"
+    assert board.ask("G 100 1000 100 1000") == "ok"
+    board.keep(0.6)
+    assert board.winches[0].angle == pytest.approx(100.5, abs=3)
+
+
+def test_a_program_that_hangs_is_reset_and_lets_go() -> None:
+    """The hardware watchdog switches the bridges off within the deadline; the board says why it started."""
+    board = Board()
+    board.ask(FULL)
+    board.ask("G 4000 1000 4000 1000")
+    board.run(0.1)
+    board.hang()
+    board.run(DEADLINE)
+    where = board.winches[0].angle
+    board.run(0.1)
+    assert board.winches[0].angle == where
+    assert board.ask("I").endswith(" watchdog")
+    assert board.ask("R").startswith("ok off 0 ")
+
+
+@pytest.mark.parametrize(("current", "word"), [(300, "current"), (1500, "stall")])
+def test_a_shaft_that_is_held_stops_its_motor(current: int, word: str) -> None:
+    """By its bound of current, or because it does not turn; all motors lose power, and the answer names it."""
+    board = Board()
+    board.ask(f"A 1500 {current}")
+    board.winches[1].block = 1
+    board.winches[1].wire = 6.0
+    board.ask("G 500 500 500 500")
+    said = board.keep(1.0)
+    assert said.startswith(f"ok {word} 2 "), said
+    assert all(abs(winch.current) < 0.05 for winch in board.winches)
+    assert board.ask("G 0 100 0 100") == f"no {word}"
+
+
+def test_an_encoder_that_is_cut_stops_its_motor() -> None:
+    """It runs at full power and is not seen to turn."""
+    board = Board()
+    board.ask(FULL)
+    board.winches[0].cut = 1
+    board.ask("G 500 500 500 500")
+    assert board.keep(0.8).startswith("ok stall 1 ")
+    assert board.winches[0].angle < 4000
+
+
+def test_lines_that_are_not_good_are_refused_in_words() -> None:
+    """Nothing moves; each is told why."""
+    board = Board()
+    assert board.ask("G 10 10 10 10") == "no off"
+    assert board.ask(FULL) == "ok"
+    good = line(f"{board.number + 1} G 500 1000 500 1000")
+    assert board.ask_bytes(good.replace(b"500", b"600", 1)) == "no checksum"
+    assert board.ask_bytes(good[:-6] + b"\n") == "no checksum"
+    assert board.ask_bytes(line("G 500 1000 500 1000")) == "no number"
+    assert board.ask_bytes(b"9" * 300) == "no long"
+    assert board.ask_bytes(b"\n") == "no checksum"
+    assert board.ask_bytes(good[:12]) == ""
+    board.run(0.1)
+    assert board.read(99).startswith(b"? no half*")
+    assert board.ask("G 10 10 10 10", number=board.number) == "no old"
+    assert board.ask("G 10 10 10 10", number=(board.number - 5) % 256) == "no old"
+    board.number += 5
+    assert board.ask(FULL) == "ok"
+    for words, why in (
+        ("G 500 1000 500", "goals"),
+        ("G 500 1000 500 x", "goals"),
+        ("G 4001 100 0 100", "limit"),
+        ("G 0 100 -201 100", "limit"),
+        ("A 1501 100", "current"),
+        ("A 0 100", "current"),
+        ("A 100", "currents"),
+        ("Q", "word"),
+    ):
+        assert board.ask(words) == f"no {why}"
+    assert max(winch.most for winch in board.winches) < 1.5
+
+
+def test_limits_of_place_and_speed_hold_whatever_is_asked() -> None:
+    """From one end to the other, asked for ten times the speed; then power is off."""
+    board = Board()
+    board.ask(FULL)
+    for goal, seconds in ((4000, 2.0), (-200, 1.9)):
+        board.ask(f"G {goal} 30000 0 1")
+        board.keep(seconds)
+        assert board.winches[0].angle == pytest.approx(goal + 0.5, abs=3)
+    assert board.winches[0].fastest < 1.2 * 3000
+    assert board.winches[0].least > -230
+    assert board.winches[0].most < 4030
+    board.ask("O")
+    assert all(winch.current == pytest.approx(0.0, abs=0.05) for winch in board.winches)
+
+
+def test_a_stop_stops_at_once_even_when_it_is_old() -> None:
+    """Motors stand where they are, with torque."""
+    board = Board()
+    board.ask(FULL)
+    board.ask("G 4000 1500 4000 1500")
+    board.run(0.1)
+    where = board.winches[0].angle
+    board.ask("S", number=board.number)
+    said = board.keep(0.4)
+    assert board.winches[0].angle - where < 120
+    assert abs(board.winches[0].speed) < 20
+    assert said.startswith("ok armed 0 ")

@@ -1,0 +1,153 @@
+/* The firmware in simavr, in closed loop with DC motors, gears, encoders, spools and cables; driven from Python by ctypes.
+   Oracle: equations of a brushed motor, integrated at 20 kHz; they know nothing of the firmware but its pins. */
+#include <math.h>
+#include <simavr/avr_adc.h>
+#include <simavr/avr_ioport.h>
+#include <simavr/avr_uart.h>
+#include <simavr/sim_avr.h>
+#include <simavr/sim_elf.h>
+#include <simavr/sim_io.h>
+#include <string.h>
+
+#define STEP 800 /* cycles */
+typedef struct {
+    int duty, control, bit, port, direction, adc; /* addresses in memory */
+    char encoder;
+    int channel, block; /* block: the shaft is held fast */
+    double angle, speed, current, stiffness, slack, wire, fastest, least, most;
+    int cut; /* the encoder's cable is cut */
+} Plant;
+
+static avr_t *avr;
+static Plant plants[2];
+static char got[1 << 16];
+static int got_bytes;
+static unsigned char queue[4096];
+static int queued, sent;
+static avr_irq_t *uart_in;
+static avr_cycle_count_t byte_at, turned;
+
+static void heard(struct avr_irq_t *irq, uint32_t value, void *param) {
+    (void)irq, (void)param;
+    if (got_bytes < (int)sizeof got - 1)
+        got[got_bytes++] = value;
+}
+
+static void pin(char port, int number, int value) {
+    avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port), number), value);
+}
+
+static void encode(Plant *plant) {
+    static const int gray[4] = {0, 1, 3, 2};
+    if (plant->cut)
+        return;
+    int phase = gray[(int)floor(plant->angle) & 3];
+    pin(plant->encoder, plant->channel, phase & 1);
+    pin(plant->encoder, plant->channel + 1, phase >> 1);
+}
+
+/* Units: counts of the encoder [1], s, A, V. 12 V, 3600 counts/s without load, 2 A at stall, 20 ms to speed. */
+static avr_cycle_count_t turn(avr_t *unused, avr_cycle_count_t when, void *param) {
+    (void)unused, (void)param;
+    turned = when;
+    const double dt = STEP / 16e6, volts_by_speed = 12.0 / 3600, rise = 3600 / (0.02 * 2);
+    for (int i = 0; i < 2; i++) {
+        Plant *plant = &plants[i];
+        uint8_t *data = avr->data;
+        int driven = data[plant->control] >> plant->bit & 1;
+        double volts = driven ? 12 * (data[plant->duty] + 1) / 256.0 : 0;
+        if (!(data[plant->port] >> plant->direction & 1))
+            volts = -volts;
+        plant->current = (volts - volts_by_speed * plant->speed) / (6 + plant->wire);
+        double pull = plant->stiffness * fmax(0, plant->angle - plant->slack); /* in amperes of the motor */
+        double force = plant->current - pull, friction = 0.05;
+        if (plant->speed == 0 && fabs(force) < friction)
+            force = 0;
+        else
+            force -= copysign(friction, plant->speed != 0 ? plant->speed : force);
+        double before = plant->speed;
+        plant->speed += dt * rise * force;
+        if (before * plant->speed < 0 || plant->block)
+            plant->speed = 0;
+        plant->angle += dt * plant->speed;
+        plant->fastest = fmax(plant->fastest, fabs(plant->speed));
+        plant->least = fmin(plant->least, plant->angle);
+        plant->most = fmax(plant->most, plant->angle);
+        encode(plant);
+        avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, plant->adc), (int)(1100 * fabs(plant->current)));
+    }
+    if (sent < queued && when >= byte_at) { /* a byte lasts 40 microseconds at 250,000 baud */
+        avr_raise_irq(uart_in, queue[sent++]);
+        byte_at = when + 640;
+    }
+    return when + STEP;
+}
+
+
+
+int bench_start(const char *path, const char *chip) {
+    elf_firmware_t firmware;
+    memset(&firmware, 0, sizeof firmware);
+    if (elf_read_firmware(path, &firmware))
+        return 1;
+    avr = avr_make_mcu_by_name(chip);
+    if (!avr || avr_init(avr))
+        return 2;
+    avr->log = LOG_NONE;
+    firmware.frequency = 16000000;
+    avr_load_firmware(avr, &firmware);
+    avr->frequency = 16000000;
+    avr->avcc = avr->aref = avr->vcc = 5000;
+    uint32_t flags = 0;
+    avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS('0'), &flags);
+    flags &= ~(AVR_UART_FLAG_STDIO | AVR_UART_FLAG_POLL_SLEEP);
+    avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
+    uart_in = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
+    avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), heard, 0);
+    memset(plants, 0, sizeof plants);
+    got_bytes = queued = sent = 0;
+    byte_at = turned = 0;
+    static const Plant uno[2] = {{.duty = 0x47, .control = 0x44, .bit = 7, .port = 0x2B, .direction = 4, .adc = 4, .encoder = 'C'},
+                                 {.duty = 0x48, .control = 0x44, .bit = 5, .port = 0x2B, .direction = 7, .adc = 5, .encoder = 'C', .channel = 2}};
+    static const Plant mega[2] = {{.duty = 0x98, .control = 0x90, .bit = 7, .port = 0x22, .direction = 0, .adc = 0, .encoder = 'B'},
+                                  {.duty = 0x9A, .control = 0x90, .bit = 5, .port = 0x22, .direction = 1, .adc = 1, .encoder = 'B', .channel = 2}};
+    for (int i = 0; i < 2; i++) {
+        plants[i] = strcmp(chip, "atmega328p") ? mega[i] : uno[i];
+        plants[i].angle = 0.5;
+        plants[i].slack = 1e9;
+        encode(&plants[i]);
+    }
+    avr_cycle_timer_register(avr, STEP, turn, 0);
+    return 0;
+}
+
+void bench_send(const unsigned char *bytes, int count) {
+    if (sent == queued)
+        sent = queued = 0;
+    for (int i = 0; i < count && queued < (int)sizeof queue; i++)
+        queue[queued++] = bytes[i];
+}
+
+/* Run so many microseconds; 1 where the processor crashed. */
+int bench_run(int microseconds) {
+    avr_cycle_count_t until = avr->cycle + 16ull * microseconds;
+    while (avr->cycle < until) {
+        int state = avr_run(avr);
+        if (avr->cycle > turned + 3 * STEP) /* a reset forgets timers */
+            turned = avr->cycle, avr_cycle_timer_register(avr, STEP, turn, 0);
+        if (state == cpu_Done || state == cpu_Crashed)
+            return 1;
+    }
+    return 0;
+}
+
+/* Run on with interrupts of the tick switched off: a program that hangs. */
+void bench_hang(void) { avr->data[0x70] = 0; }
+int bench_heard(char *into, int most) {
+    int bytes = got_bytes < most ? got_bytes : most;
+    memcpy(into, got, bytes);
+    got_bytes = 0;
+    return bytes;
+}
+Plant *bench_plant(int i) { return &plants[i]; }
+double bench_seconds(void) { return avr->cycle / 16e6; }
