@@ -41,10 +41,11 @@ def folder() -> Path:
 
 
 @cache
-def program(chip: str) -> Path:
-    """The firmware of two winches, built."""
-    path = folder() / f"{chip}.elf"
+def program(chip: str, full: bool) -> Path:
+    """The firmware of two winches, or of all that a Mega bears, built."""
+    path = folder() / f"{chip}{full:d}.elf"
     options = ["-std=gnu11", "-Os", "-Wall", "-Wextra", "-Werror", "-DF_CPU=16000000UL", f"-mmcu={chip}"]
+    options += ["-include", str(SOURCE.with_name("full_settings.h"))] if full else []
     subprocess.run(["avr-gcc", *options, "-o", str(path), str(FIRMWARE), "-lm"], check=True)
     return path
 
@@ -52,12 +53,12 @@ def program(chip: str) -> Path:
 class Board:
     """A board that is switched on; as a serial port it has pyserial's methods."""
 
-    def __init__(self, chip: str = "atmega328p") -> None:
+    def __init__(self, chip: str = "atmega328p", *, full: bool = False) -> None:
         """Start the firmware on a chip."""
         self._bench = ctypes.CDLL(str(folder() / "bench.so"))
         self._bench.bench_plant.restype = ctypes.POINTER(Plant)
-        self._bench.bench_seconds.restype = ctypes.c_double
-        assert self._bench.bench_start(str(program(chip)).encode(), chip.encode()) == 0
+        self._bench.bench_seconds.restype = self._bench.bench_pulse.restype = ctypes.c_double
+        assert self._bench.bench_start(str(program(chip, full)).encode(), chip.encode(), int(full)) == 0
         self.winches = [self._bench.bench_plant(index).contents for index in range(2)]
         self.timeout: float | None = 0.02
         self._got = b""
@@ -92,6 +93,10 @@ class Board:
     def in_waiting(self) -> int:
         """Bytes that are here."""
         return len(self._got)
+
+    def pulse(self) -> float:
+        """The last pulse of the first servo [s]."""
+        return self._bench.bench_pulse()
 
     def close(self) -> None:
         """Let it go."""

@@ -149,3 +149,18 @@ def test_a_stop_stops_at_once_even_when_it_is_old() -> None:
     assert board.winches[0].angle - where < 120
     assert abs(board.winches[0].speed) < 20
     assert said.startswith("ok armed 0 ")
+
+
+def test_a_mega_drives_six_motors_and_eight_servos() -> None:
+    """The third motor's encoder is on another port than the first's; a servo's pulse is what was asked."""
+    board = Board("atmega2560", full=True)
+    assert board.ask("I") == "ok hydrostat 1 mega full 14 200 started"
+    assert board.ask("A" + 6 * " 1500" + 8 * " 1") == "ok"
+    goals = "G 500 1500 0 1 300 1500" + 3 * " 0 1" + " 1500 1000" + 7 * " 1000 1000"
+    assert board.ask(goals) == "ok"
+    said = board.keep(1.2).split()
+    assert said[1:3] == ["armed", "0"]
+    assert [int(place) for place in said[3::2]] == pytest.approx([500, 0, 300, 0, 0, 0, 1500] + 7 * [1000], abs=4)
+    assert [winch.angle for winch in board.winches] == pytest.approx([500.5, 300.5], abs=5)
+    assert board.pulse() == pytest.approx(1.5e-3, abs=2e-5)
+    assert board.ask(goals.replace("1500 1000", "2001 1000")) == "no limit"

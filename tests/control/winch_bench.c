@@ -33,7 +33,24 @@ static void heard(struct avr_irq_t *irq, uint32_t value, void *param) {
         got[got_bytes++] = value;
 }
 
+static avr_int_vector_t changed; /* simavr's Mega knows no change of pins of port K */
+static uint8_t pins_k;
+static double rose, pulse; /* of the first servo [s] */
+
+static void servo(struct avr_irq_t *irq, uint32_t value, void *param) {
+    (void)irq, (void)param;
+    if (value)
+        rose = avr->cycle / 16e6;
+    else
+        pulse = avr->cycle / 16e6 - rose;
+}
+
 static void pin(char port, int number, int value) {
+    if (port == 'K' && (pins_k >> number & 1) != value) {
+        pins_k ^= 1 << number;
+        if (avr->data[0x6D] >> number & 1)
+            avr_raise_interrupt(avr, &changed);
+    }
     avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port), number), value);
 }
 
@@ -85,7 +102,7 @@ static avr_cycle_count_t turn(avr_t *unused, avr_cycle_count_t when, void *param
 
 
 
-int bench_start(const char *path, const char *chip) {
+int bench_start(const char *path, const char *chip, int full) {
     elf_firmware_t firmware;
     memset(&firmware, 0, sizeof firmware);
     if (elf_read_firmware(path, &firmware))
@@ -111,8 +128,19 @@ int bench_start(const char *path, const char *chip) {
                                  {.duty = 0x48, .control = 0x44, .bit = 5, .port = 0x2B, .direction = 7, .adc = 5, .encoder = 'C', .channel = 2}};
     static const Plant mega[2] = {{.duty = 0x98, .control = 0x90, .bit = 7, .port = 0x22, .direction = 0, .adc = 0, .encoder = 'B'},
                                   {.duty = 0x9A, .control = 0x90, .bit = 5, .port = 0x22, .direction = 1, .adc = 1, .encoder = 'B', .channel = 2}};
+    pins_k = 0;
+    pulse = 0;
+    memset(&changed, 0, sizeof changed);
+    if (full) {
+        changed.vector = 11;
+        changed.enable = (avr_regbit_t)AVR_IO_REGBIT(0x68, 2);
+        changed.raised = (avr_regbit_t)AVR_IO_REGBIT(0x3B, 2);
+        avr_register_vector(avr, &changed);
+        avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), 0), servo, 0);
+    }
+    static const Plant third = {.duty = 0x9C, .control = 0x90, .bit = 3, .port = 0x22, .direction = 2, .adc = 2, .encoder = 'K'};
     for (int i = 0; i < 2; i++) {
-        plants[i] = strcmp(chip, "atmega328p") ? mega[i] : uno[i];
+        plants[i] = full && i ? third : strcmp(chip, "atmega328p") ? mega[i] : uno[i];
         plants[i].angle = 0.5;
         plants[i].slack = 1e9;
         encode(&plants[i]);
@@ -150,4 +178,5 @@ int bench_heard(char *into, int most) {
     return bytes;
 }
 Plant *bench_plant(int i) { return &plants[i]; }
+double bench_pulse(void) { return pulse; }
 double bench_seconds(void) { return avr->cycle / 16e6; }

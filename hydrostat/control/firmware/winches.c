@@ -14,7 +14,9 @@
 #include <util/atomic.h>
 #include <util/crc16.h>
 
+#ifndef ROBOT /* other settings may come by -include */
 #include "settings.h"
+#endif
 
 #include "board.h"
 
