@@ -15,6 +15,7 @@ from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.control.emulated_line import EmulatedLine
 from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
 from hydrostat.control.feetech_bus import FeetechBus
+from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.guard import GuardLimits, TensionGuard
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
 from hydrostat.control.model_tensions import WinchPull, tensions_along, winch_pulls
@@ -40,6 +41,7 @@ __all__ = [
     "EmulatedServo",
     "EmulatedSts",
     "FeetechBus",
+    "FirmwareBus",
     "GuardLimits",
     "Key",
     "Link",

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.control.firmware_bus import line_of
+
 SOURCE = Path(__file__).with_name("winch_bench.c")
 FIRMWARE = Path(__file__).parents[2] / "hydrostat" / "control" / "firmware" / "winches.c"
 HEADER = Path("/usr/include/simavr/sim_avr.h")
@@ -108,7 +110,7 @@ class Board:
     def ask(self, words: str, *, number: int | None = None) -> str:
         """What it answers to a line, without number and checksum."""
         self.number = (self.number + 1) % 256 if number is None else number
-        return self.ask_bytes(line(f"{self.number} {words}"))
+        return self.ask_bytes(line_of(f"{self.number} {words}"))
 
     def ask_bytes(self, data: bytes) -> str:
         """What it answers to bytes."""
@@ -116,7 +118,7 @@ class Board:
         self.write(data)
         self.run(40e-6 * len(data) + 10e-3)
         text, self._got = self._got.decode(), b""
-        assert all(line(each.partition("*")[0]).decode() == each for each in text.splitlines(keepends=True)), text
+        assert all(line_of(each.partition("*")[0]).decode() == each for each in text.splitlines(keepends=True)), text
         return " ".join(each.partition("*")[0].partition(" ")[2] for each in text.splitlines())
 
     def keep(self, seconds: float, words: str = "R") -> str:
@@ -126,13 +128,3 @@ class Board:
             said = self.ask(words)
             self.run(0.03)
         return said
-
-
-def line(text: str) -> bytes:
-    """A line with its checksum, CRC-16 of Modbus, computed here bit by bit."""
-    check = 0xFFFF
-    for byte in text.encode():
-        check ^= byte
-        for _ in range(8):
-            check = check >> 1 ^ (0xA001 if check & 1 else 0)
-    return f"{text}*{check:04X}\n".encode()

@@ -1,7 +1,9 @@
 """The firmware in closed loop. Oracles: motors by their own equations (`winch_bench.c`), limits it was built with."""
 
 import pytest
-from firmware_bench import Board, line
+from firmware_bench import Board
+
+from hydrostat.control.firmware_bus import line_of
 
 FULL = "A 1500 1500"  # armed with all the current that its settings allow
 DEADLINE = 0.25  # motors stand so long after the last good line [s]
@@ -95,10 +97,10 @@ def test_lines_that_are_not_good_are_refused_in_words() -> None:
     board = Board()
     assert board.ask("G 10 10 10 10") == "no off"
     assert board.ask(FULL) == "ok"
-    good = line(f"{board.number + 1} G 500 1000 500 1000")
+    good = line_of(f"{board.number + 1} G 500 1000 500 1000")
     assert board.ask_bytes(good.replace(b"500", b"600", 1)) == "no checksum"
     assert board.ask_bytes(good[:-6] + b"\n") == "no checksum"
-    assert board.ask_bytes(line("G 500 1000 500 1000")) == "no number"
+    assert board.ask_bytes(line_of("G 500 1000 500 1000")) == "no number"
     assert board.ask_bytes(b"9" * 300) == "no long"
     assert board.ask_bytes(b"\n") == "no checksum"
     assert board.ask_bytes(good[:12]) == ""

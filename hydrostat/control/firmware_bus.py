@@ -1,0 +1,177 @@
+"""`FirmwareBus`: motors on an Arduino that runs our own firmware (`firmware/winches.c`)."""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import ClassVar
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+from hydrostat.errors import HydrostatError
+
+PROOF = 0.05  # current at which the watchdog is tried [A]
+
+
+class FirmwareBus(Bus):
+    """Motors of one board, numbered from 1 in the order of its settings.
+
+    Currents are without a sign: the board measures how much, not which way. What the board refuses is told with the
+    next reading, as a fault of all its motors.
+    """
+
+    kind: ClassVar[str] = "firmware"
+
+    def __init__(
+        self,
+        port: Port,
+        counts: Sequence[float],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        wait: Callable[[float], None] = time.sleep,
+        answer: float = 0.05,
+    ) -> None:
+        """A board on a port.
+
+        Args:
+            port: an open serial line, at 250,000 baud.
+            counts: of each motor's encoder in a turn of its spool.
+            clock: that only runs forward [s].
+            wait: lets so much time pass [s].
+            answer: longest time for an answer [s].
+        """
+        self._port, self._clock, self._wait, self._answer = port, clock, wait, answer
+        self._scale = np.asarray(counts, dtype=np.float64) / (2 * np.pi)  # counts by radian
+        self._lock, self._number, self._heard, self._refused = threading.RLock(), 0, b"", ""
+        self._known = self._closed = False
+        nothing = np.full(len(self._scale), np.nan)
+        self._last = Reading(
+            angles=nothing,
+            currents=nothing,
+            temperatures=nothing,
+            volts=nothing,
+            stamps=np.full(len(self._scale), -np.inf),
+            faults=("",) * len(self._scale),
+        )
+
+    def identify(self) -> tuple[MotorFacts, ...]:
+        """Facts of the board's motors, torque off; its deadline is tried by a moment of silence."""
+        with self._lock:
+            told = self._surely("I").split()
+            if told[:2] != ["ok", "hydrostat"] or len(told) < 7:
+                raise HydrostatError("what answers on this port is not hydrostat's firmware; flash it first")
+            if int(told[5]) != len(self._scale):
+                raise HydrostatError(f"the board was built for {told[5]} motors, and {len(self._scale)} are asked for")
+            proved = self._stops_by_itself(1e-3 * float(told[6]))
+            self._must("O", "to let go")
+            self._known = True
+            facts = {"model": f"{told[3]} ({told[4]})", "firmware": int(told[2]), "watchdog": proved}
+            return tuple(MotorFacts(number=index + 1, **facts) for index in range(len(self._scale)))
+
+    def arm(self, currents: Vector) -> None:
+        """Switch torque on where they stand; the board refuses more current than its settings allow."""
+        with self._lock:
+            bounds = " ".join(str(max(1, round(1e3 * most))) for most in currents.tolist())
+            self._must(f"A {bounds}", "its bounds of current")
+
+    def read(self) -> Reading:
+        """What was last heard of each."""
+        with self._lock:
+            told = (self._ask("R") or "").split()
+            if len(told) == 3 + 2 * len(self._scale) and told[0] == "ok":
+                numbers = np.array(told[3:], dtype=np.float64)
+                faults = [f"refused: {self._refused}" if self._refused else ""] * len(self._scale)
+                if told[1] not in ("armed", "off"):
+                    faults = [f"board stopped: {told[1]}"] * len(faults)
+                if told[2] != "0":
+                    faults[int(told[2]) - 1] = told[1]
+                self._refused = ""
+                self._last = Reading(
+                    angles=numbers[::2] / self._scale,
+                    currents=1e-3 * numbers[1::2],
+                    temperatures=self._last.temperatures,
+                    volts=self._last.volts,
+                    stamps=np.full(len(self._scale), self._clock()),
+                    faults=tuple(faults),
+                )
+            return self._last
+
+    def write(self, angles: Vector, speeds: Vector) -> None:
+        """Send goals and speeds; the answer is looked at with the next reading."""
+        goals, rates = np.rint(angles * self._scale), np.maximum(1, np.rint(np.abs(speeds) * self._scale))
+        pairs = zip(goals.astype(int).tolist(), rates.astype(int).tolist(), strict=True)
+        with self._lock:
+            self._send("G " + " ".join(f"{goal} {rate}" for goal, rate in pairs))
+
+    def stop(self) -> None:
+        """Let them stand, told three times."""
+        with suppress(Exception), self._lock:
+            if self._known and not self._closed:
+                for _ in range(3):
+                    self._send("S")
+
+    def close(self) -> None:
+        """Stop; they hold until the power is off."""
+        self.stop()
+        with suppress(Exception), self._lock:
+            self._closed = True
+            self._port.close()
+
+    def _stops_by_itself(self, deadline: float) -> bool:
+        """Whether the board, armed where it stands, says that silence stopped it."""
+        self._must("A" + f" {round(1e3 * PROOF)}" * len(self._scale), "a small current")
+        self._wait(deadline + 0.05)
+        return (self._ask("R") or "").startswith("ok silent ")
+
+    def _must(self, words: str, name: str) -> None:
+        told = self._surely(words)
+        if told != "ok":
+            raise HydrostatError(f"the board did not take {name}; it says: {told}")
+
+    def _surely(self, words: str) -> str:
+        """The answer to a line, asked up to three times (HydrostatError: none)."""
+        for _ in range(3):
+            if (told := self._ask(words)) is not None:
+                return told
+        raise HydrostatError("the board does not answer; look at its power, its cable and the baud rate, 250000")
+
+    def _send(self, words: str) -> int:
+        self._number = (self._number + 1) % 256
+        try:
+            self._port.write(line_of(f"{self._number} {words}"))
+        except (OSError, ValueError, TypeError) as error:
+            raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+        return self._number
+
+    def _ask(self, words: str) -> str | None:
+        """The answer to a line, None after the time."""
+        number, until = self._send(words), self._clock() + self._answer
+        while (left := until - self._clock()) > 0:
+            while b"\n" in self._heard:
+                text, _, self._heard = self._heard.partition(b"\n")
+                told = text.decode("ascii", "replace").rpartition("*")[0]
+                if line_of(told) != text + b"\n":
+                    continue
+                mark, _, rest = told.partition(" ")
+                if mark == str(number):
+                    return rest
+                if rest.startswith("no "):
+                    self._refused = rest[3:]
+            self._port.timeout = left
+            try:
+                self._heard += self._port.read(1) + self._port.read(getattr(self._port, "in_waiting", 0))
+            except (OSError, ValueError, TypeError) as error:
+                raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
+        return None
+
+
+def line_of(text: str) -> bytes:
+    """A line of the firmware's, with its checksum: CRC-16 of Modbus."""
+    check = 0xFFFF
+    for byte in text.encode():
+        check ^= byte
+        for _ in range(8):
+            check = check >> 1 ^ (0xA001 if check & 1 else 0)
+    return f"{text}*{check:04X}\n".encode()
