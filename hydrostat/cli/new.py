@@ -81,7 +81,10 @@ def new(
     )
     seconds = asked("--within", within, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
     with _made_whole(name) as folder:
-        lines = _begin(source, folder, wish, seconds)
+        try:
+            lines = _begin(source, folder, wish, seconds)
+        except InputError as error:
+            raise _of_option(error) from None
         with patiently("reading it back, and drawing it ..."):
             made = _draw(folder)
     count = len(made.body.mesh.nodes)
@@ -89,6 +92,13 @@ def new(
         lines.append(f"nodes: {nodes} were asked for, {count} come nearest, as thin places need finer elements")
     told = [line.replace(str(folder), str(name)) for line in lines]
     _print_made(made, name, told, chosen=bool(nodes or element_size))
+
+
+def _of_option(error: InputError) -> InputError:
+    """The same complaint, of a wish as it is written on the command line."""
+    key, colon, rest = str(error).partition(": ")
+    wish = colon and key in ("size", "element_size", "nodes", "thickness", "inflate", "material", "inner")
+    return InputError(f"--{key.replace('_', '-')}: {rest}") if wish else error
 
 
 def _inner(given: str | None) -> "Inner | None":

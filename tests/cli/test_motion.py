@@ -57,7 +57,7 @@ def test_a_table_is_played(run: Run, starfish: Path, tmp_path: Path) -> None:
         (("--dynamic", "--step", "0s"), ("--step 0s", "above 0")),
         (("--dynamic", "--step", "5mm"), ("--step 5mm",)),
         (("--dynamic", "--jacobian"), ("--jacobian",)),
-        (("--dynamic", "--play", "none.csv"), ("none.csv", "cannot be read")),
+        (("--dynamic", "--play", "none.csv"), ("none.csv", "there is no such file")),
         (("--dynamic", "--play", "none.csv", "--contract", "left=5mm"), ("--play", "--contract")),
     ],
 )

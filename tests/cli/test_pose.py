@@ -90,7 +90,7 @@ def test_equal_winches_take_in_the_same(run: Run, starfish: Path, tmp_path: Path
         (("--equal", "left"), "--equal left: name two winches"),
         (("--equal", "left,right", "--equal", "right,feet"), "in two groups"),
         (("--restarts", "-1"), "--restarts -1: must be 0 or more"),
-        (("--drawing", "none.svg"), "none.svg: cannot be read"),
+        (("--drawing", "none.svg"), "none.svg: there is no such file"),
     ],
 )
 def test_bad_options_are_one_line(

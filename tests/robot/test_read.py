@@ -391,7 +391,7 @@ def test_bad_drawing(tmp_path: Path, shapes: str, fragment: str) -> None:
         ),
         (GOOD.encode("utf-16"), "robot.toml, line 1: not UTF-8 text"),
         (GOOD.encode().replace(b"small", b"sm\x00all"), "robot.toml, line 3: not TOML: "),
-        (np.random.default_rng(0).bytes(5_000_000), "robot.toml: has 5 MB, at most 1 MB are read"),
+        (np.random.default_rng(0).bytes(5_000_000), "robot.toml: the file has 5 MB, at most 1 MB are read"),
         (np.random.default_rng(0).bytes(900_000), "not UTF-8"),
         (b"[" * 900_000, "robot.toml"),
         (b"[a]\n" * 200_000, "robot.toml, line 2: not TOML: Cannot declare"),
@@ -429,11 +429,11 @@ def test_paths(tmp_path: Path) -> None:
         ("nowhere", "nowhere/robot.toml: there is no such file"),
         ("nowhere.toml", "nowhere.toml: there is no such file"),
         ("small/body.svg", "body.svg: is neither the folder of a robot nor a robot.toml"),
-        ("small/robot.toml/on", "robot.toml/on/robot.toml: there is no such file"),
+        ("small/robot.toml/on", "robot.toml/on/robot.toml: cannot be read (Not a directory)"),
         ("folder.toml", "folder.toml/robot.toml: is not a file"),
         ("pipe.toml", "pipe.toml: is not a file"),
         ("x" * 300, "cannot be read (File name too long)"),
-        ("a\0b", "there is no such file"),
+        ("a\0b", "cannot be read (embedded null byte)"),
     ],
 )
 def test_no_such_robot(tmp_path: Path, name: str, fragment: str) -> None:
