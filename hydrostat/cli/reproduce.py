@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from hydrostat.cli.folders import OutFolder, require_folder
+from hydrostat.cli.reproduce_trials import TRIALS, reproduce_trials
 from hydrostat.cli.sample import told
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
@@ -40,6 +41,9 @@ def reproduce(
     targets: Annotated[int | None, typer.Option(metavar="N", help="How many targets.")] = None,
     seeds: Annotated[int | None, typer.Option(metavar="N", help="How often networks begin at random.")] = None,
     jobs: Annotated[int, typer.Option(metavar="N", help="Processes that sample; -1: one on each core.")] = -1,
+    model: Annotated[
+        Path | None, typer.Option(metavar="MODEL", help="Networks to learn by trial in; else samples are made.")
+    ] = None,
 ) -> None:
     """Make tables and figures of the thesis again, with our hand and simulator, and ways to learn that it had not.
 
@@ -48,18 +52,30 @@ def reproduce(
     Each answer is rolled out in the simulator. Samples and results go to DIR and are used again. The thesis had another
     hand, and another range of motion.
 
+    Reinforcement learning (section 5.4) has figure-5.8 (one action or ten), figure-5.9 (curricula), figure-5.10
+    (tolerances and errors), figure-5.12 (from anywhere), table-noise and table-reward. It learns in networks of our
+    hand, one number for each finger, several seeds at once, and says which claims hold. Needs the extra rl.
+
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
-    asked = THINGS if "all" in what else tuple(what)
+    asked = (*THINGS, *TRIALS) if "all" in what else tuple(what)
     for name in asked:
-        if name not in THINGS:
-            raise InputError(f"there is no {name!r}; there are: all, {', '.join(THINGS)}")
-    from hydrostat.learning import run_study
-
+        if name not in (*THINGS, *TRIALS):
+            raise InputError(f"there is no {name!r}; there are: all, {', '.join((*THINGS, *TRIALS))}")
     study, bodies = _study(member(Size, size, what="--size"), draw, robots, counts, targets, seeds)
     require_folder(out)
-    loaded, rows = [_robot(name) for name in bodies], list["StudyRow"]()
     out.mkdir(parents=True, exist_ok=True)
+    if tables := [name for name in asked if name in THINGS]:
+        _compare(tables, study, bodies, out, jobs)
+    if trials := [name for name in asked if name in TRIALS]:
+        reproduce_trials(trials, _robot(bodies[0]), out, size=size, model=model, seeds=seeds, jobs=jobs)
+
+
+def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", out: Path, jobs: int) -> None:
+    """Tables and figures of supervised learning."""
+    from hydrostat.learning import run_study
+
+    loaded, rows = [_robot(name) for name in bodies], list["StudyRow"]()
     for robot in loaded:
         for row in run_study(study, robot, out, jobs=jobs, tell=told()):
             if not rows or _group(rows[-1]) != _group(row):

@@ -8,7 +8,13 @@ from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames,
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.grasp_figure import draw_pull, pull_frames
 from hydrostat.plot.healing_figure import draw_healing
-from hydrostat.plot.learning_figures import draw_calibration, draw_errors, draw_losses, draw_side_by_side
+from hydrostat.plot.learning_figures import (
+    draw_calibration,
+    draw_curves,
+    draw_errors,
+    draw_losses,
+    draw_side_by_side,
+)
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
 from hydrostat.plot.picture_file import inline_svg, save_png
@@ -25,6 +31,7 @@ __all__ = [
     "draw_branches",
     "draw_calibration",
     "draw_candidates",
+    "draw_curves",
     "draw_errors",
     "draw_front",
     "draw_growth",

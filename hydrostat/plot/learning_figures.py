@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from scipy.stats import trim_mean
 
 from hydrostat.arrays import Nodes
 from hydrostat.drawing.palette import INK, MUTED, WINCHES
@@ -70,6 +71,32 @@ def draw_losses(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
     axes.yaxis.set_minor_formatter(FuncFormatter(_half))
     axes.tick_params(axis="y", which="minor", labelsize=8, colors=MUTED)
     axes.legend(frameon=False, fontsize=8, labelcolor=INK)
+    return figure
+
+
+def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]], *, width: float = WIDTH) -> Figure:
+    """Curves of learning over the actions taken, a pane for each kind of number, by the words at its axis.
+
+    Each is (actions, numbers), the numbers (epochs, seeds): the line is the mean over the middle half of the seeds, the
+    field what lies between the least and the largest; width in inches.
+    """
+    height = 3.6
+    figure = new_figure(width, height)
+    lower, tall = 1.0 / height, (height - 1.15) / height
+    for number, (words, curves) in enumerate(panes.items()):
+        axes = figure.add_axes((0.09 + 0.5 * number, lower, 0.39, tall))
+        plain_axes(axes)
+        for place, (name, (actions, numbers)) in enumerate(curves.items()):
+            colour = WINCHES[place % len(WINCHES)]
+            middle = trim_mean(numbers, 0.25, axis=1)
+            axes.plot(actions, middle, color=colour, linewidth=1.4, label=name)
+            axes.fill_between(actions, numbers.min(1), numbers.max(1), color=colour, alpha=0.15, linewidth=0)
+        axes.set_ylim(bottom=0.0)
+        axes.set_xlabel("actions", color=INK, fontsize=8.5)
+        axes.set_ylabel(words, color=INK, fontsize=8.5)
+        axes.xaxis.set_major_formatter(FuncFormatter(_short))
+        handles, names = axes.get_legend_handles_labels()
+    figure.legend(handles, names, loc="lower center", ncol=5, frameon=False, fontsize=8, labelcolor=INK)
     return figure
 
 

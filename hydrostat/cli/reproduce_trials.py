@@ -1,0 +1,177 @@
+"""`reproduce_trials`: the thesis's experiments with reinforcement learning, for `hydrostat reproduce`."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from hydrostat.cli.sample import told
+from hydrostat.errors import HydrostatError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from hydrostat.learning import LearnedModel
+    from hydrostat.robot import Robot
+    from hydrostat.training.experiments import Experiment
+    from hydrostat.training.run_experiment import Judged
+
+TRIALS = ("figure-5.8", "figure-5.9", "figure-5.10", "figure-5.12", "table-noise", "table-reward")
+"""What can be reproduced of reinforcement learning; figure-5.10 is figure 5.11 too."""
+
+
+def reproduce_trials(
+    names: Sequence[str], robot: "Robot", out: Path, *, size: str, model: Path | None, seeds: int | None, jobs: int
+) -> None:
+    """Learn in networks of a robot, judge in the simulator, and say which claims of the thesis hold.
+
+    Args:
+        names: of `TRIALS`.
+        robot: which, with contact if its model knows it.
+        out: folder for tables and pictures; the model too, if none is given.
+        size: minutes, hour or full.
+        model: that `hydrostat learn` wrote.
+        seeds: how often each run begins at random.
+        jobs: processes that sample where there is no model.
+    """
+    try:
+        from hydrostat.training.experiments import EXPERIMENTS
+        from hydrostat.training.run_experiment import run_experiment
+    except ModuleNotFoundError as error:
+        raise HydrostatError(f'this needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    from hydrostat.plot import save_png
+    from hydrostat.robot import replace_file
+    from hydrostat.simulation import Simulation
+
+    usual, tell = _SIZES[size], told()
+    networks = _networks(robot, out, model, usual.samples, jobs)
+    networks.check(robot)
+    simulation, width = Simulation(robot), 1e3 * robot.body.mesh.size
+    count = usual.seeds if seeds is None else seeds
+    for name in names:
+        experiment = EXPERIMENTS[name]
+        print(f"\n{name}: {experiment.title}")
+        print(f"{robot.name}, {width:.0f} mm; networks of {networks.facts['samples']} equilibria; {count} seeds:")
+        print(f"interquartile means and their 95 % intervals\n{_WORDS}")
+        done: list[Judged] = []
+        for judged in run_experiment(
+            experiment,
+            networks,
+            simulation,
+            seeds=count,
+            epochs=lambda layer: usual.small if layer < _LARGE else usual.large,
+            goals=usual.goals,
+            tell=tell,
+        ):
+            print(_line(judged, width), flush=True)
+            done.append(judged)
+        kept = _told(experiment, done)
+        replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
+        print(f"Wrote {save_png(_drawn(experiment, done), out / f'{name}.png')} and {name}.json")
+
+
+def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: int) -> "LearnedModel":
+    """The model of a file, or one of samples in which one winch of each pair takes in."""
+    from hydrostat.learning import Draw, learn_model, load_model, plan_samples, read_samples, sample_robot, save_model
+
+    if file is not None:
+        return load_model(file)
+    kept = out / f"{robot.name}-{samples}.model"
+    if not kept.exists():
+        folder = out / f"{robot.name}-{Draw.ANTAGONIST}-train-{samples}"
+        sample_robot(plan_samples(robot, samples, draws=(Draw.ANTAGONIST,)), folder, jobs=jobs, tell=told())
+        save_model(learn_model(read_samples(folder), tell=told()), kept)
+    return load_model(kept)
+
+
+def _line(judged: "Judged", width: float) -> str:
+    """A run in numbers."""
+    from hydrostat.training.experiments import final
+    from hydrostat.training.verdict import interquartile
+
+    ran, exact = judged.ran, judged.exact
+    seeds = interquartile(10.0 * np.nanmean(exact, axis=1))
+    numbers = [
+        _span(interquartile(final(ran)), 2),
+        _span(interquartile(10.0 * ran.epochs.tolerance[-1]), 2),
+        _span(interquartile(10.0 * ran.best[0].mean(axis=1)), 2),
+        _span(interquartile(10.0 * ran.best[-1].mean(axis=1)), 2),
+        _span(seeds, 2),
+    ]
+    lost = int(np.isnan(exact).sum())
+    text = f"{judged.name:18}{int(ran.epochs.actions[-1]):8}" + "".join(f"{number:>19}" for number in numbers)
+    return f"{text}{100 * seeds.mean / width:8.2f}{lost:6}"
+
+
+def _span(found: object, digits: int) -> str:
+    mean, low, high = (getattr(found, name) for name in ("mean", "low", "high"))
+    return f"{mean:.{digits}f} ({low:.{digits}f}-{high:.{digits}f})"
+
+
+def _told(experiment: "Experiment", done: "Sequence[Judged]") -> dict[str, object]:
+    """Say what the claims come to; all numbers, for a file."""
+    from hydrostat.training.verdict import interquartile, verdict
+
+    ran, claims = {judged.name: judged.ran for judged in done}, list[dict[str, object]]()
+    for claim in experiment.claims:
+        values = claim.measure(ran)
+        word = verdict(values, claim.above)
+        print(f"  {claim.text}: {word}, {_span(interquartile(values), 3)} {claim.unit}, above {claim.above:g} claimed")
+        claims.append({"claim": claim.text, "verdict": word, "seeds": values.tolist(), "above": claim.above})
+    runs = {
+        judged.name: {
+            "actions": judged.ran.epochs.actions.tolist(),
+            "success": judged.ran.epochs.success.tolist(),
+            "distance [cm]": judged.ran.epochs.distance.tolist(),
+            "tolerance [cm]": judged.ran.epochs.tolerance.tolist(),
+            "in the simulator [cm]": np.where(np.isnan(judged.exact), -1.0, judged.exact).tolist(),
+        }
+        for judged in done
+    }
+    return {"title": experiment.title, "claims": claims, "runs": runs}
+
+
+def _drawn(experiment: "Experiment", done: "Sequence[Judged]") -> "Figure":
+    """Curves of all runs: interquartile means over the seeds, and what lies between the seeds."""
+    from hydrostat.plot import draw_curves
+
+    words = {
+        "success": ("share of successes", 1.0),
+        "distance": ("mean distance [mm]", 10.0),
+        "tolerance": ("tolerance [mm]", 10.0),
+    }
+    panes = {}
+    for shown in experiment.shown:
+        label, unit = words[shown]
+        panes[label] = {
+            judged.name: (judged.ran.epochs.actions, unit * getattr(judged.ran.epochs, shown)) for judged in done
+        }
+    return draw_curves(panes)
+
+
+class _Trials(NamedTuple):
+    """What a size stands for."""
+
+    samples: int
+    seeds: int
+    small: int
+    large: int
+    goals: int
+
+
+_SIZES = {
+    "minutes": _Trials(300, 3, 12, 3, 20),
+    "hour": _Trials(1000, 5, 60, 12, 60),
+    "full": _Trials(10_000, 10, 200, 50, 1000),
+}
+"""Equilibria that networks learn from, seeds, epochs of small and of large layers, goals in the simulator."""
+
+_LARGE = 100
+"""Layers of so many units are large."""
+
+_WORDS = (
+    f"{'way':18}{'actions':>8}{'success at the end':>19}{'tolerance [mm]':>19}{'1st action [mm]':>19}"
+    f"{'last action [mm]':>19}{'simulator [mm]':>19}{'% size':>8}{'lost':>6}"
+)

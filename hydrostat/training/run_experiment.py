@@ -1,0 +1,92 @@
+"""`run_experiment`: the runs of an experiment with several seeds, and what the simulator makes of the best policies."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from hydrostat.learning import LearnedModel
+from hydrostat.learning.draw import antagonists
+from hydrostat.simulation import Simulation
+from hydrostat.training.experiments import Experiment, Ran
+from hydrostat.training.hindsight_ddpg import HindsightDdpg, Policy
+from hydrostat.training.trials import NetworkReach
+
+Groups = tuple[tuple[int, ...], ...]
+Tell = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Judged:
+    """How the best policies of a run did in the simulator: distances [cm] after the last action, (seeds, goals).
+
+    NaN where an episode met no equilibrium.
+    """
+
+    name: str
+    ran: Ran
+    exact: np.ndarray
+
+
+def finger_pairs(model: LearnedModel) -> Groups:
+    """Winches that work against one another, by the slopes that a model expects at rest; the others alone."""
+    rest = np.clip(np.zeros(len(model.low)), model.low, model.high)
+    return antagonists(model.slopes(rest).T)
+
+
+def run_experiment(
+    experiment: Experiment,
+    model: LearnedModel,
+    simulation: Simulation,
+    *,
+    seeds: int,
+    epochs: Callable[[int], int],
+    goals: int,
+    tell: Tell = lambda *_: None,
+) -> Iterator[Judged]:
+    """Learn in the networks of a model, and judge the best policies of each run in the simulator.
+
+    Args:
+        experiment: what is compared.
+        model: networks of a robot.
+        simulation: of the same robot.
+        seeds: how often each run begins at random.
+        epochs: of a run, by the width of its widest layer.
+        goals: drawn evenly among actions, simulated, and asked for; nothing is learned from them.
+        tell: is told the name of a run, how many of its epochs are done, and of how many.
+    """
+    groups = finger_pairs(model)
+    for name, run in experiment.runs.items():
+        trials = NetworkReach(model, groups=groups, horizon=run.horizon, random_start=run.random_start)
+        many = epochs(max(run.options.layers))
+        learner = HindsightDdpg(trials, run.options, seeds=seeds, epochs=many)
+        done = learner.learn(tell=lambda at, of, name=name: tell(name, at, of))
+        ran = Ran(run=run, epochs=done, best=learner.test(learner.best, _TESTS))
+        yield Judged(name=name, ran=ran, exact=exact_distances(simulation, trials, learner.best, seeds, goals))
+
+
+def exact_distances(simulation: Simulation, trials: NetworkReach, policy: Policy, seeds: int, goals: int) -> np.ndarray:
+    """Distances [cm] after the last action of episodes in the simulator, (seeds, goals); each pose begins from rest."""
+    draw = torch.Generator().manual_seed(_GOALS)
+    begun, _, _ = trials.begin(draw, (1, goals))
+    wanted = trials.contractions(2.0 * torch.rand(1, goals, trials.actions, generator=draw) - 1.0)
+
+    def places(taken: torch.Tensor) -> torch.Tensor:
+        rows = taken.flatten(0, 1).double().numpy()
+        found = simulation.solve_many(rows, jacobians=False, threads=1).markers
+        return torch.tensor(100.0 * found.reshape(*taken.shape[:2], -1), dtype=torch.float32)
+
+    goal = places(wanted).expand(seeds, -1, -1)
+    seen = begun.expand(seeds, -1, -1)
+    with torch.no_grad():
+        for _ in range(trials.horizon):
+            seen = places(trials.contractions(policy(torch.nan_to_num(seen), torch.nan_to_num(goal))))
+    return trials.distances(seen, goal).numpy()
+
+
+_TESTS = 300
+"""Goals that the best policies are tried on in the networks."""
+
+_GOALS = 31_415
+"""Seed of the goals in the simulator."""

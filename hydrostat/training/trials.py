@@ -1,0 +1,185 @@
+"""`Trials`: episodes of many copies of a task at once, as `HindsightDdpg` learns in them."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from hydrostat.errors import HydrostatError
+from hydrostat.learning import LearnedModel
+from hydrostat.learning.train import answer, tensors_of
+
+try:
+    import torch
+    from torch import Tensor
+except ModuleNotFoundError as error:
+    raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+
+Begun = tuple[Tensor, Tensor, Tensor]
+
+
+class Trials(ABC):
+    """Copies of a task, side by side; tensors are (seeds, many, size).
+
+    Attributes:
+        states: numbers of a state.
+        goals: numbers of a goal, and of what is reached.
+        actions: numbers of an action, each from -1 to 1.
+        horizon: actions of an episode (T).
+    """
+
+    states: int
+    goals: int
+    actions: int
+    horizon: int
+
+    @abstractmethod
+    def begin(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
+        """Begin episodes: states, what is reached, goals."""
+
+    @abstractmethod
+    def act(self, acts: Tensor) -> tuple[Tensor, Tensor]:
+        """Do an action in each: states, what is reached."""
+
+    @abstractmethod
+    def distances(self, reached: Tensor, goals: Tensor) -> Tensor:
+        """How far what is reached is from goals, (seeds, many)."""
+
+
+class NetworkReach(Trials):
+    """A robot that brings all its markers to a goal, as a learned model expects it; lengths are in centimetres.
+
+    States and goals are coordinates of the markers, as in the thesis: 15 for a hand. Goals, and where episodes begin if
+    they do not at rest, are where evenly drawn actions lead. Actions are contractions, whatever was before (R79).
+    """
+
+    def __init__(
+        self,
+        model: LearnedModel,
+        *,
+        groups: Sequence[Sequence[int]] = (),
+        horizon: int = 1,
+        random_start: bool = False,
+    ) -> None:
+        """A learned model.
+
+        Args:
+            model: that says where markers go.
+            groups: winches that one number of an action moves, one or two each: above 0 the first takes in cable, below
+                0 the second; each winch alone, from its release to its travel, if left out.
+            horizon: actions of an episode.
+            random_start: whether episodes begin in a pose at random.
+        """
+        self.horizon, self._random = horizon, random_start
+        self._dim, self._count = model.facts["dim"], len(model.facts["markers"]) * model.facts["dim"]
+        self.states = self.goals = self._count
+        self._low, self._high = (torch.tensor(part, dtype=torch.float32) for part in (model.low, model.high))
+        self._groups = [tuple(group) for group in groups] or [(one,) for one in range(len(model.low))]
+        self._coupled = any(len(group) == 2 for group in self._groups)
+        self.actions = len(self._groups)
+        self._networks = tensors_of(model.forward)
+        self._middle, self._unit = (
+            torch.tensor(100.0 * part[: self._count], dtype=torch.float32) for part in (model.middle, model.unit)
+        )
+        zero = torch.zeros(1, 1, len(model.low)).clamp(self._low, self._high)
+        self.rest = self._places(zero)[0, 0]
+
+    def begin(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
+        """Begin at rest, or anywhere."""
+
+        def anywhere() -> Tensor:
+            return self.reach(2.0 * torch.rand(*shape, self.actions, generator=draw) - 1.0)
+
+        goals = anywhere()
+        states = anywhere() if self._random else self.rest.expand(*shape, -1)
+        return states, states, goals
+
+    def act(self, acts: Tensor) -> tuple[Tensor, Tensor]:
+        """Where contractions lead."""
+        reached = self.reach(acts)
+        return reached, reached
+
+    def distances(self, reached: Tensor, goals: Tensor) -> Tensor:
+        """Mean distance of the markers [cm] (E45: a distance, not its square)."""
+        return (reached - goals).unflatten(-1, (-1, self._dim)).norm(dim=-1).mean(-1)
+
+    def reach(self, acts: Tensor) -> Tensor:
+        """Coordinates of the markers [cm] after actions."""
+        return self._places(self.contractions(acts))
+
+    def contractions(self, acts: Tensor) -> Tensor:
+        """Contractions [m] of actions."""
+        taken = torch.zeros(*acts.shape[:-1], len(self._low))
+        for number, group in enumerate(self._groups):
+            one, value = group[0], acts[..., number]
+            if len(group) == 2:
+                other = group[1]
+                taken[..., one] = value.clamp(min=0.0) * self._high[one]
+                taken[..., other] = (-value).clamp(min=0.0) * self._high[other]
+            else:
+                low = self._low[one].clamp(min=0.0) if self._coupled else self._low[one]
+                taken[..., one] = low + 0.5 * (value + 1.0) * (self._high[one] - low)
+        return taken
+
+    def _places(self, taken: Tensor) -> Tensor:
+        span = torch.where(self._high > self._low, self._high - self._low, torch.ones(()))
+        scaled = (2.0 * (taken - self._low) / span - 1.0).flatten(0, -2)
+        with torch.no_grad():
+            members = len(self._networks[0])
+            value = answer(self._networks, scaled.expand(members, -1, -1), None)[0].mean(0)
+        return (self._middle + self._unit * value[:, : self._count]).unflatten(0, taken.shape[:-1])
+
+
+class GymnasiumTrials(Trials):
+    """A goal-based environment of gymnasium, such as FetchReach, one copy for each episode; slow, and for reference."""
+
+    def __init__(self, name: str, *, horizon: int, scale: float = 100.0) -> None:
+        """An environment by its name.
+
+        Args:
+            name: as gymnasium knows it.
+            horizon: actions of an episode.
+            scale: what goals are multiplied by: 100 makes centimetres of metres.
+
+        Raises:
+            HydrostatError: there is no such environment here.
+        """
+        import gymnasium
+
+        try:
+            import gymnasium_robotics
+
+            gymnasium.register_envs(gymnasium_robotics)
+        except ModuleNotFoundError as error:
+            raise HydrostatError(f"{name} needs {error.name}; install it: pip install gymnasium-robotics") from None
+        self._make = lambda: gymnasium.make(name, max_episode_steps=horizon)
+        self.horizon, self._scale, self._envs = horizon, scale, list[Any]()
+        probe = self._make()
+        spaces: Any = probe.observation_space
+        self.states, self.goals = spaces["observation"].shape[0], spaces["desired_goal"].shape[0]
+        self.actions = probe.action_space.shape[0]  # type: ignore[index]
+        self._shape = (1, 1)
+
+    def begin(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
+        """Begin an episode in each."""
+        self._shape, many = shape, shape[0] * shape[1]
+        self._envs += [self._make() for _ in range(many - len(self._envs))]
+        seeds = torch.randint(2**31, (many,), generator=draw).tolist()
+        seen = [env.reset(seed=seed)[0] for env, seed in zip(self._envs, seeds, strict=False)]
+        return tuple(self._told(seen, name) for name in ("observation", "achieved_goal", "desired_goal"))  # type: ignore[return-value]
+
+    def act(self, acts: Tensor) -> tuple[Tensor, Tensor]:
+        """Do a step of each."""
+        rows = acts.flatten(0, 1).double().numpy()
+        seen = [env.step(row)[0] for env, row in zip(self._envs, rows, strict=False)]
+        return self._told(seen, "observation"), self._told(seen, "achieved_goal")
+
+    def distances(self, reached: Tensor, goals: Tensor) -> Tensor:
+        """Distances, in the unit of the goals."""
+        return (reached - goals).norm(dim=-1)
+
+    def _told(self, seen: Sequence[dict[str, np.ndarray]], name: str) -> Tensor:
+        scale = 1.0 if name == "observation" else self._scale
+        rows = torch.tensor(np.array([each[name] for each in seen]), dtype=torch.float32)
+        return scale * rows.unflatten(0, self._shape)
