@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from hydrostat.cli.folders import OutFolder, require_folder
-from hydrostat.cli.reproduce_trials import TRIALS, reproduce_trials
 from hydrostat.cli.sample import told
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
@@ -58,6 +57,8 @@ def reproduce(
 
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
+    from hydrostat.cli.reproduce_trials import TRIALS, reproduce_trials
+
     asked = (*THINGS, *TRIALS) if "all" in what else tuple(what)
     for name in asked:
         if name not in (*THINGS, *TRIALS):
