@@ -163,7 +163,7 @@ class _Trials(NamedTuple):
 
 _SIZES = {
     "minutes": _Trials(300, 3, 12, 3, 20),
-    "hour": _Trials(1000, 5, 60, 12, 60),
+    "hour": _Trials(1000, 5, 30, 8, 60),
     "full": _Trials(10_000, 10, 200, 50, 1000),
 }
 """Equilibria that networks learn from, seeds, epochs of small and of large layers, goals in the simulator."""

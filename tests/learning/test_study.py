@@ -96,7 +96,7 @@ def test_the_tables_and_figures_of_the_thesis(
 
     monkeypatch.setattr(reproduce, "_robot", lambda name: replace(robot, name="cupping_hand"))
     monkeypatch.setattr("hydrostat.learning.study.compare", found)
-    reproduce.reproduce(["all"], tmp_path, counts="30", targets=3, jobs=1)
+    reproduce.reproduce(list(reproduce.THINGS), tmp_path, counts="30", targets=3, jobs=1)
     assert "search                  15.000" in capsys.readouterr().out
     table = list(csv.reader((tmp_path / "table-5.1.csv").read_text().splitlines()))
     assert table[1][5:] == ["0.4559", "0.5780", "0.5498", "0.8395", "0.6245", "0.6095", ""]
