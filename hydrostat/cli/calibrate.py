@@ -61,7 +61,7 @@ def calibrate(
 
     emulated = calibration.known() if port == control.EMULATED else calibration
     with one_interrupt(f"{kind}: stopped", signals=(signal.SIGINT, signal.SIGTERM)):
-        bus = control.open_bus(port, emulated, tensions)
+        bus = control.open_bus(port, loaded, emulated, tensions)
         try:
             found, constants = _take_up(kind, bus, folder, calibration, model)
         finally:
@@ -90,6 +90,7 @@ def _take_up(
         print(f"{kind}: {taken.motor.winch}: {words}", flush=True)
 
     found = control.take_up_slack(bus, calibration.motors, model, save)
+    bus.mark()
     return found, np.array([fact.constant for fact in facts])
 
 

@@ -15,6 +15,7 @@ from hydrostat.cli.calibrate import calibrate
 from hydrostat.cli.check import check
 from hydrostat.cli.design import design
 from hydrostat.cli.fabricate import fabricate
+from hydrostat.cli.firmware import firmware
 from hydrostat.cli.grasp import grasp
 from hydrostat.cli.learn import learn
 from hydrostat.cli.materials import materials
@@ -68,6 +69,7 @@ for command in (
     branches,
     pose,
     trajectory,
+    firmware,
     calibrate,
     play,
     animate,

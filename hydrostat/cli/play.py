@@ -102,7 +102,7 @@ def _real_motors(folder: Path, robot: "Robot", profile: "Profile", port: str) ->
     else:
         calibration = control.read_calibration(folder, robot)
     tensions = control.tensions_along(robot, profile)
-    bus = control.open_bus(port, calibration, tensions)
+    bus = control.open_bus(port, robot, calibration, tensions)
     link = control.BusLink(bus, robot.winches, calibration, log=lambda line: print(line, flush=True))
     try:
         constants = np.array([fact.constant for fact in link.identify()])

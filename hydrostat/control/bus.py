@@ -75,9 +75,14 @@ class Bus(ABC):
 
     Attributes:
         kind: words that begin every line about it.
+        forgot: whether its motors have lost their count since they were calibrated; known once they are identified.
     """
 
     kind: ClassVar[str]
+    forgot: bool = False
+
+    def mark(self) -> None:  # noqa: B027 - most motors know their angle by themselves
+        """Remember that the motors are calibrated, where that can be lost (HydrostatError: it cannot be remembered)."""
 
     @abstractmethod
     def identify(self) -> tuple[MotorFacts, ...]:

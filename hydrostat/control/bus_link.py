@@ -110,7 +110,8 @@ class BusLink(Link):
                 self.facts = self._bus.identify()
             except HydrostatError as error:
                 raise self._fault(str(error)) from None
-            self._to(LinkState.CALIBRATED if self._calibration.done else LinkState.IDENTIFIED)
+            done = self._calibration.done and not self._bus.forgot
+            self._to(LinkState.CALIBRATED if done else LinkState.IDENTIFIED)
             for fact, name in zip(self.facts, self._names, strict=True):
                 stops = "stops by itself" if fact.watchdog else "does not stop by itself: its goals stay close ahead"
                 self._say(f"{name}: motor {fact.number}, {fact.model}, firmware {fact.firmware}, {stops}")
@@ -121,6 +122,8 @@ class BusLink(Link):
         with self._lock:
             if self.state in (LinkState.CLOSED, LinkState.IDENTIFIED):
                 needed = "identify the motors" if self.state is LinkState.CLOSED else "calibrate them"
+                if self._bus.forgot:
+                    needed += " anew, as their board was switched off or reset since (docs/motors.md)"
                 raise HydrostatError(f"motors cannot be armed: first {needed}")
             try:
                 self.reading = self._bus.read()

@@ -26,6 +26,7 @@ class WinchMotor:
         radius: of the spool at the zero [m].
         growth: of the radius as cable lies on cable [m/rad].
         current: the most that the motor may draw [A].
+        counts: of its encoder in a turn of the spool; only for motors on a board with our firmware.
     """
 
     winch: str
@@ -35,6 +36,7 @@ class WinchMotor:
     radius: float
     growth: float = 0.0
     current: float = 0.4
+    counts: float | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.number <= 252:
@@ -44,6 +46,8 @@ class WinchMotor:
         for name, value, most in (("radius", self.radius, 0.5), ("current", self.current, 30.0)):
             if not 0 < value <= most:
                 raise InputError(f"{self.winch}: {name} must be above 0 and at most {most:g}, not {value:g}")
+        if self.counts is not None and not 1 <= self.counts <= 1e6:
+            raise InputError(f"{self.winch}: counts must be from 1 to a million, not {self.counts:g}")
         if not 0 <= self.growth <= self.radius:
             raise InputError(f"{self.winch}: growth must be from 0 to the radius, a radian, not {self.growth:g}")
 
@@ -143,6 +147,8 @@ def write_calibration(folder: Path, calibration: Calibration) -> Path:
             f"growth = {float(spool.growth)!r}  # of the radius [m/rad]\n",
             f"current = {float(spool.current)!r}  # at most [A]\n",
         ]
+        if spool.counts is not None:
+            lines.append(f"counts = {float(spool.counts)!r}  # of the encoder in a turn of the spool\n")
     return replace_file(folder / CALIBRATION, "".join(lines).encode())
 
 
@@ -154,6 +160,7 @@ _KEYS: dict[str, tuple[type, ...]] = {
     "radius": (str,),
     "growth": (int, float),
     "current": (int, float),
+    "counts": (int, float),
 }
 
 

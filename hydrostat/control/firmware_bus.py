@@ -28,7 +28,9 @@ class FirmwareBus(Bus):
         self,
         port: Port,
         counts: Sequence[float],
+        numbers: Sequence[int] = (),
         *,
+        robot: str = "",
         clock: Callable[[], float] = time.monotonic,
         wait: Callable[[float], None] = time.sleep,
         answer: float = 0.05,
@@ -38,14 +40,18 @@ class FirmwareBus(Bus):
         Args:
             port: an open serial line, at 250,000 baud.
             counts: of each motor's encoder in a turn of its spool.
+            numbers: of the motors on the board, each once from 1 on; in their order if left out.
+            robot: that the board must have been built for, as in its settings; any if left out.
             clock: that only runs forward [s].
             wait: lets so much time pass [s].
             answer: longest time for an answer [s].
         """
         self._port, self._clock, self._wait, self._answer = port, clock, wait, answer
         self._scale = np.asarray(counts, dtype=np.float64) / (2 * np.pi)  # counts by radian
+        self._order = np.argsort(numbers) if numbers else np.arange(len(self._scale))  # motors as the board has them
         self._lock, self._number, self._heard, self._refused = threading.RLock(), 0, b"", ""
         self._known = self._closed = False
+        self._robot, self.forgot = robot, False
         nothing = np.full(len(self._scale), np.nan)
         self._last = Reading(
             angles=nothing,
@@ -64,16 +70,28 @@ class FirmwareBus(Bus):
                 raise HydrostatError("what answers on this port is not hydrostat's firmware; flash it first")
             if int(told[5]) != len(self._scale):
                 raise HydrostatError(f"the board was built for {told[5]} motors, and {len(self._scale)} are asked for")
+            if self._robot not in ("", told[4]):
+                raise HydrostatError(
+                    f"the board was built for {told[4]}, not for {self._robot} as it is now; "
+                    "`hydrostat firmware` builds and writes it anew"
+                )
+            self.forgot = told[-1] == "new"
             proved = self._stops_by_itself(1e-3 * float(told[6]))
             self._must("O", "to let go")
             self._known = True
             facts = {"model": f"{told[3]} ({told[4]})", "firmware": int(told[2]), "watchdog": proved}
-            return tuple(MotorFacts(number=index + 1, **facts) for index in range(len(self._scale)))
+            return tuple(MotorFacts(number=slot + 1, **facts) for slot in np.argsort(self._order).tolist())
+
+    def mark(self) -> None:
+        """Let the board remember, until its power goes, that the zeros of its motors are known."""
+        with self._lock:
+            self._must("M", "that it is calibrated")
+            self.forgot = False
 
     def arm(self, currents: Vector) -> None:
         """Switch torque on where they stand; the board refuses more current than its settings allow."""
         with self._lock:
-            bounds = " ".join(str(max(1, round(1e3 * most))) for most in currents.tolist())
+            bounds = " ".join(str(max(1, round(1e3 * most))) for most in currents[self._order].tolist())
             self._must(f"A {bounds}", "its bounds of current")
 
     def read(self) -> Reading:
@@ -81,16 +99,17 @@ class FirmwareBus(Bus):
         with self._lock:
             told = (self._ask("R") or "").split()
             if len(told) == 3 + 2 * len(self._scale) and told[0] == "ok":
-                numbers = np.array(told[3:], dtype=np.float64)
+                slots = np.argsort(self._order)
+                numbers = np.array(told[3:], dtype=np.float64).reshape(-1, 2)[slots]
                 faults = [f"refused: {self._refused}" if self._refused else ""] * len(self._scale)
                 if told[1] not in ("armed", "off"):
                     faults = [f"board stopped: {told[1]}"] * len(faults)
                 if told[2] != "0":
-                    faults[int(told[2]) - 1] = told[1]
+                    faults[int(self._order[int(told[2]) - 1])] = told[1]
                 self._refused = ""
                 self._last = Reading(
-                    angles=numbers[::2] / self._scale,
-                    currents=1e-3 * numbers[1::2],
+                    angles=numbers[:, 0] / self._scale,
+                    currents=1e-3 * numbers[:, 1],
                     temperatures=self._last.temperatures,
                     volts=self._last.volts,
                     stamps=np.full(len(self._scale), self._clock()),
@@ -101,7 +120,7 @@ class FirmwareBus(Bus):
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds; the answer is looked at with the next reading."""
         goals, rates = np.rint(angles * self._scale), np.maximum(1, np.rint(np.abs(speeds) * self._scale))
-        pairs = zip(goals.astype(int).tolist(), rates.astype(int).tolist(), strict=True)
+        pairs = np.stack([goals, rates], axis=1)[self._order].astype(int).tolist()
         with self._lock:
             self._send("G " + " ".join(f"{goal} {rate}" for goal, rate in pairs))
 

@@ -11,7 +11,10 @@ from hydrostat.control.calibration import Calibration
 from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
 from hydrostat.control.emulated_servos import EmulatedServo, LiveChain
 from hydrostat.control.feetech_bus import FeetechBus
+from hydrostat.control.firmware_build import robot_word
+from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Robot
 
 EMULATED = "emulated"
 """What is written for motors that are not there, but behave like servos."""
@@ -23,11 +26,12 @@ class EmulatedBus(DynamixelBus):
     kind = EMULATED
 
 
-def open_bus(text: str, calibration: Calibration, tensions: Callable[[Vector], Vector]) -> Bus:
+def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callable[[Vector], Vector]) -> Bus:
     """A bus to the motors of a calibration.
 
     Args:
         text: KIND:PORT or KIND:PORT@BAUD, or "emulated".
+        robot: whose motors they are.
         calibration: of the motors.
         tensions: what the cables of each winch pull together [N], by contractions [m]: the load of emulated motors.
 
@@ -41,7 +45,7 @@ def open_bus(text: str, calibration: Calibration, tensions: Callable[[Vector], V
     kind, _, place = text.partition(":")
     make, usual = _KINDS[kind]
     name, _, baud = place.partition("@")
-    return make(_line(name, int(baud or usual)), [motor.number for motor in calibration.motors])
+    return make(_line(name, int(baud or usual)), robot, calibration)
 
 
 def check_port(text: str) -> None:
@@ -83,8 +87,27 @@ def _line(name: str, baud: int) -> Port:
         raise HydrostatError(f"{name} cannot be opened ({error}); look at the plug, the name and your rights") from None
 
 
-_KINDS: dict[str, tuple[Callable[[Port, list[int]], Bus], int]] = {
-    "dynamixel": (DynamixelBus, 57600),
-    "feetech": (FeetechBus, 1_000_000),
+def _dynamixel(line: Port, _robot: Robot, calibration: Calibration) -> Bus:
+    return DynamixelBus(line, [motor.number for motor in calibration.motors])
+
+
+def _feetech(line: Port, _robot: Robot, calibration: Calibration) -> Bus:
+    return FeetechBus(line, [motor.number for motor in calibration.motors])
+
+
+def _firmware(line: Port, robot: Robot, calibration: Calibration) -> Bus:
+    """Motors of one board, whose settings are those of the robot now."""
+    counts = [motor.counts for motor in calibration.motors]
+    if None in counts:
+        line.close()
+        raise InputError("motors.toml has no counts of the motors' encoders; `hydrostat firmware` adds them")
+    numbers = [motor.number for motor in calibration.motors]
+    return FirmwareBus(line, [count or 0.0 for count in counts], numbers, robot=robot_word(robot, calibration))
+
+
+_KINDS: dict[str, tuple[Callable[[Port, Robot, Calibration], Bus], int]] = {
+    "dynamixel": (_dynamixel, 57600),
+    "feetech": (_feetech, 1_000_000),
+    "firmware": (_firmware, 250_000),
 }
 """What makes a bus of a line, and its usual baud rate."""

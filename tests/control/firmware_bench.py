@@ -4,15 +4,17 @@ import ctypes
 import shutil
 import subprocess
 import tempfile
+import zlib
 from functools import cache
 from pathlib import Path
 
 import pytest
 
+from hydrostat.control.firmware_build import BOARDS, build_firmware
 from hydrostat.control.firmware_bus import line_of
 
 SOURCE = Path(__file__).with_name("winch_bench.c")
-FIRMWARE = Path(__file__).parents[2] / "hydrostat" / "control" / "firmware" / "winches.c"
+FIRMWARE = Path(__file__).parents[2] / "hydrostat" / "control" / "firmware"
 HEADER = Path("/usr/include/simavr/sim_avr.h")
 
 
@@ -43,24 +45,24 @@ def folder() -> Path:
 
 
 @cache
-def program(chip: str, full: bool) -> Path:
-    """The firmware of two winches, or of all that a Mega bears, built."""
-    path = folder() / f"{chip}{full:d}.elf"
-    options = ["-std=gnu11", "-Os", "-Wall", "-Wextra", "-Werror", "-DF_CPU=16000000UL", f"-mmcu={chip}"]
-    options += ["-include", str(SOURCE.with_name("full_settings.h"))] if full else []
-    subprocess.run(["avr-gcc", *options, "-o", str(path), str(FIRMWARE), "-lm"], check=True)
-    return path
+def program(chip: str, settings: str) -> Path:
+    """The firmware with settings, built as `hydrostat firmware` builds it: what is flashed, with its symbols."""
+    board = next(name for name, kind in BOARDS.items() if kind.chip == chip)
+    image = build_firmware(settings, board, folder() / f"{chip}-{zlib.crc32(settings.encode()):x}")
+    return image.with_suffix(".elf")
 
 
 class Board:
     """A board that is switched on; as a serial port it has pyserial's methods."""
 
-    def __init__(self, chip: str = "atmega328p", *, full: bool = False) -> None:
-        """Start the firmware on a chip."""
+    def __init__(self, chip: str = "atmega328p", *, full: bool = False, settings: str = "") -> None:
+        """Start the firmware on a chip: of two winches for trying, of all that a Mega bears, or with settings."""
+        file = SOURCE.with_name("full_settings.h") if full else FIRMWARE / "settings.h"
+        settings = settings or file.read_text()
         self._bench = ctypes.CDLL(str(folder() / "bench.so"))
         self._bench.bench_plant.restype = ctypes.POINTER(Plant)
         self._bench.bench_seconds.restype = self._bench.bench_pulse.restype = ctypes.c_double
-        assert self._bench.bench_start(str(program(chip, full)).encode(), chip.encode(), int(full)) == 0
+        assert self._bench.bench_start(str(program(chip, settings)).encode(), chip.encode(), int(full)) == 0
         self.winches = [self._bench.bench_plant(index).contents for index in range(2)]
         self.timeout: float | None = 0.02
         self._got = b""

@@ -14,7 +14,7 @@ def test_two_winches_reach_their_goals_against_springs(chip: str) -> None:
     """Within four counts of 4,000, at no more than the speeds asked for and 20 %, with little overshoot."""
     board = Board(chip)
     name = {"atmega328p": "uno", "atmega2560": "mega"}[chip]
-    assert board.ask("I") == f"ok hydrostat 1 {name} trial 2 200 started"
+    assert board.ask("I") == f"ok hydrostat 1 {name} trial 2 200 started new"
     assert board.ask(FULL) == "ok"
     for winch in board.winches:
         winch.stiffness, winch.slack = 5e-4, 100.0
@@ -64,7 +64,7 @@ def test_a_program_that_hangs_is_reset_and_lets_go() -> None:
     where = board.winches[0].angle
     board.run(0.1)
     assert board.winches[0].angle == where
-    assert board.ask("I").endswith(" watchdog")
+    assert board.ask("I").endswith(" watchdog new")
     assert board.ask("R").startswith("ok off 0 ")
 
 
@@ -156,7 +156,7 @@ def test_a_stop_stops_at_once_even_when_it_is_old() -> None:
 def test_a_mega_drives_six_motors_and_eight_servos() -> None:
     """The third motor's encoder is on another port than the first's; a servo's pulse is what was asked."""
     board = Board("atmega2560", full=True)
-    assert board.ask("I") == "ok hydrostat 1 mega full 14 200 started"
+    assert board.ask("I") == "ok hydrostat 1 mega full 14 200 started new"
     assert board.ask("A" + 6 * " 1500" + 8 * " 1") == "ok"
     goals = "G 500 1500 0 1 300 1500" + 3 * " 0 1" + " 1500 1000" + 7 * " 1000 1000"
     assert board.ask(goals) == "ok"

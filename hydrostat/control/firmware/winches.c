@@ -67,6 +67,7 @@ static uint8_t culprit;
 static uint8_t silence; /* ticks since a good line */
 static volatile uint8_t ticks;
 static uint8_t cause __attribute__((section(".noinit")));
+static uint8_t marked; /* zeros were found since the power came on: 0 after each start */
 
 /* The watchdog still runs after it has reset the processor: it is switched off before anything else. */
 void begin(void) __attribute__((naked, used, section(".init3")));
@@ -380,6 +381,7 @@ static void identify(uint8_t number) {
     say_number(COUNT);
     say_number(DEADLINE_MS);
     say(cause & 1 << WDRF ? " watchdog" : " started");
+    say(marked ? " marked" : " new");
     end_line();
 }
 
@@ -414,6 +416,7 @@ static void obey(char *line) {
     case 'A': return arm(number, text);
     case 'S': stand(); break;
     case 'O': stand(); state = OFF; break;
+    case 'M': marked = 1; break;
     default: return no(number, "word");
     }
     answer(number, "ok");

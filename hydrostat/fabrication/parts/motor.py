@@ -85,6 +85,7 @@ class Motor:
     stall_torque: float  # at which it stands still, at the voltage that its title or source names [N mm]
     rated_torque: float  # that it should be loaded with at most [N mm]
     speed: float  # without load [rpm]
+    counts: float = 0.0  # of its encoder in a turn of the shaft, all edges; 0: it has none
     mass: float  # [g]
     price: float  # of one, rough [USD]
     price_source: str  # where that is from, and when
@@ -169,13 +170,15 @@ _POLOLU_25D = Motor(
     stall_torque=1373.0,
     rated_torque=343.0,
     speed=35.0,
+    counts=8245.92,
     mass=100.0,
     price=47.0,
     price_source="AUD 72.95 for its sister 4822 at robotgear.com.au, no date, at 0.65 USD",
     source="Pololu, product page 4828: 25 mm wide, 71 mm long with encoder, D shaft 4 x 12.5 mm, stall 14 kg cm "
-    "(extrapolated), 35 rpm. M3 holes 17 mm apart: Core Electronics, on the face of the motor of this family. Load at "
-    "most a quarter of stall: Pololu's forum, thread 14572 (20 to 30 %). Holes of the gearbox, boss (7 x 2.5 mm in a "
-    "public OpenSCAD model), flat of 3.5 mm, depth of the threads, mass: measured on none, check yours.",
+    "(extrapolated), 35 rpm, 48 counts in a turn of the motor, 171.79:1. M3 holes 17 mm apart: Core Electronics, on "
+    "the face of the motor of this family. Load at most a quarter of stall: Pololu's forum, thread 14572 (20 to 30 %). "
+    "Holes of the gearbox, boss (7 x 2.5 mm in a public OpenSCAD model), flat of 3.5 mm, depth of the threads, mass: "
+    "measured on none, check yours.",
 )
 
 MOTORS = (_N20, _XL330, _POLOLU_25D)  # from the weakest to the strongest

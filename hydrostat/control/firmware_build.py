@@ -1,0 +1,157 @@
+"""Firmware of one robot: its settings, built by Debian's avr-gcc, and the command that writes it to a board."""
+
+import re
+import shutil
+import subprocess
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import resources
+from math import pi
+from pathlib import Path
+
+from hydrostat.control.bus_link import LinkLimits
+from hydrostat.control.calibration import CALIBRATION, Calibration
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Robot, replace_file
+
+SPARE = 0.025
+"""What a motor may turn beyond travel and release [m]: slack that calibration takes up."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoardKind:
+    """A board that the firmware is for.
+
+    Attributes:
+        chip: its processor, as compilers call it.
+        motors: geared DC motors with encoders that it bears.
+        loader: how avrdude talks to what it starts with.
+        wiring: for each motor: PWM and direction to the driver, encoder A and B, the driver's current sense.
+    """
+
+    chip: str
+    motors: int
+    loader: tuple[str, ...]
+    wiring: Sequence[tuple[str, str, str, str, str]]
+
+
+BOARDS = {
+    "uno": BoardKind(
+        chip="atmega328p",
+        motors=2,
+        loader=("-c", "arduino", "-b", "115200"),
+        wiring=(("6", "4", "A0", "A1", "A4"), ("5", "7", "A2", "A3", "A5")),
+    ),
+    "mega": BoardKind(
+        chip="atmega2560",
+        motors=6,
+        loader=("-c", "wiring", "-b", "115200", "-D"),
+        wiring=(
+            ("5", "22", "53", "52", "A0"),
+            ("2", "23", "51", "50", "A1"),
+            ("3", "24", "A8", "A9", "A2"),
+            ("6", "25", "A10", "A11", "A3"),
+            ("7", "26", "A12", "A13", "A4"),
+            ("8", "27", "A14", "A15", "A5"),
+        ),
+    ),
+}
+"""By the names that `board.h` gives them; a test holds the pins equal to those there."""
+
+
+def robot_word(robot: Robot, calibration: Calibration) -> str:
+    """The word by which a board says what it was built for: the robot's name, and a sum of its settings."""
+    name = re.sub(r"[^A-Za-z0-9_-]+", "-", robot.name)[:20] or "robot"
+    return f"{name}.{zlib.crc32(_numbers(robot, calibration).encode()):08x}"
+
+
+def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float) -> str:
+    """The text of settings.h for a robot whose motors turn so fast without load [rpm].
+
+    Raises:
+        InputError: motors that are not numbered from 1 without a gap, turn the wrong way, or have no counts.
+    """
+    ordered = sorted(calibration.motors, key=lambda motor: motor.number)
+    if [motor.number for motor in ordered] != list(range(1, len(ordered) + 1)):
+        raise InputError(f"{CALIBRATION}: motors of a board are numbered 1, 2, ... as they are plugged in")
+    for motor in ordered:
+        if motor.counts is None:
+            raise InputError(f'{CALIBRATION}: motor of "{motor.winch}" needs counts, those of its encoder in a turn')
+        if motor.turns != 1:
+            raise InputError(
+                f'{CALIBRATION}: "{motor.winch}" has turns = {motor.turns}; on a board swap the two wires of the '
+                "motor and those of its encoder, A for B, and write 1"
+            )
+    most = max(motor.counts or 0.0 for motor in ordered)
+    return (
+        f"/* Settings of {robot.name}, made by hydrostat firmware from robot.toml and {CALIBRATION}. */\n"
+        f'#define ROBOT "{robot_word(robot, calibration)}"\n'
+        f"#define DCS {len(ordered)}\n#define SERVOS 0\n#define DEADLINE_MS 200\n"
+        f"#define FREE_SPEED {round(rpm / 60 * most)} /* of a motor without load [1/s] */\n"
+        "/* least and greatest place, greatest speed [1/s], acceleration [1/s2], sign of the encoder, current [mA] */\n"
+        f"#define MOTORS {{ \\\n{_numbers(robot, calibration)}}}\n"
+    )
+
+
+def build_firmware(settings: str, board: str, folder: Path) -> Path:
+    """Build the firmware with settings into a folder: settings.h, winches.elf, winches.hex; returns the last.
+
+    Raises:
+        InputError: no such board, or fewer motors than the settings have.
+        HydrostatError: avr-gcc is not there, or it refuses.
+    """
+    kind = board_kind(board)
+    asked = int((re.search(r"#define DCS (\d+)", settings) or [0, 0])[1])
+    if asked > kind.motors:
+        more = " A Mega bears six: --board mega." if board == "uno" and asked <= BOARDS["mega"].motors else ""
+        raise InputError(f"the robot has {asked} motors, and the board {board} bears {kind.motors}.{more}")
+    if not (shutil.which("avr-gcc") and shutil.which("avr-objcopy")):
+        raise HydrostatError("firmware is built by avr-gcc, which is not there; install Debian's gcc-avr and avr-libc")
+    folder.mkdir(parents=True, exist_ok=True)
+    given = replace_file(folder / "settings.h", settings.encode())
+    built, image = folder / "winches.elf", folder / "winches.hex"
+    with resources.as_file(resources.files("hydrostat.control") / "firmware") as sources:
+        flags = ["-std=gnu11", "-Os", "-Wall", "-Wextra", "-Werror", "-DF_CPU=16000000UL", f"-mmcu={kind.chip}"]
+        _run(["avr-gcc", *flags, "-include", str(given), "-o", str(built), str(sources / "winches.c"), "-lm"])
+    _run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", str(built), str(image)])
+    return image
+
+
+def flash_command(board: str, port: str, image: Path) -> list[str]:
+    """The command of avrdude that writes an image to a board on a port."""
+    kind = board_kind(board)
+    return ["avrdude", "-p", kind.chip, *kind.loader, "-P", port, "-U", f"flash:w:{image}:i"]
+
+
+def flash(command: Sequence[str]) -> None:
+    """Write firmware to a board (HydrostatError: avrdude is not there, or it could not)."""
+    if not shutil.which(command[0]):
+        raise HydrostatError("boards are written by avrdude, which is not there; install Debian's avrdude")
+    _run(command)
+
+
+def board_kind(board: str) -> BoardKind:
+    """A board by its name (InputError: no such one)."""
+    if board not in BOARDS:
+        raise InputError(f"--board {board}: there are: {', '.join(BOARDS)}")
+    return BOARDS[board]
+
+
+def _numbers(robot: Robot, calibration: Calibration) -> str:
+    """Limits of the motors in their order, counted from where they stand when the board is switched on."""
+    winches, limits, lines = {winch.name: winch for winch in robot.winches}, LinkLimits(), ""
+    for motor in sorted(calibration.motors, key=lambda each: each.number):
+        winch, counts = winches[motor.winch], (motor.counts or 0.0) / (2 * pi * motor.radius)
+        numbers = [-counts * (winch.release + SPARE), counts * (winch.travel + SPARE)]
+        numbers += [counts * limits.speed, counts * limits.rise]
+        text = ", ".join(str(round(number)) for number in (*numbers, 1, 1e3 * motor.current))
+        lines += f"    {{{text}}}, /* {re.sub(r'[^ -)+-~]', ' ', winch.name)} */ \\\n"
+    return lines
+
+
+def _run(command: Sequence[str]) -> None:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        told = (done.stderr or done.stdout).strip().splitlines() or ["without a word"]
+        raise HydrostatError(f"{command[0]} failed: {told[-1]}")

@@ -1,0 +1,159 @@
+"""Firmware of one robot. Oracles: limits by hand, `board.h`, a false avrdude, the built file in simavr."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import strip_robot
+from firmware_bench import FIRMWARE, Board
+from typer.testing import CliRunner
+
+from hydrostat.cli.main import app
+from hydrostat.control import BusLink, Calibration, LinkState, WinchMotor, read_calibration, usual_calibration
+from hydrostat.control.firmware_build import BOARDS, build_firmware, firmware_settings, robot_word
+from hydrostat.control.firmware_bus import FirmwareBus
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Robot
+
+COUNTS = 1000.0
+
+
+@pytest.fixture
+def robot() -> Robot:
+    """Two winches that take in 30 mm, on spools of 5 mm."""
+    strip = strip_robot(columns=4, rows=1)
+    winches = tuple(replace(each, travel=0.03, release=0.0, spool_radius=0.005) for each in strip.winches[:2])
+    names = {winch.name for winch in winches}
+    return replace(strip, winches=winches, cables=tuple(each for each in strip.cables if each.winch in names))
+
+
+@pytest.fixture
+def motors(robot: Robot) -> Calibration:
+    """Motor 2 on the first winch, motor 1 on the second."""
+    usual = usual_calibration(robot).motors
+    return Calibration(tuple(replace(each, number=3 - each.number, counts=COUNTS) for each in usual))
+
+
+def test_settings_are_the_robots_limits_in_counts(robot: Robot, motors: Calibration) -> None:
+    """By hand: a turn of 31.4 mm has 1,000 counts, so a millimetre has 31.8."""
+    text = firmware_settings(robot, motors, rpm=60.0)
+    assert f'#define ROBOT "{robot_word(robot, motors)}"' in text
+    assert "#define DCS 2\n#define SERVOS 0" in text
+    assert "#define FREE_SPEED 1000 " in text
+    rows = re.findall(r"\{(-?\d+), (\d+), (\d+), (\d+), 1, (\d+)\}, /\* (.*) \*/", text)
+    assert rows == [("-796", "1751", "1910", "31831", "400", name) for name in (w.name for w in robot.winches[::-1])]
+
+
+def test_words_of_boards_change_with_what_they_hold(robot: Robot, motors: Calibration) -> None:
+    word = robot_word(robot, motors)
+    assert re.fullmatch(r"[\w-]+\.[0-9a-f]{8}", word)
+    longer = replace(robot, winches=(replace(robot.winches[0], travel=0.05), *robot.winches[1:]))
+    assert robot_word(longer, motors) != word
+    found = Calibration(tuple(replace(each, zero=1.0) for each in motors.motors))
+    assert robot_word(robot, found) == word
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"counts": None}, "needs counts"),
+        ({"turns": -1}, "swap the two wires of the motor"),
+        ({"number": 5}, "numbered 1, 2, ..."),
+    ],
+)
+def test_motors_that_a_board_cannot_turn_are_refused(
+    robot: Robot, motors: Calibration, change: dict, told: str
+) -> None:
+    wrong = Calibration((replace(motors.motors[0], **change), *motors.motors[1:]))
+    with pytest.raises(InputError, match=re.escape(told)):
+        firmware_settings(robot, wrong, rpm=60.0)
+
+
+def test_a_board_bears_so_many_motors(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="has 3 motors, and the board uno bears 2"):
+        build_firmware("#define DCS 3\n", "uno", tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+    with pytest.raises(InputError, match="--board due: there are: uno, mega"):
+        build_firmware("#define DCS 1\n", "due", tmp_path)
+
+
+def test_pins_that_are_told_are_those_of_the_boards() -> None:
+    """Oracle: the remarks beside the registers in board.h."""
+    lines = [line for line in (FIRMWARE / "board.h").read_text().splitlines() if "&TCCR" in line and "/*" in line]
+    told = [re.findall(r"A?\d+", line.split("/*")[1]) for line in lines]
+    assert told == [list(pins) for kind in BOARDS.values() for pins in kind.wiring]
+
+
+def test_a_robot_on_its_board_is_driven_within_its_limits(robot: Robot, motors: Calibration) -> None:
+    """The built file in simavr behind a link, from a board that knows nothing to winches that arrive."""
+    board = Board(settings=firmware_settings(robot, motors, rpm=216.0))
+    numbers = [each.number for each in motors.motors]
+
+    def link_of(word: str, calibration: Calibration) -> tuple[FirmwareBus, BusLink]:
+        bus = FirmwareBus(board, [COUNTS] * 2, numbers, robot=word, clock=board.clock, wait=board.run)
+        return bus, BusLink(bus, robot.winches, calibration, clock=board.clock)
+
+    with pytest.raises(HydrostatError, match=r"was built for .*, not for another\.0 as it is now"):
+        link_of("another.0", motors)[1].identify()
+    found = Calibration(tuple(replace(each, zero=0.0) for each in motors.motors))
+    bus, link = link_of(robot_word(robot, found), found)
+    assert [fact.number for fact in link.identify()] == [2, 1]
+    with pytest.raises(HydrostatError, match="calibrate them anew, as their board was switched off or reset"):
+        link.arm()
+    bus.mark()
+    bus, link = link_of(robot_word(robot, found), found)
+    link.identify()
+    assert link.state is LinkState.CALIBRATED
+    link.arm()
+    goal = np.array([0.02, 0.005])
+    for _ in range(60):
+        link.send(goal, 0.0, speed=0.05)
+        board.run(0.02)
+        places = link.read(0.0)
+    assert places == pytest.approx(goal, abs=2e-4)
+    turned = [COUNTS * taken / (2 * np.pi * 0.005) for taken in goal]  # motor 2 has the first winch
+    assert [board.winches[1].angle, board.winches[0].angle] == pytest.approx(turned, abs=6)
+    link.close()
+
+
+def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program in place of avrdude notes how it is called; nothing is written without --port."""
+    Board()  # skips where avr-gcc is not there
+    folder = tmp_path / "starfish"
+    run = CliRunner().invoke
+    assert run(app, ["new", str(folder), "--from", "gallery:starfish"]).exit_code == 0
+    tool, noted = tmp_path / "bin" / "avrdude", tmp_path / "noted"
+    tool.parent.mkdir()
+    tool.write_text(f'#!/bin/sh\necho "$@" >> {noted}\n')
+    tool.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tool.parent), prepend=":")
+    few = run(app, ["firmware", str(folder), "--out", str(tmp_path / "few")])
+    assert isinstance(few.exception, InputError)
+    assert not (tmp_path / "few").exists()
+    given = ["firmware", str(folder), "--board", "mega", "--out", str(tmp_path / "built")]
+    shown = run(app, given)
+    assert shown.exit_code == 0, shown.output
+    assert "avrdude -p atmega2560 -c wiring" in shown.output
+    assert not noted.exists()
+    assert all(each.counts == 8245.92 for each in read_calibration(folder, robot_of(folder)).motors)
+    done = run(app, [*given, "--port", "/dev/ttyACM7"])
+    assert done.exit_code == 0, done.output
+    image = tmp_path / "built" / "winches.hex"
+    assert (
+        noted.read_text().split()
+        == f"-p atmega2560 -c wiring -b 115200 -D -P /dev/ttyACM7 -U flash:w:{image}:i".split()
+    )
+    assert image.read_text().startswith(":10")
+
+
+def robot_of(folder: Path) -> Robot:
+    from hydrostat.robot import load_robot
+
+    return load_robot(folder)
+
+
+def test_counts_stand_in_motors_toml() -> None:
+    with pytest.raises(InputError, match="counts must be from 1 to a million"):
+        WinchMotor(winch="left", number=1, radius=0.005, counts=0.0)
