@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import RobotFolder
+from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.waiting import one_interrupt, patiently, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import counted
@@ -43,7 +43,7 @@ def calibrate(
     from hydrostat import control
 
     control.check_port(port)
-    folder = robot if robot.is_dir() else robot.parent
+    folder = folder_of(robot)
     loaded = read_robot(robot)
     if not loaded.winches:
         raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")

@@ -1,4 +1,4 @@
-"""Folders that commands read from and write to: `RobotFolder`, `OutFolder`, `result_folder`."""
+"""Folders that commands read from and write to: `RobotFolder`, `OutFolder`, `folder_of`, `result_folder`."""
 
 import os
 import re
@@ -14,6 +14,11 @@ from hydrostat.errors import InputError
 
 RobotFolder = Annotated[Path, typer.Argument(metavar="ROBOT", help="Folder of a robot, or its robot.toml.")]
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the results; made if need be.")]
+
+
+def folder_of(robot: Path) -> Path:
+    """The folder of a robot that is named by it, or by its robot.toml."""
+    return robot if robot.is_dir() else robot.parent
 
 
 def require_folder(out: Path) -> None:

@@ -14,6 +14,7 @@ from hydrostat.cli.branches import branches
 from hydrostat.cli.calibrate import calibrate
 from hydrostat.cli.check import check
 from hydrostat.cli.design import design
+from hydrostat.cli.drive import drive
 from hydrostat.cli.fabricate import fabricate
 from hydrostat.cli.firmware import firmware
 from hydrostat.cli.grasp import grasp
@@ -72,6 +73,7 @@ for command in (
     firmware,
     calibrate,
     play,
+    drive,
     animate,
     design,
     fabricate,

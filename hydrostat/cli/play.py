@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import RobotFolder
+from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from hydrostat.control import Motors, Player
-    from hydrostat.robot import Robot
-    from hydrostat.simulation import Profile
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: on a terminal, and where lines are kept
 
@@ -62,7 +60,10 @@ def play(
     table, kind = ProfileTable.open(moves, loaded), "simulated" if port is None else port.partition(":")[0]
     simulated = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))))
     simulated.check(table, speed=speed)
-    motors = simulated if port is None else _real_motors(robot, loaded, table.profile, port)
+    motors = simulated
+    if port is not None:
+        pulls = control.tensions_along(loaded, table.profile)
+        motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
     motors.check(table, speed=speed)
     seconds = float(table.profile.times[-1])
     often = {0: "until it is stopped", 1: "once"}.get(loop, f"{loop} times")
@@ -89,31 +90,6 @@ def play(
         motors.link.close()
     newline()
     _say(kind, f"played; the motors hold at {_places(motors)}")
-
-
-def _real_motors(folder: Path, robot: "Robot", profile: "Profile", port: str) -> "Motors":
-    """Motors on a port, armed, with a guard that knows what they should feel along a profile."""
-    import numpy as np
-
-    from hydrostat import control
-
-    if port == control.EMULATED and not (folder / control.CALIBRATION).exists():
-        calibration = control.usual_calibration(robot).known()
-    else:
-        calibration = control.read_calibration(folder, robot)
-    tensions = control.tensions_along(robot, profile)
-    bus = control.open_bus(port, robot, calibration, tensions)
-    link = control.BusLink(bus, robot.winches, calibration, log=lambda line: print(line, flush=True))
-    try:
-        constants = np.array([fact.constant for fact in link.identify()])
-        link.guard = control.TensionGuard(tensions, constants, tuple(winch.name for winch in robot.winches))
-        link.arm()
-        link.watch()
-        places = link.read(time.monotonic())
-    except BaseException:
-        link.close()
-        raise
-    return control.Motors(robot.winches, link, places=places, fastest=link.limits.speed)
 
 
 def _progress(

@@ -1,5 +1,6 @@
 """From contractions in time to motors: a bus and a link to them, motors within limits, playing (R58)."""
 
+from hydrostat.control.arm_motors import arm_motors
 from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
 from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
 from hydrostat.control.calibration import (
@@ -18,9 +19,9 @@ from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.guard import GuardLimits, TensionGuard
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
-from hydrostat.control.model_tensions import WinchPull, tensions_along, winch_pulls
+from hydrostat.control.model_tensions import KnownPulls, WinchPull, tensions_along, winch_pulls
 from hydrostat.control.motors import FASTEST, Motors
-from hydrostat.control.open_bus import EMULATED, check_port, open_bus
+from hydrostat.control.open_bus import EMULATED, check_port, open_bus, open_line
 from hydrostat.control.player import Player, play
 from hydrostat.control.take_up import TakenUp, take_up_slack
 from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_table
@@ -44,6 +45,7 @@ __all__ = [
     "FirmwareBus",
     "GuardLimits",
     "Key",
+    "KnownPulls",
     "Link",
     "LinkLimits",
     "LinkState",
@@ -58,8 +60,10 @@ __all__ = [
     "Timeline",
     "WinchMotor",
     "WinchPull",
+    "arm_motors",
     "check_port",
     "open_bus",
+    "open_line",
     "play",
     "read_calibration",
     "read_timeline",

@@ -103,6 +103,11 @@ class BusLink(Link):
         self._lock, self._over = threading.RLock(), threading.Event()
         self._watch: threading.Thread | None = None
 
+    @property
+    def currents(self) -> Vector | None:
+        """What motors draw, as last heard of, positive as they take cable in [A]."""
+        return None if self.reading is None else self._taking(self.reading)
+
     def identify(self) -> tuple[MotorFacts, ...]:
         """Ask every motor who it is (HydrostatError: one is silent, or another model)."""
         with self._lock:

@@ -33,6 +33,11 @@ class Link(ABC):
 
     near: float = 1e-7
 
+    @property
+    def currents(self) -> Vector | None:
+        """What motors draw, as last heard of, positive as they take cable in [A]; None where there are no currents."""
+        return None
+
     @abstractmethod
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
         """Let the motors go to contractions [m] at so fast a cable [m/s], by a clock [s]; return at once.

@@ -1,4 +1,4 @@
-"""`tensions_along`, `winch_pulls`: what motors should feel while a robot plays, or one winch turns, by simulation."""
+"""`KnownPulls`, `tensions_along`, `winch_pulls`: what motors should feel, by simulation."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.robot import Robot
-from hydrostat.simulation import Profile, Simulation
+from hydrostat.simulation import Profile, Simulation, SolvedPose
 
 SAMPLES = 80
 """Equilibria along a way, at most."""
@@ -40,28 +40,57 @@ class WinchPull:
         return float(self.at(self.taut + beyond)) / beyond
 
 
+class KnownPulls:
+    """What the cables of each winch pull together [N], by contractions [m], in poses that were solved.
+
+    Between poses the nearest two are mixed by their distances. One thread may add while others ask.
+    """
+
+    def __init__(self, robot: Robot, *, near: float = np.inf, most: int = 1000) -> None:
+        """Nothing is known yet; further than `near` [m] from all poses nothing ever is; the oldest are forgotten."""
+        self._robot, self._near, self._most = robot, near, most
+        self._known: tuple[np.ndarray, np.ndarray] = (np.zeros((0, len(robot.winches))), np.zeros((0, 0)))
+
+    def add(self, pose: SolvedPose) -> None:
+        """Remember a pose; one that is no equilibrium is left out."""
+        if not pose.result.converged:
+            return
+        places, pulls = self._known
+        new = _by_winch(self._robot, pose.tensions)[None]
+        more = np.concatenate([pulls, new]) if len(pulls) else new
+        self._known = np.concatenate([places, pose.contractions[None]])[-self._most :], more[-self._most :]
+
+    def nearest(self, contractions: Vector) -> Vector:
+        """Pulls [N] however far the next pose is."""
+        return self._mixed(contractions, np.inf)
+
+    def __call__(self, contractions: Vector) -> Vector:
+        """Pulls [N]; NaN where no pose is near."""
+        return self._mixed(contractions, self._near)
+
+    def _mixed(self, contractions: Vector, near: float) -> Vector:
+        places, pulls = self._known
+        apart = np.abs(places - contractions)
+        away = apart.sum(axis=1)
+        first, second = np.argsort(away)[:2] if len(away) > 1 else (0, 0)
+        if not len(away) or apart[first].max(initial=0.0) > near:
+            return np.full(len(contractions), np.nan)
+        share = away[first] / max(away[first] + away[second], 1e-9)
+        return (1 - share) * pulls[first] + share * pulls[second]
+
+
 def tensions_along(robot: Robot, profile: Profile) -> Callable[[Vector], Vector]:
     """What the cables of each winch pull together [N], by contractions [m] that lie near a profile or its way there.
 
     Equilibria are solved at even steps of the way, from one to the next; between, the nearest two are mixed by their
     distances. A pose that is not found is left out.
     """
-    simulation, known, pulls, pose = Simulation(robot), [], [], None
+    simulation, known, pose = Simulation(robot), KnownPulls(robot), None
     for taken in _samples(profile):
         found = simulation.solve(taken, start=pose, strict=False)
-        if found.result.converged:
-            pose = found
-            known.append(taken)
-            pulls.append(_by_winch(robot, found.tensions))
-    places, forces = np.array(known), np.array(pulls)
-
-    def tensions(contractions: Vector) -> Vector:
-        away = np.abs(places - contractions).sum(axis=1)
-        first, second = np.argsort(away)[:2] if len(away) > 1 else (0, 0)
-        share = away[first] / max(away[first] + away[second], 1e-9)
-        return (1 - share) * forces[first] + share * forces[second]
-
-    return tensions
+        known.add(found)
+        pose = found if found.result.converged else pose
+    return known.nearest
 
 
 def _samples(profile: Profile) -> list[Vector]:

@@ -1,4 +1,4 @@
-"""`open_bus`: motors by words such as dynamixel:/dev/ttyUSB0."""
+"""`open_bus`, `open_line`: motors by words such as dynamixel:/dev/ttyUSB0."""
 
 from collections.abc import Callable
 from typing import cast
@@ -45,7 +45,7 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
     kind, _, place = text.partition(":")
     make, usual = _KINDS[kind]
     name, _, baud = place.partition("@")
-    return make(_line(name, int(baud or usual)), robot, calibration)
+    return make(open_line(name, int(baud or usual)), robot, calibration)
 
 
 def check_port(text: str) -> None:
@@ -63,20 +63,25 @@ def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) ->
     """Servos that stand where nothing is taken in, each with the load of its cables."""
     servos = [EmulatedServo(each.number, angle=each.zero or 0.0, model=1240) for each in calibration.motors]
 
+    chain, known, torques = LiveChain(servos), -1.0, np.zeros(len(servos))
+
     def load(index: int) -> Callable[[float], float]:
-        def torque(angle: float) -> float:
-            taken = np.array([m.contraction(s.angle) for m, s in zip(calibration.motors, servos, strict=True)])
-            taken[index] = calibration.motors[index].contraction(angle)
-            return calibration.motors[index].reach(taken[index]) * float(tensions(taken)[index])
+        def torque(_: float) -> float:
+            nonlocal known, torques
+            if known != chain.now:  # all anew at each step
+                taken = np.array([m.contraction(s.angle) for m, s in zip(calibration.motors, servos, strict=True)])
+                known, torques = chain.now, calibration.radii(taken) * tensions(taken)
+            return float(torques[index])
 
         return torque
 
     for index, servo in enumerate(servos):
         servo.load, servo.constant = load(index), MODELS[servo.model].torque / MODELS[servo.model].stall
-    return EmulatedBus(LiveChain(servos), [servo.number for servo in servos])
+    return EmulatedBus(chain, [servo.number for servo in servos])
 
 
-def _line(name: str, baud: int) -> Port:
+def open_line(name: str, baud: int) -> Port:
+    """A serial line (HydrostatError: it cannot be opened, or pyserial is not there)."""
     try:
         import serial
     except ModuleNotFoundError:

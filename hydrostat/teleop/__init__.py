@@ -1,8 +1,48 @@
-"""From a glove to a robot: sensors, poses that a person mimics, and what is learned of them (R68 to R70)."""
+"""From a person to a robot: keys, knobs, gloves and cameras, and what is learned of a hand (R68 to R70)."""
 
-from hydrostat.teleop.cyber_glove import CyberGlove, EmulatedGlove
+from hydrostat.teleop.cyber_glove import CyberGlove, EmulatedGlove, EmulatedPerson
+from hydrostat.teleop.drive import Drive, drive
+from hydrostat.teleop.gamepad import Gamepad
+from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.hand_source import HandReading, HandSource
-from hydrostat.teleop.mimicry import Mimicry
+from hydrostat.teleop.keys import Keys
+from hydrostat.teleop.landmarks import HandLandmarks
+from hydrostat.teleop.mapped_hand import MappedHand
+from hydrostat.teleop.midi_knobs import MidiKnobs
+from hydrostat.teleop.mimicry import Mimicry, write_mcap
+from hydrostat.teleop.open_source import Wearer, open_hand, open_source
+from hydrostat.teleop.osc import Osc
 from hydrostat.teleop.ridge import Ridge, fit_ridge
+from hydrostat.teleop.source import Channels, Source, Wish
+from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, winch_channels
 
-__all__ = ["CyberGlove", "EmulatedGlove", "HandReading", "HandSource", "Mimicry", "Ridge", "fit_ridge"]
+__all__ = [
+    "Channels",
+    "CyberGlove",
+    "Drive",
+    "EmulatedGlove",
+    "EmulatedPerson",
+    "FingertipWay",
+    "Gamepad",
+    "HandLandmarks",
+    "HandMap",
+    "HandReading",
+    "HandSource",
+    "Keys",
+    "MappedHand",
+    "MidiKnobs",
+    "Mimicry",
+    "Osc",
+    "Ridge",
+    "Source",
+    "Way",
+    "Wearer",
+    "WinchWay",
+    "Wish",
+    "drive",
+    "fit_ridge",
+    "open_hand",
+    "open_source",
+    "winch_channels",
+    "write_mcap",
+]

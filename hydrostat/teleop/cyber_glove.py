@@ -1,4 +1,4 @@
-"""`CyberGlove`: a glove with 22 bend sensors on a serial line; `EmulatedGlove`: one that is not there."""
+"""`CyberGlove`: a glove with 22 bend sensors on a serial line; `EmulatedGlove`, `EmulatedPerson`: not there."""
 
 import time
 from collections.abc import Callable
@@ -46,8 +46,8 @@ class CyberGlove(HandSource):
         """The newest values; one answer that is cut short or spoilt is asked for again."""
         try:
             for _ in range(ASKS):
-                while self._port.read(64):  # what is left of an answer that came late
-                    pass
+                if waiting := getattr(self._port, "in_waiting", 0):  # what is left of an answer that came late
+                    self._port.read(waiting)
                 self._port.write(b"G")
                 answer = self._port.read(SENSORS + 2)
                 if len(answer) == SENSORS + 2 and answer[:1] == b"G" and answer[-1] == 0 and 0 not in answer[1:-1]:
@@ -79,6 +79,11 @@ class EmulatedGlove:
         self.spoil: Callable[[bytes], bytes] = lambda answer: answer
         self._noise, self._random, self._told = noise, np.random.default_rng(seed), b""
 
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that can be read at once."""
+        return len(self._told)
+
     def write(self, data: bytes, /) -> int:
         """Hear what is asked."""
         for _ in range(data.count(b"G")):
@@ -94,3 +99,45 @@ class EmulatedGlove:
 
     def close(self) -> None:
         """Nothing is let go."""
+
+
+class EmulatedPerson:
+    """A hand in an emulated glove, whose sensors follow the contractions of a robot by a fixed mixture.
+
+    Attributes:
+        glove: that it wears.
+    """
+
+    def __init__(
+        self, low: Vector, high: Vector, *, noise: float = 0.5 / 254, bent: float = 0.0, seed: int = 7
+    ) -> None:
+        """A hand that can do what winches do from their least to their largest contractions [m].
+
+        Args:
+            low: least contractions [m].
+            high: largest [m].
+            noise: of the sensors, one standard deviation; half a step of the glove if left out.
+            bent: how far the sensors are from straight.
+            seed: of the mixture.
+        """
+        random = np.random.default_rng(seed)
+        self._low, self._span, self._bent = low, np.maximum(high - low, 1e-9), bent
+        mixture = random.normal(scale=0.05, size=(len(low), SENSORS))
+        for winch in range(len(low)):  # each moves two sensors of its own, or shares them where winches are many
+            own = [(2 * winch) % SENSORS, (2 * winch + 1) % SENSORS]
+            mixture[winch, own] += random.choice([-0.5, 0.5], size=2) * random.uniform(0.8, 1.2, size=2)
+        self._mixture = mixture / np.maximum(np.abs(mixture).sum(0), 1.0)
+        self.glove = EmulatedGlove(np.full(SENSORS, 0.5), noise=noise, seed=seed)
+        self.mimic(np.clip(np.zeros(len(low)), low, high))
+
+    def mimic(self, contractions: Vector) -> None:
+        """Take a pose like that of the robot at contractions [m]."""
+        wanted = 2 * (contractions - self._low) / self._span - 1
+        straight = wanted @ self._mixture
+        self.glove.values = 0.5 + 0.45 * (straight + self._bent * straight**2)
+
+    def wave(self, seconds: float) -> None:
+        """Close and open, one finger after the other, for those who try it alone."""
+        phases = np.linspace(0.0, 2.0, len(self._low), endpoint=False)
+        share = 0.25 * (1 - np.cos(seconds + phases)) * (np.arange(len(phases)) % 2 == 0)
+        self.mimic(self._low + share * self._span)

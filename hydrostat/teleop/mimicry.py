@@ -24,12 +24,14 @@ class Mimicry:
         sensors: their names.
         outputs: names of what is to be told by them.
         poses: pose of each row.
+        stamps: when each row was told, since 1970 [s].
     """
 
     def __init__(self, sensors: Sequence[str], outputs: Sequence[str]) -> None:
         """No pairs yet."""
         self.sensors, self.outputs = tuple(sensors), tuple(outputs)
         self.poses: list[int] = []
+        self.stamps: list[float] = []
         self._inputs: list[Vector] = []
         self._answers: list[Vector] = []
 
@@ -43,13 +45,14 @@ class Mimicry:
         """What the robot did (rows, outputs)."""
         return np.array(self._answers).reshape(-1, len(self.outputs))
 
-    def add(self, pose: int, sensors: Vector, answer: Vector) -> None:
+    def add(self, pose: int, sensors: Vector, answer: Vector, stamp: float = 0.0) -> None:
         """Store a pair of a pose (InputError: of another size, or not finite)."""
         if sensors.shape != (len(self.sensors),) or answer.shape != (len(self.outputs),):
             raise InputError(f"a pair has {len(self.sensors)} sensors and {len(self.outputs)} outputs")
         if not (np.isfinite(sensors).all() and np.isfinite(answer).all()):
             raise InputError("sensors and outputs must be finite")
         self.poses.append(pose)
+        self.stamps.append(stamp)
         self._inputs.append(sensors.copy())
         self._answers.append(answer.copy())
 
@@ -57,7 +60,7 @@ class Mimicry:
         """Drop a pose that went wrong."""
         for index in reversed(range(len(self.poses))):
             if self.poses[index] == pose:
-                del self.poses[index], self._inputs[index], self._answers[index]
+                del self.poses[index], self.stamps[index], self._inputs[index], self._answers[index]
 
     def learn(self) -> Ridge:
         """From sensors to outputs by ridge regression (InputError: fewer than two poses)."""
@@ -84,9 +87,9 @@ class Mimicry:
         """Write a table with a row for each pair, as text."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(["pose", *(f"sensor {name}" for name in self.sensors), *self.outputs])
-        for pose, sensors, answer in zip(self.poses, self._inputs, self._answers, strict=True):
-            writer.writerow([pose, *map(repr, sensors.tolist()), *map(repr, answer.tolist())])
+        writer.writerow(["pose", "time_s", *(f"sensor {name}" for name in self.sensors), *self.outputs])
+        for pose, stamp, sensors, answer in zip(self.poses, self.stamps, self._inputs, self._answers, strict=True):
+            writer.writerow([pose, repr(stamp), *map(repr, sensors.tolist()), *map(repr, answer.tolist())])
         return replace_file(path, text.getvalue().encode())
 
     @classmethod
@@ -96,27 +99,27 @@ class Mimicry:
             rows = list(csv.reader(path.read_text("utf-8").splitlines()))
         except (OSError, UnicodeDecodeError) as error:
             raise InputError(f"{path}: cannot be read ({error})") from None
-        if not rows or rows[0][:1] != ["pose"]:
-            raise InputError(f"{path}: is no table of mimicked poses; its first column is pose")
-        heads = rows[0][1:]
+        if not rows or rows[0][:2] != ["pose", "time_s"]:
+            raise InputError(f"{path}: is no table of mimicked poses; its first columns are pose and time_s")
+        heads = rows[0][2:]
         sensors = [name.removeprefix("sensor ") for name in heads if name.startswith("sensor ")]
         made = cls(sensors, heads[len(sensors) :])
         for count, row in enumerate(rows[1:], 2):
             try:
-                values = np.array([float(cell) for cell in row[1:]])
-                made.add(int(row[0]), values[: len(sensors)], values[len(sensors) :])
+                stamp, *cells = [float(cell) for cell in row[1:]]
+                values = np.array(cells)
+                made.add(int(row[0]), values[: len(sensors)], values[len(sensors) :], stamp)
             except (ValueError, IndexError, InputError) as error:
                 raise InputError(f"{path}, line {count}: {error}") from None
         return made
 
 
-def write_mcap(path: Path, mimicry: Mimicry, stamps: Sequence[float]) -> Path:
+def write_mcap(path: Path, mimicry: Mimicry) -> Path:
     """Write pairs as MCAP with JSON schemas, which Foxglove and ROS 2 tools read; a channel each for glove and robot.
 
     Args:
         path: of the file.
         mimicry: the pairs.
-        stamps: when each row was told [s].
 
     Raises:
         HydrostatError: the package mcap is not there.
@@ -134,7 +137,7 @@ def write_mcap(path: Path, mimicry: Mimicry, stamps: Sequence[float]) -> Path:
         schema = json.dumps({"type": "object", "properties": numbers}).encode()
         known = writer.register_schema(f"hydrostat.{topic}", "jsonschema", schema)
         channel = writer.register_channel(f"/{topic}", "json", known)
-        for pose, row, stamp in zip(mimicry.poses, rows.tolist(), stamps, strict=True):
+        for pose, row, stamp in zip(mimicry.poses, rows.tolist(), mimicry.stamps, strict=True):
             data = json.dumps({"pose": pose} | dict(zip(names, row, strict=True))).encode()
             when = round(1e9 * stamp)
             writer.add_message(channel, when, data, when)

@@ -100,14 +100,16 @@ def test_poses_chosen_for_information_teach_more_than_poses_at_random() -> None:
 
 def test_pairs_are_kept_as_text_and_as_mcap(tmp_path: Path) -> None:
     made = mimicked(4, noise=0.01, repeats=2)
+    made.stamps = [0.5 * row for row in range(8)]
     made.forget(2)
     assert made.poses == [0, 0, 1, 1, 3, 3]
     read = Mimicry.open(made.save(tmp_path / "poses.csv"))
-    assert (read.poses, read.sensors, read.outputs) == (made.poses, made.sensors, made.outputs)
+    assert (read.poses, read.stamps) == (made.poses, [0.0, 0.5, 1.0, 1.5, 3.0, 3.5])
+    assert (read.sensors, read.outputs) == (made.sensors, made.outputs)
     assert np.array_equal(read.inputs, made.inputs)
     assert np.array_equal(read.answers, made.answers)
     mcap = pytest.importorskip("mcap.reader")
-    path = write_mcap(tmp_path / "poses.mcap", made, [0.5 * row for row in range(6)])
+    path = write_mcap(tmp_path / "poses.mcap", read)
     told = list(mcap.make_reader(io.BytesIO(path.read_bytes())).iter_messages())
     assert [channel.topic for _, channel, _ in told].count("/glove") == 6
     schema, channel, message = next(each for each in told if each[1].topic == "/robot" and each[2].log_time == 10**9)
@@ -119,7 +121,11 @@ def test_pairs_are_kept_as_text_and_as_mcap(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("text", "told"),
-    [("", "no table of mimicked poses"), ("pose,sensor a,b\n0,1\n", "line 2"), ("pose,sensor a,b\n0,x,1\n", "line 2")],
+    [
+        ("", "no table of mimicked poses"),
+        ("pose,time_s,sensor a,b\n0,0,1\n", "line 2"),
+        ("pose,time_s,sensor a,b\n0,0,x,1\n", "line 2"),
+    ],
 )
 def test_tables_that_are_none(tmp_path: Path, text: str, told: str) -> None:
     (tmp_path / "poses.csv").write_text(text)

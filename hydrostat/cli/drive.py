@@ -1,0 +1,177 @@
+"""`hydrostat drive`."""
+
+import shutil
+import signal
+import sys
+import time
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.folders import RobotFolder, folder_of
+from hydrostat.cli.learned import read_model
+from hydrostat.cli.waiting import one_interrupt, prepared, read_robot
+from hydrostat.errors import HydrostatError, InputError
+
+if TYPE_CHECKING:
+    from hydrostat.control import Motors
+    from hydrostat.learning import LearnedModel
+    from hydrostat.robot import Robot
+    from hydrostat.simulation import Simulation
+    from hydrostat.teleop import Drive, Source, Way
+
+SHOWN, LISTED = 0.1, 2.0  # time from one word on the motors to the next [s]: on a terminal, and where lines are kept
+BAR = 24  # letters of a full bar
+
+
+def drive(
+    robot: RobotFolder,
+    source: Annotated[
+        str,
+        typer.Option(
+            metavar="KIND",
+            help="keys, gamepad, midi:NAME@KNOB, osc:PORT, glove:/dev/ttyUSB0, glove:emulated or camera:PORT.",
+        ),
+    ] = "keys",
+    port: Annotated[
+        str | None, typer.Option(metavar="KIND:PORT", help="Real motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
+    ] = None,
+    tips: Annotated[bool, typer.Option("--tips", help="Move fingertips (markers), not winches.")] = False,
+    model: Annotated[
+        Path | None, typer.Option(metavar="MODEL", help="With --tips: learned, to begin each move from.")
+    ] = None,
+    known: Annotated[
+        Path | None, typer.Option("--map", metavar="FILE", help="What hydrostat mimic has learned of a hand.")
+    ] = None,
+    seconds: Annotated[float, typer.Option(metavar="S", help="End after so long; 0: when you end it.")] = 0.0,
+) -> None:
+    """Turn winches by hand: keys, gamepad, MIDI knobs, OSC, a glove, a hand before a camera.
+
+    Without --port the motors are simulated: nothing turns, and every line says so. With it they keep the limits of the
+    winches, a watchdog and a guard that knows what each cable should pull. Motors hold when the source falls silent,
+    and stop at the end, on Ctrl-C, on SIGTERM and on any error.
+
+    With --tips markers are moved, and inverse kinematics finds contractions while you drive.
+
+    Example: hydrostat drive examples/starfish --source keys
+    """
+    from hydrostat import control, teleop
+
+    if port is not None:
+        control.check_port(port)
+    if model is not None and not tips:
+        raise InputError("--model: finds contractions for fingertips; give --tips too")
+    if not seconds >= 0:
+        raise InputError(f"--seconds {seconds:g}: must not be negative")
+    loaded = read_robot(robot)
+    networks, loaded = (None, loaded) if model is None else read_model(model, loaded)
+    learned = None if known is None else teleop.HandMap.open(known)
+    simulation, kind = prepared(loaded), "simulated" if port is None else port.partition(":")[0]
+    way = _way(simulation, networks, tips=tips, guarded=port is not None)
+    asked: Source | None = None
+    motors: Motors | None = None
+    try:
+        asked = teleop.open_source(source, way.channels, learned, teleop.Wearer(teleop.winch_channels(loaded)))
+        motors = _motors(folder_of(robot), loaded, port, way)
+        shown = _Shown(kind, motors)
+        _run(shown, f"{'fingertips' if tips else 'winches'} of {loaded.name} by {source}", way, asked, seconds)
+    finally:
+        if asked is not None:
+            asked.close()
+        way.close()
+        if motors is not None:
+            motors.link.close()
+
+
+def _run(shown: "_Shown", what: str, way: "Way", source: "Source", seconds: float) -> None:
+    """Drive, and say how it ended."""
+    from hydrostat import teleop
+
+    shown.say(what)
+    try:
+        with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
+            teleop.drive(shown.motors, way, source, seconds=seconds or inf, tell=shown.tell)
+    except (KeyboardInterrupt, SystemExit) as stop:
+        shown.end("stopped")
+        code = 130 if isinstance(stop, KeyboardInterrupt) else stop.code
+        raise typer.Exit(code if isinstance(code, int) else 1) from None
+    except HydrostatError as error:
+        raise HydrostatError(f"{shown.kind}: the motors stopped: {error}") from None
+    shown.end("ended")
+
+
+def _way(simulation: "Simulation", networks: "LearnedModel | None", *, tips: bool, guarded: bool) -> "Way":
+    """From what is asked for to contractions, from where the body is at rest."""
+    from hydrostat import control, teleop
+
+    begin = teleop.winch_channels(simulation.robot).rest
+    if tips:
+        rate = control.LinkLimits().speed if guarded else control.FASTEST
+        return teleop.FingertipWay(simulation, begin, model=networks, rate=rate)
+    return teleop.WinchWay(simulation, begin, solves=guarded)
+
+
+def _motors(folder: Path, robot: "Robot", port: str | None, way: "Way") -> "Motors":
+    """The motors, armed."""
+    from hydrostat import control
+
+    if port is None:
+        return control.Motors(robot.winches, control.SimulatedLink(way.contractions))
+    pulls = way.known
+    return control.arm_motors(folder, robot, port, pulls.nearest, known=pulls, log=lambda line: print(line, flush=True))
+
+
+class _Shown:
+    """What is told of the motors: bars that are drawn anew on a terminal, a line now and then elsewhere."""
+
+    def __init__(self, kind: str, motors: "Motors") -> None:
+        self.kind, self.motors, self._last, self._lines = kind, motors, -inf, 0
+        self._terminal, self._silent = sys.stdout.isatty(), False
+
+    def tell(self, driven: "Drive") -> None:
+        """Show where the motors are, if it is time to."""
+        now = time.monotonic()
+        if now - self._last < (SHOWN if self._terminal else LISTED) and driven.silent == self._silent:
+            return
+        self._last, self._silent = now, driven.silent
+        state = "nobody is heard: the motors hold" if driven.silent else "hold" if driven.wish.hold else ""
+        if self._terminal:
+            told = "; ".join(part for part in (state, driven.way.words) if part)
+            self._draw([*self._bars(), told, driven.wish.words])
+        else:
+            self.say(f"{self._places()}{f'; {state}' if state else ''}")
+
+    def say(self, words: str) -> None:
+        """Print a line."""
+        print(f"{self.kind}: {words}", flush=True)
+
+    def end(self, word: str) -> None:
+        """Say how it ended."""
+        self.say(f"{word}; the motors hold at {self._places()}")
+
+    def _bars(self) -> list[str]:
+        motors, currents = self.motors, self.motors.link.currents
+        widest = max(map(len, motors.names))
+        lines = []
+        for index, name in enumerate(motors.names):
+            low, high = float(motors.low[index]), float(motors.high[index])
+            share = (float(motors.places[index]) - low) / max(high - low, 1e-9)
+            full = round(BAR * min(max(share, 0.0), 1.0))
+            current = "" if currents is None else f"  {float(currents[index]):6.3f} A"
+            bar = "#" * full + "-" * (BAR - full)
+            lines.append(f"{self.kind}: {name:<{widest}} [{bar}] {1e3 * motors.places[index]:6.1f} mm{current}")
+        return lines
+
+    def _draw(self, lines: list[str]) -> None:
+        width = shutil.get_terminal_size().columns - 1
+        back = f"\x1b[{self._lines}A" if self._lines else ""
+        print(back + "\n".join(f"\r{line[:width]}\x1b[K" for line in lines), flush=True)
+        self._lines = len(lines)
+
+    def _places(self) -> str:
+        motors = self.motors
+        return ", ".join(
+            f"{name} {1e3 * taken:.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True)
+        )

@@ -1,0 +1,58 @@
+"""`arm_motors`: the motors of a robot on a port, identified, guarded and armed."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.bus_link import BusLink
+from hydrostat.control.calibration import CALIBRATION, read_calibration, usual_calibration
+from hydrostat.control.guard import TensionGuard
+from hydrostat.control.motors import Motors
+from hydrostat.control.open_bus import EMULATED, open_bus
+from hydrostat.robot import Robot
+
+Pulls = Callable[[Vector], Vector]
+
+
+def arm_motors(
+    folder: Path,
+    robot: Robot,
+    port: str,
+    pulls: Pulls,
+    *,
+    known: Pulls | None = None,
+    log: Callable[[str], None] = lambda _: None,
+) -> Motors:
+    """Motors that turn as they are told from now on, watched by a deadline and a guard.
+
+    Args:
+        folder: of the robot, with its motors.toml; emulated motors need none.
+        robot: whose winches they turn.
+        port: of the motors, as for `open_bus`.
+        pulls: what the cables of each winch pull together [N], by contractions [m].
+        known: the same for the guard, NaN where it shall not judge; the same ones if left out.
+        log: hears each line about them.
+
+    Raises:
+        InputError: no such port or calibration.
+        HydrostatError: a motor is silent, or wrong.
+    """
+    if port == EMULATED and not (folder / CALIBRATION).exists():
+        calibration = usual_calibration(robot).known()
+    else:
+        calibration = read_calibration(folder, robot)
+    bus = open_bus(port, robot, calibration, pulls)
+    link = BusLink(bus, robot.winches, calibration, log=log)
+    try:
+        constants = np.array([fact.constant for fact in link.identify()])
+        link.guard = TensionGuard(known or pulls, constants, tuple(winch.name for winch in robot.winches))
+        link.arm()
+        link.watch()
+        places = link.read(time.monotonic())
+    except BaseException:
+        link.close()
+        raise
+    return Motors(robot.winches, link, places=places, fastest=link.limits.speed)

@@ -1,0 +1,61 @@
+"""`MappedHand`: a robot driven by a hand, as a glove or a camera tells it."""
+
+import threading
+import time
+from collections.abc import Callable
+from math import inf
+
+from hydrostat.errors import HydrostatError
+from hydrostat.teleop.hand_map import HandMap
+from hydrostat.teleop.hand_source import HandReading, HandSource
+from hydrostat.teleop.source import Channels, Source, Wish
+
+SILENCE = 0.25
+"""A hand that is not heard for so long is not there [s]."""
+PATIENCE = 5.0
+"""Errors of the source in a row end the drive after so long [s]."""
+
+
+class MappedHand(Source):
+    """A hand whose sensors are read all the time, in a thread of their own, and mapped to the channels of a robot."""
+
+    silence = SILENCE
+
+    def __init__(
+        self, channels: Channels, hand: HandSource, known: HandMap, *, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        """Read a hand from now on (InputError: the map is of another hand or robot)."""
+        known.check(hand.names, channels.names)
+        self._hand, self._map, self._clock = hand, known, clock
+        self._reading: HandReading | None = None
+        self._error, self._well = "", clock()
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="hand", daemon=True)
+        self._thread.start()
+
+    def read(self) -> Wish:
+        """What the newest reading asks for."""
+        reading, error = self._reading, self._error
+        if error and self._clock() - self._well > PATIENCE:
+            raise HydrostatError(error)
+        if reading is None:
+            return Wish(stamp=-inf, words=error or "the hand was not heard yet")
+        return Wish(stamp=reading.stamp, places=self._map(reading.values), words=error or "Ctrl-C: end")
+
+    def close(self) -> None:
+        """End the thread, and let the hand go."""
+        self._over.set()
+        self._thread.join(1.0)
+        self._hand.close()
+
+    def _run(self) -> None:
+        while not self._over.is_set():
+            try:
+                self._reading = self._hand.read()
+                self._error, self._well = "", self._clock()
+            except HydrostatError as error:
+                self._error = str(error)
+                self._over.wait(0.05)
+            if self.news is not None:
+                self.news.set()
+            self._over.wait(1e-3)

@@ -1,0 +1,121 @@
+"""`open_source`, `open_hand`: what drives a robot, by words such as keys, midi:nano@16 or glove:/dev/ttyUSB0."""
+
+import time
+from collections.abc import Callable, Mapping
+
+from hydrostat.control import EMULATED, open_line
+from hydrostat.errors import InputError
+from hydrostat.teleop.cyber_glove import BAUD, CyberGlove, EmulatedPerson
+from hydrostat.teleop.gamepad import Gamepad
+from hydrostat.teleop.hand_map import HandMap
+from hydrostat.teleop.hand_source import HandReading, HandSource
+from hydrostat.teleop.keys import Keys
+from hydrostat.teleop.landmarks import HandLandmarks
+from hydrostat.teleop.mapped_hand import MappedHand
+from hydrostat.teleop.midi_knobs import USUAL, MidiKnobs
+from hydrostat.teleop.osc import HERE, PORT, Osc
+from hydrostat.teleop.source import Channels, Source
+
+
+def open_source(text: str, channels: Channels, known: HandMap | None = None, person: "Wearer | None" = None) -> Source:
+    """What drives a robot.
+
+    Args:
+        text: KIND or KIND:PLACE, of a kind of `SOURCES`.
+        channels: what it may turn.
+        known: the map of a hand; gloves and cameras need one.
+        person: who wears an emulated glove.
+
+    Raises:
+        InputError: no such kind, or a wrong place.
+        HydrostatError: it is not there, or its package is not.
+    """
+    kind, _, place = text.partition(":")
+    if kind not in (*SOURCES, *HANDS):
+        raise InputError(f"--source {text}: there are: {', '.join(SHOWN)}")
+    if kind not in HANDS:
+        return SOURCES[kind](place, channels)
+    if known is None:
+        raise InputError(f"--source {text}: needs --map FILE; `hydrostat mimic` makes it")
+    return MappedHand(channels, open_hand(place if kind == "glove" else text, person), known)
+
+
+def open_hand(text: str, person: "Wearer | None" = None) -> HandSource:
+    """A glove or a camera.
+
+    Args:
+        text: serial port of a glove, camera:PORT for landmarks, or emulated.
+        person: who wears an emulated glove.
+
+    Raises:
+        InputError: a wrong port.
+        HydrostatError: it cannot be opened.
+    """
+    kind, _, place = text.partition(":")
+    if kind == "camera":
+        return HandLandmarks(_number(place, text))
+    if text == EMULATED and person is not None:
+        return person
+    if not text or text == EMULATED:
+        raise InputError("a glove needs its port, such as glove:/dev/ttyUSB0, or glove:emulated")
+    return CyberGlove(open_line(text, BAUD))
+
+
+class Wearer(HandSource):
+    """An emulated hand in an emulated glove: it closes and opens by itself, or mimics what it is told to."""
+
+    names = CyberGlove.names
+
+    def __init__(self, channels: Channels, clock: Callable[[], float] = time.monotonic) -> None:
+        """A hand like that of a robot with these winches."""
+        self.person, self._clock, self._begin = EmulatedPerson(channels.low, channels.high), clock, clock()
+        self._glove, self.waves = CyberGlove(self.person.glove, clock=clock), True
+
+    def read(self) -> HandReading:
+        """What the glove tells; 90 times a second, as a glove of metal would."""
+        if self.waves:
+            self.person.wave(self._clock() - self._begin)
+        time.sleep(1 / 90)
+        return self._glove.read()
+
+    def close(self) -> None:
+        """Let the glove go."""
+        self._glove.close()
+
+
+def _keys(place: str, channels: Channels) -> Source:
+    if place:
+        raise InputError("--source keys: has no place; write keys")
+    return Keys(channels)
+
+
+def _gamepad(place: str, channels: Channels) -> Source:
+    return Gamepad(channels, _number(place or "0", f"gamepad:{place}"))
+
+
+def _midi(place: str, channels: Channels) -> Source:
+    name, at, first = place.rpartition("@") if "@" in place else (place, "", "")
+    return MidiKnobs(channels, name, _number(first, f"midi:{place}") if at else USUAL)
+
+
+def _osc(place: str, channels: Channels) -> Source:
+    host, _, port = place.rpartition(":")
+    return Osc(channels, host or HERE, _number(port or str(PORT), f"osc:{place}"))
+
+
+def _number(text: str, whole: str) -> int:
+    if not text.isascii() or not text.isdecimal() or int(text) > 65535:
+        raise InputError(f"--source {whole}: must end with a number, such as {', '.join(SHOWN)}")
+    return int(text)
+
+
+HANDS = ("glove", "camera")
+"""Kinds that tell a hand, which a map brings to the robot."""
+SOURCES: Mapping[str, Callable[[str, Channels], Source]] = {
+    "keys": _keys,
+    "gamepad": _gamepad,
+    "midi": _midi,
+    "osc": _osc,
+}
+"""What makes a source of a place and of channels."""
+SHOWN = ("keys", "gamepad:0", "midi:NAME@1", f"osc:{PORT}", "glove:/dev/ttyUSB0", "glove:emulated", "camera:9001")

@@ -1,0 +1,77 @@
+"""`Source`: the contract of what drives a robot; `Wish`: what a person asks for; `Channels`: what may be asked."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf
+from threading import Event
+
+from hydrostat.arrays import Vector
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Channels:
+    """What a person may turn: winches, or coordinates of fingertips.
+
+    Attributes:
+        names: of them.
+        low: least value of each [m].
+        high: largest [m].
+        rest: value where the body is at rest [m].
+        groups: numbers of those that belong together: a winch alone, the coordinates of a marker.
+    """
+
+    names: tuple[str, ...]
+    low: Vector
+    high: Vector
+    rest: Vector
+    groups: tuple[tuple[int, ...], ...]
+
+    def title(self, group: int) -> str:
+        """Name of a group: of its winch, or of its marker."""
+        first = self.names[self.groups[group][0]]
+        return first if len(self.groups[group]) == 1 else first.rpartition(" ")[0]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Wish:
+    """What a person asks for just now.
+
+    Attributes:
+        stamp: when the person was last heard, by a clock that only runs forward [s].
+        places: where channels shall be, by name [m]; others stay.
+        steps: how far channels shall go on since the wish before, by name [m].
+        hold: whether motors shall stand.
+        over: whether the person wants to end.
+        words: to be shown beside the motors.
+    """
+
+    stamp: float
+    places: Mapping[str, float] = field(default_factory=dict)
+    steps: Mapping[str, float] = field(default_factory=dict)
+    hold: bool = False
+    over: bool = False
+    words: str = ""
+
+
+class Source(ABC):
+    """Contract of what a robot is driven by: keys, knobs, a glove. A new kind is one class and a line in `SOURCES`.
+
+    Nothing that it asks for can leave the limits of the motors, nor move them faster than they may.
+
+    Attributes:
+        silence: a stamp that is older than this means that nobody drives, so motors hold [s]; infinite where a word
+            holds until the next, as that of a knob.
+        news: set as soon as there is a newer wish, if somebody waits for it and the source can tell.
+    """
+
+    silence: float = inf
+    news: Event | None = None
+
+    @abstractmethod
+    def read(self) -> Wish:
+        """The newest wish, at once (HydrostatError: the source is gone, and with it who drives)."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let it go. It may be called twice and never raises."""

@@ -1,0 +1,101 @@
+"""`hydrostat drive`. Oracles: a pseudo-terminal with keys, python-osc's own client, exit codes and what lines say."""
+
+import os
+import re
+import select
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+Run = Callable[..., tuple[int, str, str]]
+PROGRAM = "from hydrostat.cli.main import main; main()"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("port", [[], ["--port", "emulated"]], ids=["simulated", "emulated"])
+def test_keys_turn_winches_and_bars_are_shown(starfish: Path, port: list[str]) -> None:
+    ours, theirs = os.openpty()
+    words = [sys.executable, "-c", PROGRAM, "drive", str(starfish), *port]
+    work = subprocess.Popen(words, stdin=theirs, stdout=theirs, stderr=theirs)
+    os.close(theirs)
+    told, pressed = b"", False
+    while work.poll() is None:
+        if select.select([ours], [], [], 0.05)[0]:
+            try:
+                told += os.read(ours, 4096)
+            except OSError:  # the other end is closed
+                break
+        if not pressed and b"tab: next" in told:
+            os.write(ours, b"\tDDdd")
+            pressed, until = True, time.monotonic() + 0.8
+        if pressed and time.monotonic() > until:
+            os.write(ours, b"q")
+            until += 60.0
+    assert work.wait(60) == 0
+    os.close(ours)
+    text = told.decode()
+    last = re.findall(r"ended; the motors hold at right (-?[0-9.]+) mm, left ([0-9.]+) mm", text)
+    kind = "emulated" if port else "simulated"
+    assert len(last) == 1
+    assert float(last[0][1]) == pytest.approx(7.0, abs=0.4)
+    assert re.search(kind + r": left  \[#+-+\] +7\.\d mm" + (r" +-?[0-9.]+ A" if port else ""), text)
+    assert "\x1b[5A" in text  # three bars, a state and a help are drawn anew
+
+
+@pytest.mark.slow
+def test_messages_move_fingertips(run: Run, starfish: Path) -> None:
+    client = pytest.importorskip("pythonosc.udp_client")
+    import hydrostat as hs
+
+    hidden = hs.Simulation(hs.load_robot(starfish)).solve({"left": 0.01})
+    sender, over = client.SimpleUDPClient("127.0.0.1", 9321), threading.Event()
+
+    def tell() -> None:
+        while not over.wait(0.05):
+            for name, place in hidden.markers.items():
+                sender.send_message(f"/marker/{name}", [1e3 * float(value) for value in place])
+
+    thread = threading.Thread(target=tell)
+    thread.start()
+    try:
+        code, out, err = run("drive", starfish, "--source", "osc:9321", "--tips", "--seconds", 2)
+    finally:
+        over.set()
+        thread.join()
+        sender._sock.close()
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[0] == "simulated: fingertips of starfish by osc:9321"
+    assert all(line.startswith("simulated: ") for line in lines)
+    assert float(re.findall(r"left ([0-9.]+) mm", lines[-1])[0]) == pytest.approx(10.0, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--source", "pedals"), "--source pedals: there are: keys, gamepad:0"),
+        (("--source", "glove:/dev/ttyUSB0"), "needs --map FILE; `hydrostat mimic` makes it"),
+        (("--map", "none.json"), "none.json: cannot be read"),
+        (("--model", "none.model"), "--model: finds contractions for fingertips; give --tips too"),
+        (("--port", "nonsense"), "--port nonsense: write emulated"),
+        (("--seconds", -1), "--seconds -1: must not be negative"),
+    ],
+)
+def test_one_clear_line(run: Run, starfish: Path, options: tuple[object, ...], told: str) -> None:
+    code, out, err = run("drive", starfish, *options)
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert told in err
+
+
+def test_keys_need_a_terminal(run: Run, starfish: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with open(os.devnull) as nothing:
+        monkeypatch.setattr(sys, "stdin", nothing)
+        code, out, err = run("drive", starfish)
+    assert (code, out) == (1, "")
+    assert "--source keys needs a terminal" in err

@@ -1,0 +1,183 @@
+"""Motors that follow a person. Oracles: a scripted person, and the simulation itself."""
+
+import time
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+import pytest
+
+import hydrostat as hs
+from hydrostat.control import KnownPulls, Motors, SimulatedLink
+from hydrostat.errors import HydrostatError
+from hydrostat.teleop import Drive, FingertipWay, Source, WinchWay, Wish, drive
+
+
+class Script(Source):
+    """A person who asks for one thing after the other; the last goes on."""
+
+    def __init__(self, wishes: Sequence[Wish | Exception]) -> None:
+        self.wishes = list(wishes)
+
+    def read(self) -> Wish:
+        wish = self.wishes.pop(0) if len(self.wishes) > 1 else self.wishes[0]
+        if isinstance(wish, Exception):
+            raise wish
+        return wish
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.fixture(scope="module")
+def simulation() -> hs.Simulation:
+    return hs.Simulation(hs.load_robot("gallery:starfish"))
+
+
+def motors_of(simulation: hs.Simulation) -> Motors:
+    return Motors(simulation.robot.winches, SimulatedLink(np.zeros(len(simulation.robot.winches))))
+
+
+def test_winches_go_where_they_are_told_step_by_step_and_within_limits(simulation: hs.Simulation) -> None:
+    motors = motors_of(simulation)
+    wishes = [
+        Wish(stamp=0.0, places={"left": 0.004}),
+        Wish(stamp=0.0, steps={"left": 0.001, "feet": 0.002}),
+        Wish(stamp=0.0, places={"right": 9.0}),
+        Wish(stamp=0.0),
+    ]
+    driven = Drive(motors, WinchWay(simulation, motors.places, solves=False), Script(wishes))
+    now = 0.0
+    for _ in range(60):
+        now += 0.02
+        assert driven.step(now)
+    most = simulation.robot.winches[0].travel
+    assert dict(zip(motors.names, motors.places, strict=True)) == pytest.approx(
+        {"right": most, "left": 0.005, "feet": 0.002}
+    )
+
+
+@pytest.mark.parametrize("tips", [False, True])
+def test_motors_hold_when_nobody_is_heard_and_go_on_after(simulation: hs.Simulation, tips: bool) -> None:
+    motors = motors_of(simulation)
+    motors.fastest = 0.03
+    way = (FingertipWay if tips else WinchWay)(simulation, motors.places)
+    name, far = ("left x", -0.05) if tips else ("left", 0.03)
+    source = Script([Wish(stamp=0.0, places={name: far})])
+    source.silence = 0.25
+    driven, now = Drive(motors, way, source), 0.0
+    for _ in range(10):
+        now += 0.02
+        time.sleep(0.02 if tips else 0.0)
+        driven.step(now)
+    began = motors.places.copy()
+    assert not driven.silent
+    for _ in range(40):
+        now += 0.02
+        driven.step(now)
+    assert driven.silent
+    held = motors.places.copy()
+    assert (np.abs(held - began) <= 0.03 * 0.1).all()  # it went on for less than 0.1 s
+    assert np.abs(way.contractions - held).max() < 4e-3
+    assert held.max() > 1e-4
+    for _ in range(20):
+        now += 0.02
+        driven.step(now)
+    assert motors.places == pytest.approx(held, abs=4e-3)
+    source.wishes = [Wish(stamp=now, places={name: far})]
+    for _ in range(10):
+        now += 0.02
+        time.sleep(0.02 if tips else 0.0)
+        driven.step(now)
+    assert np.abs(motors.places - held).max() > 1e-3
+    way.close()
+
+
+def test_hold_and_then_only_what_is_touched_moves(simulation: hs.Simulation) -> None:
+    motors = motors_of(simulation)
+    going, hold = Wish(stamp=0.0, places={"left": 0.03}), Wish(stamp=0.0, hold=True)
+    source = Script([going, hold, hold, Wish(stamp=0.0), Wish(stamp=0.0)])
+    driven, now = Drive(motors, WinchWay(simulation, motors.places, solves=False), source), 0.0
+    for _ in range(30):
+        now += 0.02
+        driven.step(now)
+    assert motors.places.max() < 0.015 / 2
+
+
+@pytest.mark.parametrize("wrong", [HydrostatError("the gamepad is gone"), ZeroDivisionError()])
+def test_an_error_of_the_source_stops_the_motors(simulation: hs.Simulation, wrong: Exception) -> None:
+    motors, stops = motors_of(simulation), []
+    motors.link.stop = lambda: stops.append(1)
+    way = WinchWay(simulation, motors.places)
+    with pytest.raises(type(wrong)):
+        drive(motors, way, Script([Wish(stamp=0.0), wrong]))
+    assert stops
+
+
+def test_it_ends_by_the_person_or_in_time(simulation: hs.Simulation) -> None:
+    motors, begin = motors_of(simulation), time.monotonic()
+    drive(motors, WinchWay(simulation, motors.places, solves=False), Script([Wish(stamp=inf, over=True)]))
+    drive(motors, WinchWay(simulation, motors.places, solves=False), Script([Wish(stamp=inf)]), seconds=0.1)
+    assert 0.1 <= time.monotonic() - begin < 2.0
+
+
+def test_fingertips_come_to_their_targets(simulation: hs.Simulation) -> None:
+    """Oracle: a hidden pose, and the simulation at the contractions that are found."""
+    hidden = simulation.solve({"left": 0.015, "right": 0.006})
+    places = {
+        f"{name} {axis}": float(value)
+        for name, place in hidden.markers.items()
+        for axis, value in zip("xy", place, strict=True)
+    }
+    motors = motors_of(simulation)
+    way = FingertipWay(simulation, motors.places)
+    drive(motors, way, Script([Wish(stamp=inf, places=places)]), seconds=2.0)
+    found = simulation.solve(motors.places)
+    for name, place in hidden.markers.items():
+        assert np.linalg.norm(found.markers[name] - place) < 2e-4
+    assert "mm from its targets" in way.words
+
+
+def test_what_fails_behind_is_told(simulation: hs.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+    motors = motors_of(simulation)
+    way = FingertipWay(simulation, motors.places)
+
+    def fail(*_: object, **__: object) -> None:
+        raise HydrostatError("no equilibrium")
+
+    monkeypatch.setattr(hs.Tracker, "update", fail)
+    with pytest.raises(HydrostatError, match="no equilibrium"):
+        drive(motors, way, Script([Wish(stamp=inf, steps={"left x": 1e-4})]), seconds=5.0)
+
+
+def test_pulls_are_known_near_poses_that_were_solved(simulation: hs.Simulation) -> None:
+    known = KnownPulls(simulation.robot, near=2e-3, most=3)
+    assert np.isnan(known(np.zeros(3))).all()
+    one, two = (simulation.solve({"left": taken}) for taken in (0.010, 0.012))
+    known.add(one)
+    known.add(two)
+    left = [winch.name for winch in simulation.robot.winches].index("left")
+    pulls = [
+        sum(t for t, cable in zip(pose.tensions, simulation.robot.cables, strict=True) if cable.winch == "left")
+        for pose in (one, two)
+    ]
+    assert known(one.contractions)[left] == pytest.approx(pulls[0])
+    middle = 0.5 * (one.contractions + two.contractions)
+    assert known(middle)[left] == pytest.approx(np.mean(pulls))
+    away = one.contractions - 3e-3
+    assert np.isnan(known(away)).all()
+    assert known.nearest(away)[left] == pytest.approx(pulls[0], rel=0.4)
+    for _ in range(3):
+        known.add(two)
+    assert np.isnan(known(one.contractions - 1e-3)).all()  # the oldest is forgotten
+
+
+@pytest.mark.slow
+def test_a_way_with_a_guard_knows_what_it_drives_through(simulation: hs.Simulation) -> None:
+    motors = motors_of(simulation)
+    way = WinchWay(simulation, motors.places)
+    drive(motors, way, Script([Wish(stamp=inf, places={"left": 0.01})]), seconds=1.0)
+    exact = simulation.solve({"left": 0.01})
+    left = [winch.name for winch in simulation.robot.winches].index("left")
+    pull = sum(t for t, cable in zip(exact.tensions, simulation.robot.cables, strict=True) if cable.winch == "left")
+    assert way.known(motors.places)[left] == pytest.approx(pull, rel=1e-3)
