@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
-    from hydrostat.teleop import Drive, Source, Way
+    from hydrostat.teleop import DriveLoop, DriveSource, Way
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the motors to the next [s]: on a terminal, and where lines are kept
 BAR = 24  # letters of a full bar
@@ -70,7 +70,7 @@ def drive(
     learned = None if known is None else teleop.HandMap.open(known)
     simulation, kind = prepared(loaded), "simulated" if port is None else port.partition(":")[0]
     way = _way(simulation, networks, tips=tips, guarded=port is not None)
-    asked: Source | None = None
+    asked: DriveSource | None = None
     motors: Motors | None = None
     try:
         asked = teleop.open_source(source, way.channels, learned, teleop.Wearer(teleop.winch_channels(loaded)))
@@ -85,8 +85,8 @@ def drive(
             motors.link.close()
 
 
-def _run(shown: "_Shown", what: str, way: "Way", source: "Source", seconds: float) -> None:
-    """Drive, and say how it ended."""
+def _run(shown: "_Shown", what: str, way: "Way", source: "DriveSource", seconds: float) -> None:
+    """DriveLoop, and say how it ended."""
     from hydrostat import teleop
 
     shown.say(what)
@@ -130,7 +130,7 @@ class _Shown:
         self.kind, self.motors, self._last, self._lines = kind, motors, -inf, 0
         self._terminal, self._silent = sys.stdout.isatty(), False
 
-    def tell(self, driven: "Drive") -> None:
+    def tell(self, driven: "DriveLoop") -> None:
         """Show where the motors are, if it is time to."""
         now = time.monotonic()
         if now - self._last < (SHOWN if self._terminal else LISTED) and driven.silent == self._silent:

@@ -1,7 +1,7 @@
 """From a person to a robot: keys, knobs, gloves and cameras, and what is learned of a hand (R68 to R70)."""
 
 from hydrostat.teleop.cyber_glove import CyberGlove, EmulatedGlove, EmulatedPerson
-from hydrostat.teleop.drive import Drive, drive
+from hydrostat.teleop.drive import DriveLoop, drive
 from hydrostat.teleop.gamepad import Gamepad
 from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.hand_source import HandReading, HandSource
@@ -13,13 +13,15 @@ from hydrostat.teleop.mimicry import Mimicry, write_mcap
 from hydrostat.teleop.open_source import Wearer, open_hand, open_source
 from hydrostat.teleop.osc import Osc
 from hydrostat.teleop.ridge import Ridge, fit_ridge
-from hydrostat.teleop.source import Channels, Source, Wish
+from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, winch_channels
 
 __all__ = [
-    "Channels",
     "CyberGlove",
-    "Drive",
+    "DriveChannels",
+    "DriveLoop",
+    "DriveSource",
+    "DriveWish",
     "EmulatedGlove",
     "EmulatedPerson",
     "FingertipWay",
@@ -34,11 +36,9 @@ __all__ = [
     "Mimicry",
     "Osc",
     "Ridge",
-    "Source",
     "Way",
     "Wearer",
     "WinchWay",
-    "Wish",
     "drive",
     "fit_ridge",
     "open_hand",

@@ -7,14 +7,14 @@ from collections.abc import Callable
 import numpy as np
 
 from hydrostat.control import Motors
-from hydrostat.teleop.source import Source, Wish
+from hydrostat.teleop.source import DriveSource, DriveWish
 from hydrostat.teleop.ways import Way
 
 TICK = 1 / 60
 """Motors are told and read at least once in this time [s]."""
 
 
-class Drive:
+class DriveLoop:
     """What drives motors, step by step.
 
     Attributes:
@@ -22,10 +22,10 @@ class Drive:
         wish: the newest.
     """
 
-    def __init__(self, motors: Motors, way: Way, source: Source) -> None:
+    def __init__(self, motors: Motors, way: Way, source: DriveSource) -> None:
         """Begin where the motors are."""
         self.motors, self.way, self.source = motors, way, source
-        self.silent, self.wish = False, Wish(stamp=-np.inf)
+        self.silent, self.wish = False, DriveWish(stamp=-np.inf)
         self._values, self._held = way.held(motors.places), True
         self._numbers = {name: index for index, name in enumerate(way.channels.names)}
 
@@ -46,7 +46,7 @@ class Drive:
         self.motors.drive(now)
         return not wish.over
 
-    def _follow(self, wish: Wish) -> None:
+    def _follow(self, wish: DriveWish) -> None:
         """Ask the way for what is wished; what nobody moved since motors held stays where it is."""
         channels, values = self.way.channels, self._values.copy()
         for name, place in wish.places.items():
@@ -62,10 +62,10 @@ class Drive:
 def drive(
     motors: Motors,
     way: Way,
-    source: Source,
+    source: DriveSource,
     *,
     seconds: float = np.inf,
-    tell: Callable[[Drive], None] = lambda _: None,
+    tell: Callable[[DriveLoop], None] = lambda _: None,
     clock: Callable[[], float] = time.monotonic,
 ) -> None:
     """Let motors follow a source in real time until it ends; they hold at its end, on any error and when interrupted.
@@ -83,7 +83,7 @@ def drive(
     """
     news = threading.Event()
     source.news = way.news = news
-    driven, end = Drive(motors, way, source), clock() + seconds
+    driven, end = DriveLoop(motors, way, source), clock() + seconds
     try:
         while driven.step(clock()) and clock() < end:
             tell(driven)

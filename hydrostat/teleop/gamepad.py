@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import Any
 
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop.source import Channels, Source, Wish
+from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 FAST = 0.04
 """Speed of a channel at full deflection [m/s]."""
@@ -18,14 +18,16 @@ _LONGEST = 0.1
 """What passes from one look at the sticks to the next counts as so long at most [s]."""
 
 
-class Gamepad(Source):
+class Gamepad(DriveSource):
     """A gamepad, with the names of its buttons as SDL knows them.
 
     The cross or the shoulder buttons choose a winch or marker; the left stick takes in (up) and lets out. Of a marker
     the left stick moves x and the last coordinate, the right stick up and down moves y. A holds, B rests, start ends.
     """
 
-    def __init__(self, channels: Channels, number: int = 0, *, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self, channels: DriveChannels, number: int = 0, *, clock: Callable[[], float] = time.monotonic
+    ) -> None:
         """The gamepad of a number (HydrostatError: there is none, or no pygame)."""
         os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
         os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
@@ -44,7 +46,7 @@ class Gamepad(Source):
         self._channels, self._clock, self._looked = channels, clock, clock()
         self._chosen, self._hold, self._down = 0, False, set[int]()
 
-    def read(self) -> Wish:
+    def read(self) -> DriveWish:
         """How far the sticks moved what is chosen since they were last looked at."""
         game, pad = self._pygame, self._pad
         game.event.pump()
@@ -66,7 +68,7 @@ class Gamepad(Source):
         self._chosen %= len(self._channels.groups)
         self._hold ^= asked[0] in pressed
         rest = dict(zip(self._channels.names, self._channels.rest.tolist(), strict=True)) if asked[1] in pressed else {}
-        return Wish(
+        return DriveWish(
             stamp=now,
             steps={} if rest else self._steps(passed),
             places=rest,

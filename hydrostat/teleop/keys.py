@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop.source import Channels, Source, Wish
+from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 FINE, COARSE = 0.5e-3, 3e-3
 """How far a key moves a channel [m], and with a capital letter, or page up and down."""
@@ -17,7 +17,7 @@ _ARROWS = {b"\x1b[A": "w", b"\x1b[B": "s", b"\x1b[C": "d", b"\x1b[D": "a", b"\x1
 _BACK = b"\x1b[Z"
 
 
-class Keys(Source):
+class Keys(DriveSource):
     """Keys of a terminal; nothing moves but by a press, so silence is no danger.
 
     Tab and digits choose a winch or marker; left and right let it out and take it in. Of a marker left and right are
@@ -25,7 +25,7 @@ class Keys(Source):
     """
 
     def __init__(
-        self, channels: Channels, *, file: int | None = None, clock: Callable[[], float] = time.monotonic
+        self, channels: DriveChannels, *, file: int | None = None, clock: Callable[[], float] = time.monotonic
     ) -> None:
         """Keys of a terminal that is open already, the standard input if left out (HydrostatError: it is none)."""
         self._channels, self._file, self._clock = channels, sys.stdin.fileno() if file is None else file, clock
@@ -39,7 +39,7 @@ class Keys(Source):
         except Exception:  # noqa: BLE001 (no such module on Windows, and errors of its own elsewhere)
             raise HydrostatError("--source keys needs a terminal (of Linux or macOS); choose another source") from None
 
-    def read(self) -> Wish:
+    def read(self) -> DriveWish:
         """What was pressed since it was last read."""
         steps, places, over = dict[str, float](), dict[str, float](), False
         for key in self._pressed():
@@ -56,7 +56,7 @@ class Keys(Source):
             elif (move := self._move(key)) is not None:
                 steps[move[0]] = steps.get(move[0], 0.0) + move[1]
         words = f"{self._channels.title(self._chosen)}; {HELP}"
-        return Wish(stamp=self._clock(), steps=steps, places=places, hold=self._hold, over=over, words=words)
+        return DriveWish(stamp=self._clock(), steps=steps, places=places, hold=self._hold, over=over, words=words)
 
     def close(self) -> None:
         """Give the terminal back as it was."""

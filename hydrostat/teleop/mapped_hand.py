@@ -8,7 +8,7 @@ from math import inf
 from hydrostat.errors import HydrostatError
 from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.hand_source import HandReading, HandSource
-from hydrostat.teleop.source import Channels, Source, Wish
+from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 SILENCE = 0.25
 """A hand that is not heard for so long is not there [s]."""
@@ -16,13 +16,13 @@ PATIENCE = 5.0
 """Errors of the source in a row end the drive after so long [s]."""
 
 
-class MappedHand(Source):
+class MappedHand(DriveSource):
     """A hand whose sensors are read all the time, in a thread of their own, and mapped to the channels of a robot."""
 
     silence = SILENCE
 
     def __init__(
-        self, channels: Channels, hand: HandSource, known: HandMap, *, clock: Callable[[], float] = time.monotonic
+        self, channels: DriveChannels, hand: HandSource, known: HandMap, *, clock: Callable[[], float] = time.monotonic
     ) -> None:
         """Read a hand from now on (InputError: the map is of another hand or robot)."""
         known.check(hand.names, channels.names)
@@ -33,14 +33,14 @@ class MappedHand(Source):
         self._thread = threading.Thread(target=self._run, name="hand", daemon=True)
         self._thread.start()
 
-    def read(self) -> Wish:
+    def read(self) -> DriveWish:
         """What the newest reading asks for."""
         reading, error = self._reading, self._error
         if error and self._clock() - self._well > PATIENCE:
             raise HydrostatError(error)
         if reading is None:
-            return Wish(stamp=-inf, words=error or "the hand was not heard yet")
-        return Wish(stamp=reading.stamp, places=self._map(reading.values), words=error or "Ctrl-C: end")
+            return DriveWish(stamp=-inf, words=error or "the hand was not heard yet")
+        return DriveWish(stamp=reading.stamp, places=self._map(reading.values), words=error or "Ctrl-C: end")
 
     def close(self) -> None:
         """End the thread, and let the hand go."""

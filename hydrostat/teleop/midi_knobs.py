@@ -6,7 +6,7 @@ from contextlib import suppress
 from typing import Any
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.teleop.source import Channels, Source, Wish
+from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 USUAL = 1
 """Controller number of the first knob unless told otherwise."""
@@ -14,7 +14,7 @@ LOOK = 1.0
 """Whether a port is still there is looked at so often [s]."""
 
 
-class MidiKnobs(Source):
+class MidiKnobs(DriveSource):
     """A knob for each channel, which goes where its knob is, from its least to its largest value.
 
     A knob that was not turned yet asks for nothing.
@@ -22,7 +22,7 @@ class MidiKnobs(Source):
 
     def __init__(
         self,
-        channels: Channels,
+        channels: DriveChannels,
         name: str = "",
         first: int = USUAL,
         *,
@@ -49,7 +49,7 @@ class MidiKnobs(Source):
         self._port = _open(name) if port is None else port
         self._unknown, self._looked = "", clock()
 
-    def read(self) -> Wish:
+    def read(self) -> DriveWish:
         """Where knobs were turned to since it was last read."""
         now, places = self._clock(), dict[str, float]()
         try:
@@ -62,7 +62,7 @@ class MidiKnobs(Source):
         for message in messages:
             if message.type == "control_change":
                 self._turn(message.control, message.value, places)
-        return Wish(stamp=now, places=places, words=self._unknown or "Ctrl-C: end")
+        return DriveWish(stamp=now, places=places, words=self._unknown or "Ctrl-C: end")
 
     def close(self) -> None:
         """Let it go."""

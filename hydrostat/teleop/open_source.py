@@ -14,10 +14,12 @@ from hydrostat.teleop.landmarks import HandLandmarks
 from hydrostat.teleop.mapped_hand import MappedHand
 from hydrostat.teleop.midi_knobs import USUAL, MidiKnobs
 from hydrostat.teleop.osc import HERE, PORT, Osc
-from hydrostat.teleop.source import Channels, Source
+from hydrostat.teleop.source import DriveChannels, DriveSource
 
 
-def open_source(text: str, channels: Channels, known: HandMap | None = None, person: "Wearer | None" = None) -> Source:
+def open_source(
+    text: str, channels: DriveChannels, known: HandMap | None = None, person: "Wearer | None" = None
+) -> DriveSource:
     """What drives a robot.
 
     Args:
@@ -66,7 +68,7 @@ class Wearer(HandSource):
 
     names = CyberGlove.names
 
-    def __init__(self, channels: Channels, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, channels: DriveChannels, clock: Callable[[], float] = time.monotonic) -> None:
         """A hand like that of a robot with these winches."""
         self.person, self._clock, self._begin = EmulatedPerson(channels.low, channels.high), clock, clock()
         self._glove, self.waves = CyberGlove(self.person.glove, clock=clock), True
@@ -83,22 +85,22 @@ class Wearer(HandSource):
         self._glove.close()
 
 
-def _keys(place: str, channels: Channels) -> Source:
+def _keys(place: str, channels: DriveChannels) -> DriveSource:
     if place:
         raise InputError("--source keys: has no place; write keys")
     return Keys(channels)
 
 
-def _gamepad(place: str, channels: Channels) -> Source:
+def _gamepad(place: str, channels: DriveChannels) -> DriveSource:
     return Gamepad(channels, _number(place or "0", f"gamepad:{place}"))
 
 
-def _midi(place: str, channels: Channels) -> Source:
+def _midi(place: str, channels: DriveChannels) -> DriveSource:
     name, at, first = place.rpartition("@") if "@" in place else (place, "", "")
     return MidiKnobs(channels, name, _number(first, f"midi:{place}") if at else USUAL)
 
 
-def _osc(place: str, channels: Channels) -> Source:
+def _osc(place: str, channels: DriveChannels) -> DriveSource:
     host, _, port = place.rpartition(":")
     return Osc(channels, host or HERE, _number(port or str(PORT), f"osc:{place}"))
 
@@ -111,7 +113,7 @@ def _number(text: str, whole: str) -> int:
 
 HANDS = ("glove", "camera")
 """Kinds that tell a hand, which a map brings to the robot."""
-SOURCES: Mapping[str, Callable[[str, Channels], Source]] = {
+SOURCES: Mapping[str, Callable[[str, DriveChannels], DriveSource]] = {
     "keys": _keys,
     "gamepad": _gamepad,
     "midi": _midi,

@@ -8,7 +8,7 @@ from math import inf, isfinite
 from typing import Any
 
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop.source import Channels, Source, Wish
+from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 HERE, PORT = "127.0.0.1", 9000
 """Only this computer is heard unless told otherwise."""
@@ -18,7 +18,7 @@ _MOST = 500
 """Datagrams that are heard in one look, at most."""
 
 
-class Osc(Source):
+class Osc(DriveSource):
     """Messages over UDP, in millimetres: /winch/index_flexor 12.5, /marker/index 30 -50 120, /hold 1, /rest, /end.
 
     A word holds until the next, as that of a knob. A program that streams says /alive: from then on its silence of half
@@ -27,7 +27,7 @@ class Osc(Source):
 
     def __init__(
         self,
-        channels: Channels,
+        channels: DriveChannels,
         host: str = HERE,
         port: int = PORT,
         *,
@@ -50,7 +50,7 @@ class Osc(Source):
         self._socket.setblocking(False)
         self.address = self._socket.getsockname()
 
-    def read(self) -> Wish:
+    def read(self) -> DriveWish:
         """What was told since it was last read."""
         places, over = dict[str, float](), False
         for _ in range(_MOST):
@@ -66,7 +66,7 @@ class Osc(Source):
                     over = self._take(timed.message.address, timed.message.params, places) or over
         words = self._wrong or f"hears {self.address[0]}:{self.address[1]}; Ctrl-C: end"
         stamp = self._heard if self.silence < inf else self._clock()
-        return Wish(stamp=stamp, places=places, hold=self._hold, over=over, words=words)
+        return DriveWish(stamp=stamp, places=places, hold=self._hold, over=over, words=words)
 
     def close(self) -> None:
         """Let the port go."""

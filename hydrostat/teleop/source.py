@@ -1,4 +1,4 @@
-"""`Source`: the contract of what drives a robot; `Wish`: what a person asks for; `Channels`: what may be asked."""
+"""`DriveSource`: the contract of what drives a robot, by `DriveWish`es for `DriveChannels`."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from hydrostat.arrays import Vector
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Channels:
+class DriveChannels:
     """What a person may turn: winches, or coordinates of fingertips.
 
     Attributes:
@@ -34,7 +34,7 @@ class Channels:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Wish:
+class DriveWish:
     """What a person asks for just now.
 
     Attributes:
@@ -54,7 +54,7 @@ class Wish:
     words: str = ""
 
 
-class Source(ABC):
+class DriveSource(ABC):
     """Contract of what a robot is driven by: keys, knobs, a glove. A new kind is one class and a line in `SOURCES`.
 
     Nothing that it asks for can leave the limits of the motors, nor move them faster than they may.
@@ -69,7 +69,7 @@ class Source(ABC):
     news: Event | None = None
 
     @abstractmethod
-    def read(self) -> Wish:
+    def read(self) -> DriveWish:
         """The newest wish, at once (HydrostatError: the source is gone, and with it who drives)."""
 
     @abstractmethod

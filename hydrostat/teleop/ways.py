@@ -14,7 +14,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.ik import InverseReason, Limits, Tracker
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
-from hydrostat.teleop.source import Channels
+from hydrostat.teleop.source import DriveChannels
 
 if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
@@ -38,7 +38,7 @@ class Way(ABC):
         words: what is to be said of the pose; empty for nothing.
     """
 
-    channels: Channels
+    channels: DriveChannels
     contractions: Vector
     known: KnownPulls
     news: threading.Event | None = None
@@ -220,12 +220,12 @@ class _Newest:
                 self._error, more = f"no pose is found any more: {error}", False
 
 
-def winch_channels(robot: Robot) -> Channels:
+def winch_channels(robot: Robot) -> DriveChannels:
     """The winches of a robot as channels, each a group of its own (InputError: it has none)."""
     if not robot.winches:
         raise InputError(f"{robot.name} has no winches; add some, or let `hydrostat design` find them")
     low, high = ([-winch.release for winch in robot.winches], [winch.travel for winch in robot.winches])
-    return Channels(
+    return DriveChannels(
         names=tuple(winch.name for winch in robot.winches),
         low=np.array(low, dtype=float),
         high=np.array(high, dtype=float),
@@ -234,14 +234,14 @@ def winch_channels(robot: Robot) -> Channels:
     )
 
 
-def marker_channels(simulation: Simulation) -> Channels:
+def marker_channels(simulation: Simulation) -> DriveChannels:
     """The coordinates of all markers as channels, a group for each marker (InputError: there are none)."""
     markers, dim = simulation.rest.markers, simulation.robot.body.mesh.dim
     if not markers:
         raise InputError(f"{simulation.robot.name} has no markers to move; add [[marker]] to its robot.toml")
     rest = np.concatenate([np.asarray(place, dtype=float) for place in markers.values()])
     reach = REACH * simulation.robot.body.mesh.size
-    return Channels(
+    return DriveChannels(
         names=tuple(f"{name} {axis}" for name in markers for axis in "xyz"[:dim]),
         low=rest - reach,
         high=rest + reach,

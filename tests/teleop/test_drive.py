@@ -10,16 +10,16 @@ import pytest
 import hydrostat as hs
 from hydrostat.control import KnownPulls, Motors, SimulatedLink
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop import Drive, FingertipWay, Source, WinchWay, Wish, drive
+from hydrostat.teleop import DriveLoop, DriveSource, DriveWish, FingertipWay, WinchWay, drive
 
 
-class Script(Source):
+class Script(DriveSource):
     """A person who asks for one thing after the other; the last goes on."""
 
-    def __init__(self, wishes: Sequence[Wish | Exception]) -> None:
+    def __init__(self, wishes: Sequence[DriveWish | Exception]) -> None:
         self.wishes = list(wishes)
 
-    def read(self) -> Wish:
+    def read(self) -> DriveWish:
         wish = self.wishes.pop(0) if len(self.wishes) > 1 else self.wishes[0]
         if isinstance(wish, Exception):
             raise wish
@@ -41,12 +41,12 @@ def motors_of(simulation: hs.Simulation) -> Motors:
 def test_winches_go_where_they_are_told_step_by_step_and_within_limits(simulation: hs.Simulation) -> None:
     motors = motors_of(simulation)
     wishes = [
-        Wish(stamp=0.0, places={"left": 0.004}),
-        Wish(stamp=0.0, steps={"left": 0.001, "feet": 0.002}),
-        Wish(stamp=0.0, places={"right": 9.0}),
-        Wish(stamp=0.0),
+        DriveWish(stamp=0.0, places={"left": 0.004}),
+        DriveWish(stamp=0.0, steps={"left": 0.001, "feet": 0.002}),
+        DriveWish(stamp=0.0, places={"right": 9.0}),
+        DriveWish(stamp=0.0),
     ]
-    driven = Drive(motors, WinchWay(simulation, motors.places, solves=False), Script(wishes))
+    driven = DriveLoop(motors, WinchWay(simulation, motors.places, solves=False), Script(wishes))
     now = 0.0
     for _ in range(60):
         now += 0.02
@@ -63,9 +63,9 @@ def test_motors_hold_when_nobody_is_heard_and_go_on_after(simulation: hs.Simulat
     motors.fastest = 0.03
     way = (FingertipWay if tips else WinchWay)(simulation, motors.places)
     name, far = ("left x", -0.05) if tips else ("left", 0.03)
-    source = Script([Wish(stamp=0.0, places={name: far})])
+    source = Script([DriveWish(stamp=0.0, places={name: far})])
     source.silence = 0.25
-    driven, now = Drive(motors, way, source), 0.0
+    driven, now = DriveLoop(motors, way, source), 0.0
     for _ in range(10):
         now += 0.02
         time.sleep(0.02 if tips else 0.0)
@@ -84,7 +84,7 @@ def test_motors_hold_when_nobody_is_heard_and_go_on_after(simulation: hs.Simulat
         now += 0.02
         driven.step(now)
     assert motors.places == pytest.approx(held, abs=4e-3)
-    source.wishes = [Wish(stamp=now, places={name: far})]
+    source.wishes = [DriveWish(stamp=now, places={name: far})]
     for _ in range(10):
         now += 0.02
         time.sleep(0.02 if tips else 0.0)
@@ -95,9 +95,9 @@ def test_motors_hold_when_nobody_is_heard_and_go_on_after(simulation: hs.Simulat
 
 def test_hold_and_then_only_what_is_touched_moves(simulation: hs.Simulation) -> None:
     motors = motors_of(simulation)
-    going, hold = Wish(stamp=0.0, places={"left": 0.03}), Wish(stamp=0.0, hold=True)
-    source = Script([going, hold, hold, Wish(stamp=0.0), Wish(stamp=0.0)])
-    driven, now = Drive(motors, WinchWay(simulation, motors.places, solves=False), source), 0.0
+    going, hold = DriveWish(stamp=0.0, places={"left": 0.03}), DriveWish(stamp=0.0, hold=True)
+    source = Script([going, hold, hold, DriveWish(stamp=0.0), DriveWish(stamp=0.0)])
+    driven, now = DriveLoop(motors, WinchWay(simulation, motors.places, solves=False), source), 0.0
     for _ in range(30):
         now += 0.02
         driven.step(now)
@@ -110,14 +110,14 @@ def test_an_error_of_the_source_stops_the_motors(simulation: hs.Simulation, wron
     motors.link.stop = lambda: stops.append(1)
     way = WinchWay(simulation, motors.places)
     with pytest.raises(type(wrong)):
-        drive(motors, way, Script([Wish(stamp=0.0), wrong]))
+        drive(motors, way, Script([DriveWish(stamp=0.0), wrong]))
     assert stops
 
 
 def test_it_ends_by_the_person_or_in_time(simulation: hs.Simulation) -> None:
     motors, begin = motors_of(simulation), time.monotonic()
-    drive(motors, WinchWay(simulation, motors.places, solves=False), Script([Wish(stamp=inf, over=True)]))
-    drive(motors, WinchWay(simulation, motors.places, solves=False), Script([Wish(stamp=inf)]), seconds=0.1)
+    drive(motors, WinchWay(simulation, motors.places, solves=False), Script([DriveWish(stamp=inf, over=True)]))
+    drive(motors, WinchWay(simulation, motors.places, solves=False), Script([DriveWish(stamp=inf)]), seconds=0.1)
     assert 0.1 <= time.monotonic() - begin < 2.0
 
 
@@ -131,7 +131,7 @@ def test_fingertips_come_to_their_targets(simulation: hs.Simulation) -> None:
     }
     motors = motors_of(simulation)
     way = FingertipWay(simulation, motors.places)
-    drive(motors, way, Script([Wish(stamp=inf, places=places)]), seconds=2.0)
+    drive(motors, way, Script([DriveWish(stamp=inf, places=places)]), seconds=2.0)
     found = simulation.solve(motors.places)
     for name, place in hidden.markers.items():
         assert np.linalg.norm(found.markers[name] - place) < 2e-4
@@ -147,7 +147,7 @@ def test_what_fails_behind_is_told(simulation: hs.Simulation, monkeypatch: pytes
 
     monkeypatch.setattr(hs.Tracker, "update", fail)
     with pytest.raises(HydrostatError, match="no equilibrium"):
-        drive(motors, way, Script([Wish(stamp=inf, steps={"left x": 1e-4})]), seconds=5.0)
+        drive(motors, way, Script([DriveWish(stamp=inf, steps={"left x": 1e-4})]), seconds=5.0)
 
 
 def test_pulls_are_known_near_poses_that_were_solved(simulation: hs.Simulation) -> None:
@@ -176,7 +176,7 @@ def test_pulls_are_known_near_poses_that_were_solved(simulation: hs.Simulation) 
 def test_a_way_with_a_guard_knows_what_it_drives_through(simulation: hs.Simulation) -> None:
     motors = motors_of(simulation)
     way = WinchWay(simulation, motors.places)
-    drive(motors, way, Script([Wish(stamp=inf, places={"left": 0.01})]), seconds=1.0)
+    drive(motors, way, Script([DriveWish(stamp=inf, places={"left": 0.01})]), seconds=1.0)
     exact = simulation.solve({"left": 0.01})
     left = [winch.name for winch in simulation.robot.winches].index("left")
     pull = sum(t for t, cable in zip(exact.tensions, simulation.robot.cables, strict=True) if cable.winch == "left")

@@ -16,19 +16,29 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.teleop import Channels, Gamepad, HandLandmarks, HandMap, Keys, MappedHand, MidiKnobs, Osc, open_source
+from hydrostat.teleop import (
+    DriveChannels,
+    Gamepad,
+    HandLandmarks,
+    HandMap,
+    Keys,
+    MappedHand,
+    MidiKnobs,
+    Osc,
+    open_source,
+)
 from hydrostat.teleop.cyber_glove import SENSORS, CyberGlove, EmulatedGlove
 from hydrostat.teleop.landmarks import COUNT, bends
 from hydrostat.teleop.ridge import Ridge
 
-WINCHES = Channels(
+WINCHES = DriveChannels(
     names=("index flexor", "thumb"),
     low=np.array([-0.002, 0.0]),
     high=np.array([0.03, 0.02]),
     rest=np.zeros(2),
     groups=((0,), (1,)),
 )
-TIPS = Channels(
+TIPS = DriveChannels(
     names=("index x", "index y", "index z"),
     low=np.full(3, -0.1),
     high=np.full(3, 0.1),
