@@ -154,4 +154,5 @@ def _run(command: Sequence[str]) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         told = (done.stderr or done.stdout).strip().splitlines() or ["without a word"]
-        raise HydrostatError(f"{command[0]} failed: {told[-1]}")
+        why = next((line for line in told if "error" in line.lower()), told[-1])
+        raise HydrostatError(f"{command[0]} failed: {why.strip()}")

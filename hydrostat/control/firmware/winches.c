@@ -27,10 +27,13 @@
 #define HALF 12     /* ticks after which a line that came to a halt is thrown away */
 
 /* Power of 255 by counts of error, of error summed over ticks, and of error of speed a tick. */
-#define GAIN_P 2.0f
+#define GAIN_P 1.5f
 #define GAIN_I 0.02f
-#define GAIN_D 8.0f
+#define GAIN_D 6.0f
 #define GAIN_BOUND 120.0f
+#ifndef SPIN_UP_MS
+#define SPIN_UP_MS 20 /* in which a motor without load comes to two thirds of its speed */
+#endif
 #define BEYOND_BY 100 /* counts past a limit at which something is wrong */
 #define SENSE 11      /* volts at the driver's current pin, by amperes, times ten */
 
@@ -49,7 +52,7 @@ typedef struct {
 } Limits;
 
 typedef struct {
-    float aim, wish, pace, most, sum; /* goal, place on the way, its speed and the greatest [1/tick], integral */
+    float aim, wish, pace, gain, most, sum; /* goal, place on the way, its speed, its gain, the greatest [1/tick], integral */
     int32_t before;                   /* place a tick ago */
     uint16_t bound, milliamps;
     uint8_t hot, stuck; /* ticks of too much current, of no motion */
@@ -194,7 +197,7 @@ static void stand(void) {
     for (uint8_t i = 0; i < COUNT; i++) {
         Motor *motor = &motors[i];
         motor->aim = motor->wish = place(i);
-        motor->pace = motor->sum = 0;
+        motor->pace = motor->gain = motor->sum = 0;
         motor->before = motor->wish;
         motor->hot = motor->stuck = 0;
     }
@@ -212,12 +215,13 @@ static void move_on(uint8_t i) {
     float rise = limits[i].rise / ((float)RATE * RATE), left = motor->aim - motor->wish;
     if (fabsf(left) <= rise && fabsf(motor->pace) <= 2 * rise) {
         motor->wish = motor->aim;
-        motor->pace = 0;
+        motor->pace = motor->gain = 0;
         return;
     }
     float most = fminf(motor->most, sqrtf(rise * rise / 4 + 2 * rise * fabsf(left)) - rise / 2);
     float change = copysignf(most, left) - motor->pace;
-    motor->pace += fmaxf(-rise, fminf(rise, change));
+    motor->gain = fmaxf(-rise, fminf(rise, change));
+    motor->pace += motor->gain;
     motor->wish += motor->pace;
 }
 
@@ -227,7 +231,8 @@ static void follow(uint8_t i) {
     float error = motor->wish - now, speed = now - motor->before;
     motor->before = now;
     motor->sum = fmaxf(-GAIN_BOUND, fminf(GAIN_BOUND, motor->sum + GAIN_I * error));
-    float power = GAIN_P * error + motor->sum + GAIN_D * (motor->pace - speed) + 255.0f * RATE / FREE_SPEED * motor->pace;
+    float needed = motor->pace + motor->gain * SPIN_UP_MS * RATE / 1000;
+    float power = GAIN_P * error + motor->sum + GAIN_D * (motor->pace - speed) + 255.0f * RATE / FREE_SPEED * needed;
     int16_t whole = lroundf(fmaxf(-255, fminf(255, power)));
     drive(i, abs(whole) < 4 ? 0 : whole);
     motor->hot = motor->milliamps > motor->bound ? motor->hot + 1 : 0;
