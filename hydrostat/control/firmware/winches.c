@@ -27,9 +27,9 @@
 #define HALF 12     /* ticks after which a line that came to a halt is thrown away */
 
 /* Power of 255 by counts of error, of error summed over ticks, and of error of speed a tick. */
-#define GAIN_P 1.5f
+#define GAIN_P 1.8f
 #define GAIN_I 0.02f
-#define GAIN_D 6.0f
+#define GAIN_D 6.5f
 #define GAIN_BOUND 120.0f
 #ifndef SPIN_UP_MS
 #define SPIN_UP_MS 20 /* in which a motor without load comes to two thirds of its speed */
