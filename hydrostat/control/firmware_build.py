@@ -5,7 +5,6 @@ import shutil
 import subprocess
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from importlib import resources
 from math import pi
 from pathlib import Path
@@ -13,51 +12,11 @@ from pathlib import Path
 from hydrostat.control.bus_link import LinkLimits
 from hydrostat.control.calibration import CALIBRATION, Calibration
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.fabrication.parts.board import BOARDS, BoardKind
 from hydrostat.robot import Robot, replace_file
 
 SPARE = 0.025
 """What a motor may turn beyond travel and release [m]: slack that calibration takes up."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class BoardKind:
-    """A board that the firmware is for.
-
-    Attributes:
-        chip: its processor, as compilers call it.
-        motors: geared DC motors with encoders that it bears.
-        loader: how avrdude talks to what it starts with.
-        wiring: for each motor: PWM and direction to the driver, encoder A and B, the driver's current sense.
-    """
-
-    chip: str
-    motors: int
-    loader: tuple[str, ...]
-    wiring: Sequence[tuple[str, str, str, str, str]]
-
-
-BOARDS = {
-    "uno": BoardKind(
-        chip="atmega328p",
-        motors=2,
-        loader=("-c", "arduino", "-b", "115200"),
-        wiring=(("6", "4", "A0", "A1", "A4"), ("5", "7", "A2", "A3", "A5")),
-    ),
-    "mega": BoardKind(
-        chip="atmega2560",
-        motors=6,
-        loader=("-c", "wiring", "-b", "115200", "-D"),
-        wiring=(
-            ("5", "22", "53", "52", "A0"),
-            ("2", "23", "51", "50", "A1"),
-            ("3", "24", "A8", "A9", "A2"),
-            ("6", "25", "A10", "A11", "A3"),
-            ("7", "26", "A12", "A13", "A4"),
-            ("8", "27", "A14", "A15", "A5"),
-        ),
-    ),
-}
-"""By the names that `board.h` gives them; a test holds the pins equal to those there."""
 
 
 def robot_word(robot: Robot, calibration: Calibration) -> str:

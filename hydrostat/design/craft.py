@@ -10,6 +10,7 @@ from hydrostat.design.polyline import nearest_shares, turns
 from hydrostat.fabrication.demand import shaft_torques
 from hydrostat.fabrication.lists.bill import PRICES
 from hydrostat.fabrication.lists.needs import control_needs
+from hydrostat.fabrication.lists.power import power_plan
 from hydrostat.fabrication.parts.motor import choose_motor
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Mount, Robot, sewn_sides
@@ -72,10 +73,14 @@ def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes
     tube = twice * float(sum(cable.segments[~cable.bare].sum() for cable in cables))
     price, key = PRICES["line"].amount * length + PRICES["tube"].amount * tube, ""
     if motors:
-        torques = np.array([shaft_torques(robot, pose.pose.tensions) for pose in reached]).ravel()
+        rows = [shaft_torques(robot, pose.pose.tensions) for pose in reached]
+        torques = np.array(rows).reshape(-1, len(robot.winches))
         inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-        motor = choose_motor("auto", torques, inside=inside)
-        price += motors * motor.price + sum(item.cost for item in control_needs(motor, motors))
+        motor = choose_motor("auto", torques.ravel().tolist(), inside=inside, winches=motors)
+        used, most = {cable.winch for cable in cables}, 1e3 * torques.max(axis=0, initial=0.0)
+        pairs = zip(robot.winches, most.tolist(), strict=True)
+        power = power_plan({winch.name: torque for winch, torque in pairs if winch.name in used}, motor)
+        price += motors * motor.price + sum(item.cost for item in control_needs(power))
         key = motor.key
     return Craft(
         holes=holes,

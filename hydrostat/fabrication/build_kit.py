@@ -249,6 +249,7 @@ def _sheet(plan: _Plan) -> SheetInput:
         stitches=work.stitches,
         gusset=work.gusset,
         mould=work.mould,
+        power=plan.lists.power,
         checks=plan.checks,
         problems=plan.problems,
         warnings=plan.warnings,

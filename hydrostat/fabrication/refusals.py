@@ -26,7 +26,8 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
     options = options or KitOptions()
     sewn = sewn_robot(robot) if options.method_for(robot.body) is Method.PLUSH else robot
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-    motor = choose_motor(options.motor, () if demand is None else demand.torques, inside=inside)
+    torques = () if demand is None else demand.torques
+    motor = choose_motor(options.motor, torques, inside=inside, winches=len(robot.winches))
     found = [*unit_problems(sewn, options.parts, motor), *_of_body(robot, options)]
     if demand is not None:
         found += check_line(sewn, _shared(demand.tensions, sewn), line_for(options.parts.cable)).problems

@@ -18,6 +18,7 @@ from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.lists.list_input import ListInput
 from hydrostat.fabrication.lists.motor_sizing import motor_table, motor_warnings, size_winches
 from hydrostat.fabrication.lists.needs import all_needs
+from hydrostat.fabrication.lists.power import PowerPlan, power_plan
 from hydrostat.fabrication.lists.stitching import close_warnings, deep_warnings, depth_table, plane_table, stitch_table
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.simulation import Simulation
@@ -33,6 +34,7 @@ class Lists:
     problems: tuple[str, ...]  # why the robot cannot be built well
     warnings: tuple[str, ...]  # what a person should mind
     checks: tuple[Check, ...]  # that the lists are true to the simulation
+    power: PowerPlan | None = None  # what feeds its motors
 
     @property
     def cost(self) -> tuple[float, float]:
@@ -57,7 +59,8 @@ def make_lists(given: ListInput) -> Lists:
     cables, pieces = cable_table(cuts), sheath_table(robot, tubes, bore=options.bore, tube=options.tube)
     strength = check_line(robot, demand.tensions, given.line or line_for(options.cable), hold=given.stopper_hold)
     sizings = size_winches(robot, demand, given.motor)
-    items = tuple(all_needs(given, strength.line, cuts, tubes))
+    power = power_plan({each.winch: each.torque for each in sizings if each.cables}, given.motor)
+    items = tuple(all_needs(given, strength.line, cuts, tubes, power))
     sewing, deep = _sewing(given)
     simulation = Simulation(robot)
     return Lists(
@@ -68,6 +71,7 @@ def make_lists(given: ListInput) -> Lists:
             *sewing,
             strength.table,
             motor_table(sizings, demand, given.motor),
+            *([power.table] if power else []),
         ),
         problems=strength.problems,
         warnings=(
@@ -77,6 +81,7 @@ def make_lists(given: ListInput) -> Lists:
             *deep,
         ),
         checks=(check_lengths(cables, simulation), check_sheaths(pieces, simulation, outside=given.outside)),
+        power=power,
     )
 
 

@@ -6,15 +6,13 @@ from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
-from hydrostat.fabrication.parts.motor import Motor
+from hydrostat.fabrication.lists.power import PowerPlan
 from hydrostat.fabrication.solids.printed import Printed
 
 POLYETHYLENE = 0.97e-3  # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
 PTFE = 2.15e-3  # density of the tube [g/mm^3]; ASTM D792, in data sheets of PTFE tube
 SPOOL = 100e3  # thread on a spool [mm]
 THREAD = 4.0  # Thread for a length of seam: two threads of a lock stitch, sewn twice. Assumed.
-_BOARD_MOTORS = 6  # motors for one board: it has so many outputs that set a speed (PWM)
-_DRIVER_MOTORS = 2  # motors for one driver
 DOWEL = 15.0  # length of a dowel [mm]: a little less than the holes in both pieces are deep
 
 _BODY, _CABLES, _WINCHES, _CONTROL, _MOULD = "body", "cables", "winches", "control", "mould"
@@ -22,7 +20,11 @@ _SILICONES = ("ecoflex", "dragon skin")  # beginnings of names of materials that
 
 
 def all_needs(
-    given: ListInput, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]
+    given: ListInput,
+    line: FishingLine,
+    cuts: tuple[CableCut, ...],
+    tubes: tuple[SheathCut, ...],
+    power: PowerPlan | None,
 ) -> list[Item]:
     """Everything that a robot takes, group by group."""
     items = []
@@ -33,7 +35,7 @@ def all_needs(
     items += [
         *_cables(given, line, cuts, tubes),
         *_winches(given),
-        *control_needs(given.motor, given.units),
+        *control_needs(power),
         *_mould(given),
     ]
     return [item for item in items if item.quantity > 0]
@@ -118,21 +120,34 @@ def _plastic(group: str, what: str, parts: tuple[Printed, ...]) -> Item:
     return _item(group, what, f"{pieces} pieces, with a little infill", 1e-3 * mass, "pla", mass)
 
 
-def control_needs(motor: Motor, count: int) -> list[Item]:
-    """Boards, drivers and the supply that turn so many motors of a kind; some quantities may be 0."""
-    voltage = "of the motors' voltage, with current for those that pull at once"
-    supply = _item(_CONTROL, "power supply", voltage, float(count > 0), "supply")
-    if motor.horn is not None:
-        bus = "OpenRB-150 or alike, drives the servos by their bus"
-        return [_item(_CONTROL, "controller board for servos", bus, float(count > 0), "servo board"), supply]
-    boards, drivers = math.ceil(count / _BOARD_MOTORS), math.ceil(count / _DRIVER_MOTORS)
-    nano = f"Arduino Nano or alike, one for {_BOARD_MOTORS} motors"
-    bridge = "H-bridge for two motors, for their stall current, such as TB6612FNG for small ones"
-    return [
-        _item(_CONTROL, "controller board", nano, float(boards), "controller"),
-        _item(_CONTROL, "motor driver", bridge, float(drivers), "driver"),
-        supply,
+def control_needs(plan: PowerPlan | None) -> list[Item]:
+    """Boards, drivers, supply, fuse, switch and wires that turn the motors of a plan."""
+    if plan is None:
+        return []
+    count, area, gauge = float(len(plan.winches)), *plan.wire
+    feed = [
+        _item(_CONTROL, "power supply", f"{plan.motor.volts:g} V, {plan.supply:g} A or more", 1.0, "supply"),
+        _item(_CONTROL, "fuse with holder", f"blade fuse, {plan.fuse:g} A", 1.0, "fuse"),
+        _item(_CONTROL, "switch", f"for {plan.fuse:g} A, large enough to be hit", 1.0, "switch"),
+        _item(_CONTROL, "twin lead", f"{area:g} mm^2 (AWG {gauge}) or thicker", 2.0, "lead"),
     ]
+    if plan.servos:
+        bus = "OpenRB-150 or alike, drives the servos by their bus"
+        chain = "of three wires with JST EH plugs (X3P), one from servo to servo"
+        plugs = [_item(_CONTROL, "servo cable", chain, count, "servo cable")]
+        return [_item(_CONTROL, "controller board for servos", bus, 1.0, "servo board"), *plugs, *feed]
+    kinds = {name: plan.boards.count(name) for name in dict.fromkeys(plan.boards)}
+    bridge = f"carrier of a DRV8874 or alike: {plan.motor.stall_current:g} A, current sense of 1.1 V/A"
+    parts = [
+        _item(_CONTROL, "controller board", f"Arduino {name.capitalize()} or alike", float(many), "controller")
+        for name, many in kinds.items()
+    ]
+    if plan.motor.key == "n20":
+        magnets = "magnetic, for micro metal gearmotors with a long shaft, 12 counts a turn"
+        parts.append(_item(_CONTROL, "encoder", magnets, count, "encoder"))
+    small = "1 of 10 uF from RESET to GND of each board, and 10 kOhm from each PWM pin to GND"
+    parts.append(_item(_CONTROL, "capacitor and resistors", small, 1.0, "small parts"))
+    return [*parts, _item(_CONTROL, "motor driver", bridge, count, "driver"), *feed]
 
 
 def _mould(given: ListInput) -> list[Item]:

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.parts.board import BOARDS
 from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder, segments
 
 
@@ -85,6 +86,9 @@ class Motor:
     stall_torque: float  # at which it stands still, at the voltage that its title or source names [N mm]
     rated_torque: float  # that it should be loaded with at most [N mm]
     speed: float  # without load [rpm]
+    volts: float  # that all its figures are for [V]
+    stall_current: float  # [A]
+    free_current: float  # without load [A]
     counts: float = 0.0  # of its encoder in a turn of the shaft, all edges; 0: it has none
     mass: float  # [g]
     price: float  # of one, rough [USD]
@@ -126,13 +130,17 @@ _N20 = Motor(
     stall_torque=196.0,
     rated_torque=49.0,
     speed=45.0,
+    volts=6.0,
+    stall_current=0.36,
+    free_current=0.02,
+    counts=3575.04,
     mass=10.0,
     price=18.0,
     price_source="of its sister HPCB 75:1, 17.95 in an order list of the team ASROB-sumo, which has no date",
     source="Pololu, Micro Metal Gearmotors, Rev 2.0, May 2018: stall 20 kg mm (extrapolated), 45 rpm, 10 g, gearbox "
-    "9 mm, M1.6 screws at most 1.3 mm deep. Pololu, product page 5215: section 10 x 12 mm, D shaft 3 x 9 mm. Load at "
-    "most a quarter of stall: Pololu's forum, thread 14572 (20 to 30 %). Holes 9 mm apart, flat of 2.5 mm, boss and "
-    "length of the motor: measured on none, check yours.",
+    "9 mm, M1.6 screws at most 1.3 mm deep; LP 6V: 0.36 A at stall, 0.02 A without load, 297.92:1. Pololu, product "
+    "page 5215: section 10 x 12 mm, D shaft 3 x 9 mm. Load at most a quarter of stall: Pololu's forum, thread 14572 "
+    "(20 to 30 %). Holes 9 mm apart, flat of 2.5 mm, boss and length of the motor: measured on none, check yours.",
 )
 
 _XL330 = Motor(
@@ -149,13 +157,17 @@ _XL330 = Motor(
     stall_torque=520.0,
     rated_torque=104.0,
     speed=103.0,
+    volts=5.0,
+    stall_current=1.47,
+    free_current=0.02,
     mass=18.0,
     price=25.0,
     price_source="estimate, no source",
-    source="Robotis e-Manual, XL330-M288-T: 20 x 34 x 26 mm, 18 g, at 5 V stall 0.52 N m and 103 rpm. Load at most a "
-    "fifth of stall: the same manual's note on XL-320 and AX-18A. Axis 9.5 mm below the top, case 23 mm, horn 16 mm "
-    "wide with 4 holes 6 mm from its axis, holes of the case 16 x 30 mm apart: a public OpenSCAD model of the project "
-    "Orbigator, 2025-12-13; measured on none, check yours: the holes for the case are slots.",
+    source="Robotis e-Manual, XL330-M288-T: 20 x 34 x 26 mm, 18 g, at 5 V stall 0.52 N m at 1.47 A, and 103 rpm. "
+    "Load at most a fifth of stall: the same manual's note on XL-320 and AX-18A. Axis 9.5 mm below the top, case "
+    "23 mm, horn 16 mm wide with 4 holes 6 mm from its axis, holes of the case 16 x 30 mm apart: a public OpenSCAD "
+    "model of the project Orbigator, 2025-12-13; measured on none, check yours: the holes for the case are slots. "
+    "Current without load, 0.02 A: its standby current of 17 mA.",
 )
 
 _POLOLU_25D = Motor(
@@ -170,15 +182,18 @@ _POLOLU_25D = Motor(
     stall_torque=1373.0,
     rated_torque=343.0,
     speed=35.0,
+    volts=6.0,
+    stall_current=2.0,
+    free_current=0.12,
     counts=8245.92,
     mass=100.0,
     price=47.0,
     price_source="AUD 72.95 for its sister 4822 at robotgear.com.au, no date, at 0.65 USD",
     source="Pololu, product page 4828: 25 mm wide, 71 mm long with encoder, D shaft 4 x 12.5 mm, stall 14 kg cm "
-    "(extrapolated), 35 rpm, 48 counts in a turn of the motor, 171.79:1. M3 holes 17 mm apart: Core Electronics, on "
-    "the face of the motor of this family. Load at most a quarter of stall: Pololu's forum, thread 14572 (20 to 30 %). "
-    "Holes of the gearbox, boss (7 x 2.5 mm in a public OpenSCAD model), flat of 3.5 mm, depth of the threads, mass: "
-    "measured on none, check yours.",
+    "(extrapolated) at 2.0 A, 35 rpm at 0.12 A, 48 counts in a turn of the motor, 171.79:1. M3 holes 17 mm apart: Core "
+    "Electronics, on the face of the motor of this family. Load at most a quarter of stall: Pololu's forum, thread "
+    "14572 (20 to 30 %). Holes of the gearbox, boss (7 x 2.5 mm in a public OpenSCAD model), flat of 3.5 mm, depth of "
+    "the threads, mass: measured on none, check yours.",
 )
 
 MOTORS = (_N20, _XL330, _POLOLU_25D)  # from the weakest to the strongest
@@ -198,15 +213,18 @@ def largest_torque(motor: Motor, *, inside: bool = False) -> float:
     return 1e-3 * (BRIEF * motor.stall_torque if inside else motor.rated_torque) / MARGIN
 
 
-def choose_motor(key: str, torques: Iterable[float], *, inside: bool = False) -> Motor:
+def choose_motor(key: str, torques: Iterable[float], *, inside: bool = False, winches: int = 0) -> Motor:
     """The motor of a key; "auto": the first of the table that carries the largest torque [N m], with the margin.
 
     Outside the body it must carry it for long; `inside`, where there is little room, for seconds. Where none does it is
-    the strongest. Raises InputError if no motor has this key.
+    the strongest. More `winches` outside than one board bears get servos, which share one bus. Raises InputError if no
+    motor has this key.
     """
     if key == "auto":
         needed = max((float(torque) for torque in torques), default=0.0) - 1e-12
-        return next((each for each in MOTORS if largest_torque(each, inside=inside) >= needed), MOTORS[-1])
+        able = [each for each in MOTORS if largest_torque(each, inside=inside) >= needed] or [MOTORS[-1]]
+        many = winches > max(board.motors for board in BOARDS.values()) and not inside
+        return next((each for each in able if each.horn is not None or not many), able[0])
     for motor in MOTORS:
         if motor.key == key:
             return motor

@@ -95,7 +95,7 @@ def rigid_parts(
     pinhole is too small for a grommet.
     """
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-    chosen = choose_motor(motor, demand.torques, inside=inside)
+    chosen = choose_motor(motor, demand.torques, inside=inside, winches=len(robot.winches))
     units = winch_units(robot, options, chosen)
     return RigidParts(
         motor=chosen,

@@ -17,13 +17,14 @@ from hydrostat.fabrication.sheets.sight import best_views
 from hydrostat.fabrication.sheets.single_maps import single_maps
 from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portrait, undercut_picture
 from hydrostat.fabrication.sheets.steps import CableDepths
+from hydrostat.fabrication.sheets.wiring import wiring_scheme
 from hydrostat.fabrication.winch_marks import winch_marks_of
 
 _TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ", "words.typ")
 
 
 def assembly_sheet(given: SheetInput) -> bytes:
-    """A PDF of two pages for a robot of plush, four for one of foam; the same bytes for the same robot.
+    """A PDF: two pages for a robot of plush, four for one of foam, one of wires. The same robot gives the same bytes.
 
     All words of the user reach the template as data, so that none of them is taken for markup.
     """
@@ -31,7 +32,7 @@ def assembly_sheet(given: SheetInput) -> bytes:
 
     room = files("hydrostat.fabrication.sheets")
     pages = "plush_pages.typ" if given.method is Method.PLUSH else "foam_pages.typ"
-    source = b"\n".join((room / name).read_bytes() for name in (*_TEMPLATES, pages))
+    source = b"\n".join((room / name).read_bytes() for name in (*_TEMPLATES, pages, "wiring.typ"))
     pictures = {name: {"svg": canvas.svg, "width": canvas.width} for name, canvas in sheet_pictures(given).items()}
     legible = Legible(given.robot)
     words = legible.facts(sheet_facts(given, letters=legible.warning))
@@ -65,6 +66,10 @@ def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
         pages = single_maps(robot, given.stitches, width=WIDE, height=235.0 - tight, view=views[0] if views else None)
         pictures |= {f"single_{number}": page for number, page in enumerate(pages, start=1)}
     left = 195.0 - tight - boxed - pictures["map"].height
+    if given.power is not None:
+        marks = winch_marks_of(robot)
+        mine = tuple(marks[name] for name in given.power.winches)
+        pictures["wiring"] = wiring_scheme(given.power, mine, width=WIDE)
     return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
 
 

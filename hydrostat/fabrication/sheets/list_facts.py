@@ -1,13 +1,15 @@
-"""`bill_facts`, `piece_facts`: what is bought, and every piece with its number on the pictures, for a sheet."""
+"""`bill_facts`, `piece_facts`, `power_facts`: what is bought, pieces by their numbers, and wires, for a sheet."""
 
 from collections.abc import Mapping
 from typing import Any
 
 from hydrostat.fabrication.lists.table import Cell, Table
+from hydrostat.fabrication.parts.board import BOARDS
 from hydrostat.fabrication.sheets.legible import shortened
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.assembly import Placed
 from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.fabrication.winch_marks import winch_marks_of
 
 Facts = dict[str, Any]  # plain data, as JSON has it
 _TOTAL = "total"  # what the bill calls the rows that sum others
@@ -171,3 +173,47 @@ def _kind(title: str) -> str:
     for mark in (" of winch", " of every winch", ", piece", ", part"):
         title = title.partition(mark)[0]
     return title.removeprefix("mould, ").removeprefix("Mould, ")
+
+
+def power_facts(given: SheetInput) -> Facts | None:
+    """Supply, fuse, leads and battery, what to mind, and which wire goes where; None without motors."""
+    plan = given.power
+    if plan is None:
+        return None
+    marks = winch_marks_of(given.robot)
+    named = [f"{marks[name]} {shortened(name, 24)}" for name in plan.winches]
+    mind = [
+        "The fuse sits in the plus lead, at the supply. The switch for the motors stays in reach while they turn.",
+        "Minus of the supply and GND of the board are joined. Plus never goes to a pin of the board that is no supply.",
+        f"From NiMH cells use {plan.cells} in a row with the same fuse; never charge them in the robot.",
+    ]
+    if plan.servos:
+        mind.append("Give each servo its number by ROBOTIS' Dynamixel Wizard, one at a time, before you chain them.")
+        return {
+            "rows": [list(row) for row in plan.table.texts],
+            "mind": mind,
+            "title": "Servos",
+            "heads": ["ID", "winch"],
+            "pins": [[str(number), name] for number, name in enumerate(named, start=1)],
+        }
+    pins, place = [], 0
+    for number, board in enumerate(plan.boards, start=1):
+        for wires in BOARDS[board].wiring[: len(named) - place]:
+            pins.append([named[place], board if len(plan.boards) == 1 else f"{board} {number}", *wires])
+            place += 1
+    mind += [
+        "10 kOhm from each PWM pin to GND keeps motors off while the board starts; 10 uF from RESET to GND, put in "
+        "after the firmware is written, keeps it from starting anew when a program opens its port.",
+        "A motor that runs away at once has its two wires swapped: the board stops it after 0.2 s.",
+    ]
+    if len(plan.boards) > 1:
+        mind.append(
+            "hydrostat drives one board at a time: where servos on one bus are strong enough for all winches, take those."
+        )
+    return {
+        "rows": [list(row) for row in plan.table.texts],
+        "mind": mind,
+        "title": "Pins of the board",
+        "heads": ["winch", "board", "PWM", "direction", "A", "B", "current"],
+        "pins": pins,
+    }

@@ -9,7 +9,7 @@ from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets import foam_steps, mould_steps, plush_steps
 from hydrostat.fabrication.sheets.legible import minds, sentence, shortened
-from hydrostat.fabrication.sheets.list_facts import Facts, bill_facts, cost_text, piece_facts, winch_files
+from hydrostat.fabrication.sheets.list_facts import Facts, bill_facts, cost_text, piece_facts, power_facts, winch_files
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
 from hydrostat.fabrication.winch_marks import winch_marks_of
@@ -54,6 +54,7 @@ def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
             for check in given.checks
         ],
         "mould": _mould(given.mould),
+        "power": power_facts(given),
         "other_way": list(mould_steps.other_way(given.mould)) if given.mould else [],
         "cures": [list(cure) for cure in mould_steps.cures(given.mould)],
     }

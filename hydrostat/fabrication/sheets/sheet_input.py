@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method, Paper
+from hydrostat.fabrication.lists.power import PowerPlan
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
@@ -30,6 +31,7 @@ class SheetInput:
     stitches: tuple[CableStitches, ...] = ()  # of each cable of a plush robot
     gusset: bool = False  # whether strips between front and back make a plush body thick
     mould: Mould | None = None  # of a robot of foam
+    power: PowerPlan | None = None  # what feeds its motors
     checks: tuple[Check, ...] = ()  # of the kit on itself
     problems: tuple[str, ...] = ()  # why the robot cannot be built well, if it is built all the same
     warnings: tuple[str, ...] = ()  # what to mind

@@ -12,6 +12,7 @@ from hydrostat.fabrication.lists.cuts import cable_cuts, sheath_cuts
 from hydrostat.fabrication.lists.line import line_for
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
 from hydrostat.fabrication.lists.needs import all_needs, filling_mass
+from hydrostat.fabrication.lists.power import power_plan
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed
@@ -25,7 +26,8 @@ CUBES = 3 * 1.24e-3 * (1.2 * 600 + 0.15 * (1000 - 1.2 * 600))
 def needs(this: ListInput) -> dict[str, Item]:
     cuts = cable_cuts(this.robot, leads={}, outside=this.outside, spare_wraps=2.0)
     tubes = sheath_cuts(this.robot, seats={}, outside=this.outside)
-    return {item.what: item for item in all_needs(this, line_for(0.4), cuts, tubes)}
+    power = power_plan({cable.winch: 10.0 for cable in this.robot.cables}, this.motor)
+    return {item.what: item for item in all_needs(this, line_for(0.4), cuts, tubes, power)}
 
 
 def test_totals_of_groups_and_of_all() -> None:

@@ -26,6 +26,7 @@ def stitches(robot: Robot) -> tuple:
 def test_names_and_order() -> None:
     lists = make_lists(given(square(), cloth=Cloth(felt=1e5, seam=1e3), stitches=stitches(square())))
     names = ["bill_of_materials", "cable_cuts", "sheath_cuts", "stitching", "line_strength", "motor_sizing"]
+    names.append("power")
     assert [table.name for table in lists.tables] == names
     assert lists.problems == lists.warnings == ()
     assert all(check.passed for check in lists.checks)

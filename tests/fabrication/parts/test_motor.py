@@ -87,3 +87,11 @@ def test_a_thicker_shaft_is_thicker_all_round():
     shaft = MOTORS[-1].shaft
     room: Manifold = Manifold.cube((20, 20, 4)).translate((-10, -10, 2)) - solid_of(shaft.shape(10, 0.2))
     assert solid_of(shaft.shape(10)).min_gap(room, 1.0) == pytest.approx(0.2, abs=0.02)
+
+
+def test_more_winches_than_a_board_bears_get_servos_where_they_carry_it() -> None:
+    n20, xl330, strong = MOTORS
+    assert choose_motor("auto", [0.01], winches=6) is n20
+    assert choose_motor("auto", [0.01], winches=7) is xl330
+    assert choose_motor("auto", [0.01], winches=7, inside=True) is n20
+    assert choose_motor("auto", [0.1], winches=7) is strong

@@ -1,0 +1,62 @@
+"""What feeds the motors. Oracle: cases by hand."""
+
+import pytest
+
+from hydrostat.fabrication.lists.needs import control_needs
+from hydrostat.fabrication.lists.power import PLUG, PowerPlan, power_plan
+from hydrostat.fabrication.parts.board import board_for
+from hydrostat.fabrication.parts.motor import MOTORS
+
+N20, XL330, POLOLU_25D = MOTORS
+
+
+def test_three_servos_by_hand() -> None:
+    """A fifth of stall each: 0.02 + 1.45 / 5 = 0.31 A; two that stall need 2.94 A, more than 1.5 times 0.93 A."""
+    plan = power_plan(dict.fromkeys(["a", "b", "c"], 104.0), XL330)
+    assert plan is not None
+    assert plan.largest == pytest.approx(0.93)
+    assert (plan.supply, plan.fuse, plan.wire) == (3.0, 2.0, (0.5, 20))
+    assert plan.feeds == 1
+    assert plan.cells == 4
+    assert plan.hours == pytest.approx(0.8 * 2.0 / 0.31)
+    assert dict(plan.table.rows)["supply"] == "5 V, 3 A or more"
+
+
+def test_ten_strong_servos_are_fed_in_several_places() -> None:
+    """All at stall: 14.7 A; 22 A with what is spare, and no plug carries more than it bears."""
+    plan = power_plan({f"w{n}": 900.0 for n in range(10)}, XL330)
+    assert plan is not None
+    assert plan.largest == pytest.approx(14.7)
+    assert (plan.supply, plan.fuse, plan.wire) == (30.0, 25.0, (2.5, 14))
+    assert plan.feeds * PLUG >= 14.7
+
+
+@pytest.mark.parametrize(("count", "boards"), [(2, ("uno",)), (3, ("mega",)), (6, ("mega",)), (8, ("mega", "uno"))])
+def test_boards_for_motors(count: int, boards: tuple[str, ...]) -> None:
+    plan = PowerPlan(motor=POLOLU_25D, winches=tuple(map(str, range(count))), largest=1.0)
+    assert plan.boards == boards
+    what = {item.what: item for item in control_needs(plan)}
+    assert what["motor driver"].quantity == count
+    assert "1.1 V/A" in what["motor driver"].specification
+    assert "encoder" not in what
+
+
+def test_small_motors_get_encoders() -> None:
+    plan = power_plan({"a": 40.0}, N20)
+    assert plan is not None
+    assert {item.what: item.quantity for item in control_needs(plan)}["encoder"] == 1
+
+
+def test_no_motors_need_nothing() -> None:
+    assert power_plan({}, N20) is None
+    assert control_needs(None) == []
+    assert board_for(99) == "mega"
+
+
+def test_fuses_blow_before_supplies_give_in() -> None:
+    for torque in (1.0, 100.0, 500.0):
+        for count in (1, 3, 10):
+            plan = power_plan({str(n): torque for n in range(count)}, XL330)
+            assert plan is not None
+            assert plan.fuse <= plan.supply
+            assert plan.fuse >= min(plan.largest, plan.supply) or plan.fuse >= 0.6 * plan.supply
