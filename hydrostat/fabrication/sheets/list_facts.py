@@ -208,7 +208,7 @@ def power_facts(given: SheetInput) -> Facts | None:
     ]
     if len(plan.boards) > 1:
         mind.append(
-            "hydrostat drives one board at a time: where servos on one bus are strong enough for all winches, take those."
+            "hydrostat drives one board at a time: servos on one bus have no such bound."
         )
     return {
         "rows": [list(row) for row in plan.table.texts],
