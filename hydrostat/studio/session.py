@@ -14,6 +14,7 @@ from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.driver import Driver
+from hydrostat.studio.driving.hardware import Hardware
 from hydrostat.studio.editing.editor import Editor
 from hydrostat.studio.exporting.download import Download
 from hydrostat.studio.exporting.exporter import Exporter
@@ -67,6 +68,7 @@ class Session:
         self.poser = Poser(self.document, self.jobs)
         self.designer = Designer(self.document, self.jobs)
         self.driver = Driver(self.document, self.jobs)
+        self.hardware = Hardware(self.document, self.bell, allowed=not guest)  # motors that do what is shown
         self.exporter = Exporter(self.document, self.jobs)
         self.stages: Mapping[StageName, Stage] = {
             StageName.START: self.starter,
@@ -104,6 +106,7 @@ class Session:
                 return
             self._let_go()
             self.current.leave()
+            self.hardware.hold("another stage was shown, and the motors hold: arm them anew")
             self.stage = name
             self.current.enter()
         self.bell.ring(Topic.STAGE, Topic.SHAPE, Topic.THINGS)
@@ -156,6 +159,8 @@ class Session:
     def key(self, name: str) -> bool:
         """Heed a key of the current stage; whether it meant something."""
         with self._lock:
+            if name == "escape":
+                self.hardware.hold()
             meant = self.document.is_open and bool(self._try(lambda: self.current.key(name)))
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
         return meant
@@ -243,6 +248,10 @@ class Session:
             more = self.current.step(now)
         except HydrostatError as error:
             complaint = str(error)
+        if self.hardware.state is not None and self.stage in (StageName.POSE, StageName.DRIVE):
+            shape = self.current.shape()
+            if shape.muscles is None:  # muscles are imagined: no motor can do what they do
+                self.hardware.show(self.document.robot, shape)
         if complaint and complaint != self._complaint:  # a step is tried again and again: it complains once
             self.tell(complaint, Tone.BAD)
         self._complaint, self.answered = complaint, asked
@@ -266,6 +275,7 @@ class Session:
     def close(self) -> None:
         """End all work; what is not saved is there next time."""
         self.poser.proposals.close()
+        self.hardware.close()
         self.driver.leave()
         self.driver.motors.link.close()
         self.jobs.close()

@@ -52,6 +52,11 @@ class Driver(Stage):
         return self._machine.motors
 
     @property
+    def kit(self) -> str:
+        """Name of the kit's motor, whose speed the motors have at first; "" without winches."""
+        return self._machine.kit
+
+    @property
     def strongest(self) -> float:
         """The most that a cable should bear [N]."""
         return self._machine.strongest

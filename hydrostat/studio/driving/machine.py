@@ -15,6 +15,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.keyframes import Keyframes
+from hydrostat.studio.driving.kit_speed import kit_speed
 from hydrostat.studio.view.things import RobotShape, rest_shape
 from hydrostat.studio.view.touching import with_touches
 
@@ -55,6 +56,7 @@ class Machine:
         self._connect = connect
         self.player, self.motors = Player(), Motors((), connect(np.zeros(0)), patience=inf)
         self.notice = ""  # why it does not do what was asked; "" if it does
+        self.kit = ""  # name of the kit's motor, whose speed the motors have at first
         self.lock = RLock()  # for what must not change meanwhile; never held for long
         self._document, self._keyframes = document, keyframes
         self._follower = Follower()
@@ -159,7 +161,10 @@ class Machine:
             )
             link.close()
             link = self._connect(places)
-        motors = Motors(robot.winches, link, places=places, fastest=before.fastest, patience=inf)
+        fastest, self.kit = kit_speed(robot, self.strongest)
+        if names == list(before.names):
+            fastest = before.fastest
+        motors = Motors(robot.winches, link, places=places, fastest=fastest, patience=inf)
         motors.ask(kept(before.command))
         return motors
 

@@ -14,6 +14,7 @@ from hydrostat.studio.face.panels.design_panel import design_panel
 from hydrostat.studio.face.panels.drive_panel import drive_panel
 from hydrostat.studio.face.panels.edit_panel import edit_panel
 from hydrostat.studio.face.panels.export_panel import export_panel
+from hydrostat.studio.face.panels.motors_card import stop_button
 from hydrostat.studio.face.panels.pose_panel import pose_panel
 from hydrostat.studio.face.panels.start_panel import start_panel
 from hydrostat.studio.face.share import Links, share_dialog
@@ -43,6 +44,7 @@ addEventListener("click", (event) => {
   const letGo = () => document.activeElement?.closest("button, [role=button]") && document.activeElement.blur();
   if (event.detail) setTimeout(letGo);
 });
+setInterval(() => document.hidden || window.emitEvent?.("hydrostat_alive"), 150);
 addEventListener("keydown", (event) => {
   const typing = event.target.closest?.("input, textarea, select, [contenteditable=true]");
   const word = (event.ctrlKey || event.metaKey) && "acdsv".includes(event.key.toLowerCase());
@@ -51,7 +53,9 @@ addEventListener("keydown", (event) => {
 });
 </script>
 """
-"""What was clicked does not keep the keyboard, or Space would press it again and not play. By Tab it does."""
+"""What was clicked does not keep the keyboard, or Space would press it again and not play. By Tab it does.
+
+A page that is seen gives signs of life, without which motors hold."""
 
 
 PANELS = {
@@ -108,6 +112,7 @@ def build_window(session: Session, stream: str = "/stream", links: Links | None 
     dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
     ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
     ui.timer(HEARTBEAT, page.beat)
+    ui.on("hydrostat_alive", session.hardware.beat)
     ui.timer(0.0, partial(_recall, dark), once=True)
     offer_tour(tour)
     return page
@@ -128,6 +133,8 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
                 for stage, words in STAGES.items()
             }
         ui.space()
+        if session.hardware.allowed:
+            stop_button(page)
         undo = _tool("undo", "Undo", session.undo)
         redo = _tool("redo", "Do again", session.redo)
         save = _tool("save", "Save", ask_save.save)

@@ -64,6 +64,7 @@ def test_while_it_moves_it_is_a_hair_off_and_at_rest_exact(driver: Driver, starf
 
 def test_motors_follow_at_their_speed(driver: Driver) -> None:
     driver.step(0.0)
+    driver.motors.set_fastest(0.15)
     driver.turn("left", 0.06)
     driver.step(0.1)
     assert driver.step(0.2)

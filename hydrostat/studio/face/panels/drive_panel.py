@@ -10,6 +10,7 @@ from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
 from hydrostat.studio.face.panels.drive_strip import drive_strip, unfocused
+from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.stage import StageName
 
 STEP = 0.5  # of a knob's wheel and arrow keys [mm]
@@ -52,7 +53,8 @@ def drive_panel(page: WindowPage) -> None:
 
     page.on_new(Topic.ROBOT, lambda: session.document.robot.winches, box, build)
     page.on((Topic.ROBOT, Topic.DRIVE), show)
-    _motors(page)
+    _speed(page)
+    motors_card(page)
     contact_switch(page, "drive-contact")
     touch_label(page, driver.shape, "drive-touches")
     with page.bottom:
@@ -117,11 +119,13 @@ class _Card:
             self._box.set_value(round(1e3 * driver.commands().get(self.name, 0.0), 1))
 
 
-def _motors(page: WindowPage) -> None:
-    """How fast the simulated motors are."""
+def _speed(page: WindowPage) -> None:
+    """How fast the shown motors are: at first as those of the kit where its cables pull their most."""
     driver = page.session.driver
     with ui.element("div").classes("studio-row").style("margin-top: 6px"):
-        ui.label("Motors: simulated, at most").classes("studio-hint")
+        label = ui.label("Shown at most at").classes("studio-hint")
+        if driver.kit:
+            label.tooltip(f"At first as fast as the kit's slowest winch under full load: {driver.kit}")
         ui.space()
         speed = ui.number(min=1, max=1000, step=10, value=1e3 * driver.motors.fastest, format="%.0f", suffix="mm/s")
         speed.props('dense outlined debounce=400 aria-label="Largest speed of the motors"').style("width: 120px")

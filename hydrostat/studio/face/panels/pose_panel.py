@@ -6,6 +6,7 @@ from hydrostat.drawing.palette import ERROR
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
+from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.face.panels.pose_muscles import muscles_card
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.records.figures import told_error
@@ -49,6 +50,7 @@ def pose_panel(page: WindowPage) -> None:
     bars_card(page)
     contact_switch(page, "pose-contact")
     touch_label(page, poser.shape, "pose-touches")
+    motors_card(page)
     muscles_card(page)
     poses_card(page)
     reach_card(page)

@@ -1,0 +1,227 @@
+"""`Hardware`: motors that do what the screen shows, while somebody looks at it."""
+
+import threading
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control import (
+    CALIBRATION,
+    EMULATED,
+    Bus,
+    BusLink,
+    Calibration,
+    LinkState,
+    TensionGuard,
+    check_port,
+    open_bus,
+    read_calibration,
+    usual_calibration,
+)
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot
+from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.document import Document
+from hydrostat.studio.view.things import RobotShape
+
+SILENT = 1.5
+"""Motors hold when no page has given a sign of life for so long [s]: it was closed, hidden, or its line is gone."""
+
+PERIOD = 0.02  # motors are told and read so often [s]
+NEAR = 2e-3  # the guard judges tensions where motors are this close to what is shown [m]
+
+Opener = Callable[[str, Robot, Calibration, Callable[[Vector], Vector]], Bus]
+
+
+class Hardware:
+    """Motors behind the studio: connected and armed by a person, told by a thread of their own.
+
+    They follow the contractions that the screen shows, as fast as their link allows. They hold on any error, when
+    nobody looks at the page, when the robot is changed, and when they are told to; then they must be armed anew.
+
+    Attributes:
+        allowed: whether this person may turn motors of this machine; guests may not.
+        words: what has become of them, for people.
+        port: that they were found at last; "" before.
+    """
+
+    def __init__(
+        self, document: Document, bell: Bell, *, allowed: bool, opener: Opener = open_bus, silent: float = SILENT
+    ) -> None:
+        """No motors yet."""
+        self.allowed, self.words, self.port = allowed, "", ""
+        self._document, self._bell, self._opener, self._silent = document, bell, opener, silent
+        self._link: BusLink | None = None
+        self._robot: Robot | None = None
+        self._lock, self._over = threading.RLock(), threading.Event()
+        self._goal = self._places = self._pulls = np.zeros(0)
+        self._alive = 0.0
+        self._thread: threading.Thread | None = None
+
+    @property
+    def state(self) -> LinkState | None:
+        """Of the link; None without one."""
+        link = self._link
+        return None if link is None else link.state
+
+    @property
+    def armed(self) -> bool:
+        """Whether motors turn."""
+        return self.state is LinkState.ARMED
+
+    @property
+    def places(self) -> dict[str, float]:
+        """What each winch has taken in, as its motor says [m], by name; empty without motors."""
+        robot, places = self._robot, self._places
+        return (
+            {} if robot is None or self._link is None else dict(zip(self._names(robot), places.tolist(), strict=False))
+        )
+
+    @property
+    def currents(self) -> dict[str, float]:
+        """What each motor draws [A], by the name of its winch; empty without motors."""
+        robot, link = self._robot, self._link
+        reading = None if link is None else link.reading
+        if robot is None or reading is None:
+            return {}
+        return dict(zip(self._names(robot), reading.currents.tolist(), strict=True))
+
+    def connect(self, port: str) -> None:
+        """Find the motors of the open robot on a port; takes a second or more, and turns none but for the proof.
+
+        Raises:
+            InputError: a guest, no robot with winches, no motors.toml, or no such kind of port.
+            HydrostatError: who is silent.
+        """
+        if not self.allowed:
+            raise InputError("motors of this machine are not for guests")
+        check_port(port)
+        self.disconnect()
+        robot, folder = self._document.robot, self._document.folder
+        if not robot.winches:
+            raise InputError("this robot has no winches; press Design to find some")
+        if port == EMULATED and (folder is None or not (folder / CALIBRATION).exists()):
+            calibration = usual_calibration(robot).known()
+        elif folder is None:
+            raise InputError(
+                f"save the robot first: {CALIBRATION} beside robot.toml says which motor turns which winch"
+            )
+        else:
+            calibration = read_calibration(folder, robot)
+        with self._lock:
+            self._robot = robot
+            self._goal = self._places = self._pulls = np.zeros(len(robot.winches))
+        link = BusLink(self._opener(port, robot, calibration, self._load), robot.winches, calibration)
+        try:
+            facts = link.identify()
+        except BaseException:
+            link.close()
+            raise
+        names = tuple(self._names(robot))
+        link.guard = TensionGuard(self._expected, np.array([fact.constant for fact in facts]), names)
+        with self._lock:
+            self._link, self.port = link, port
+        self._say(f"{port}: {len(facts)} motors answered" + ("" if link.state is LinkState.CALIBRATED else _CALIBRATE))
+
+    def arm(self) -> None:
+        """Let motors turn: they go to what is shown (HydrostatError: none are connected, or they cannot be armed)."""
+        with self._lock:
+            link = self._link
+            if link is None:
+                raise InputError("connect the motors first")
+            link.arm()
+            self._places, self._alive = link.read(time.monotonic()), time.monotonic()
+            link.watch()
+            self.words = ""
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._run, name="motors of the studio", daemon=True)
+            self._thread.start()
+        self._ring()
+
+    def hold(self, why: str = "") -> None:
+        """Let motors stand; they must be armed anew. Nothing happens where none turn."""
+        with self._lock:
+            if self._link is not None and self.armed:
+                self._link.stop()
+                self.words = why
+        self._ring()
+
+    def disconnect(self) -> None:
+        """Stop motors, and let their port go."""
+        with self._lock:
+            link, self._link = self._link, None
+            self._robot, self.words = None, ""
+        if link is not None:
+            link.close()
+        self._ring()
+
+    def show(self, robot: Robot, shape: RobotShape) -> None:
+        """Take a shape as what motors shall do: what its winches have taken in, and what its cables pull."""
+        with self._lock:
+            if self._link is None or shape.contractions is None:
+                return
+            if robot is not self._robot and not self._same(robot):
+                self.disconnect()
+                self.words = "the robot was changed, and its motors were let go: connect them anew"
+                return
+            pulls = dict.fromkeys(self._names(robot), 0.0)
+            for cable, tension in zip(robot.cables, shape.tensions.tolist(), strict=True):
+                pulls[cable.winch] += tension
+            self._goal, self._pulls = np.array(shape.contractions, dtype=float), np.array(list(pulls.values()))
+
+    def beat(self) -> None:
+        """Take a sign of life of a page that somebody looks at."""
+        self._alive = time.monotonic()
+
+    def close(self) -> None:
+        """Stop motors for good."""
+        self._over.set()
+        self.disconnect()
+
+    def _run(self) -> None:
+        """Tell motors what is shown, and see where they are, as long as they are armed."""
+        while not self._over.wait(PERIOD):
+            with self._lock:
+                link = self._link
+                if link is None or not self.armed:
+                    continue
+                now = time.monotonic()
+                if now - self._alive > self._silent:
+                    self.hold("nobody looks at the page: the motors hold; arm them anew")
+                    continue
+                try:
+                    link.send(self._goal, now, speed=link.limits.speed)
+                    self._places = link.read(now)
+                except Exception as error:  # noqa: BLE001 - whatever it is, motors stop
+                    link.stop()
+                    self.words = f"the motors stopped: {error}"
+            self._bell.ring(Topic.DRIVE)
+
+    def _same(self, robot: Robot) -> bool:
+        """Whether another state of the document has the same winches."""
+        return self._robot is not None and robot.winches == self._robot.winches
+
+    def _expected(self, contractions: Vector) -> Vector:
+        """Tensions of the winches where motors are near what is shown [N]; NaN, not judged, where they are not."""
+        return np.where(np.abs(contractions - self._goal) < NEAR, self._pulls, np.nan)
+
+    def _load(self, contractions: Vector) -> Vector:
+        """What pulls at emulated motors [N]: what is shown, once they are there."""
+        return np.where(contractions > self._goal - NEAR, self._pulls, 0.0)
+
+    def _say(self, words: str) -> None:
+        self.words = words
+        self._ring()
+
+    def _ring(self) -> None:
+        self._bell.ring(Topic.DRIVE)
+
+    @staticmethod
+    def _names(robot: Robot) -> list[str]:
+        return [winch.name for winch in robot.winches]
+
+
+_CALIBRATE = "; they are not calibrated: hydrostat calibrate finds their zeros"
+"""What is missing before they can be armed."""

@@ -1,0 +1,167 @@
+"""Motors behind the studio. Oracle: emulated servos, which know where they are."""
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hydrostat.control import Bus, LinkState
+from hydrostat.control.open_bus import open_bus
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot.gallery import gallery_folder
+from hydrostat.studio.driving.kit_speed import kit_speed
+from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.session import Session
+from hydrostat.studio.stage import StageName
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+
+def until(done: Callable[[], bool], seconds: float = 30.0) -> bool:
+    """Wait for something; long enough for a machine that is busy."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if done():
+            return True
+        time.sleep(0.01)
+    return done()
+
+
+@pytest.fixture
+def session() -> Iterator[Session]:
+    made = Session()
+    made.open_folder(gallery_folder("starfish"))
+    made.go(StageName.DRIVE)
+    yield made
+    made.close()
+
+
+def step(session: Session, seconds: float) -> None:
+    """Let the studio work while somebody looks at the page."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        session.hardware.beat()
+        session.step(time.monotonic())
+        time.sleep(0.005)
+
+
+def test_motors_do_what_is_shown_once_they_are_armed(session: Session) -> None:
+    hardware = session.hardware
+    with pytest.raises(InputError, match="connect the motors first"):
+        hardware.arm()
+    hardware.connect("emulated")
+    assert hardware.state is LinkState.CALIBRATED
+    session.driver.turn("left", 0.008)
+    step(session, 0.4)
+    assert hardware.places["left"] == 0.0  # nothing turns before it is armed
+    hardware.arm()
+    end = time.monotonic() + 30
+    while hardware.places["left"] < 0.0075 and time.monotonic() < end:
+        step(session, 0.05)
+    assert hardware.places["left"] == pytest.approx(0.008, abs=5e-4)
+    assert hardware.places["right"] == pytest.approx(0.0, abs=5e-4)
+    assert set(hardware.currents) == set(hardware.places)
+    session.key("escape")
+    assert hardware.state is LinkState.STOPPED
+    with pytest.raises(HydrostatError, match="do not turn"):
+        hardware._link.send(np.zeros(3), 0.0, speed=0.01)  # type: ignore[union-attr]
+
+
+def test_they_hold_when_nobody_looks_at_the_page(session: Session) -> None:
+    hardware = session.hardware
+    hardware.connect("emulated")
+    hardware.arm()
+    assert until(lambda: not hardware.armed)  # no sign of life comes
+    assert "nobody looks at the page" in hardware.words
+
+
+def test_another_stage_and_another_robot_hold_them(session: Session) -> None:
+    hardware = session.hardware
+    hardware.connect("emulated")
+    hardware.arm()
+    session.go(StageName.POSE)
+    assert not hardware.armed
+    assert "arm them anew" in hardware.words
+    session.open_folder(gallery_folder("fish_tail"))
+    session.step(time.monotonic())
+    assert hardware.state is None
+    assert "connect them anew" in hardware.words
+
+
+def test_a_pose_that_is_dragged_streams_its_iterates(session: Session) -> None:
+    """Fig 3.7: the solver still works while motors follow; each shape is an equilibrium."""
+    session.go(StageName.POSE)
+    hardware, told = session.hardware, []
+    hardware.connect("emulated")
+    hardware.arm()
+    session.poser.set_mode(Mode.CABLES)
+    session.poser.show_pose("wave")
+    for _ in range(40):
+        hardware.beat()
+        session.step(time.monotonic())
+        told.append(hardware._goal.copy())
+        time.sleep(0.01)
+    assert len({row.tobytes() for row in told}) > 3
+    np.testing.assert_array_equal(told[-1], session.poser.shape().contractions)
+    assert max(hardware.places.values()) > 1e-3
+
+
+def test_a_line_that_is_gone_is_told(session: Session) -> None:
+    class Dying:
+        """A bus whose line is pulled."""
+
+        def __init__(self, bus: Bus) -> None:
+            self.bus, self.gone = bus, False
+
+        def __getattr__(self, name: str):
+            if self.gone and name in ("read", "write"):
+                raise HydrostatError("the line to the motors is gone")
+            return getattr(self.bus, name)
+
+    made: list[Dying] = []
+
+    def opener(*given) -> Dying:
+        made.append(Dying(open_bus(*given)))
+        return made[-1]
+
+    hardware = session.hardware
+    hardware._opener = opener  # type: ignore[assignment]
+    hardware.connect("emulated")
+    hardware.arm()
+    made[0].gone = True
+
+    def stopped() -> bool:
+        hardware.beat()
+        return hardware.state is LinkState.FAULT
+
+    assert until(stopped)
+    assert "the line to the motors is gone" in hardware.words
+
+
+def test_guests_have_none() -> None:
+    guest = Session(guest=True)
+    with pytest.raises(InputError, match="not for guests"):
+        guest.hardware.connect("emulated")
+    guest.close()
+
+
+def test_a_folder_without_motors_is_told(session: Session, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"has no motors\.toml"):
+        session.hardware.connect("dynamixel:/dev/nothing")
+    with pytest.raises(InputError, match="write emulated, or one such as"):
+        session.hardware.connect("steam:/dev/nothing")
+
+
+def test_the_kits_speed_by_hand(session: Session) -> None:
+    """The starfish at 20 N a cable needs the 25D: 35 rpm, less the share of its stall torque."""
+    robot = session.document.robot
+    speed, name = kit_speed(robot, 20.0)
+    radius = min(winch.spool_radius for winch in robot.winches)
+    counts = [sum(cable.winch == winch.name for cable in robot.cables) for winch in robot.winches]
+    load = max(count * 20.0 * winch.spool_radius for count, winch in zip(counts, robot.winches, strict=True))
+    assert "25D" in name or "XL330" in name or "N20" in name
+    if "25D" in name:
+        assert speed == pytest.approx(2 * np.pi * radius * 35 / 60 * (1 - load / 1.373))
+    assert 0.01 < speed < 0.07
