@@ -62,7 +62,7 @@ class Hardware:
 
     @property
     def state(self) -> LinkState | None:
-        """Of the link; None without one."""
+        """State of the link; None without one."""
         link = self._link
         return None if link is None else link.state
 
