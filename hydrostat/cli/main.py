@@ -20,6 +20,7 @@ from hydrostat.cli.firmware import firmware
 from hydrostat.cli.grasp import grasp
 from hydrostat.cli.learn import learn
 from hydrostat.cli.materials import materials
+from hydrostat.cli.mimic import mimic
 from hydrostat.cli.new import new
 from hydrostat.cli.play import play
 from hydrostat.cli.pose import pose
@@ -74,6 +75,7 @@ for command in (
     calibrate,
     play,
     drive,
+    mimic,
     animate,
     design,
     fabricate,

@@ -19,7 +19,7 @@ from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.guard import GuardLimits, TensionGuard
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
-from hydrostat.control.model_tensions import KnownPulls, WinchPull, tensions_along, winch_pulls
+from hydrostat.control.model_tensions import KnownPulls, WinchPull, tensions_along, winch_pulls, winch_tensions
 from hydrostat.control.motors import FASTEST, Motors
 from hydrostat.control.open_bus import EMULATED, check_port, open_bus, open_line
 from hydrostat.control.player import Player, play
@@ -72,5 +72,6 @@ __all__ = [
     "timeline_table",
     "usual_calibration",
     "winch_pulls",
+    "winch_tensions",
     "write_calibration",
 ]

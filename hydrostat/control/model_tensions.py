@@ -53,12 +53,14 @@ class KnownPulls:
 
     def add(self, pose: SolvedPose) -> None:
         """Remember a pose; one that is no equilibrium is left out."""
-        if not pose.result.converged:
-            return
-        places, pulls = self._known
-        new = _by_winch(self._robot, pose.tensions)[None]
-        more = np.concatenate([pulls, new]) if len(pulls) else new
-        self._known = np.concatenate([places, pose.contractions[None]])[-self._most :], more[-self._most :]
+        if pose.result.converged:
+            self.put(pose.contractions, winch_tensions(self._robot, pose.tensions))
+
+    def put(self, contractions: Vector, pulls: Vector) -> None:
+        """Remember what winches pull [N] at contractions [m]."""
+        places, known = self._known
+        more = np.concatenate([known, pulls[None]]) if len(known) else pulls[None]
+        self._known = np.concatenate([places, contractions[None]])[-self._most :], more[-self._most :]
 
     def nearest(self, contractions: Vector) -> Vector:
         """Pulls [N] however far the next pose is."""
@@ -101,7 +103,7 @@ def _samples(profile: Profile) -> list[Vector]:
     return [*way, *(profile.at(float(time)) for time in times)]
 
 
-def _by_winch(robot: Robot, tensions: Vector) -> Vector:
+def winch_tensions(robot: Robot, tensions: Vector) -> Vector:
     """Pull at each winch at the radius of its own spool [N]."""
     pulls = dict.fromkeys((winch.name for winch in robot.winches), 0.0)
     for cable, ratio, tension in zip(robot.cables, robot.spool_ratios, tensions.tolist(), strict=True):
@@ -127,6 +129,6 @@ def winch_pulls(robot: Robot, most: float = 0.02) -> tuple[WinchPull, ...]:
             if solved.result.converged:
                 pose = solved
                 places.append(taken)
-                pulls.append(float(_by_winch(robot, solved.tensions)[index]))
+                pulls.append(float(winch_tensions(robot, solved.tensions)[index]))
         found.append(WinchPull(taut=taut, places=np.array(places), pulls=np.array(pulls)))
     return tuple(found)

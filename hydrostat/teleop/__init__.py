@@ -1,5 +1,6 @@
 """From a person to a robot: keys, knobs, gloves and cameras, and what is learned of a hand (R68 to R70)."""
 
+from hydrostat.control import EMULATED
 from hydrostat.teleop.cyber_glove import CyberGlove, EmulatedGlove, EmulatedPerson
 from hydrostat.teleop.drive import DriveLoop, drive
 from hydrostat.teleop.gamepad import Gamepad
@@ -7,6 +8,7 @@ from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.hand_source import HandReading, HandSource
 from hydrostat.teleop.keys import Keys
 from hydrostat.teleop.landmarks import HandLandmarks
+from hydrostat.teleop.lesson_poses import Held, LessonPoses, go_there, hold_still, pose_pool
 from hydrostat.teleop.mapped_hand import MappedHand
 from hydrostat.teleop.midi_knobs import MidiKnobs
 from hydrostat.teleop.mimicry import Mimicry, write_mcap
@@ -14,9 +16,10 @@ from hydrostat.teleop.open_source import Wearer, open_hand, open_source
 from hydrostat.teleop.osc import Osc
 from hydrostat.teleop.ridge import Ridge, fit_ridge
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
-from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, winch_channels
+from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, marker_channels, winch_channels
 
 __all__ = [
+    "EMULATED",
     "CyberGlove",
     "DriveChannels",
     "DriveLoop",
@@ -30,7 +33,9 @@ __all__ = [
     "HandMap",
     "HandReading",
     "HandSource",
+    "Held",
     "Keys",
+    "LessonPoses",
     "MappedHand",
     "MidiKnobs",
     "Mimicry",
@@ -41,8 +46,12 @@ __all__ = [
     "WinchWay",
     "drive",
     "fit_ridge",
+    "go_there",
+    "hold_still",
+    "marker_channels",
     "open_hand",
     "open_source",
+    "pose_pool",
     "winch_channels",
     "write_mcap",
 ]

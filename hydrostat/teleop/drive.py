@@ -1,5 +1,6 @@
 """`drive`: motors that follow what a person asks for, and hold when nobody is heard."""
 
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -12,6 +13,8 @@ from hydrostat.teleop.ways import Way
 
 TICK = 1 / 60
 """Motors are told and read at least once in this time [s]."""
+SWITCHING = 5e-4
+"""Threads of Python give way to one another after so long [s], in place of 5 ms: the one that solves poses is busy."""
 
 
 class DriveLoop:
@@ -44,6 +47,7 @@ class DriveLoop:
             self._follow(wish)
         self.motors.ask(self.way.contractions)
         self.motors.drive(now)
+        self.way.see(self.motors.places)
         return not wish.over
 
     def _follow(self, wish: DriveWish) -> None:
@@ -81,7 +85,8 @@ def drive(
     Raises:
         HydrostatError: of the source, of the motors, or of what solves poses.
     """
-    news = threading.Event()
+    news, switching = threading.Event(), sys.getswitchinterval()
+    sys.setswitchinterval(SWITCHING)
     source.news = way.news = news
     driven, end = DriveLoop(motors, way, source), clock() + seconds
     try:
@@ -92,3 +97,4 @@ def drive(
     finally:
         motors.hold()
         way.close()
+        sys.setswitchinterval(switching)

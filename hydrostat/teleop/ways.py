@@ -1,19 +1,17 @@
 """`WinchWay`, `FingertipWay`: from what a person asks for to contractions."""
 
 import threading
-import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.control import FASTEST, KnownPulls
-from hydrostat.errors import HydrostatError, InputError
-from hydrostat.ik import InverseReason, Limits, Tracker
+from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Simulation
+from hydrostat.teleop.pose_process import FingertipPoses, FoundPose, PoseProcess, WinchPoses
 from hydrostat.teleop.source import DriveChannels
 
 if TYPE_CHECKING:
@@ -21,14 +19,14 @@ if TYPE_CHECKING:
 
 NEAR = 3e-3
 """A guard judges where a pose is known within so much of each contraction [m]."""
+APART = 2e-4
+"""Poses are solved so far apart [m]."""
 REACH = 0.5
 """Targets of a marker lie so far about its rest, as a share of the largest side of the body."""
-_LONGEST = 0.1
-"""Time since the update before counts as so long at most [s]: nobody catches up in a leap."""
 
 
 class Way(ABC):
-    """Contract of how what a person asks for becomes contractions; what is slow is done in a thread of its own.
+    """Contract of how what a person asks for becomes contractions; what is slow is done by a process of its own.
 
     Attributes:
         channels: what may be asked for.
@@ -48,13 +46,17 @@ class Way(ABC):
     def ask(self, values: Vector) -> None:
         """Let the channels have values [m]; return at once (HydrostatError: what solves has failed)."""
 
+    def see(self, places: Vector) -> None:
+        """Know where the motors are [m], so that a guard knows what they should feel there."""
+        del places
+
     @abstractmethod
     def held(self, places: Vector) -> Vector:
         """Forget what was asked for, as motors hold at contractions [m]; give the values of the channels there [m]."""
 
     @abstractmethod
     def close(self) -> None:
-        """End its thread."""
+        """End what is done beside it."""
 
 
 class WinchWay(Way):
@@ -64,15 +66,22 @@ class WinchWay(Way):
         """Begin at contractions [m]; poses need not be solved where there is no guard."""
         robot = simulation.robot
         self.channels, self.contractions = winch_channels(robot), contractions.copy()
-        self._simulation, self.known = simulation, KnownPulls(robot, near=NEAR)
-        self._pose = _first(simulation, contractions, self.known)
-        self._newest = _Newest(self._solve) if solves else None
+        self.known = KnownPulls(robot, near=NEAR)
+        self.known.add(simulation.solve(contractions, strict=False))
+        self._seen = contractions.copy()
+        self._poses = PoseProcess(WinchPoses, (robot,), self._hear) if solves else None
 
     def ask(self, values: Vector) -> None:
         """Turn them."""
         self.contractions = values.copy()
-        if self._newest is not None:
-            self._newest.give(self.contractions)
+        if self._poses is not None:
+            self._poses.check()
+
+    def see(self, places: Vector) -> None:
+        """Let the pose there be solved [m]."""
+        if self._poses is not None and np.abs(places - self._seen).max(initial=0.0) > APART:
+            self._seen = places.copy()
+            self._poses.give(self._seen)
 
     def held(self, places: Vector) -> Vector:
         """Contractions where they hold [m]."""
@@ -80,16 +89,12 @@ class WinchWay(Way):
         return places.copy()
 
     def close(self) -> None:
-        """End its thread."""
-        if self._newest is not None:
-            self._newest.close()
+        """End its process."""
+        if self._poses is not None:
+            self._poses.close()
 
-    def _solve(self, contractions: Vector) -> bool:
-        found = self._simulation.solve(contractions, start=self._pose, strict=False)
-        if found.result.converged:
-            self._pose = found
-            self.known.add(found)
-        return False
+    def _hear(self, found: FoundPose) -> None:
+        self.known.put(found.contractions, found.pulls)
 
 
 class FingertipWay(Way):
@@ -106,118 +111,64 @@ class FingertipWay(Way):
         *,
         model: "LearnedModel | None" = None,
         rate: float = FASTEST,
-        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Begin at contractions [m]; cables get no faster than a rate [m/s] (InputError: there are no markers)."""
-        self._simulation, self._model, self._clock = simulation, model, clock
+        self._model, robot = model, simulation.robot
         self.channels, self.contractions = marker_channels(simulation), contractions.copy()
-        self.known = KnownPulls(simulation.robot, near=NEAR)
-        self._names, self._dim = tuple(simulation.rest.markers), simulation.robot.body.mesh.dim
-        start = _first(simulation, contractions, self.known)
-        self._limits = Limits(rate=rate) if model is None else Limits()
-        self._tracker, self._updated = Tracker(simulation, limits=self._limits, start=start), clock()
-        self._more = np.zeros(len(contractions))
+        self.known = KnownPulls(robot, near=NEAR)
+        start = simulation.solve(contractions, strict=False)
+        self.known.add(start)
+        self._names, self._dim = tuple(simulation.rest.markers), robot.body.mesh.dim
+        self._markers = np.concatenate([np.asarray(start.markers[name]) for name in self._names])
+        self._more, self._jobs, self._hold = np.zeros(len(contractions)), 0, 0
         self._asked: Vector | None = None
+        self._answers: dict[int, Vector] = {}  # of the networks, by job
         self._lock = threading.Lock()
-        self._newest = _Newest(self._step)
+        if model is not None:
+            model.solve({name: tuple(start.markers[name]) for name in self._names})  # compiles its networks
+        self._poses = PoseProcess(FingertipPoses, (robot, contractions, rate if model is None else None), self._hear)
 
     def ask(self, values: Vector) -> None:
         """Move them."""
         if self._asked is not None and np.array_equal(values, self._asked):
-            self._newest.check()
+            self._poses.check()
             return
-        self._asked = values.copy()
-        answer = None
-        if self._model is not None:
-            answer = self._model.solve(self._targets(values)).contractions
-            self.contractions = answer + self._more
-        self._newest.give((self._asked, answer))
+        rows = values.reshape(-1, self._dim).tolist()
+        targets = {name: tuple(row) for name, row in zip(self._names, rows, strict=True)}
+        answer = None if self._model is None else self._model.solve(targets).contractions
+        with self._lock:
+            self._jobs, self._asked, begin = self._jobs + 1, values.copy(), None
+            if answer is not None:
+                self._answers[self._jobs], begin = answer, answer + self._more
+                self.contractions = begin
+        self._poses.give((self._jobs, targets, begin))
 
     def held(self, places: Vector) -> Vector:
         """Where the markers are, by simulation, when they hold [m]."""
         with self._lock:
-            self.contractions, self._asked = places.copy(), None
-        self._newest.forget()
-        markers = self._tracker.pose.markers
-        return np.concatenate([np.asarray(markers[name]) for name in self._names])
+            self._jobs, self._asked, self.contractions = self._jobs + 1, None, places.copy()
+            self._hold = self._jobs
+        self._poses.give((self._jobs, {}, None))
+        return self._markers
 
     def close(self) -> None:
-        """End its thread."""
-        self._newest.close()
+        """End its process."""
+        self._poses.close()
 
-    def _targets(self, values: Vector) -> dict[str, tuple[float, ...]]:
-        rows = values.reshape(-1, self._dim).tolist()
-        return {name: tuple(row) for name, row in zip(self._names, rows, strict=True)}
-
-    def _step(self, job: tuple[Vector, Vector | None]) -> bool:
-        """One step nearer; tell whether there is more to do."""
-        values, answer = job
-        now = self._clock()
-        passed, self._updated = min(max(now - self._updated, 1e-3), _LONGEST), now
-        if answer is not None:
-            start = self._simulation.solve(answer + self._more, start=self._tracker.pose, strict=False)
-            if start.result.converged:
-                self._tracker = Tracker(self._simulation, start=start)
-        reached = self._tracker.update(self._targets(values), seconds=passed)
-        self.known.add(reached.pose)
+    def _hear(self, found: FoundPose) -> None:
+        self.known.put(found.contractions, found.pulls)
+        self._markers = found.markers
         with self._lock:
-            if self._asked is values:  # nobody has asked for something else, or held, meanwhile
-                self.contractions = reached.pose.contractions
-            if answer is not None:
-                self._more = reached.pose.contractions - answer
-        self.words = f"{1e3 * max(reached.errors.values()):.1f} mm from its targets"
+            if found.job <= self._hold:  # of before motors held
+                return
+            self.contractions = found.contractions
+            if found.job in self._answers:
+                self._more = found.contractions - self._answers[found.job]
+                self.contractions = self._answers[self._jobs] + self._more
+                self._answers = {job: answer for job, answer in self._answers.items() if job >= found.job}
+        self.words = f"{1e3 * found.error:.1f} mm from its targets"
         if self.news is not None:
             self.news.set()
-        return reached.reason is InverseReason.ITERATION_LIMIT
-
-
-class _Newest:
-    """A thread that works on the newest job alone, as often as there is more to do."""
-
-    def __init__(self, work: Callable) -> None:
-        self._work, self._job, self._error = work, None, ""
-        self._over, self._some = False, threading.Condition()
-        self._thread = threading.Thread(target=self._run, name="poses on the way", daemon=True)
-        self._thread.start()
-
-    def check(self) -> None:
-        """Raise what went wrong."""
-        if self._error:
-            raise HydrostatError(self._error)
-
-    def give(self, job: object) -> None:
-        """Work on this, and on no older one."""
-        self.check()
-        with self._some:
-            self._job = job
-            self._some.notify()
-
-    def forget(self) -> None:
-        """Let what waits be."""
-        with self._some:
-            self._job = None
-
-    def close(self) -> None:
-        """End after what is being done."""
-        with self._some:
-            self._over = True
-            self._some.notify()
-        self._thread.join(5.0)
-
-    def _run(self) -> None:
-        job, more = None, False
-        while not self._over:
-            with self._some:
-                while self._job is None and not more and not self._over:
-                    self._some.wait()
-                if self._job is not None:
-                    job, self._job = self._job, None
-            if self._over:
-                return
-            try:
-                more = self._work(job)
-            except Exception as error:  # noqa: BLE001 (whoever asks next is told)
-                self._error, more = f"no pose is found any more: {error}", False
 
 
 def winch_channels(robot: Robot) -> DriveChannels:
@@ -248,11 +199,3 @@ def marker_channels(simulation: Simulation) -> DriveChannels:
         rest=rest,
         groups=tuple(tuple(range(dim * index, dim * index + dim)) for index in range(len(markers))),
     )
-
-
-def _first(simulation: Simulation, contractions: Vector, known: KnownPulls) -> SolvedPose:
-    """The pose at first, which is known then."""
-    pose = simulation.solve(contractions, strict=False)
-    pose = pose if pose.result.converged else simulation.rest
-    known.add(pose)
-    return pose

@@ -1,5 +1,7 @@
 """Motors that follow a person. Oracles: a scripted person, and the simulation itself."""
 
+import os
+import signal
 import time
 from collections.abc import Sequence
 from math import inf
@@ -11,6 +13,7 @@ import hydrostat as hs
 from hydrostat.control import KnownPulls, Motors, SimulatedLink
 from hydrostat.errors import HydrostatError
 from hydrostat.teleop import DriveLoop, DriveSource, DriveWish, FingertipWay, WinchWay, drive
+from hydrostat.teleop.pose_process import FingertipPoses, PoseProcess
 
 
 class Script(DriveSource):
@@ -138,16 +141,16 @@ def test_fingertips_come_to_their_targets(simulation: hs.Simulation) -> None:
     assert "mm from its targets" in way.words
 
 
-def test_what_fails_behind_is_told(simulation: hs.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_fails_behind_is_told(simulation: hs.Simulation) -> None:
     motors = motors_of(simulation)
     way = FingertipWay(simulation, motors.places)
 
-    def fail(*_: object, **__: object) -> None:
-        raise HydrostatError("no equilibrium")
-
-    monkeypatch.setattr(hs.Tracker, "update", fail)
-    with pytest.raises(HydrostatError, match="no equilibrium"):
+    child = way._poses._process
+    os.kill(child.pid, signal.SIGKILL)
+    with pytest.raises(HydrostatError, match="no pose is found any more: its process has ended"):
         drive(motors, way, Script([DriveWish(stamp=inf, steps={"left x": 1e-4})]), seconds=5.0)
+    with pytest.raises(HydrostatError, match=r"no pose can be found: .*nonsense"):
+        PoseProcess(FingertipPoses, (simulation.robot, "nonsense", None), print)
 
 
 def test_pulls_are_known_near_poses_that_were_solved(simulation: hs.Simulation) -> None:

@@ -1,0 +1,236 @@
+"""From a hand that moves to motors that are told: the delay on ten emulated servos and an emulated glove.
+
+    python benchmarks/glove_delay.py [--moves 150] [--model hand.model] [--baud 1000000]
+
+Glove and servos are a program of their own, at the other end of two pseudo-terminals, as slow as their serial lines:
+115,200 baud for the glove, which measures 90 times a second, and --baud for the servos. Its sensors have noise of half
+a step, so that a new pose is asked for all the time. At moments of its choice the hand takes another pose. The delay is
+from then until a goal in a servo has gone by more than 0.5 mm of cable from where it was. Ways: a ridge map from
+sensors to contractions; one to fingertips, which `Tracker` follows; the same with a learned model, whose networks
+answer first. No glove and no motor of metal is here.
+"""
+
+import argparse
+import multiprocessing as mp
+import os
+import select
+import threading
+import time
+import tty
+from collections import deque
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import machine
+import numpy as np
+
+import hydrostat as hs
+from hydrostat.control import BusLink, DynamixelBus, EmulatedChain, EmulatedLine, EmulatedServo, Motors, open_line
+from hydrostat.control import usual_calibration as usual
+from hydrostat.control.dynamixel_bus import GOAL, TICK
+from hydrostat.learning import load_model
+from hydrostat.robot import Contact, Robot
+from hydrostat.teleop import (
+    CyberGlove,
+    EmulatedPerson,
+    FingertipWay,
+    HandMap,
+    MappedHand,
+    Mimicry,
+    Way,
+    WinchWay,
+    drive,
+    winch_channels,
+)
+from hydrostat.teleop.cyber_glove import BAUD, SENSORS
+
+MEASURES = 90
+"""Of a glove in a second."""
+GONE = 0.5e-3
+"""A goal that has gone so far is another one [m]."""
+PAUSE = (0.8, 1.1)
+"""From one move to the next [s]."""
+
+
+@dataclass
+class Told:
+    """What the other end has seen.
+
+    Attributes:
+        delays: from moves to goals [s].
+        missed: moves that no goal followed.
+    """
+
+    delays: list[float]
+    missed: int
+
+
+class SlowChain(EmulatedChain):
+    """Servos whose line takes as long as its bytes do."""
+
+    STEP = 4e-3
+
+    def __init__(self, servos: list[EmulatedServo], baud: int) -> None:
+        super().__init__(servos)
+        self.towards = self.back = self.slow
+        self.baud = baud
+
+    def slow(self, data: bytes) -> bytes:
+        """Let pass what bytes take."""
+        time.sleep(10 * len(data) / self.baud)
+        return data
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass, a little at a time: when this program was not let run, what is on the line is heard first."""
+        super().wait(min(seconds, 0.02))
+
+    def goals(self) -> np.ndarray:
+        """What the servos are told [rad]."""
+        return TICK * np.array([servo.get(GOAL, 4) for servo in self.servos])
+
+
+class LiveGlove(threading.Thread):
+    """A glove on a pseudo-terminal, as slow as one of metal."""
+
+    def __init__(self, person: EmulatedPerson) -> None:
+        super().__init__(daemon=True)
+        self.person, self.over = person, threading.Event()
+        self.inner, outer = os.openpty()
+        tty.setraw(outer)
+        self.path = os.ttyname(outer)
+
+    def run(self) -> None:
+        """Measure and answer."""
+        person, measured, answer = self.person, 0.0, b""
+        while not self.over.is_set():
+            if time.monotonic() - measured >= 1 / MEASURES:
+                person.glove.write(b"G")
+                answer, measured = person.glove.read(SENSORS + 2), time.monotonic()
+            if select.select([self.inner], [], [], 0.5e-3)[0]:
+                for _ in range(os.read(self.inner, 64).count(b"G")):
+                    time.sleep(10 * (SENSORS + 3) / BAUD)
+                    os.write(self.inner, answer)
+
+
+def other_end(pipe, low: np.ndarray, high: np.ndarray, poses: np.ndarray, baud: int, radius: float) -> None:
+    """Be glove and motors, and measure."""
+    servos = [EmulatedServo(number, model=1240) for number in range(1, len(low) + 1)]
+    chain, person = SlowChain(servos, baud), EmulatedPerson(low, high)
+    line, glove = EmulatedLine(chain), LiveGlove(person)
+    person.mimic(poses[0])
+    glove.start()
+    pipe.send((line.path, glove.path))
+    pipe.recv()
+    random, told = np.random.default_rng(3), Told([], 0)
+    for pose in poses[1:]:
+        before, until = deque[np.ndarray](maxlen=20), time.monotonic() + random.uniform(*PAUSE)
+        while time.monotonic() < until:
+            before.append(chain.goals())
+            time.sleep(5e-3)
+        usual_goals = np.median(before, axis=0)
+        person.mimic(pose)
+        moved = time.monotonic()
+        while (now := time.monotonic()) - moved < 0.3:
+            if radius * np.abs(chain.goals() - usual_goals).max() > GONE:
+                told.delays.append(now - moved)
+                break
+            time.sleep(5e-4)
+        else:
+            told.missed += 1
+    pipe.send(told)
+    with suppress(EOFError):
+        pipe.recv()
+    line.close()
+
+
+def learned(robot: Robot, simulation: hs.Simulation, *, tips: bool) -> HandMap:
+    """What 60 mimicked poses teach, each read 25 times."""
+    winches, random = winch_channels(robot), np.random.default_rng(1)
+    person = EmulatedPerson(winches.low, winches.high)
+    glove = CyberGlove(person.glove)
+    names = tuple(f"{name} {axis}" for name in simulation.rest.markers for axis in "xyz") if tips else winches.names
+    made = Mimicry(glove.names, names)
+    for number, pose in enumerate(random.uniform(0, 0.4, (60, len(winches.names))) * winches.high):
+        person.mimic(pose)
+        answer = pose
+        if tips:
+            solved = simulation.solve(pose, strict=False)
+            if not solved.result.converged:
+                continue
+            answer = np.concatenate(list(solved.markers.values()))
+        made.add(number, np.mean([glove.read().values for _ in range(25)], axis=0), answer)
+    ridge = made.learn()
+    error = made.errors(ridge)[0]
+    return HandMap(robot=robot.name, sensors=glove.names, outputs=names, ridge=ridge, poses=60, error=error)
+
+
+def measure(robot: Robot, way: Way, known: HandMap, moves: int, baud: int) -> Told:
+    """Drive, and let the other end measure."""
+    winches, random = winch_channels(robot), np.random.default_rng(2)
+    flexors = np.array(["flexor" in name for name in winches.names])
+    poses = random.uniform(0, 0.35, (moves + 1, len(flexors))) * winches.high * flexors
+    ours, theirs = mp.get_context("spawn").Pipe()
+    radius = robot.winches[0].spool_radius
+    work = mp.get_context("spawn").Process(
+        target=other_end, args=(theirs, winches.low, winches.high, poses, baud, radius)
+    )
+    work.start()
+    line, glove = ours.recv()
+    calibration = usual(robot).known()
+    bus = DynamixelBus(open_line(line, baud), [motor.number for motor in calibration.motors])
+    link = BusLink(bus, robot.winches, calibration)
+    link.identify()
+    link.arm()
+    motors = Motors(robot.winches, link, places=link.read(time.monotonic()), fastest=link.limits.speed)
+    source = MappedHand(way.channels, CyberGlove(open_line(glove, BAUD)), known)
+    found: list[Told] = []
+
+    def hear(_: object) -> None:
+        if ours.poll():
+            found.append(ours.recv())
+            raise KeyboardInterrupt
+
+    ours.send("begin")
+    try:
+        drive(motors, way, source, tell=hear)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        source.close()
+        link.close()
+        ours.close()
+        work.join(10)
+    return found[0]
+
+
+def main() -> None:
+    """Print a row for each way."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--moves", type=int, default=150)
+    parser.add_argument("--model", type=Path, help="learned model of the cupping hand")
+    parser.add_argument("--baud", type=int, default=1_000_000)
+    given = parser.parse_args()
+    robot = hs.load_robot("gallery:cupping_hand")
+    print(f"{machine.machine()}; load {os.getloadavg()[0]:.1f}; {given.baud} baud to the servos", flush=True)
+    print("| way | moves | missed | p50, ms | p90, ms | p99, ms |\n|---|---|---|---|---|---|", flush=True)
+    ways = ["ridge to winches", "ridge to fingertips, Tracker"] + ["the same, a learned model first"] * (
+        given.model is not None
+    )
+    for number, name in enumerate(ways):
+        model = load_model(given.model) if number == 2 and given.model else None
+        body = replace(robot, contact=Contact()) if model and model.facts["contact"] else robot
+        simulation = hs.Simulation(body)
+        known = learned(robot, simulation, tips=number > 0)
+        rest = np.zeros(len(robot.winches))
+        if number == 0:
+            way: Way = WinchWay(simulation, rest)
+        else:
+            way = FingertipWay(simulation, rest, model=model, rate=0.06)
+        told = measure(robot, way, known, given.moves, given.baud)
+        shown = " | ".join(f"{1e3 * value:.1f}" for value in np.percentile(told.delays, [50, 90, 99]))
+        print(f"| {name} | {given.moves} | {told.missed} | {shown} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,213 @@
+"""`hydrostat mimic`."""
+
+import select
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
+from hydrostat.cli.waiting import one_interrupt, prepared, read_robot
+from hydrostat.errors import HydrostatError, InputError
+
+if TYPE_CHECKING:
+    from hydrostat.arrays import Vector
+    from hydrostat.simulation import Simulation
+    from hydrostat.teleop import HandSource, Held, LessonPoses
+
+PAIRS, MAP, RECORDING, PICTURE = "poses.csv", "map.json", "poses.mcap", "pose.png"
+TIPS = 150  # poses to choose from where each has to be solved first
+TICK = 1 / 60  # motors are told again after so long [s]
+
+
+def mimic(
+    robot: RobotFolder,
+    glove: Annotated[str, typer.Option(metavar="PORT", help="Of a glove; camera:PORT; or emulated.")],
+    out: OutFolder,
+    poses: Annotated[int, typer.Option(metavar="N", help="How many poses, with those that are there already.")] = 60,
+    worn: Annotated[bool, typer.Option("--worn", help="The robot itself wears the glove.")] = False,
+    tips: Annotated[bool, typer.Option("--tips", help="Learn where fingertips are, not contractions.")] = False,
+    port: Annotated[
+        str | None, typer.Option(metavar="KIND:PORT", help="Real motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
+    ] = None,
+) -> None:
+    """Learn to drive a robot by a hand: the robot takes poses, you mimic them in a glove or before a camera.
+
+    Hold each pose still and press Enter: what is told for 0.3 s is averaged. The next pose is that which tells most.
+    The error of poses left out is shown as you go; pairs are kept in DIR after each, and you may go on another day.
+    With --worn the robot wears the glove, and nobody need press anything.
+
+    Without --port the motors are simulated, and DIR/pose.png shows each pose.
+
+    Example: hydrostat mimic examples/cupping_hand --glove emulated --poses 30 --out build/glove
+    """
+    from hydrostat import control, teleop
+
+    if port is not None:
+        control.check_port(port)
+    if poses < 4:
+        raise InputError(f"--poses {poses}: errors are known from 4 on")
+    require_folder(out)
+    loaded = read_robot(robot)
+    wearer = teleop.Wearer(teleop.winch_channels(loaded))
+    wearer.waves, emulated = False, glove == teleop.EMULATED
+    hand = teleop.open_hand(glove, wearer)
+    try:
+        simulation = prepared(loaded)
+        lesson = _lesson(simulation, hand, out, tips=tips)
+        show = wearer.person.mimic if emulated else lambda _: None
+        with _Session(folder_of(robot), simulation, port, hand) as session:
+            session.say(lesson.told())
+            with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
+                while lesson.count < poses:
+                    contractions = lesson.next_pose()
+                    session.go(contractions, out, drawn=port is None and not emulated and not worn)
+                    show(session.motors.places)
+                    held = session.take(lesson.count, asks=not (worn or emulated))
+                    if held is None:
+                        break
+                    lesson.take(held, _markers(simulation, session.motors.places) if tips else session.motors.places)
+                    lesson.made.save(out / PAIRS)
+                    session.say(lesson.told())
+    except (KeyboardInterrupt, SystemExit):
+        print(f"stopped; what was taken is in {out / PAIRS}", flush=True)
+        raise typer.Exit(130) from None
+    finally:
+        hand.close()
+    _done(lesson, loaded.name, out, glove, tips=tips)
+
+
+def _lesson(simulation: "Simulation", hand: "HandSource", out: Path, *, tips: bool) -> "LessonPoses":
+    """A lesson that goes on where that of the folder ended, if there is one."""
+    import numpy as np
+
+    from hydrostat import teleop
+
+    channels = teleop.winch_channels(simulation.robot)
+    answers = pool = teleop.pose_pool(channels)
+    names = channels.names
+    if tips:
+        names = teleop.marker_channels(simulation).names
+        pool = pool[:: len(pool) // TIPS]
+        print("solving the poses to choose from ...", flush=True)
+        answers = np.array([_markers(simulation, contractions) for contractions in pool])
+        pool, answers = pool[np.isfinite(answers).all(1)], answers[np.isfinite(answers).all(1)]
+    made = teleop.Mimicry(hand.names, names)
+    if (out / PAIRS).exists():
+        made = teleop.Mimicry.open(out / PAIRS)
+        if (made.sensors, made.outputs) != (hand.names, names):
+            raise InputError(f"{out / PAIRS}: is of another hand or robot, or of --tips; give another --out")
+    out.mkdir(parents=True, exist_ok=True)
+    return teleop.LessonPoses(made, pool, answers)
+
+
+def _markers(simulation: "Simulation", contractions: "Vector") -> "Vector":
+    """Coordinates of the markers at contractions [m]; NaN where there is no equilibrium."""
+    import numpy as np
+
+    pose = simulation.solve(contractions, strict=False)
+    markers = np.concatenate([np.asarray(place) for place in pose.markers.values()])
+    return markers if pose.result.converged else np.full_like(markers, np.nan)
+
+
+class _Session:
+    """Motors that show poses, and a person who mimics them."""
+
+    def __init__(self, folder: Path, simulation: "Simulation", port: str | None, hand: "HandSource") -> None:
+        from hydrostat import control, teleop
+
+        robot, self._simulation, self._hand = simulation.robot, simulation, hand
+        self.kind = "simulated" if port is None else port.partition(":")[0]
+        rest = teleop.winch_channels(robot).rest
+        self._way = teleop.WinchWay(simulation, rest, solves=port is not None)
+        try:
+            self.motors = control.Motors(robot.winches, control.SimulatedLink(rest))
+            if port is not None:
+                known = self._way.known
+                self.motors = control.arm_motors(folder, robot, port, known.nearest, known=known, log=print)
+        except BaseException:
+            self._way.close()
+            raise
+
+    def __enter__(self) -> "_Session":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.motors.link.close()
+        self._way.close()
+
+    def say(self, words: str) -> None:
+        """Print a line."""
+        print(f"{self.kind}: {words}", flush=True)
+
+    def beat(self) -> None:
+        """Tell the motors that somebody is there."""
+        self.motors.drive(time.monotonic())
+        self._way.see(self.motors.places)
+
+    def go(self, contractions: "Vector", out: Path, *, drawn: bool) -> None:
+        """Take a pose, and draw it if nobody could see it otherwise."""
+        from hydrostat import teleop
+
+        teleop.go_there(self.motors, contractions, self.beat)
+        if drawn:
+            from hydrostat.plot import draw_pose
+
+            self.motors.hold()
+            draw_pose(self._simulation.solve(self.motors.places, strict=False)).savefig(out / PICTURE, dpi=80)
+
+    def take(self, number: int, *, asks: bool) -> "Held | None":
+        """The readings of a hold; None when the person ends."""
+        from hydrostat import teleop
+
+        while True:
+            if asks and self._key(number) == "q":
+                return None
+            try:
+                held = teleop.hold_still(self._hand, self.beat)
+            except HydrostatError as error:
+                if not asks:
+                    raise
+                self.say(f"{error}; once more")
+                continue
+            if held.still:
+                return held
+            self.say(f"the hand moved, by {held.spread:.3f} of the range of a sensor; once more")
+            if not asks:
+                self.beat()
+
+    def _key(self, number: int) -> str:
+        """What the person types; motors are told to stay meanwhile."""
+        self.say(f"pose {number + 1}: mimic it, hold still, and press Enter (q: end)")
+        while not select.select([sys.stdin], [], [], 0.0)[0]:
+            self.beat()
+            time.sleep(TICK)
+        line = sys.stdin.readline()
+        return "q" if not line else line.strip().lower()
+
+
+def _done(lesson: "LessonPoses", robot: str, out: Path, glove: str, *, tips: bool) -> None:
+    """Write what was learned."""
+    from hydrostat import teleop
+
+    made = lesson.made
+    if lesson.count < 4:
+        print(f"{lesson.count} poses are too few to learn of; they are in {out / PAIRS}")
+        return
+    ridge = made.learn()
+    error = made.errors(ridge)[0]
+    known = teleop.HandMap(
+        robot=robot, sensors=made.sensors, outputs=made.outputs, ridge=ridge, poses=lesson.count, error=error
+    )
+    known.save(out / MAP)
+    written = [PAIRS, MAP]
+    try:
+        written.append(teleop.write_mcap(out / RECORDING, made).name)
+    except HydrostatError as none:
+        print(f"note: {none}")
+    print(f"Wrote {', '.join(written)} in {out}")
+    source = glove if glove.startswith("camera:") else f"glove:{glove}"
+    print(f"Drive with it: hydrostat drive ROBOT --source {source} --map {out / MAP}{' --tips' if tips else ''}")

@@ -1,0 +1,125 @@
+"""`LessonPoses`: poses that a robot shows and a person mimics, one after the other, and the readings of a hold."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control import Motors
+from hydrostat.errors import HydrostatError
+from hydrostat.teleop.hand_source import HandSource
+from hydrostat.teleop.mimicry import Mimicry
+from hydrostat.teleop.ridge import Table
+from hydrostat.teleop.source import DriveChannels
+
+POOL = 400
+"""Poses of which the next is chosen."""
+SHARE = 0.4
+"""Largest share of its range that a winch takes in for a pose."""
+LATE = 2.0
+"""Motors may take so much longer than at their largest speed [s]."""
+TICK = 1 / 60
+"""Motors are told again after so long [s]."""
+HOLD = 0.3
+"""A person holds still for so long [s]; the readings of that time are averaged."""
+STILL = 0.012
+"""Sensors of a hand that holds still vary by less, one standard deviation of the worst; their range is 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """What was told while a person held a pose.
+
+    Attributes:
+        values: mean of each sensor.
+        spread: largest standard deviation of a sensor.
+        readings: so many were averaged.
+    """
+
+    values: Vector
+    spread: float
+    readings: int
+
+    @property
+    def still(self) -> bool:
+        """Whether the hand stood still."""
+        return self.spread < STILL
+
+
+def pose_pool(channels: DriveChannels, seed: int = 0, count: int = POOL) -> Table:
+    """Contractions to choose from [m]: rest, and random ones in which about half of the winches are in use."""
+    random = np.random.default_rng(seed)
+    size = (count, len(channels.names))
+    share = random.uniform(0.0, SHARE, size) * (random.uniform(size=size) < 0.5)
+    pool = channels.rest + share * (channels.high - channels.rest)
+    return np.vstack([channels.rest, pool])
+
+
+def hold_still(
+    hand: HandSource,
+    beat: Callable[[], object] = lambda: None,
+    *,
+    seconds: float = HOLD,
+    clock: Callable[[], float] = time.monotonic,
+) -> Held:
+    """Average the readings of a hand for a while; a beat after each keeps motors (HydrostatError: it is not heard)."""
+    end, told = clock() + seconds, [hand.read().values]
+    while clock() < end:
+        beat()
+        told.append(hand.read().values)
+    table = np.array(told)
+    return Held(table.mean(0), float(table.std(0).max()), len(table))
+
+
+def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -> None:
+    """Let motors go to contractions [m]; each beat drives them (HydrostatError: they do not get there)."""
+    clock = time.monotonic
+    motors.ask(contractions)
+    latest = clock() + float(np.abs(motors.command - motors.places).max(initial=0.0)) / motors.fastest + LATE
+    beat()
+    while motors.moving:
+        if clock() > latest:
+            index = int(np.abs(motors.command - motors.places).argmax())
+            raise HydrostatError(f"{motors.names[index]} does not get where it should be; see what holds it")
+        time.sleep(TICK)
+        beat()
+
+
+class LessonPoses:
+    """The course of a lesson: which pose comes next, and what is known after each.
+
+    Attributes:
+        made: the pairs so far.
+        span: of the ranges of the outputs [m], by which errors are made comparable with the thesis's from -1 to 1.
+    """
+
+    def __init__(self, made: Mimicry, pool: Table, answers: Table) -> None:
+        """Go on with pairs (they may be none) by a pool of contractions [m] and the answers that each would have."""
+        self.made, self._pool, self._answers = made, pool, answers
+        self.span = np.ptp(answers, axis=0).max()
+        self._left = list(range(len(pool)))
+
+    @property
+    def count(self) -> int:
+        """Poses so far."""
+        return len(set(self.made.poses))
+
+    def next_pose(self) -> Vector:
+        """Contractions of the pose that tells most [m]; the first is the rest."""
+        which = 0 if not self.made.poses and self._left[0] == 0 else self.made.next_pose(self._answers[self._left])
+        return self._pool[self._left.pop(which)]
+
+    def take(self, held: Held, answer: Vector) -> None:
+        """Keep a pair."""
+        number = max(self.made.poses, default=-1) + 1
+        self.made.add(number, held.values, answer, time.time())
+
+    def told(self) -> str:
+        """How well the pairs so far teach, in words."""
+        if self.count < 4:
+            return f"{self.count} poses; errors are known from 4 on"
+        known = self.made.learn()
+        one, folds = (f"{1e3 * error:.2f} mm ({2 * error / self.span:.4f})" for error in self.made.errors(known))
+        return f"{self.count} poses; error of poses left out {one}, of five folds {folds}"

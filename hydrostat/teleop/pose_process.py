@@ -1,0 +1,186 @@
+"""`PoseProcess`: poses solved by a process of its own, so that whoever tells the motors never waits for it."""
+
+import multiprocessing as mp
+import signal
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Any
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control import winch_tensions
+from hydrostat.errors import HydrostatError
+from hydrostat.ik import InverseReason, Limits, Tracker
+from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation, SolvedPose
+
+LONGEST = 0.1
+"""Time since the update before counts as so long at most [s]: nobody catches up in a leap."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FoundPose:
+    """A pose that was solved.
+
+    Attributes:
+        job: number of the job that it is of.
+        contractions: of it [m].
+        pulls: of the cables of each winch together [N].
+        markers: their coordinates, one after the other [m].
+        error: largest distance of a marker from its target [m].
+    """
+
+    job: int
+    contractions: Vector
+    pulls: Vector
+    markers: Vector
+    error: float = 0.0
+
+
+class WinchPoses:
+    """Poses at contractions, each begun at the one before."""
+
+    def __init__(self, robot: Robot) -> None:
+        """The poses of a robot."""
+        self._simulation = Simulation(robot)
+        self._pose: SolvedPose | None = None
+
+    def __call__(self, contractions: Vector) -> tuple[FoundPose | None, bool]:
+        """The pose at contractions [m], if there is one; there is never more to do."""
+        pose = self._simulation.solve(contractions, start=self._pose, strict=False)
+        if not pose.result.converged:
+            return None, False
+        self._pose = pose
+        return _found(0, self._simulation.robot, pose), False
+
+
+class FingertipPoses:
+    """Steps towards targets that move, by `Tracker`."""
+
+    def __init__(self, robot: Robot, contractions: Vector, rate: float | None) -> None:
+        """Begin at contractions [m]; cables get no faster than a rate [m/s], if there is one."""
+        self._simulation, self._limits = Simulation(robot), Limits(rate=rate)
+        pose = self._simulation.solve(contractions, strict=False)
+        self._tracker = Tracker(self._simulation, limits=self._limits, start=pose if pose.result.converged else None)
+        self._done, self._updated = -1, time.monotonic()
+
+    def __call__(self, job: tuple[int, dict[str, tuple[float, ...]], Vector | None]) -> tuple[FoundPose | None, bool]:
+        """One step nearer to targets, and whether there is more to do; contractions [m] say where to begin a job."""
+        number, targets, begin = job
+        if not targets:
+            return None, False
+        now = time.monotonic()
+        passed, self._updated = min(max(now - self._updated, 1e-3), LONGEST), now
+        if begin is not None and number != self._done:
+            start = self._simulation.solve(begin, start=self._tracker.pose, strict=False)
+            if start.result.converged:
+                self._tracker = Tracker(self._simulation, limits=self._limits, start=start)
+        self._done = number
+        reached = self._tracker.update(targets, seconds=passed)
+        error = max(reached.errors.values())
+        found = _found(number, self._simulation.robot, reached.pose, error)
+        return found, reached.reason is InverseReason.ITERATION_LIMIT
+
+
+class PoseProcess:
+    """A process that works on the newest job alone, as often as there is more to do; a thread hears what it finds."""
+
+    def __init__(self, make: Callable, arguments: tuple, hear: Callable[[FoundPose], None]) -> None:
+        """Begin, and wait until it is ready; what is made of the arguments there answers jobs.
+
+        Raises:
+            HydrostatError: nothing can be made of them there.
+        """
+        context = mp.get_context("spawn")
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_serve, args=(theirs, make, arguments), daemon=True)
+        self._process.start()
+        theirs.close()
+        self._hear, self._error, self._over = hear, "", False
+        try:
+            wrong = self._pipe.recv()
+        except EOFError:
+            wrong = 'its process has ended; a script that drives begins with if __name__ == "__main__":'
+        if wrong:
+            raise HydrostatError(f"no pose can be found: {wrong}")
+        self._thread = threading.Thread(target=self._listen, name="poses on the way", daemon=True)
+        self._thread.start()
+
+    def check(self) -> None:
+        """Raise what went wrong there."""
+        if self._error:
+            raise HydrostatError(f"no pose is found any more: {self._error}")
+
+    def give(self, job: Any) -> None:
+        """Work on this, and on no older one."""
+        self.check()
+        if self._over:
+            return
+        try:
+            self._pipe.send(job)
+        except OSError:
+            self._error = self._error or "its process has ended"
+            self.check()
+
+    def close(self) -> None:
+        """End it. It may be called twice."""
+        if not self._over:
+            self._over = True
+            with suppress(OSError):
+                self._pipe.send(None)
+            self._process.join(2.0)
+            self._process.kill()
+            self._thread.join(2.0)
+            self._pipe.close()
+
+    def _listen(self) -> None:
+        try:
+            while True:
+                if isinstance(found := self._pipe.recv(), str):
+                    self._error = found
+                else:
+                    self._hear(found)
+        except (EOFError, OSError):
+            self._error = self._error or ("" if self._over else "its process has ended")
+        except Exception as error:
+            self._error = str(error)
+            raise
+
+
+def _serve(pipe: Connection, make: Callable, arguments: tuple) -> None:
+    """Answer the newest job, until there is nobody to ask."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is heard by whoever asks
+    job, more = None, False
+    with suppress(EOFError, OSError):
+        try:
+            answer = make(*arguments)
+            pipe.send("")
+            while True:
+                if not more or pipe.poll():
+                    job = pipe.recv()
+                    while pipe.poll():
+                        job = pipe.recv()
+                    if job is None:
+                        return
+                found, more = answer(job)
+                if found is not None:
+                    pipe.send(found)
+        except (EOFError, OSError):
+            return
+        except Exception as error:  # noqa: BLE001 (whoever asks is told)
+            pipe.send(str(error) or type(error).__name__)
+
+
+def _found(job: int, robot: Robot, pose: SolvedPose, error: float = 0.0) -> FoundPose:
+    return FoundPose(
+        job=job,
+        contractions=pose.contractions,
+        pulls=winch_tensions(robot, pose.tensions),
+        markers=np.concatenate([np.zeros(0), *(np.asarray(place) for place in pose.markers.values())]),
+        error=error,
+    )

@@ -1,0 +1,102 @@
+"""`hydrostat mimic`, and driving by what it has learned. Oracles: files read back, an emulated person, exit codes."""
+
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+Run = Callable[..., tuple[int, str, str]]
+PROGRAM = "from hydrostat.cli.main import main; main()"
+
+
+def rows(out: Path) -> list[list[str]]:
+    with (out / "poses.csv").open() as file:
+        return list(csv.reader(file))
+
+
+@pytest.mark.slow
+def test_a_lesson_with_an_emulated_glove_and_a_drive_by_it(run: Run, starfish: Path, tmp_path: Path) -> None:
+    out = tmp_path / "glove"
+    code, told, err = run("mimic", starfish, "--glove", "emulated", "--out", out, "--poses", 5)
+    assert (code, err) == (0, "")
+    assert len(rows(out)) == 1 + 5
+    assert rows(out)[0][:2] == ["pose", "time_s"]
+    assert rows(out)[0][-3:] == ["right", "left", "feet"]
+    assert re.search(r"simulated: 5 poses; error of poses left out \d+\.\d+ mm \(\d\.\d{4}\), of five folds", told)
+    assert json.loads((out / "map.json").read_text())["poses"] == 5
+    code, told, err = run("mimic", starfish, "--glove", "emulated", "--out", out, "--poses", 8, "--worn")
+    assert (code, err) == (0, "")
+    assert told.startswith("simulated: 5 poses")
+    assert len(rows(out)) == 1 + 8
+    if (out / "poses.mcap").exists():
+        assert (out / "poses.mcap").read_bytes()[1:5] == b"MCAP"
+    options = ("--source", "glove:emulated", "--map", out / "map.json", "--seconds", 2.5)
+    code, told, err = run("drive", starfish, *options)
+    assert (code, err) == (0, "")
+    moved = [float(word) for word in re.findall(r"right (-?\d+\.\d) mm", told)]
+    assert max(moved) > 1.0  # the emulated hand closes by itself
+    code, _, err = run("drive", starfish, *options, "--tips")
+    assert code == 2
+    assert "--map: it was learned of starfish for right, left, feet" in err
+
+
+@pytest.mark.slow
+def test_a_person_presses_enter_and_sees_the_pose(starfish: Path, tmp_path: Path) -> None:
+    """With landmarks of a hand that holds still; q ends, and what was taken stays."""
+    import socket
+
+    out, sender = tmp_path / "camera", socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    words = ["mimic", str(starfish), "--glove", "camera:9377", "--out", str(out)]
+    work = subprocess.Popen(
+        [sys.executable, "-uc", PROGRAM, *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert work.stdin is not None
+    assert work.stdout is not None
+    os.set_blocking(work.stdout.fileno(), False)
+    hand = json.dumps({"landmarks": [[0.1 * n, 0.01 * n * n, 0.0] for n in range(21)]}).encode()
+    told, entered, end = "", 0, time.monotonic() + 60.0
+    while work.poll() is None and time.monotonic() < end:
+        sender.sendto(hand, ("127.0.0.1", 9377))
+        told += work.stdout.read() or ""
+        if told.count("press Enter") > entered:
+            entered += 1
+            work.stdin.write("\n" if entered < 3 else "q\n")
+            work.stdin.flush()
+        time.sleep(0.02)
+    told += work.stdout.read() or ""
+    sender.close()
+    assert work.wait(10) == 0
+    work.stdin.close()
+    work.stdout.close()
+    assert "2 poses are too few to learn of" in told
+    assert len(rows(out)) == 1 + 2
+    assert (out / "pose.png").read_bytes()[1:4] == b"PNG"
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--glove", "emulated", "--poses", 2), "--poses 2: errors are known from 4 on"),
+        (("--glove", "camera:x"), "must end with a number"),
+        (("--glove", "emulated", "--port", "nonsense"), "--port nonsense: write emulated"),
+    ],
+)
+def test_one_clear_line(run: Run, starfish: Path, tmp_path: Path, options: tuple[object, ...], told: str) -> None:
+    code, out, err = run("mimic", starfish, "--out", tmp_path / "out", *options)
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert told in err
+
+
+def test_a_glove_that_is_not_there(run: Run, starfish: Path, tmp_path: Path) -> None:
+    pytest.importorskip("serial")
+    code, _, err = run("mimic", starfish, "--glove", "/dev/no_glove", "--out", tmp_path / "out")
+    assert code == 1
+    assert "/dev/no_glove cannot be opened" in err
