@@ -1,6 +1,7 @@
 """`PoseProcess`: poses solved by a process of its own, so that whoever tells the motors never waits for it."""
 
 import multiprocessing as mp
+import os
 import signal
 import threading
 import time
@@ -19,6 +20,8 @@ from hydrostat.ik import InverseReason, Limits, Tracker
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
 
+YIELDS = 5
+"""So much nicer than whoever tells the motors is who solves poses, where cores are few (Unix)."""
 LONGEST = 0.1
 """Time since the update before counts as so long at most [s]: nobody catches up in a leap."""
 
@@ -155,6 +158,8 @@ class PoseProcess:
 def _serve(pipe: Connection, make: Callable, arguments: tuple) -> None:
     """Answer the newest job, until there is nobody to ask."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is heard by whoever asks
+    with suppress(AttributeError, OSError):
+        os.nice(YIELDS)
     job, more = None, False
     with suppress(EOFError, OSError):
         try:
