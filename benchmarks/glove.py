@@ -2,7 +2,7 @@
 
     python benchmarks/glove.py
 
-Readings of one pose are averaged: 25 are what 0.3 s of holding still give at 90 a second, as `hydrostat mimic` asks for.
+Readings of one pose are averaged: `hydrostat mimic` asks for 0.3 s of holding still, 25 or so at 90 a second.
 Noise is a share of a step of the glove's 254; the thesis reports 0.0026 for its own hand and glove.
 """
 
