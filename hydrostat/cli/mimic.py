@@ -16,7 +16,7 @@ from hydrostat.errors import HydrostatError, InputError
 if TYPE_CHECKING:
     from hydrostat.arrays import Vector
     from hydrostat.simulation import Simulation
-    from hydrostat.teleop import HandSource, Held, LessonPoses
+    from hydrostat.teleop import HandSource, HeldStill, LessonPoses
 
 PAIRS, MAP, RECORDING, PICTURE = "poses.csv", "map.json", "poses.mcap", "pose.png"
 TIPS = 150  # poses to choose from where each has to be solved first
@@ -159,7 +159,7 @@ class _Session:
             self.motors.hold()
             draw_pose(self._simulation.solve(self.motors.places, strict=False)).savefig(out / PICTURE, dpi=80)
 
-    def take(self, number: int, *, asks: bool) -> "Held | None":
+    def take(self, number: int, *, asks: bool) -> "HeldStill | None":
         """The readings of a hold; None when the person ends."""
         from hydrostat import teleop
 

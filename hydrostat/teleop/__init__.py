@@ -8,7 +8,7 @@ from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.hand_source import HandReading, HandSource
 from hydrostat.teleop.keys import Keys
 from hydrostat.teleop.landmarks import HandLandmarks
-from hydrostat.teleop.lesson_poses import Held, LessonPoses, go_there, hold_still, pose_pool
+from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold_still, pose_pool
 from hydrostat.teleop.mapped_hand import MappedHand
 from hydrostat.teleop.midi_knobs import MidiKnobs
 from hydrostat.teleop.mimicry import Mimicry, write_mcap
@@ -33,7 +33,7 @@ __all__ = [
     "HandMap",
     "HandReading",
     "HandSource",
-    "Held",
+    "HeldStill",
     "Keys",
     "LessonPoses",
     "MappedHand",

@@ -29,7 +29,7 @@ STILL = 0.012
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class HeldStill:
     """What was told while a person held a pose.
 
     Attributes:
@@ -63,14 +63,14 @@ def hold_still(
     *,
     seconds: float = HOLD,
     clock: Callable[[], float] = time.monotonic,
-) -> Held:
+) -> HeldStill:
     """Average the readings of a hand for a while; a beat after each keeps motors (HydrostatError: it is not heard)."""
     end, told = clock() + seconds, [hand.read().values]
     while clock() < end:
         beat()
         told.append(hand.read().values)
     table = np.array(told)
-    return Held(table.mean(0), float(table.std(0).max()), len(table))
+    return HeldStill(table.mean(0), float(table.std(0).max()), len(table))
 
 
 def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -> None:
@@ -111,7 +111,7 @@ class LessonPoses:
         which = 0 if not self.made.poses and self._left[0] == 0 else self.made.next_pose(self._answers[self._left])
         return self._pool[self._left.pop(which)]
 
-    def take(self, held: Held, answer: Vector) -> None:
+    def take(self, held: HeldStill, answer: Vector) -> None:
         """Keep a pair."""
         number = max(self.made.poses, default=-1) + 1
         self.made.add(number, held.values, answer, time.time())

@@ -27,7 +27,7 @@ LONGEST = 0.1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FoundPose:
+class PoseOnWay:
     """A pose that was solved.
 
     Attributes:
@@ -53,7 +53,7 @@ class WinchPoses:
         self._simulation = Simulation(robot)
         self._pose: SolvedPose | None = None
 
-    def __call__(self, contractions: Vector) -> tuple[FoundPose | None, bool]:
+    def __call__(self, contractions: Vector) -> tuple[PoseOnWay | None, bool]:
         """The pose at contractions [m], if there is one; there is never more to do."""
         pose = self._simulation.solve(contractions, start=self._pose, strict=False)
         if not pose.result.converged:
@@ -72,7 +72,7 @@ class FingertipPoses:
         self._tracker = Tracker(self._simulation, limits=self._limits, start=pose if pose.result.converged else None)
         self._done, self._updated = -1, time.monotonic()
 
-    def __call__(self, job: tuple[int, dict[str, tuple[float, ...]], Vector | None]) -> tuple[FoundPose | None, bool]:
+    def __call__(self, job: tuple[int, dict[str, tuple[float, ...]], Vector | None]) -> tuple[PoseOnWay | None, bool]:
         """One step nearer to targets, and whether there is more to do; contractions [m] say where to begin a job."""
         number, targets, begin = job
         if not targets:
@@ -93,7 +93,7 @@ class FingertipPoses:
 class PoseProcess:
     """A process that works on the newest job alone, as often as there is more to do; a thread hears what it finds."""
 
-    def __init__(self, make: Callable, arguments: tuple, hear: Callable[[FoundPose], None]) -> None:
+    def __init__(self, make: Callable, arguments: tuple, hear: Callable[[PoseOnWay], None]) -> None:
         """Begin, and wait until it is ready; what is made of the arguments there answers jobs.
 
         Raises:
@@ -181,8 +181,8 @@ def _serve(pipe: Connection, make: Callable, arguments: tuple) -> None:
             pipe.send(str(error) or type(error).__name__)
 
 
-def _found(job: int, robot: Robot, pose: SolvedPose, error: float = 0.0) -> FoundPose:
-    return FoundPose(
+def _found(job: int, robot: Robot, pose: SolvedPose, error: float = 0.0) -> PoseOnWay:
+    return PoseOnWay(
         job=job,
         contractions=pose.contractions,
         pulls=winch_tensions(robot, pose.tensions),

@@ -11,7 +11,7 @@ from hydrostat.control import FASTEST, KnownPulls
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
-from hydrostat.teleop.pose_process import FingertipPoses, FoundPose, PoseProcess, WinchPoses
+from hydrostat.teleop.pose_process import FingertipPoses, PoseOnWay, PoseProcess, WinchPoses
 from hydrostat.teleop.source import DriveChannels
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ class WinchWay(Way):
         if self._poses is not None:
             self._poses.close()
 
-    def _hear(self, found: FoundPose) -> None:
+    def _hear(self, found: PoseOnWay) -> None:
         self.known.put(found.contractions, found.pulls)
 
 
@@ -155,7 +155,7 @@ class FingertipWay(Way):
         """End its process."""
         self._poses.close()
 
-    def _hear(self, found: FoundPose) -> None:
+    def _hear(self, found: PoseOnWay) -> None:
         self.known.put(found.contractions, found.pulls)
         self._markers = found.markers
         with self._lock:
