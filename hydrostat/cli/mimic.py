@@ -154,10 +154,8 @@ class _Session:
 
         teleop.go_there(self.motors, contractions, self.beat)
         if drawn:
-            from hydrostat.plot import draw_pose
-
             self.motors.hold()
-            draw_pose(self._simulation.solve(self.motors.places, strict=False)).savefig(out / PICTURE, dpi=80)
+            self._simulation.solve(self.motors.places, strict=False).plot().savefig(out / PICTURE, dpi=80)
 
     def take(self, number: int, *, asks: bool) -> "HeldStill | None":
         """The readings of a hold; None when the person ends."""
