@@ -21,6 +21,7 @@ class LearnOptions:
         slopes: how much errors of slopes count beside those of values; 0 learns from values alone.
         directions: along which slopes are compared, drawn anew in each step.
         tensions: how much errors of tensions count beside those of markers.
+        tension_slopes: how much errors of their slopes count, where samples hold them.
         effort: how much the inverse network minds tension and contraction, so that its answer is one.
         held_out: share of the samples that a network does not learn from, but is chosen by.
         seed: of all that is drawn at random.
@@ -37,6 +38,7 @@ class LearnOptions:
     slopes: float = 0.1
     directions: int = 3
     tensions: float = 0.1
+    tension_slopes: float = 0.01
     effort: float = 1e-5
     held_out: float = 0.1
     seed: int = 0
@@ -46,7 +48,7 @@ class LearnOptions:
         for name in ("members", "width", "depth", "steps", "inverse_steps", "batch", "directions", "threads"):
             if getattr(self, name) is not None and getattr(self, name) < 1:
                 raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
-        for name in ("rate", "slopes", "tensions", "effort"):
+        for name in ("rate", "slopes", "tensions", "tension_slopes", "effort"):
             value = getattr(self, name)
             if not (isfinite(value) and value >= 0) or (name == "rate" and value == 0):
                 raise InputError(f"{name} must be {'above 0' if name == 'rate' else '0 or more'}, not {value:g}")

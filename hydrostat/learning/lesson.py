@@ -22,7 +22,8 @@ class Lesson:
         unit: of each of it: one length for all coordinates of markers, one force for all tensions.
         inputs: of the networks.
         outputs: markers, then tensions.
-        slopes: of the markers.
+        slopes: of the markers; then of the tensions, if they were sampled.
+        coordinates: how many of the outputs are of markers.
         linear: the best linear map from inputs to outputs, with its constant as the last row.
     """
 
@@ -32,13 +33,9 @@ class Lesson:
     unit: Vector
     inputs: Float[np.ndarray, "samples winches"]
     outputs: Float[np.ndarray, "samples outputs"]
-    slopes: Float[np.ndarray, "samples coordinates winches"]
+    slopes: Float[np.ndarray, "samples sloped winches"]
+    coordinates: int
     linear: Float[np.ndarray, "rows outputs"]
-
-    @property
-    def coordinates(self) -> int:
-        """How many of the outputs are of markers."""
-        return self.slopes.shape[1]
 
 
 def lesson_of(samples: Samples, like: LearnedModel | None = None) -> Lesson:
@@ -59,8 +56,11 @@ def lesson_of(samples: Samples, like: LearnedModel | None = None) -> Lesson:
     length, force = (_spread(part) for part in np.split(found - middle, [coordinates], axis=1))
     unit = np.r_[np.full(coordinates, length), np.full(found.shape[1] - coordinates, force)]
     if like is not None:
-        middle, unit, length = like.middle, like.unit, float(like.unit[0])
-    slopes = samples.jacobians.reshape(count, coordinates, -1) * (0.5 * span / length)
+        middle, unit = like.middle, like.unit
+    found_slopes = samples.jacobians.reshape(count, coordinates, -1)
+    if samples.tension_slopes is not None:
+        found_slopes = np.hstack([found_slopes, samples.tension_slopes])
+    slopes = found_slopes * (0.5 * span) / unit[: found_slopes.shape[1], None]
     outputs = (found - middle) / unit
     return Lesson(
         low=low,
@@ -70,6 +70,7 @@ def lesson_of(samples: Samples, like: LearnedModel | None = None) -> Lesson:
         inputs=inputs,
         outputs=outputs,
         slopes=slopes,
+        coordinates=coordinates,
         linear=linear_map(inputs, outputs),
     )
 

@@ -102,6 +102,7 @@ class SamplePlan:
             "seed": self.seed,
             "draws": [str(draw) for draw in self.draws],
             "shard": self.shard,
+            "tension_slopes": True,
             "nodes": self.nodes,
             "tension": self.tension,
             "pairs": [[robot.winches[winch].name for winch in pair] for pair in self.pairs],

@@ -34,6 +34,7 @@ def sample_type(plan: SamplePlan) -> np.dtype:
         ("markers", "<f8", (markers, dim)),
         ("jacobian", "<f8", (markers, dim, winches)),
         ("tensions", "<f8", (len(robot.cables),)),
+        ("tension_slopes", "<f8", (len(robot.cables), winches)),
     ]
     kept = [("nodes", "<f4", robot.body.mesh.nodes.shape)] if plan.nodes else []
     return np.dtype(columns + kept)
@@ -78,7 +79,19 @@ def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: f
     if "nodes" in columns:
         row["nodes"] = pose.nodes
     if pose.result.stable:
-        row["jacobian"] = np.einsum("pc,pcdw->pdw", anchors.weights, simulation.jacobian(pose)[anchors.stencils])
+        moves = simulation.jacobian(pose)
+        row["jacobian"] = np.einsum("pc,pcdw->pdw", anchors.weights, moves[anchors.stencils])
+        row["tension_slopes"] = _tension_slopes(simulation, pose, moves)
+
+
+def _tension_slopes(simulation: Simulation, pose: SolvedPose, moves: np.ndarray) -> np.ndarray:
+    """How tensions rise with contractions [N/m], (cables, winches): T' (dl/dx dx/da + ratio); 0 for slack cables."""
+    cables, count = simulation.cables, len(simulation.robot.cables)
+    if simulation.friction is not None:
+        return simulation.rubbing_slopes(pose, (np.zeros((count, pose.nodes.size)), np.eye(count))).contractions
+    longer = cables.columns(pose.nodes).T @ moves.reshape(pose.nodes.size, -1)
+    longer[np.arange(count), cables.winches] += cables.ratios
+    return cables.law.tangent(cables.elongations(pose.nodes, pose.contractions))[:, None] * longer
 
 
 def _within(simulation: Simulation, contractions: Vector, tension: float | None) -> SolvedPose:

@@ -25,6 +25,8 @@ class Samples:
         markers: positions [m], (samples, markers, dim).
         jacobians: slopes of the markers with the contractions, (samples, markers, dim, winches).
         tensions: of each cable [N], (samples, cables).
+        tension_slopes: of the tensions with the contractions [N/m], (samples, cables, winches); None in folders of an
+            earlier version, which did not sample them.
         touches: whether parts of the body push one another off.
         crosses: whether the body passes through itself, as it may without contact.
         nodes: positions of all nodes [m], float32; None if they were not kept.
@@ -37,6 +39,7 @@ class Samples:
     markers: Float[np.ndarray, "samples markers dim"]
     jacobians: Float[np.ndarray, "samples markers dim winches"]
     tensions: Float[np.ndarray, "samples cables"]
+    tension_slopes: Float[np.ndarray, "samples cables winches"] | None
     touches: Bool[np.ndarray, " samples"]
     crosses: Bool[np.ndarray, " samples"]
     nodes: np.ndarray | None
@@ -65,6 +68,7 @@ class Samples:
             markers=self.markers[which],
             jacobians=self.jacobians[which],
             tensions=self.tensions[which],
+            tension_slopes=None if self.tension_slopes is None else self.tension_slopes[which],
             touches=self.touches[which],
             crosses=self.crosses[which],
             nodes=None if self.nodes is None else self.nodes[which],
@@ -112,6 +116,7 @@ def read_samples(folder: Path) -> Samples:
         markers=rows["markers"],
         jacobians=rows["jacobian"],
         tensions=rows["tensions"],
+        tension_slopes=rows["tension_slopes"] if "tension_slopes" in (rows.dtype.names or ()) else None,
         touches=rows["touches"] > 0,
         crosses=rows["crosses"] > 0,
         nodes=rows["nodes"] if "nodes" in (rows.dtype.names or ()) else None,

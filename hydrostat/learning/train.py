@@ -56,11 +56,12 @@ def train_forward(
     learned, held = _folds(len(inputs), options, draw)
     batches = _batches(learned, options.batch, draw)
     coordinates = lesson.coordinates
+    weights = loss_weights(coordinates, outputs.shape[1], options)
 
     def loss() -> Tensor:
         rows = next(batches)
         ways = torch.randn(*rows.shape, options.directions, sizes[0], generator=draw) if options.slopes else None
-        return sobolev_loss(numbers, inputs[rows], ways, outputs[rows], slopes[rows], options)
+        return sobolev_loss(numbers, inputs[rows], ways, outputs[rows], slopes[rows], weights)
 
     def error() -> Tensor:
         value, _ = answer(numbers, inputs[held], None)
@@ -114,17 +115,31 @@ def train_inverse(lesson: Lesson, dim: int, forward: Perceptrons, options: Learn
     return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
 
 
+def loss_weights(coordinates: int, outputs: int, options: LearnOptions) -> tuple[Tensor, Tensor]:
+    """How much the value of each output counts, and its slope: markers first, then tensions."""
+    tensions = outputs - coordinates
+    values, slopes = (1.0, options.tensions), (options.slopes, options.tension_slopes)
+    return tuple(torch.tensor([marker] * coordinates + [tension] * tensions) for marker, tension in (values, slopes))  # type: ignore
+
+
 def sobolev_loss(
-    numbers: Numbers, points: Tensor, ways: Tensor | None, outputs: Tensor, slopes: Tensor, options: LearnOptions
+    numbers: Numbers,
+    points: Tensor,
+    ways: Tensor | None,
+    outputs: Tensor,
+    slopes: Tensor,
+    weights: tuple[Tensor, Tensor],
 ) -> Tensor:
-    """Mean squares of what values and slopes along some ways miss, summed over the networks (members, batch, ...)."""
+    """Mean squares of what values and slopes along some ways miss, summed over the networks (members, batch, ...).
+
+    Slopes of the first outputs, of as many as are given.
+    """
     value, moved = answer(numbers, points, ways)
-    coordinates = slopes.shape[-2]
-    missed = (value - outputs).square()
-    loss = missed[..., :coordinates].sum(-1) + options.tensions * missed[..., coordinates:].sum(-1)
+    loss = ((value - outputs).square() * weights[0]).sum(-1)
     if moved is not None and ways is not None:
+        sloped = slopes.shape[-2]
         true = torch.einsum("mbkw,mbcw->mbkc", ways, slopes)
-        loss = loss + options.slopes * (moved[..., :coordinates] - true).square().sum(-1).mean(-1)
+        loss = loss + ((moved[..., :sloped] - true).square() * weights[1][:sloped]).sum(-1).mean(-1)
     return loss.mean(1).sum()
 
 

@@ -50,22 +50,23 @@ def test_the_kernel_is_what_was_trained() -> None:
         assert moved[:, place].mean(0).T.numpy() == pytest.approx(slopes, abs=1e-12)
 
 
-def test_gradients_of_the_loss() -> None:
+@pytest.mark.parametrize("sloped", [4, 6])
+def test_gradients_of_the_loss(sloped: int) -> None:
     """Oracle: central differences of the loss along random ways, values, slopes and tensions together."""
     torch = pytest.importorskip("torch")
-    from hydrostat.learning.train import sobolev_loss, tensors_of
+    from hydrostat.learning.train import loss_weights, sobolev_loss, tensors_of
 
     draw = np.random.default_rng(3)
     some = networks((3, 8, 8, 6), 2)
     points, ways = torch.tensor(draw.normal(size=(2, 5, 3))), torch.tensor(draw.normal(size=(2, 5, 2, 3)))
-    outputs, slopes = torch.tensor(draw.normal(size=(2, 5, 6))), torch.tensor(draw.normal(size=(2, 5, 4, 3)))
+    outputs, slopes = torch.tensor(draw.normal(size=(2, 5, 6))), torch.tensor(draw.normal(size=(2, 5, sloped, 3)))
 
     def loss(numbers: np.ndarray, *, graph: bool = False) -> "tuple[torch.Tensor, list[torch.Tensor]]":
         parts = tensors_of(Perceptrons(sizes=some.sizes, numbers=numbers), torch.float64)
         for part in parts:
             part.requires_grad_(graph)
-        options = LearnOptions(slopes=0.7, tensions=0.3)
-        return sobolev_loss(parts, points, ways, outputs, slopes, options), parts
+        weights = loss_weights(4, 6, LearnOptions(slopes=0.7, tensions=0.3, tension_slopes=0.2))
+        return sobolev_loss(parts, points, ways, outputs, slopes, weights), parts
 
     value, parts = loss(some.numbers, graph=True)
     value.backward()

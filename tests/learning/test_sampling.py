@@ -53,6 +53,40 @@ def test_a_sample_is_what_the_simulator_finds(plan: SamplePlan, once: Path) -> N
         assert np.array_equal(slopes, samples.jacobians[place])
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_slopes_of_tensions(friction: float, tmp_path: Path) -> None:
+    """Oracle: differences of poses, central ones by winch; with friction further on the way from rest."""
+    robot = strip_robot(columns=8, rows=2)
+    robot = replace(robot, cables=tuple(replace(cable, friction=friction) for cable in robot.cables))
+    samples, simulation = read_samples(sample_robot(plan_samples(robot, 3), tmp_path).path), hs.Simulation(robot)
+    assert samples.tension_slopes is not None
+    for contractions, slopes in zip(samples.contractions, samples.tension_slopes, strict=True):
+        start = simulation.solve(contractions)
+        for way in [contractions] if friction else np.eye(2):
+            step = 1e-7 * way / np.linalg.norm(way)
+            above = simulation.solve(contractions + step, start=start).tensions
+            below = start.tensions if friction else simulation.solve(contractions - step, start=start).tensions
+            found = (above - below) / (1e-7 if friction else 2e-7)
+            assert slopes @ step / 1e-7 == pytest.approx(found, rel=1e-3, abs=1e-3 * np.abs(slopes).max())
+
+
+def test_samples_of_an_earlier_version_are_read_but_not_gone_on_with(plan: SamplePlan, tmp_path: Path) -> None:
+    """Those were without slopes of tensions."""
+    old = sample_robot(replace(plan, count=5), tmp_path).path
+    rows, manifest = np.load(old / "samples-000000.npy"), json.loads((old / "samples.json").read_text())
+    kept = [column for column in rows.dtype.descr if column[0] != "tension_slopes"]
+    without = np.zeros(len(rows), np.dtype(kept))
+    for name in without.dtype.names or ():
+        without[name] = rows[name]
+    np.save(old / "samples-000000.npy", without)
+    (old / "samples.json").write_text(json.dumps({k: v for k, v in manifest.items() if k != "tension_slopes"}))
+    samples = read_samples(old)
+    assert samples.tension_slopes is None
+    assert len(samples.first(3)) == 3
+    with pytest.raises(InputError, match="another plan: tension_slopes is None, asked for True"):
+        sample_robot(replace(plan, count=5), old)
+
+
 def test_bytes_do_not_depend_on_who_works(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
     for part in range(3):
         sample_robot(plan, tmp_path / "parts", part=(2 - part, 3))
