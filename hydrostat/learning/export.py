@@ -50,6 +50,7 @@ def _parquet(path: Path, facts: Mapping[str, Any], rows: np.ndarray) -> None:
     names = {
         "contractions": facts["winches"],
         "tensions": facts["cables"],
+        "tension_slopes": [f"{cable}.{winch}" for cable in facts["cables"] for winch in facts["winches"]],
         "markers": [f"{marker}.{axis}" for marker in facts["markers"] for axis in axes],
         "jacobian": [f"{m}.{axis}.{w}" for m in facts["markers"] for axis in axes for w in facts["winches"]],
     }

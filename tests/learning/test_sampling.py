@@ -260,6 +260,9 @@ def test_exports_hold_the_same_numbers(plan: SamplePlan, once: Path, tmp_path: P
     winch, marker = plan.robot.winches[1].name, plan.robot.markers[0].name
     assert np.array_equal(table[f"contractions.{winch}"].to_numpy(), samples.contractions[:, 1])
     assert np.array_equal(table[f"jacobian.{marker}.y.{winch}"].to_numpy(), samples.jacobians[:, 0, 1, 1])
+    cable = plan.robot.cables[0].name
+    assert samples.tension_slopes is not None
+    assert np.array_equal(table[f"tension_slopes.{cable}.{winch}"].to_numpy(), samples.tension_slopes[:, 0, 1])
     assert json.loads(table.schema.metadata[b"hydrostat"])["count"] == 22
     zarr = pytest.importorskip("zarr")
     group = zarr.open_group(export_samples(once, tmp_path / "all.zarr"), mode="r")
