@@ -38,7 +38,7 @@ class LearnOptions:
     slopes: float = 0.1
     directions: int = 3
     tensions: float = 0.1
-    tension_slopes: float = 0.01
+    tension_slopes: float = 0.1
     effort: float = 1e-5
     held_out: float = 0.1
     seed: int = 0
