@@ -7,17 +7,19 @@ Glove and servos are a program of their own, at the other end of two pseudo-term
 a step, so that a new pose is asked for all the time. At moments of its choice the hand takes another pose. The delay is
 from then until a goal in a servo has gone by more than 0.5 mm of cable from where it was. Ways: a ridge map from
 sensors to contractions; one to fingertips, which `Tracker` follows; the same with a learned model, whose networks
-answer first. No glove and no motor of metal is here. Run by root it goes before other programs of the computer.
+answer first. No glove and no motor of metal is here.
 """
 
 import argparse
 import multiprocessing as mp
 import os
 import select
+import sys
 import threading
 import time
 import tty
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -118,6 +120,8 @@ class LiveGlove(threading.Thread):
 
 def come_first(*, first: bool = True) -> None:
     """Let all threads of this program run before all other programs of the computer, or no longer (Linux, root)."""
+    if "--first" not in sys.argv:
+        return
     with suppress(AttributeError, OSError):
         for task in os.listdir("/proc/self/task"):
             os.sched_setscheduler(int(task), os.SCHED_RR if first else os.SCHED_OTHER, os.sched_param(5 * first))
@@ -176,6 +180,17 @@ def learned(robot: Robot, simulation: hs.Simulation, *, tips: bool) -> HandMap:
     return HandMap(robot=robot.name, sensors=glove.names, outputs=names, ridge=ridge, poses=60, error=error)
 
 
+def again(ask: Callable[[], object]) -> None:
+    """Ask motors up to ten times, as this computer may be too busy for their answers."""
+    for left in reversed(range(10)):
+        try:
+            ask()
+            return
+        except HydrostatError:
+            if not left:
+                raise
+
+
 def measure(robot: Robot, way: Way, known: HandMap, moves: int, baud: int) -> Told:
     """Drive, and let the other end measure."""
     winches, random = winch_channels(robot), np.random.default_rng(2)
@@ -192,8 +207,8 @@ def measure(robot: Robot, way: Way, known: HandMap, moves: int, baud: int) -> To
     come_first()
     bus = DynamixelBus(open_line(line, baud), [motor.number for motor in calibration.motors])
     link = BusLink(bus, robot.winches, calibration)
-    link.identify()
-    link.arm()
+    again(link.identify)
+    again(link.arm)
     source = MappedHand(way.channels, CyberGlove(open_line(glove, BAUD)), known)
     found: list[Told] = []
 
@@ -213,7 +228,7 @@ def measure(robot: Robot, way: Way, known: HandMap, moves: int, baud: int) -> To
                 pass
             except HydrostatError:  # this machine did not let it run for longer than a watchdog waits
                 stops += 1
-                link.arm()
+                again(link.arm)
     finally:
         close()
         source.close()
@@ -230,6 +245,8 @@ def main() -> None:
     parser.add_argument("--moves", type=int, default=150)
     parser.add_argument("--model", type=Path, help="learned model of the cupping hand")
     parser.add_argument("--baud", type=int, default=1_000_000)
+    parser.add_argument("--way", type=int, choices=(0, 1, 2), help="only this one")
+    parser.add_argument("--first", action="store_true", help="go before all other programs (Linux, root)")
     given = parser.parse_args()
     robot = hs.load_robot("gallery:cupping_hand")
     print(f"{machine.machine()}; load {os.getloadavg()[0]:.1f}; {given.baud} baud to the servos", flush=True)
@@ -238,6 +255,8 @@ def main() -> None:
         given.model is not None
     )
     for number, name in enumerate(ways):
+        if given.way not in (None, number):
+            continue
         model = load_model(given.model) if number == 2 and given.model else None
         body = replace(robot, contact=Contact()) if model and model.facts["contact"] else robot
         simulation = hs.Simulation(body)

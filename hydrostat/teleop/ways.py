@@ -100,7 +100,7 @@ class WinchWay(Way):
 class FingertipWay(Way):
     """Markers are what is moved: `Tracker` finds contractions, step by step, each of them a pose in equilibrium.
 
-    With a learned model its networks answer at once. What the simulator finds better from there, step by step, is added
+    With a learned model its inverse network answers at once. What the simulator finds better from there, step by step, is added
     to its answers from then on.
     """
 
@@ -125,7 +125,7 @@ class FingertipWay(Way):
         self._answers: dict[int, Vector] = {}  # of the networks, by job
         self._lock = threading.Lock()
         if model is not None:
-            model.solve({name: tuple(start.markers[name]) for name in self._names})  # compiles its networks
+            model.solve({name: tuple(start.markers[name]) for name in self._names}, search=False)  # compiles it
         self._poses = PoseProcess(FingertipPoses, (robot, contractions, rate if model is None else None), self._hear)
 
     def ask(self, values: Vector) -> None:
@@ -135,7 +135,7 @@ class FingertipWay(Way):
             return
         rows = values.reshape(-1, self._dim).tolist()
         targets = {name: tuple(row) for name, row in zip(self._names, rows, strict=True)}
-        answer = None if self._model is None else self._model.solve(targets).contractions
+        answer = None if self._model is None else self._model.solve(targets, search=False).contractions
         with self._lock:
             self._jobs, self._asked, begin = self._jobs + 1, values.copy(), None
             if answer is not None:
