@@ -100,8 +100,8 @@ class WinchWay(Way):
 class FingertipWay(Way):
     """Markers are what is moved: `Tracker` finds contractions, step by step, each of them a pose in equilibrium.
 
-    With a learned model its inverse network answers at once. What the simulator finds better from there, step by step, is added
-    to its answers from then on.
+    With a learned model its inverse network answers at once. What the simulator finds better from there, step by step,
+    is added to its answers from then on.
     """
 
     def __init__(
