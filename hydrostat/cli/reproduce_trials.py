@@ -15,11 +15,15 @@ if TYPE_CHECKING:
 
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Robot
+    from hydrostat.simulation import Simulation
     from hydrostat.training.experiments import Experiment
     from hydrostat.training.run_experiment import Judged
 
 TRIALS = ("figure-5.8", "figure-5.9", "figure-5.10", "figure-5.12", "table-noise", "table-reward")
-"""What can be reproduced of reinforcement learning; figure-5.10 is figure 5.11 too."""
+"""Experiments of the thesis that can be reproduced; figure-5.10 is figure 5.11 too."""
+
+POLICY_TABLE = "table-policies"
+"""What others ways to a policy leave, on the same actions and outcomes."""
 
 
 def reproduce_trials(
@@ -51,6 +55,9 @@ def reproduce_trials(
     simulation, width = Simulation(robot), 1e3 * robot.body.mesh.size
     count = usual.seeds if seeds is None else seeds
     for name in names:
+        if name == POLICY_TABLE:
+            _policies(networks, simulation, out, seeds=count, usual=usual)
+            continue
         experiment = EXPERIMENTS[name]
         print(f"\n{name}: {experiment.title}")
         print(f"{robot.name}, {width:.0f} mm; networks of {networks.facts['samples']} equilibria; {count} seeds:")
@@ -70,6 +77,52 @@ def reproduce_trials(
         kept = _told(experiment, done)
         replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
         print(f"Wrote {save_png(_drawn(experiment, done), out / f'{name}.png')} and {name}.json")
+
+
+def _policies(networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials") -> None:
+    """Table and picture of ways to a policy of one action, over the equilibria that each has used."""
+    from hydrostat.plot import draw_costs, save_png
+    from hydrostat.robot import replace_file
+    from hydrostat.training.policies import PAIRS_ALONE, POLICIES, Effort, drawn_pairs
+    from hydrostat.training.run_experiment import exact_distances, finger_pairs
+    from hydrostat.training.trials import NetworkReach
+    from hydrostat.training.verdict import interquartile
+
+    trials, effort = (
+        NetworkReach(networks, groups=finger_pairs(networks)),
+        Effort(steps=usual.steps, epochs=usual.small),
+    )
+    every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
+    known = int(networks.facts["samples"])
+    print(
+        f"\n{POLICY_TABLE}: ways to a policy of one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator"
+    )
+    print(f"{'way':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>22}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
+    rows: list[dict[str, object]] = []
+    for name, way in POLICIES.items():
+        for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
+            act = way(trials, every.first(many), effort)
+            exact = 10.0 * exact_distances(simulation, trials, act, seeds, usual.goals)
+            found, used = interquartile(np.nanmean(exact, axis=1)), _used(name, many, known, usual)
+            row = {"way": name, "pairs": many, "equilibria": used, "seeds": np.nanmean(exact, axis=1).tolist()}
+            rows.append({**row, "p99": float(np.nanquantile(exact, 0.99))})
+            text = f"{name:24}{many:8}{used:12}{_span(found, 3):>22}{100 * found.mean / width:8.3f}"
+            print(f"{text}{np.nanquantile(exact, 0.99):10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
+    replace_file(out / f"{POLICY_TABLE}.json", (json.dumps(rows, indent=1) + "\n").encode())
+    curves: dict[str, list[tuple[float, float]]] = {}
+    for row in rows:
+        curves.setdefault(str(row["way"]), []).append((float(row["equilibria"]), float(np.mean(row["seeds"]))))  # type: ignore[arg-type]
+    print(f"Wrote {save_png(draw_costs(curves), out / f'{POLICY_TABLE}.png')} and {POLICY_TABLE}.json")
+
+
+def _used(name: str, pairs: int, known: int, usual: "_Trials") -> int:
+    """Equilibria that a way would have cost in the simulator: its pairs, its own trials, or those of the networks."""
+    from hydrostat.training.policies import PAIRS_ALONE, UNFILLED
+
+    tried = 500 * usual.small
+    if name == "gradient":
+        return known
+    return pairs if name in PAIRS_ALONE else tried if name in UNFILLED else pairs + tried
 
 
 def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: int) -> "LearnedModel":
@@ -159,14 +212,17 @@ class _Trials(NamedTuple):
     small: int
     large: int
     goals: int
+    pairs: tuple[int, ...]
+    steps: int
 
 
 _SIZES = {
-    "minutes": _Trials(300, 3, 12, 3, 20),
-    "hour": _Trials(1000, 5, 30, 8, 60),
-    "full": _Trials(10_000, 10, 200, 50, 1000),
+    "minutes": _Trials(300, 3, 12, 3, 20, (100, 300), 500),
+    "hour": _Trials(1000, 5, 30, 8, 60, (300, 3_000, 10_000), 8_000),
+    "full": _Trials(10_000, 10, 200, 50, 1000, (300, 3_000, 10_000), 20_000),
 }
-"""Equilibria that networks learn from, seeds, epochs of small and of large layers, goals in the simulator."""
+"""Equilibria that networks learn from, seeds, epochs of small and of large layers, goals in the simulator, pairs of
+actions and outcomes, steps of gradients."""
 
 _LARGE = 100
 """Layers of so many units are large."""

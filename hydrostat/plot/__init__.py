@@ -10,6 +10,7 @@ from hydrostat.plot.grasp_figure import draw_pull, pull_frames
 from hydrostat.plot.healing_figure import draw_healing
 from hydrostat.plot.learning_figures import (
     draw_calibration,
+    draw_costs,
     draw_curves,
     draw_errors,
     draw_losses,
@@ -31,6 +32,7 @@ __all__ = [
     "draw_branches",
     "draw_calibration",
     "draw_candidates",
+    "draw_costs",
     "draw_curves",
     "draw_errors",
     "draw_front",

@@ -89,9 +89,9 @@ def error(ran: Ran) -> np.ndarray:
 
 
 _PAPER = DdpgOptions()
-_SMALL = DdpgOptions(layers=(30,) * 4, shaped=True)
-_FREE = replace(_SMALL, penalty=0.0, cut=False)
-_SHRINKING = replace(_SMALL, curriculum=Curriculum.TENTH)
+SMALL = DdpgOptions(layers=(30,) * 4, shaped=True)
+_FREE = replace(SMALL, penalty=0.0, cut=False)
+_SHRINKING = replace(SMALL, curriculum=Curriculum.TENTH)
 
 
 def _faster(one: str, other: str) -> Callable[[Mapping[str, Ran]], np.ndarray]:
@@ -190,7 +190,7 @@ EXPERIMENTS: Mapping[str, Experiment] = {
     ),
     "table-noise": Experiment(
         title="noise of actions 0.01, 0.1 and 0.2 (E47); 4 x 30, shaped, T=1",
-        runs={f"noise {noise:g}": Run(options=replace(_SMALL, noise=noise)) for noise in (0.01, 0.1, 0.2)},
+        runs={f"noise {noise:g}": Run(options=replace(SMALL, noise=noise)) for noise in (0.01, 0.1, 0.2)},
         claims=(
             Claim(text="0.1 ends nearer than 0.01 (E47)", measure=_nearer("noise 0.1", "noise 0.01"), unit="mm"),
             Claim(text="0.2 ends nearer than 0.01 (E47)", measure=_nearer("noise 0.2", "noise 0.01"), unit="mm"),
@@ -199,10 +199,10 @@ EXPERIMENTS: Mapping[str, Experiment] = {
     "table-reward": Experiment(
         title="shaped and sparse rewards; what penalty and cut targets do (E54); 4 x 30",
         runs={
-            "shaped, T=1": Run(options=_SMALL),
-            "sparse, T=1": Run(options=replace(_SMALL, shaped=False)),
+            "shaped, T=1": Run(options=SMALL),
+            "sparse, T=1": Run(options=replace(SMALL, shaped=False)),
             "shaped, free, T=1": Run(options=_FREE),
-            "shaped, T=5": Run(options=_SMALL, horizon=5),
+            "shaped, T=5": Run(options=SMALL, horizon=5),
             "shaped, free, T=5": Run(options=_FREE, horizon=5),
         },
         claims=(

@@ -185,9 +185,12 @@ class HindsightDdpg:
         tolerance: of each seed now.
     """
 
-    def __init__(self, trials: Trials, options: DdpgOptions, *, seeds: int, epochs: int, seed: int = 0) -> None:
-        """Networks at random, and an empty buffer for so many epochs."""
+    def __init__(
+        self, trials: Trials, options: DdpgOptions, *, seeds: int, epochs: int, seed: int = 0, room: int = 0
+    ) -> None:
+        """Networks at random, and an empty buffer for so many epochs and room for more episodes."""
         torch.set_num_threads(1)
+        torch.set_flush_denormal(True)  # numbers that fade to nothing would take a hundred times as long
         self.trials, self.options, self._seeds, self._epochs = trials, options, seeds, epochs
         self._draw = torch.Generator().manual_seed(seed)
         self._gamma = discount(trials.horizon)
@@ -203,10 +206,13 @@ class HindsightDdpg:
         self._actor_adam = torch.optim.Adam(self.policy.numbers, lr=options.actor_rate, fused=True)
         self._critic_adam = torch.optim.Adam(self._critic, lr=options.critic_rate, fused=True)
         self._rollouts = max(1, options.actions // trials.horizon)
-        room = (seeds, epochs * options.cycles * self._rollouts)
+        shape = (seeds, epochs * options.cycles * self._rollouts + room)
         t = trials.horizon
-        self._states, self._reached = torch.zeros(*room, t + 1, trials.states), torch.zeros(*room, t + 1, trials.goals)
-        self._goals, self._acts = torch.zeros(*room, trials.goals), torch.zeros(*room, t, trials.actions)
+        self._states, self._reached = (
+            torch.zeros(*shape, t + 1, trials.states),
+            torch.zeros(*shape, t + 1, trials.goals),
+        )
+        self._goals, self._acts = torch.zeros(*shape, trials.goals), torch.zeros(*shape, t, trials.actions)
         self._filled, self._taken = 0, 0
         self.tolerance = torch.full((seeds, 1), options.tolerance)
         self.best, self._least = self.policy.kept(), np.full(seeds, np.inf)
@@ -216,6 +222,16 @@ class HindsightDdpg:
         """Actions that were taken, and what they reached; (seeds, many, size) each, in their order."""
         acts, reached = self._acts[:, : self._filled], self._reached[:, : self._filled, 1:]
         return acts.flatten(1, 2).numpy(), reached.flatten(1, 2).numpy()
+
+    def fill(self, acts: Tensor, reached: Tensor) -> None:
+        """Put episodes of one action into the buffer, with what they reached as their goals; (seeds, many, size)."""
+        many = acts.shape[1]
+        states, _, _ = self.trials.begin(self._draw, (self._seeds, many))
+        room = slice(self._filled, self._filled + many)
+        self._states[:, room, 0], self._states[:, room, 1] = states, reached
+        self._reached[:, room, 0], self._reached[:, room, 1] = states, reached
+        self._goals[:, room], self._acts[:, room, 0] = reached, acts
+        self._filled += many
 
     def learn(self, *, tests: int = 100, tell: Callable[[int, int], Any] = lambda *_: None) -> Epochs:
         """Learn for all epochs, and test after each without exploration.

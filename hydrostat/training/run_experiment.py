@@ -10,7 +10,8 @@ from hydrostat.learning import LearnedModel
 from hydrostat.learning.draw import antagonists
 from hydrostat.simulation import Simulation
 from hydrostat.training.experiments import Experiment, Ran
-from hydrostat.training.hindsight_ddpg import HindsightDdpg, Policy
+from hydrostat.training.hindsight_ddpg import HindsightDdpg
+from hydrostat.training.policies import Act
 from hydrostat.training.trials import NetworkReach
 
 Groups = tuple[tuple[int, ...], ...]
@@ -66,7 +67,7 @@ def run_experiment(
         yield Judged(name=name, ran=ran, exact=exact_distances(simulation, trials, learner.best, seeds, goals))
 
 
-def exact_distances(simulation: Simulation, trials: NetworkReach, policy: Policy, seeds: int, goals: int) -> np.ndarray:
+def exact_distances(simulation: Simulation, trials: NetworkReach, policy: Act, seeds: int, goals: int) -> np.ndarray:
     """Distances [cm] after the last action of episodes in the simulator, (seeds, goals); each pose begins from rest."""
     draw = torch.Generator().manual_seed(_GOALS)
     begun, _, _ = trials.begin(draw, (1, goals))

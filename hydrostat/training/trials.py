@@ -83,7 +83,7 @@ class NetworkReach(Trials):
             torch.tensor(100.0 * part[: self._count], dtype=torch.float32) for part in (model.middle, model.unit)
         )
         zero = torch.zeros(1, 1, len(model.low)).clamp(self._low, self._high)
-        self.rest = self._places(zero)[0, 0]
+        self.rest = self.places(zero)[0, 0]
 
     def begin(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
         """Begin at rest, or anywhere."""
@@ -106,7 +106,8 @@ class NetworkReach(Trials):
 
     def reach(self, acts: Tensor) -> Tensor:
         """Coordinates of the markers [cm] after actions."""
-        return self._places(self.contractions(acts))
+        with torch.no_grad():
+            return self.places(self.contractions(acts))
 
     def contractions(self, acts: Tensor) -> Tensor:
         """Contractions [m] of actions."""
@@ -122,12 +123,12 @@ class NetworkReach(Trials):
                 taken[..., one] = low + 0.5 * (value + 1.0) * (self._high[one] - low)
         return taken
 
-    def _places(self, taken: Tensor) -> Tensor:
+    def places(self, taken: Tensor) -> Tensor:
+        """Coordinates of the markers [cm] at contractions [m]; with slopes, where they are asked for."""
         span = torch.where(self._high > self._low, self._high - self._low, torch.ones(()))
         scaled = (2.0 * (taken - self._low) / span - 1.0).flatten(0, -2)
-        with torch.no_grad():
-            members = len(self._networks[0])
-            value = answer(self._networks, scaled.expand(members, -1, -1), None)[0].mean(0)
+        members = len(self._networks[0])
+        value = answer(self._networks, scaled.expand(members, -1, -1), None)[0].mean(0)
         return (self._middle + self._unit * value[:, : self._count]).unflatten(0, taken.shape[:-1])
 
 

@@ -1,0 +1,61 @@
+"""Ways to a policy on the same pairs. Oracles: NumPy, and a robot of networks whose outcomes are known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+
+from hydrostat.training import policies as room  # noqa: E402
+from hydrostat.training.policies import POLICIES, Effort, Pairs  # noqa: E402
+from hydrostat.training.trials import NetworkReach  # noqa: E402
+
+
+class StraightReach(NetworkReach):
+    """Two actions that move one marker to twice themselves [cm]."""
+
+    def __init__(self) -> None:
+        self.horizon, self.states, self.goals, self.actions, self._dim = 1, 2, 2, 2, 2
+        self._random, self.rest = False, torch.zeros(2)
+
+    def contractions(self, acts):
+        return acts
+
+    def places(self, taken):
+        return 2.0 * taken
+
+
+@pytest.fixture
+def pairs() -> Pairs:
+    acts = 2.0 * torch.rand(2, 300, 2, generator=torch.Generator().manual_seed(0)) - 1.0
+    return Pairs(acts=acts, reached=2.0 * acts)
+
+
+def test_each_way_is_as_near_as_it_can_be(pairs: Pairs, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the outcome of its actions: ridge, gradients and cloning find the straight map, 1-NN the nearest pair."""
+    monkeypatch.setattr(room, "SMALL", replace(room.SMALL, layers=(8,), cycles=4, updates=4, batch=16))
+    trials, goals = StraightReach(), 1.8 * torch.rand(2, 50, 2, generator=torch.Generator().manual_seed(1)) - 0.9
+    left = {}
+    for name, way in POLICIES.items():
+        act = way(trials, pairs, Effort(steps=300, epochs=1, batch=64))
+        acts = act(goals, goals)
+        assert acts.abs().max() <= 1.0
+        left[name] = float(trials.distances(trials.reach(acts), goals).mean())
+    assert left["ridge"] < 1e-3
+    assert left["gradient"] < 0.03
+    assert left["cloned"] < 0.1
+    apart = np.linalg.norm(goals.numpy()[:, :, None] - pairs.reached.numpy()[:, None], axis=-1).min(axis=2)
+    assert left["1-NN"] == pytest.approx(apart.mean(), rel=1e-4)
+    assert left["constant"] > 0.5
+    assert left["residual on the clone"] < 0.3
+
+
+def test_slopes_go_through_to_the_actions(pairs: Pairs) -> None:
+    """Oracle: the outcome is twice the action."""
+    acts = pairs.acts[:, :4].clone().requires_grad_()
+    trials = StraightReach()
+    trials.places(trials.contractions(acts)).sum().backward()
+    assert acts.grad is not None
+    assert (acts.grad == 2.0).all()
+    assert not trials.reach(acts).requires_grad
