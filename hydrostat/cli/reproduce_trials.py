@@ -83,14 +83,14 @@ def _policies(networks: "LearnedModel", simulation: "Simulation", out: Path, *, 
     """Table and picture of ways to a policy of one action, over the equilibria that each has used."""
     from hydrostat.plot import draw_costs, save_png
     from hydrostat.robot import replace_file
-    from hydrostat.training.policies import PAIRS_ALONE, POLICIES, Effort, drawn_pairs
+    from hydrostat.training.policies import PAIRS_ALONE, POLICIES, Budget, drawn_pairs
     from hydrostat.training.run_experiment import exact_distances, finger_pairs
     from hydrostat.training.trials import NetworkReach
     from hydrostat.training.verdict import interquartile
 
     trials, effort = (
         NetworkReach(networks, groups=finger_pairs(networks)),
-        Effort(steps=usual.steps, epochs=usual.small),
+        Budget(steps=usual.steps, epochs=usual.small),
     )
     every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
     known = int(networks.facts["samples"])

@@ -26,19 +26,19 @@ Act = Callable[[Tensor, Tensor], Tensor]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Pairs:
+class TriedPairs:
     """Actions drawn evenly, and what they reached [cm], (seeds, many, size); each costs an equilibrium."""
 
     acts: Tensor
     reached: Tensor
 
-    def first(self, many: int) -> "Pairs":
+    def first(self, many: int) -> "TriedPairs":
         """The first pairs of each seed."""
-        return Pairs(acts=self.acts[:, :many], reached=self.reached[:, :many])
+        return TriedPairs(acts=self.acts[:, :many], reached=self.reached[:, :many])
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effort:
+class Budget:
     """How long policies learn.
 
     Attributes:
@@ -52,20 +52,20 @@ class Effort:
     batch: int = 128
 
 
-def drawn_pairs(trials: NetworkReach, seeds: int, many: int) -> Pairs:
-    """Pairs at random, others for each seed."""
+def drawn_pairs(trials: NetworkReach, seeds: int, many: int) -> TriedPairs:
+    """TriedPairs at random, others for each seed."""
     draw = torch.Generator().manual_seed(_PAIRS)
     acts = 2.0 * torch.rand(seeds, many, trials.actions, generator=draw) - 1.0
-    return Pairs(acts=acts, reached=trials.reach(acts))
+    return TriedPairs(acts=acts, reached=trials.reach(acts))
 
 
-def constant(_trials: NetworkReach, pairs: Pairs, _effort: Effort) -> Act:
+def constant(_trials: NetworkReach, pairs: TriedPairs, _effort: Budget) -> Act:
     """The mean action, whatever is asked."""
     mean = pairs.acts.mean(1, keepdim=True)
     return lambda _states, goals: mean.expand(-1, goals.shape[1], -1)
 
 
-def nearest(_trials: NetworkReach, pairs: Pairs, _effort: Effort) -> Act:
+def nearest(_trials: NetworkReach, pairs: TriedPairs, _effort: Budget) -> Act:
     """The action of the pair whose outcome is nearest (R88)."""
 
     def act(_states: Tensor, goals: Tensor) -> Tensor:
@@ -75,7 +75,7 @@ def nearest(_trials: NetworkReach, pairs: Pairs, _effort: Effort) -> Act:
     return act
 
 
-def ridge(_trials: NetworkReach, pairs: Pairs, _effort: Effort) -> Act:
+def ridge(_trials: NetworkReach, pairs: TriedPairs, _effort: Budget) -> Act:
     """Ridge regression from outcomes to actions (R88)."""
     known = torch.cat([pairs.reached, torch.ones_like(pairs.reached[..., :1])], -1)
     square = known.mT @ known + 1e-3 * torch.eye(known.shape[-1])
@@ -83,7 +83,7 @@ def ridge(_trials: NetworkReach, pairs: Pairs, _effort: Effort) -> Act:
     return lambda _states, goals: (goals @ linear[:, :-1] + linear[:, -1:]).clamp(-1.0, 1.0)
 
 
-def cloned(trials: NetworkReach, pairs: Pairs, effort: Effort) -> Act:
+def cloned(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """A network that repeats the actions of the pairs: behaviour cloning, by the square of the action's error."""
 
     def loss(network: "_Network", rows: Tensor) -> Tensor:
@@ -93,7 +93,7 @@ def cloned(trials: NetworkReach, pairs: Pairs, effort: Effort) -> Act:
     return _learned(trials, pairs, effort, loss)
 
 
-def gradient(trials: NetworkReach, pairs: Pairs, effort: Effort) -> Act:
+def gradient(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """A network that learns from what its own actions reach, through exact slopes of the networks that it acts in."""
 
     def loss(network: "_Network", rows: Tensor) -> Tensor:
@@ -103,17 +103,17 @@ def gradient(trials: NetworkReach, pairs: Pairs, effort: Effort) -> Act:
     return _learned(trials, pairs, effort, loss)
 
 
-def trial_and_error(trials: NetworkReach, pairs: Pairs, effort: Effort) -> Act:
+def trial_and_error(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """The thesis's method, with its small networks and a shaped reward."""
     return _tried(trials, pairs, effort, fill=False)
 
 
-def filled(trials: NetworkReach, pairs: Pairs, effort: Effort) -> Act:
+def filled(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """The same, with the pairs in its replay buffer before it begins."""
     return _tried(trials, pairs, effort, fill=True)
 
 
-def residual(trials: NetworkReach, pairs: Pairs, effort: Effort) -> Act:
+def residual(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """Trial and error about what cloning does: actions are a tenth of the learned ones, beside those of the clone."""
     base = cloned(trials, pairs, effort)
     around = _Around(trials, base)
@@ -121,7 +121,7 @@ def residual(trials: NetworkReach, pairs: Pairs, effort: Effort) -> Act:
     return lambda states, goals: around.whole(found(states, goals), goals)
 
 
-POLICIES: Mapping[str, Callable[[NetworkReach, Pairs, Effort], Act]] = {
+POLICIES: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
     "constant": constant,
     "ridge": ridge,
     "1-NN": nearest,
@@ -140,7 +140,7 @@ PAIRS_ALONE, UNFILLED = ("constant", "ridge", "1-NN", "cloned"), ("trial and err
 class _Network:
     """Networks of all seeds from goals to actions, with SiLU and a linear map beside it."""
 
-    def __init__(self, trials: NetworkReach, pairs: Pairs) -> None:
+    def __init__(self, trials: NetworkReach, pairs: TriedPairs) -> None:
         seeds, draw = len(pairs.acts), torch.Generator().manual_seed(_NETWORKS)
         self._mean, self._spread = pairs.reached.mean(1, keepdim=True), pairs.reached.std(1, keepdim=True)
         self.numbers: list[Tensor] = []
@@ -155,7 +155,9 @@ class _Network:
         return (_BEYOND * torch.tanh(raw)).clamp(-1.0, 1.0)
 
 
-def _learned(trials: NetworkReach, pairs: Pairs, effort: Effort, loss: Callable[[_Network, Tensor], Tensor]) -> Act:
+def _learned(
+    trials: NetworkReach, pairs: TriedPairs, effort: Budget, loss: Callable[[_Network, Tensor], Tensor]
+) -> Act:
     """Networks by Adam on batches of pairs, with a rate that falls as a cosine."""
     torch.set_num_threads(1)
     torch.set_flush_denormal(True)  # numbers that fade to nothing take a hundred times as long
@@ -177,7 +179,7 @@ def _learned(trials: NetworkReach, pairs: Pairs, effort: Effort, loss: Callable[
     return act
 
 
-def _tried(trials: Trials, pairs: Pairs, effort: Effort, *, fill: bool) -> Act:
+def _tried(trials: Trials, pairs: TriedPairs, effort: Budget, *, fill: bool) -> Act:
     learner = HindsightDdpg(trials, SMALL, seeds=len(pairs.acts), epochs=effort.epochs, room=pairs.acts.shape[1])
     if fill:
         learner.fill(pairs.acts, pairs.reached)

@@ -8,7 +8,7 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from hydrostat.training import policies as room  # noqa: E402
-from hydrostat.training.policies import POLICIES, Effort, Pairs  # noqa: E402
+from hydrostat.training.policies import POLICIES, Budget, TriedPairs  # noqa: E402
 from hydrostat.training.trials import NetworkReach  # noqa: E402
 
 
@@ -27,18 +27,18 @@ class StraightReach(NetworkReach):
 
 
 @pytest.fixture
-def pairs() -> Pairs:
+def pairs() -> TriedPairs:
     acts = 2.0 * torch.rand(2, 300, 2, generator=torch.Generator().manual_seed(0)) - 1.0
-    return Pairs(acts=acts, reached=2.0 * acts)
+    return TriedPairs(acts=acts, reached=2.0 * acts)
 
 
-def test_each_way_is_as_near_as_it_can_be(pairs: Pairs, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_way_is_as_near_as_it_can_be(pairs: TriedPairs, monkeypatch: pytest.MonkeyPatch) -> None:
     """By the outcome of its actions: ridge, gradients and cloning find the straight map, 1-NN the nearest pair."""
     monkeypatch.setattr(room, "SMALL", replace(room.SMALL, layers=(8,), cycles=4, updates=4, batch=16))
     trials, goals = StraightReach(), 1.8 * torch.rand(2, 50, 2, generator=torch.Generator().manual_seed(1)) - 0.9
     left = {}
     for name, way in POLICIES.items():
-        act = way(trials, pairs, Effort(steps=300, epochs=1, batch=64))
+        act = way(trials, pairs, Budget(steps=300, epochs=1, batch=64))
         acts = act(goals, goals)
         assert acts.abs().max() <= 1.0
         left[name] = float(trials.distances(trials.reach(acts), goals).mean())
@@ -51,7 +51,7 @@ def test_each_way_is_as_near_as_it_can_be(pairs: Pairs, monkeypatch: pytest.Monk
     assert left["residual on the clone"] < 0.3
 
 
-def test_slopes_go_through_to_the_actions(pairs: Pairs) -> None:
+def test_slopes_go_through_to_the_actions(pairs: TriedPairs) -> None:
     """Oracle: the outcome is twice the action."""
     acts = pairs.acts[:, :4].clone().requires_grad_()
     trials = StraightReach()
