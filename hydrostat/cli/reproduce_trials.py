@@ -218,7 +218,7 @@ class _Trials(NamedTuple):
 
 _SIZES = {
     "minutes": _Trials(300, 3, 12, 3, 20, (100, 300), 500),
-    "hour": _Trials(1000, 5, 30, 8, 60, (300, 3_000, 10_000), 8_000),
+    "hour": _Trials(1000, 5, 30, 8, 60, (300, 10_000), 8_000),
     "full": _Trials(10_000, 10, 200, 50, 1000, (300, 3_000, 10_000), 20_000),
 }
 """Equilibria that networks learn from, seeds, epochs of small and of large layers, goals in the simulator, pairs of

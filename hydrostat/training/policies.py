@@ -122,19 +122,19 @@ def residual(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
 
 
 POLICIES: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
-    "constant": constant,
+    "gradient": gradient,
     "ridge": ridge,
     "1-NN": nearest,
+    "cloned": cloned,
     "trial and error": trial_and_error,
     "the same, filled": filled,
-    "cloned": cloned,
     "residual on the clone": residual,
-    "gradient": gradient,
+    "constant": constant,
 }
 """By their names in tables."""
 
-PAIRS_ALONE, UNFILLED = ("constant", "ridge", "1-NN", "cloned"), ("trial and error",)
-"""Ways that cost their pairs and nothing else, and ways that cost their trials alone."""
+PAIRS_ALONE, UNFILLED = ("ridge", "1-NN", "cloned"), ("trial and error",)
+"""Ways that cost their pairs and nothing else, tried with several numbers of them; and ways that cost trials alone."""
 
 
 class _Network:
