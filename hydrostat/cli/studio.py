@@ -16,6 +16,10 @@ def studio(
     host: Annotated[
         str, typer.Option(metavar="ADDRESS", help="To listen at; others than this machine need the printed token.")
     ] = "127.0.0.1",
+    model: Annotated[
+        Path | None,
+        typer.Option(metavar="MODEL", help="What `hydrostat learn` made of ROBOT: its networks answer drags first."),
+    ] = None,
     rooms: Annotated[
         bool,
         typer.Option("--rooms", help="Give each browser a robot of its own, as for a class."),
@@ -25,6 +29,7 @@ def studio(
     """Open the studio in the browser: pose a robot by hand, watch it design itself, drive it, export it.
 
     Example: hydrostat studio examples/starfish
+    Example: hydrostat studio examples/cupping_hand --model build/hand.model
     Example: hydrostat studio examples/starfish --rooms --host 192.168.1.20
     """
     try:
@@ -37,6 +42,8 @@ def studio(
     from hydrostat.studio.session import Session
     from hydrostat.studio.starting.shelf import state_folder
 
+    if model is not None and (robot is None or rooms):
+        raise InputError("--model needs the ROBOT that it was learned of, and no --rooms")
     if rooms:
         if robot is not None:
             from hydrostat.robot import load_robot
@@ -46,7 +53,7 @@ def studio(
     else:
         session = Session(state_folder())
         if robot is not None:
-            session.open_folder(robot)
+            session.open_folder(robot, model)
         served = Rooms(session)
     words = "The studio is at {}   (Ctrl-C ends it)"
     serve(served, host=host, port=port, show=browser, announce=lambda at: print(words.format(at), flush=True))

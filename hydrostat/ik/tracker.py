@@ -1,8 +1,12 @@
 """`Tracker`: contractions for targets that move, fit to be streamed."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Protocol, runtime_checkable
 
+import numpy as np
+
+from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
@@ -10,8 +14,41 @@ from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, StepRules, ends, reached_pose, try_step
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
 from hydrostat.ik.solve_ik import Targets, as_pose, wishes
-from hydrostat.robot import Pose
+from hydrostat.robot import Point, Pose, Robot
 from hydrostat.simulation import Simulation, SolvedPose
+
+
+@runtime_checkable
+class ModelAnswer(Protocol):
+    """What a model answers: contractions [m] in the order of the winches, and how far they miss."""
+
+    @property
+    def contractions(self) -> Vector:
+        """Cable that each winch takes in [m]."""
+        ...
+
+    @property
+    def error(self) -> float:
+        """Mean distance of the markers from their targets that is expected [m]."""
+        ...
+
+    @property
+    def doubt(self) -> float:
+        """How far that may be off [m]."""
+        ...
+
+
+@runtime_checkable
+class PoseModel(Protocol):
+    """What knows contractions for targets without a simulation, such as `hydrostat.learning.LearnedModel`."""
+
+    def check(self, robot: Robot) -> None:
+        """Check that it is a model of this robot (InputError: it is another's)."""
+        ...
+
+    def solve(self, targets: Targets) -> ModelAnswer:
+        """Contractions that bring markers to targets [m], as far as it knows (InputError: as for a tracker)."""
+        ...
 
 
 class Tracker:
@@ -39,11 +76,21 @@ class Tracker:
         start: SolvedPose | None = None,
         options: InverseOptions | None = None,
         accuracy: float | None = None,
+        model: PoseModel | None = None,
     ) -> None:
         """Begin at `start`, the rest pose if left out; the other arguments are as for `solve_ik`.
 
-        With an accuracy nodes may be so far from equilibrium [m], as in `Simulation.solve`.
+        With an accuracy nodes may be so far from equilibrium [m], as in `Simulation.solve`. With a model, each new
+        target is asked of it first: where it expects to leave less than half of the error, and the equilibrium there is
+        better within the limits, the update leads there instead of a step; the next goes on by steps.
+
+        Raises:
+            InputError: a model of another robot.
         """
+        if model is not None:
+            model.check(simulation.robot)
+        self._model = model
+        self._asked: Mapping[str, Point] | None = None  # the targets that the model was asked for last
         self._simulation, self._objectives = simulation, tuple(objectives)
         self._limits, self._options = limits or Limits(), options or InverseOptions()
         self._radius, self._accuracy = self._options.largest_step, accuracy
@@ -71,7 +118,9 @@ class Tracker:
         state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
         weight, reason = search.problem.weight(state), InverseReason.REACHED
         if not _reached(search.problem, state):
-            state, reason = self._step(search, state, weight)
+            led = self._foretold(search, state, target)
+            weight = search.problem.weight(led or state)
+            state, reason = (led, InverseReason.ITERATION_LIMIT) if led else self._step(search, state, weight)
         self._state = state
         if _reached(search.problem, state):
             reason = InverseReason.REACHED
@@ -81,6 +130,20 @@ class Tracker:
         reached = reached_pose(search, found, target)
         self.pose = reached.pose
         return reached
+
+    def _foretold(self, search: InverseSearch, state: InverseState, target: Pose | None) -> InverseState | None:
+        """Where the model leads; None if it was asked for this before, or that is not better."""
+        if self._model is None or target is None or target.targets == self._asked:
+            return None
+        self._asked = dict(target.targets)
+        answer, problem = self._model.solve(target), search.problem
+        if answer.error + answer.doubt > _WORTH * np.mean([state.errors[name] for name in target.targets]):
+            return None
+        found = search.follow(state, problem.bounds.channel(answer.contractions))
+        if found is None or found.excess > max(state.excess, _RULES.far):
+            return None
+        weight = problem.weight(state)
+        return found if problem.objective(found, weight) < problem.objective(state, weight) else None
 
     def _step(self, search: InverseSearch, state: InverseState, weight: float) -> tuple[InverseState, InverseReason]:
         """The state after the first step that is accepted, and what to say of it."""
@@ -115,6 +178,9 @@ class Tracker:
 def _reached(problem: InverseProblem, state: InverseState) -> bool:
     return state.error <= problem.reached and state.excess <= EXCESS
 
+
+_WORTH = 0.5
+"""A model is followed where it expects to leave less than this share of the error: a step alone does as well else."""
 
 _SMALLEST = 1e-4
 """Steps do not become shorter than this share of a range; a target that moves on asks for longer ones again."""

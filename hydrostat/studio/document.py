@@ -6,6 +6,7 @@ from threading import RLock
 
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
+from hydrostat.learning import LearnedModel
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.bell import Bell, Topic
@@ -38,6 +39,7 @@ class Document:
         self.bell = bell  # rung after each change
         self.judge = Judge(bell)  # says what is wrong with the robots that are shown
         self.folder: Path | None = None  # where the robot is saved; None: nowhere yet
+        self.model: LearnedModel | None = None  # of the robot as it was opened; None: none was given
         self.text = ""  # of the robot.toml that it was opened from; "": none
         self.stamp = ""  # of that folder when it was opened or saved last (`folder_stamp`)
         self.serial = 0  # counts the changes, undoing included; the same number means the same work
@@ -107,7 +109,7 @@ class Document:
         """
         with self._lock:
             self._past, self._future = [Change("open", work)], []
-            self._body = None
+            self._body = self.model = None
             self.folder, self._saved, self.text = folder, work if saved else None, text
             self.stamp = "" if folder is None else folder_stamp(folder) if stamp is None else stamp
             self.serial += 1

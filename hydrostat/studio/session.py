@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from threading import RLock
@@ -10,6 +10,8 @@ from typing import Any
 
 from hydrostat.closed_set import member
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.learning import load_model
+from hydrostat.robot import Contact
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
 from hydrostat.studio.document import Document
@@ -111,13 +113,39 @@ class Session:
             self.current.enter()
         self.bell.ring(Topic.STAGE, Topic.SHAPE, Topic.THINGS)
 
-    def open_folder(self, folder: Path | str) -> None:
-        """Open the robot in a folder and show it (InputError: as for `load_robot`)."""
+    def open_folder(self, folder: Path | str, model: Path | None = None) -> None:
+        """Open the robot in a folder and show it; networks of the model answer drags first, as those beside it do.
+
+        Raises:
+            InputError: as for `load_robot`; or the model is another robot's, or no model.
+        """
         self._at_home()
         self.starter.open_folder(str(folder))
+        self._take_model(model)
         self.go(StageName.POSE)
         if self.document.folder is not None and (note := open_note(self.document.folder)):
             self.tell(note, Tone.BAD)
+
+    def _take_model(self, given: Path | None) -> None:
+        """Take a model that is given, or else the only one in the folder, which is told where it does not fit."""
+        folder, document = self.document.folder, self.document
+        beside = sorted(folder.glob("*.model")) if folder is not None and given is None else []
+        if given is None and len(beside) != 1:
+            return
+        try:
+            model = load_model(given or beside[0])
+            if silent := model.facts["contact"] and document.robot.contact is None:
+                model.check(replace(document.robot, contact=Contact()))
+                self.editor.set_contact(True)
+            model.check(document.robot)
+        except InputError as error:
+            if given is not None:
+                raise
+            self.tell(f"{beside[0].name}: {error}", Tone.BAD)
+            return
+        document.model = model
+        note = "; it knows contact, so the body feels itself here too" if silent else ""
+        self.tell(f"networks of {(given or beside[0]).name} answer drags first{note}")
 
     def grab(self, screen: str, hit: Hit, stamp: float = 0.0) -> bool:
         """Take hold of a hit by a screen's pointer; whether it did. The first frame with the answer has the stamp."""

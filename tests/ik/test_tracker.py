@@ -1,5 +1,6 @@
 """Targets that move. Oracles: the equilibrium of the streamed contractions, the limits, solve_ik at the end."""
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -129,3 +130,67 @@ def test_a_target_that_moves_on_after_long_rest_is_followed() -> None:
     for _ in range(15):
         reached = tracker.update(there, seconds=INTERVAL)
     assert max(reached.errors.values()) < 1e-6
+
+
+@dataclass(frozen=True)
+class Known:
+    """A model that has one answer, and the answer itself."""
+
+    contractions: np.ndarray
+    error: float = 0.0
+    doubt: float = 0.0
+    robot: str = "strip"
+
+    def check(self, robot) -> None:
+        if robot.name != self.robot:
+            raise InputError(f"the model was learned of another robot than {robot.name!r}")
+
+    def solve(self, targets) -> "Known":
+        return self
+
+
+HIDDEN = np.array([0.012, 0.004])
+
+
+def test_a_tracker_goes_at_once_where_a_model_leads() -> None:
+    """Oracles: where hidden contractions bring the tip; short strides without a model; the streamed equilibrium."""
+    robot = strip_robot()
+    simulation = Simulation(robot)
+    target = {"tip": tuple(simulation.solve(HIDDEN).markers["tip"].tolist())}
+    short = InverseOptions(largest_step=0.02)
+    alone = Tracker(simulation, options=short).update(target, seconds=INTERVAL)
+    model = Known(0.99 * HIDDEN, robot=robot.name)
+    led = Tracker(simulation, options=short, model=model).update(target, seconds=INTERVAL)
+    assert led.errors["tip"] < 0.02 * alone.errors["tip"]
+    again = simulation.solve(led.pose.contractions, start=led.pose)
+    assert np.abs(again.nodes - led.pose.nodes).max() < 1e-8 * robot.body.mesh.size
+
+
+def test_what_a_model_says_in_vain_changes_nothing() -> None:
+    """A model that lies, or doubts. Oracle: a tracker without one."""
+    robot = strip_robot()
+    simulation = Simulation(robot)
+    target = {"tip": tuple(simulation.solve(HIDDEN).markers["tip"].tolist())}
+    alone = Tracker(simulation).update(target, seconds=INTERVAL).pose.contractions
+    lying, doubting = Known(HIDDEN[::-1].copy(), robot=robot.name), Known(HIDDEN, doubt=1.0, robot=robot.name)
+    for model in (lying, doubting):
+        found = Tracker(simulation, model=model).update(target, seconds=INTERVAL).pose.contractions
+        assert (found == alone).all()
+
+
+def test_where_a_model_leads_limits_hold() -> None:
+    """Oracles: what the rate allows in an interval; the limit on the tension."""
+    robot = strip_robot()
+    simulation = Simulation(robot)
+    pose = simulation.solve(HIDDEN)
+    target, model = {"tip": tuple(pose.markers["tip"].tolist())}, Known(HIDDEN, robot=robot.name)
+    slow = Tracker(simulation, limits=Limits(rate=0.03), model=model).update(target, seconds=INTERVAL)
+    assert np.abs(slow.pose.contractions).max() <= 0.03 * INTERVAL + 1e-12
+    most = 0.5 * float(pose.tensions.max())
+    weak = Tracker(simulation, limits=Limits(tension=most), model=model).update(target, seconds=INTERVAL)
+    assert weak.pose.tensions.max() <= 1.01 * most
+
+
+def test_a_model_of_another_robot_is_refused() -> None:
+    with pytest.raises(InputError, match="another robot"):
+        Tracker(Simulation(strip_robot()), model=Known(HIDDEN, robot="another"))

@@ -214,6 +214,8 @@ def test_a_tracker_begins_from_an_answer(model: LearnedModel, samples: Samples, 
     begun = certify(simulation, model, model.solve(target), steps=1)
     tracker = hs.Tracker(simulation, start=begun.pose)
     assert tracker.update(target, seconds=1.0).errors["tip"] <= begun.error
+    led, alone = (hs.Tracker(simulation, model=known).update(target, seconds=1.0) for known in (model, None))
+    assert led.errors["tip"] < 0.5 * alone.errors["tip"]
 
 
 @pytest.mark.slow

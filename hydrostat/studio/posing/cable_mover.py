@@ -7,7 +7,9 @@ import numpy as np
 
 from hydrostat.errors import HydrostatError, NotConvergedError
 from hydrostat.ik import Closeness, InverseOptions, InverseReason, Limits, PointGoal, Tracker
+from hydrostat.robot import Point
 from hydrostat.simulation import Simulation, SolvedPose, friction_band
+from hydrostat.studio.posing.foreteller import Foreteller
 from hydrostat.studio.posing.held import Anchored, Held
 from hydrostat.studio.posing.mover import Mover
 from hydrostat.studio.view.things import RobotShape
@@ -35,6 +37,14 @@ TICK = 1 / 30  # seconds that an update stands for; nothing here limits the rate
 ENDS = {InverseReason.REACHED, InverseReason.OPTIMAL}
 
 
+def _goal(held: Mapping[str, Held]) -> PointGoal:
+    """What is held, where it should be."""
+    return PointGoal(
+        points={name: point.at for name, point in held.items()},
+        targets={name: point.target for name, point in held.items()},
+    )
+
+
 class CableMover(Mover):
     """Live inverse kinematics by `hs.Tracker`: each shape is an equilibrium within the limits.
 
@@ -42,8 +52,16 @@ class CableMover(Mover):
     loading and unloading leave the markers.
     """
 
-    def __init__(self, simulation: Simulation, *, tension: float, start: SolvedPose | None = None) -> None:
-        """Begin in a pose, or at rest; cables bear at most a tension [N]."""
+    def __init__(
+        self,
+        simulation: Simulation,
+        *,
+        tension: float,
+        start: SolvedPose | None = None,
+        foreteller: Foreteller | None = None,
+    ) -> None:
+        """Begin in a pose, or at rest; cables bear at most a tension [N]. With a foreteller its answer comes first."""
+        self.foreteller, self._told = foreteller, False
         self.robot, self.tension = simulation.robot, tension
         self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)
         options = replace(simulation.options, tolerance=ROUGH)
@@ -57,7 +75,7 @@ class CableMover(Mover):
 
     def limited(self, tension: float) -> "CableMover":
         """The same in the same pose with another limit on the tension [N]."""
-        return CableMover(self._simulation, tension=tension, start=self._pose)
+        return CableMover(self._simulation, tension=tension, start=self._pose, foreteller=self.foreteller)
 
     def rest(self) -> RobotShape:
         """Back to rest at once."""
@@ -73,15 +91,19 @@ class CableMover(Mover):
             if self._exact:
                 self._follow(self._rough)
             self._near = False
+        targets = self._asked(held)
+        if targets and self._updates == 0 and not self._told and self.foreteller is not None:
+            self._told = True  # the exact answer is next, even if the pointer has gone on
+            self.foreteller.stay(self._pose)
+            shape = self._shape(self._anchored.errors(held, self._pose.nodes), (), settled=False)
+            return replace(shape, foretold=self.foreteller.solve(targets).foretold(exact=False)), True
+        self._told = False
         if self._near and not self._exact:
             self._follow(self._simulation)
         self._updates += 1
-        goal = PointGoal(
-            points={name: point.at for name, point in held.items()},
-            targets={name: point.target for name, point in held.items()},
-        )
+        goals = [] if targets else [_goal(held)]
         try:
-            reached = self._tracker.update(seconds=TICK, objectives=[goal, self._calm(held)])
+            reached = self._tracker.update(targets, seconds=TICK, objectives=[*goals, self._calm(held)])
         except HydrostatError as error:
             self._begin(self._pose)
             return self._shape(self._anchored.errors(held, self._pose.nodes), (str(error),)), False
@@ -97,7 +119,16 @@ class CableMover(Mover):
             notes = (*notes, str(reached.reason if stopped else InverseReason.OPTIMAL))
         if not more:
             notes = (*notes, *self._band())
-        return self._shape(dict(reached.errors), notes, settled=not more), more
+        shape = self._shape(dict(reached.errors), notes, settled=not more)
+        if targets and self.foreteller is not None:
+            shape = replace(shape, foretold=self.foreteller.solve(targets).foretold(exact=not more))
+        return shape, more
+
+    def _asked(self, held: Mapping[str, Held]) -> dict[str, Point] | None:
+        """Targets of what is held, if there are networks that know all of it."""
+        if self.foreteller is None or not self.foreteller.knows(held):
+            return None
+        return {name: point.target for name, point in held.items()}
 
     def _calm(self, held: Mapping[str, Held]) -> Closeness:
         """Wish that the rest of the body stays, the more the farther the targets are."""
@@ -127,6 +158,7 @@ class CableMover(Mover):
             limits=Limits(tension=self.tension),
             start=self._pose,
             options=InverseOptions(largest_step=STRIDE),
+            model=self.foreteller,
         )
 
     def _shape(self, errors: dict[str, float], notes: tuple[str, ...], *, settled: bool = True) -> RobotShape:

@@ -1,11 +1,15 @@
 """`Movers`: the mover that fits the robot as it is, made when it is first needed."""
 
+from contextlib import suppress
+
 import numpy as np
 
+from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.document import Document
 from hydrostat.studio.posing.cable_mover import CableMover
+from hydrostat.studio.posing.foreteller import Foreteller
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.mover import Mover, MuscleMover
 
@@ -42,11 +46,20 @@ class Movers:
         before = self._cables
         if before is None or not self.ready(robot, mode):
             simulation = self._document.simulation_of(robot)
-            self._cables = CableMover(simulation, tension=tension, start=_resumed(simulation, before))
+            start, foreteller = _resumed(simulation, before), self._foreteller(simulation.robot)
+            self._cables = CableMover(simulation, tension=tension, start=start, foreteller=foreteller)
         elif before.tension != tension:
             self._cables = before.limited(tension)
         assert self._cables is not None
         return self._cables
+
+    def _foreteller(self, robot: Robot) -> Foreteller | None:
+        """Networks of a robot; None where there are none, or it was changed since they learned."""
+        if self._document.model is None:
+            return None
+        with suppress(InputError):
+            return Foreteller(self._document.model, robot)
+        return None
 
 
 def same_body(first: Robot, second: Robot) -> bool:

@@ -14,6 +14,7 @@ from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, S
 
 MARKER = "#2b2833"
 PIN = "#5f5a68"
+FORETOLD = "#d9730d"
 
 
 def robot_things(
@@ -77,6 +78,17 @@ def target_things(targets: Mapping[str, Point], places: Mapping[str, Point], *, 
             things.append(Strand(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1))
         things.append(Dot(key=key, at=target, look=Look.TARGET, colour=INK, stuck=False, chosen=key == chosen))
     return things
+
+
+def foretold_things(shape: RobotShape) -> list[Thing]:
+    """Dots where networks expect markers while the body is on its way there."""
+    foretold = shape.foretold
+    if foretold is None or foretold.exact:
+        return []
+    return [
+        Dot(at=place, look=Look.MARKER, colour=FORETOLD, label="by networks", stuck=False)
+        for place in foretold.markers.values()
+    ]
 
 
 def _cable(robot: Robot, index: int, cable: Cable, colour: str, load: float, chosen: Collection[str]) -> list[Thing]:

@@ -1,5 +1,6 @@
-"""`RobotShape`, `Dot`, `Strand`, `Ghost`, `Cloud`, `Area`: where the body is, and all that is shown beside it."""
+"""`RobotShape`, `Foretold`, `Dot`, `Strand`, `Ghost`, `Cloud`, `Area`: where the body is, what is shown beside it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -8,6 +9,16 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Touch
+
+
+@dataclass(frozen=True, kw_only=True)
+class Foretold:
+    """What networks say of markers that are held."""
+
+    markers: Mapping[str, Point]  # where they expect each [m]
+    error: float  # mean distance from the targets that they expect [m]
+    doubt: float  # how far they disagree about it [m]
+    exact: bool  # whether the shape beside it is the exact answer; else it is on its way
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -22,6 +33,7 @@ class RobotShape:
     touches: tuple[Touch, ...] = ()  # where it touches itself and obstacles, the hardest first
     carried: Points | None = None  # where obstacles that move are, as `SolvedPose.carried` [m]; None: where they begin
     crossing: Point | None = None  # a place where it passes through itself [m]
+    foretold: Foretold | None = None  # what networks say of it; None where none are asked
     notes: tuple[str, ...] = ()  # what to mind, a line each: limits that hold, why a solver stopped
 
 

@@ -12,6 +12,7 @@ from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.view.robot_things import Bar
+from hydrostat.studio.view.things import RobotShape
 
 MODES = {Mode.CABLES: "Cables", Mode.MUSCLES: "Muscles"}
 
@@ -65,6 +66,7 @@ def held_card(page: WindowPage) -> None:
     with ui.element("div").classes("studio-card"):
         empty = ui.label("Nothing is held.").classes("studio-hint")
         rows = ui.column().classes("w-full").style("gap: 2px")
+        told = ui.label().classes("studio-hint studio-figure").style("margin-top: 6px").mark("pose-foretold")
         notes = ui.label().classes("studio-hint").style("white-space: pre-line; margin-top: 6px").mark("pose-notes")
     figures: dict[str, ui.label] = {}
 
@@ -83,12 +85,26 @@ def held_card(page: WindowPage) -> None:
                 label.set_text(words)
                 near = error is not None and error < NEAR
                 label.style(f"color: {'var(--q-positive)' if near else 'inherit'}")
+        told.set_text(foretold_words(shape))
+        told.set_visibility(shape.foretold is not None)
         words = "\n".join(f"{note[:1].upper()}{note[1:]}" for note in shape.notes)
         notes.set_text(words)
         notes.set_visibility(bool(words))
 
     page.on_new((Topic.THINGS, Topic.SHAPE), lambda: (tuple(poser.held), poser.chosen), rows, build)
     page.on((Topic.THINGS, Topic.SHAPE), show)
+
+
+def foretold_words(shape: RobotShape) -> str:
+    """Which answer is seen, and what networks say of theirs; "" where none are asked."""
+    told = shape.foretold
+    if told is None:
+        return ""
+    known = f"{told_error(told.error)} expected, doubt {told_error(told.doubt)}"
+    left = told_error(sum(shape.errors.values()) / max(len(shape.errors), 1))
+    if told.exact:
+        return f"Exact: {left} left on average. By networks: {known}."
+    return f"Dots by networks: {known}. The body follows, exact: {left} so far."
 
 
 def _held_row(page: WindowPage, name: str, chosen: bool) -> ui.label:
