@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 def train(
     robot: RobotFolder,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="For curve.json, checkpoints and the policy.")],
-    method: Annotated[str, typer.Option(metavar="NAME", help="sac-her, td3-her or ddpg-her.")] = "sac-her",
+    out: Annotated[Path, typer.Option(metavar="DIR", help="For curves, checkpoints and the policy.")],
+    method: Annotated[str, typer.Option(metavar="NAME", help="sac-her, td3-her, ddpg-her or tqc-her.")] = "sac-her",
     steps: Annotated[int, typer.Option(metavar="N", help="Actions to learn from.")] = 10_000,
     horizon: Annotated[int, typer.Option(metavar="T", help="Actions in an episode.")] = 1,
     model: Annotated[
@@ -35,7 +35,8 @@ def train(
     """Learn by trial and error (reinforcement learning) to bring the markers of a robot to goals.
 
     Without --model every action is an equilibrium of the simulator. Policies are always judged by the simulator itself,
-    on goals that they have not seen. Needs the extra rl. For a body that stands still, inverse kinematics and
+    on goals that they have not seen. curve.json and curve.png show how it went, and TensorBoard, where it is installed,
+    reads DIR/tensorboard. Needs the extra rl. For a body that stands still, inverse kinematics and
     `hydrostat learn` are better and cheaper; this is for comparison, and for tasks that have no other way.
 
     Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
@@ -74,8 +75,22 @@ def train(
         trained, curve = training.train(env, wanted, options, out, resume=resume, judge_in=judged, tell=tell)
     last = curve[-1]
     print(f"{1e3 * last.mean:.2f} mm, {100 * last.mean / size:.2f} % of the size, on {goals} unseen goals")
+    print(f"Wrote {_picture(curve, method, out)}")
     if networks is not None and horizon == 1:
         print(f"Wrote {save_model(training.portable_policy(trained, env, networks), out / 'policy.model')}")
+
+
+def _picture(curve: "list[CurvePoint]", name: str, out: Path) -> Path:
+    """Distances and successes over the actions, as PNG."""
+    import numpy as np
+
+    from hydrostat.plot import draw_curves, save_png
+
+    steps = np.array([point.steps for point in curve])
+    distances = np.array([[1e3 * point.mean] for point in curve])
+    successes = np.array([[point.success] for point in curve])
+    panes = {"mean distance [mm]": {name: (steps, distances)}, "share of successes": {name: (steps, successes)}}
+    return save_png(draw_curves(panes), out / "curve.png")
 
 
 def _networks(path: Path, robot: "Robot") -> "LearnedModel":

@@ -80,9 +80,9 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
     Each is (actions, numbers), the numbers (epochs, seeds): the line is the mean over the middle half of the seeds, the
     field what lies between the least and the largest; width in inches.
     """
-    height = 3.6
+    height = 3.4
     figure = new_figure(width, height)
-    lower, tall = 1.0 / height, (height - 1.15) / height
+    lower, tall = 0.8 / height, (height - 0.95) / height
     for number, (words, curves) in enumerate(panes.items()):
         axes = figure.add_axes((0.09 + 0.5 * number, lower, 0.39, tall))
         plain_axes(axes)
@@ -91,7 +91,8 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
             middle = trim_mean(numbers, 0.25, axis=1)
             axes.plot(actions, middle, color=colour, linewidth=1.4, label=name)
             axes.fill_between(actions, numbers.min(1), numbers.max(1), color=colour, alpha=0.15, linewidth=0)
-        axes.set_ylim(bottom=0.0)
+        most = max(float(numbers.max()) for _, numbers in curves.values())
+        axes.set_ylim(0.0, 1.05 * (most or 1.0))
         axes.set_xlabel("actions", color=INK, fontsize=8.5)
         axes.set_ylabel(words, color=INK, fontsize=8.5)
         axes.xaxis.set_major_formatter(FuncFormatter(_short))

@@ -5,6 +5,7 @@ import pickle
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from enum import StrEnum
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ class TrainMethod(StrEnum):
     DDPG = "ddpg-her"  # the thesis's
     TD3 = "td3-her"
     SAC = "sac-her"
+    TQC = "tqc-her"  # of sb3-contrib
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,6 +127,8 @@ def train(
 ) -> tuple[Any, list[CurvePoint]]:
     """Learn a policy; `out` gets curve.json and a checkpoint after each evaluation.
 
+    Where tensorboard is installed, `out`/tensorboard gets files for it.
+
     Args:
         env: what is learned in.
         goals: that a policy is judged by [m].
@@ -138,22 +142,23 @@ def train(
         The model of stable-baselines3 and the curve.
 
     Raises:
-        HydrostatError: stable-baselines3 is not there.
+        HydrostatError: stable-baselines3 is not there, or sb3-contrib where the method is of it.
         InputError: there is no checkpoint to go on from.
     """
     try:
         import torch
-        from stable_baselines3 import DDPG, SAC, TD3, HerReplayBuffer
+        from stable_baselines3 import HerReplayBuffer
         from stable_baselines3.common.noise import NormalActionNoise
+
+        made = _algorithm(options.method)
     except ModuleNotFoundError as error:
         raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
     out.mkdir(parents=True, exist_ok=True)
     torch.set_num_threads(1)
     steps, size = env.options.steps, env.action_space.shape[0]  # type: ignore[index]
     more: dict[str, Any] = {}
-    if options.method is not TrainMethod.SAC:
+    if options.method in (TrainMethod.DDPG, TrainMethod.TD3):
         more["action_noise"] = NormalActionNoise(np.zeros(size), np.full(size, options.noise))
-    made = {TrainMethod.DDPG: DDPG, TrainMethod.TD3: TD3, TrainMethod.SAC: SAC}[options.method]
     model = made(
         "MultiInputPolicy",
         env,
@@ -173,6 +178,7 @@ def train(
     curve: list[CurvePoint] = []
     if resume:
         model, curve = _resumed(made, env, out)
+    model.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
     while (done := model.num_timesteps) < options.steps:
         model._last_obs = None  # each stretch begins with an episode of its own
         model.learn(min(options.every, options.steps - done), reset_num_timesteps=False)
@@ -188,9 +194,30 @@ def train(
         curve.append(point)
         told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
         replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
+        _record(model, point)
         _keep(model, env, out)
         tell(point)
     return model, curve
+
+
+def _algorithm(method: TrainMethod) -> Any:
+    """The class that learns by a method (ModuleNotFoundError: its library is not installed)."""
+    if method is TrainMethod.TQC:
+        from sb3_contrib import TQC
+
+        return TQC
+    import stable_baselines3
+
+    return getattr(stable_baselines3, method.name)
+
+
+def _record(model: Any, point: CurvePoint) -> None:
+    """Tell TensorBoard how good the policy is, and close the file of this stretch."""
+    for name, value in asdict(point).items():
+        if name != "steps":
+            model.logger.record(f"unseen goals/{name}", value)
+    model.logger.dump(point.steps)
+    model.logger.close()
 
 
 def _keep(model: Any, env: ReachEnv, out: Path) -> None:

@@ -19,13 +19,14 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
     curve = json.loads((tmp_path / "policy" / "curve.json").read_text())["curve"]
     assert [point["steps"] for point in curve] == list(range(2, 21, 2))
     assert curve[-1]["equilibria"] >= 40  # a goal and an action each
-    assert out.splitlines()[-1].endswith("on 3 unseen goals")
+    assert out.splitlines()[-2].endswith("on 3 unseen goals")
+    assert (tmp_path / "policy" / "curve.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["--method", "magic"], "--method magic: there are: ddpg-her, td3-her, sac-her"),
+        (["--method", "magic"], "--method magic: there are: ddpg-her, td3-her, sac-her, tqc-her"),
         (["--exact", 3], "--exact is for networks, with --model"),
         (["--horizon", 0], "steps must be 1 or more, not 0"),
         (["--model", "none.model"], "none.model: cannot be read"),

@@ -165,9 +165,10 @@ def test_it_learns_and_a_run_that_was_killed_goes_on_the_same_way(goals: list[Ve
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
-@pytest.mark.parametrize("method", ["SAC", "DDPG"])
+@pytest.mark.parametrize("method", ["SAC", "DDPG", "TQC"])
 def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: list[Vector]) -> None:
-    library = pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+    name = "sb3_contrib" if method == "TQC" else "stable_baselines3"
+    library = pytest.importorskip(name, reason=f"{name} is not installed")
     from hydrostat.learning import LearnedModel, physics_hash
     from hydrostat.learning.perceptrons import Perceptrons
 
@@ -192,6 +193,19 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: li
         observation, _ = env.reset(options={"goal": goal})
         asked = env.contractions(trained.predict(observation, deterministic=True)[0])
         assert alone.inverted(goal) == pytest.approx(asked, abs=1e-7)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+def test_tensorboard_reads_what_the_curve_says(goals: list[Vector], tmp_path: Path) -> None:
+    pytest.importorskip("sb3_contrib", reason="sb3-contrib is not installed")
+    reader = pytest.importorskip("tensorboard.backend.event_processing.event_accumulator", reason="no tensorboard")
+    options = TrainOptions(method=TrainMethod.TQC, steps=60, every=30, layers=(8,), batch=16)
+    curve = train(straight(), goals, options, tmp_path)[1]
+    found = {}
+    for file in tmp_path.glob("tensorboard/*/events*"):
+        events = reader.EventAccumulator(str(file)).Reload()
+        found |= {event.step: event.value for event in events.Scalars("unseen goals/mean")}
+    assert found == pytest.approx({point.steps: point.mean for point in curve})
 
 
 def silu() -> dict:
