@@ -145,6 +145,35 @@ def train(
         HydrostatError: stable-baselines3 is not there, or sb3-contrib where the method is of it.
         InputError: there is no checkpoint to go on from.
     """
+    learner = _learner(env, options)
+    out.mkdir(parents=True, exist_ok=True)
+    curve: list[CurvePoint] = []
+    if resume:
+        learner, curve = _resumed(type(learner), env, out)
+    learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
+    while (done := learner.num_timesteps) < options.steps:
+        learner._last_obs = None  # each stretch begins with an episode of its own
+        learner.learn(min(options.every, options.steps - done), reset_num_timesteps=False)
+        left = judge(judge_in or env, lambda seen: learner.predict(seen, deterministic=True)[0], goals)
+        point = CurvePoint(
+            steps=learner.num_timesteps,
+            equilibria=env.world.equilibria - env.uncounted,
+            mean=float(left.mean()),
+            median=float(np.median(left)),
+            worst=float(left.max()),
+            success=float((left < env.options.tolerance).mean()),
+        )
+        curve.append(point)
+        told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
+        replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
+        _record(learner, point)
+        _keep(learner, env, out)
+        tell(point)
+    return learner, curve
+
+
+def _learner(env: ReachEnv, options: TrainOptions) -> Any:
+    """What learns, before its first step (HydrostatError: its library is not installed)."""
     try:
         import torch
         from stable_baselines3 import HerReplayBuffer
@@ -153,13 +182,12 @@ def train(
         made = _algorithm(options.method)
     except ModuleNotFoundError as error:
         raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
-    out.mkdir(parents=True, exist_ok=True)
     torch.set_num_threads(1)
     steps, size = env.options.steps, env.action_space.shape[0]  # type: ignore[index]
     more: dict[str, Any] = {}
     if options.method in (TrainMethod.DDPG, TrainMethod.TD3):
         more["action_noise"] = NormalActionNoise(np.zeros(size), np.full(size, options.noise))
-    model = made(
+    return made(
         "MultiInputPolicy",
         env,
         replay_buffer_class=HerReplayBuffer,
@@ -175,29 +203,6 @@ def train(
         device="cpu",
         **more,
     )
-    curve: list[CurvePoint] = []
-    if resume:
-        model, curve = _resumed(made, env, out)
-    model.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
-    while (done := model.num_timesteps) < options.steps:
-        model._last_obs = None  # each stretch begins with an episode of its own
-        model.learn(min(options.every, options.steps - done), reset_num_timesteps=False)
-        left = judge(judge_in or env, lambda seen: model.predict(seen, deterministic=True)[0], goals)
-        point = CurvePoint(
-            steps=model.num_timesteps,
-            equilibria=env.world.equilibria - env.uncounted,
-            mean=float(left.mean()),
-            median=float(np.median(left)),
-            worst=float(left.max()),
-            success=float((left < env.options.tolerance).mean()),
-        )
-        curve.append(point)
-        told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
-        replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
-        _record(model, point)
-        _keep(model, env, out)
-        tell(point)
-    return model, curve
 
 
 def _algorithm(method: TrainMethod) -> Any:
