@@ -15,10 +15,11 @@ assumed, and supplies sag at their limit."""
 SUPPLIES = (2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0)  # what is sold [A]
 FUSES = (1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0)  # blade fuses, ISO 8820-3 [A]
 WIRES = ((3.0, 0.5, 20), (7.5, 0.75, 18), (10.0, 1.0, 17), (15.0, 1.5, 16), (25.0, 2.5, 14), (40.0, 6.0, 10))
-"""Fuse [A] at most, copper [mm^2], gauge (AWG) at least: short leads in free air."""
+"""Fuse [A] at most, copper [mm^2], gauge (AWG) at least: short leads in free air. Our own table, thicker than what
+single wires are rated at; of no standard."""
 
 PLUG = 3.0
-"""What one plug of a chain of servos bears [A]: JST EH, 3 A with wire of AWG 22 (its maker's data sheet)."""
+"""What one plug of a chain of servos bears [A]: JST EH, 3 A with wire of AWG 22. Told from memory."""
 
 CELL, CELLS, USED = 1.2, 2.0, 0.8
 """A NiMH cell of size AA: volts, ampere hours, and the share of them that is used."""
