@@ -52,15 +52,15 @@ def reproduce(
     hand, and another range of motion.
 
     Reinforcement learning (section 5.4) has figure-5.8 (one action or ten), figure-5.9 (curricula), figure-5.10
-    (tolerances and errors), figure-5.12 (from anywhere), table-noise and table-reward, and
-    table-policies (other ways to a policy, on the same outcomes). It learns in networks of our
+    (tolerances and errors), figure-5.12 (from anywhere), table-noise and table-reward; table-policies
+    has other ways to a policy, on the same outcomes, and table-gradient the best of them. It learns in networks of our
     hand, one number for each finger, several seeds at once, and says which claims hold. Needs the extra rl.
 
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
-    from hydrostat.cli.reproduce_trials import POLICY_TABLE, TRIALS, reproduce_trials
+    from hydrostat.cli.reproduce_trials import GRADIENT, POLICIES, TRIALS, reproduce_trials
 
-    there = (*THINGS, *TRIALS, POLICY_TABLE)
+    there = (*THINGS, *TRIALS, POLICIES, GRADIENT)
     asked = there if "all" in what else tuple(what)
     for name in asked:
         if name not in there:
@@ -71,7 +71,7 @@ def reproduce(
     if tables := [name for name in asked if name in THINGS]:
         _compare(tables, study, bodies, out, jobs)
     if trials := [name for name in asked if name not in THINGS]:
-        reproduce_trials(trials, _robot(bodies[0]), out, size=size, model=model, seeds=seeds, jobs=jobs)
+        reproduce_trials(trials, _robot(bodies[0]), out, size=size, model=model, seeds=seeds, goals=targets, jobs=jobs)
 
 
 def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", out: Path, jobs: int) -> None:

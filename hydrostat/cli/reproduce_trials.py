@@ -22,22 +22,31 @@ if TYPE_CHECKING:
 TRIALS = ("figure-5.8", "figure-5.9", "figure-5.10", "figure-5.12", "table-noise", "table-reward")
 """Experiments of the thesis that can be reproduced; figure-5.10 is figure 5.11 too."""
 
-POLICY_TABLE = "table-policies"
-"""What others ways to a policy leave, on the same actions and outcomes."""
+POLICIES, GRADIENT = "table-policies", "table-gradient"
+"""What other ways to a policy leave, on the same actions and outcomes; and the best of them alone, on more goals."""
 
 
 def reproduce_trials(
-    names: Sequence[str], robot: "Robot", out: Path, *, size: str, model: Path | None, seeds: int | None, jobs: int
+    names: Sequence[str],
+    robot: "Robot",
+    out: Path,
+    *,
+    size: str,
+    model: Path | None,
+    seeds: int | None,
+    goals: int | None,
+    jobs: int,
 ) -> None:
     """Learn in networks of a robot, judge in the simulator, and say which claims of the thesis hold.
 
     Args:
-        names: of `TRIALS`.
+        names: of `TRIALS`, `POLICIES` or `GRADIENT`.
         robot: which, with contact if its model knows it.
         out: folder for tables and pictures; the model too, if none is given.
         size: minutes, hour or full.
         model: that `hydrostat learn` wrote.
         seeds: how often each run begins at random.
+        goals: that each policy is judged by in the simulator.
         jobs: processes that sample where there is no model.
     """
     try:
@@ -50,13 +59,14 @@ def reproduce_trials(
     from hydrostat.simulation import Simulation
 
     usual, tell = _SIZES[size], told()
+    usual = usual if goals is None else usual._replace(goals=goals)
     networks = _networks(robot, out, model, usual.samples, jobs)
     networks.check(robot)
     simulation, width = Simulation(robot), 1e3 * robot.body.mesh.size
     count = usual.seeds if seeds is None else seeds
     for name in names:
-        if name == POLICY_TABLE:
-            _policies(networks, simulation, out, seeds=count, usual=usual)
+        if name in (POLICIES, GRADIENT):
+            _policies(name, networks, simulation, out, seeds=count, usual=usual)
             continue
         experiment = EXPERIMENTS[name]
         print(f"\n{name}: {experiment.title}")
@@ -79,11 +89,13 @@ def reproduce_trials(
         print(f"Wrote {save_png(_drawn(experiment, done), out / f'{name}.png')} and {name}.json")
 
 
-def _policies(networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials") -> None:
+def _policies(
+    table: str, networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials"
+) -> None:
     """Table and picture of ways to a policy of one action, over the equilibria that each has used."""
     from hydrostat.plot import draw_costs, save_png
     from hydrostat.robot import replace_file
-    from hydrostat.training.policies import PAIRS_ALONE, POLICIES, Budget, drawn_pairs
+    from hydrostat.training.policies import PAIRS_ALONE, WAYS, Budget, drawn_pairs
     from hydrostat.training.run_experiment import exact_distances, finger_pairs
     from hydrostat.training.trials import NetworkReach
     from hydrostat.training.verdict import interquartile
@@ -94,12 +106,10 @@ def _policies(networks: "LearnedModel", simulation: "Simulation", out: Path, *, 
     )
     every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
     known = int(networks.facts["samples"])
-    print(
-        f"\n{POLICY_TABLE}: ways to a policy of one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator"
-    )
+    print(f"\n{table}: ways to a policy of one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator")
     print(f"{'way':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>22}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
     rows: list[dict[str, object]] = []
-    for name, way in POLICIES.items():
+    for name, way in list(WAYS.items())[: 1 if table == GRADIENT else None]:
         for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
             act = way(trials, every.first(many), effort)
             exact = 10.0 * exact_distances(simulation, trials, act, seeds, usual.goals)
@@ -108,11 +118,11 @@ def _policies(networks: "LearnedModel", simulation: "Simulation", out: Path, *, 
             rows.append({**row, "p99": float(np.nanquantile(exact, 0.99))})
             text = f"{name:24}{many:8}{used:12}{_span(found, 3):>22}{100 * found.mean / width:8.3f}"
             print(f"{text}{np.nanquantile(exact, 0.99):10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
-    replace_file(out / f"{POLICY_TABLE}.json", (json.dumps(rows, indent=1) + "\n").encode())
+    replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}
     for row in rows:
         curves.setdefault(str(row["way"]), []).append((float(row["equilibria"]), float(np.mean(row["seeds"]))))  # type: ignore[arg-type]
-    print(f"Wrote {save_png(draw_costs(curves), out / f'{POLICY_TABLE}.png')} and {POLICY_TABLE}.json")
+    print(f"Wrote {save_png(draw_costs(curves), out / f'{table}.png')} and {table}.json")
 
 
 def _used(name: str, pairs: int, known: int, usual: "_Trials") -> int:
@@ -218,8 +228,8 @@ class _Trials(NamedTuple):
 
 _SIZES = {
     "minutes": _Trials(300, 3, 12, 3, 20, (100, 300), 500),
-    "hour": _Trials(1000, 5, 30, 8, 60, (300, 10_000), 8_000),
-    "full": _Trials(10_000, 10, 200, 50, 1000, (300, 3_000, 10_000), 20_000),
+    "hour": _Trials(1000, 5, 30, 8, 60, (300, 10_000), 24_000),
+    "full": _Trials(10_000, 10, 200, 50, 1000, (300, 3_000, 10_000), 48_000),
 }
 """Equilibria that networks learn from, seeds, epochs of small and of large layers, goals in the simulator, pairs of
 actions and outcomes, steps of gradients."""

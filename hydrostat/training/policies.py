@@ -1,4 +1,4 @@
-"""`POLICIES`: ways to a policy of one action other than trial and error, on the same pairs of actions and outcomes.
+"""`WAYS`: ways to a policy of one action other than trial and error, on the same pairs of actions and outcomes.
 
 Each takes trials and pairs, (seeds, many, size), and gives what a policy is called with: states and goals.
 """
@@ -94,10 +94,14 @@ def cloned(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
 
 
 def gradient(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
-    """A network that learns from what its own actions reach, through exact slopes of the networks that it acts in."""
+    """A network that learns from what its own actions reach, through exact slopes of the networks that it acts in.
+
+    Goals are new ones all the time: in networks they cost nothing.
+    """
+    draw = torch.Generator().manual_seed(_GOALS)
 
     def loss(network: "_Network", rows: Tensor) -> Tensor:
-        goals = _taken(pairs.reached, rows)
+        goals = trials.reach(2.0 * torch.rand(*rows.shape, trials.actions, generator=draw) - 1.0)
         return trials.distances(trials.places(trials.contractions(network(goals))), goals)
 
     return _learned(trials, pairs, effort, loss)
@@ -121,7 +125,7 @@ def residual(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     return lambda states, goals: around.whole(found(states, goals), goals)
 
 
-POLICIES: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
+WAYS: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
     "gradient": gradient,
     "ridge": ridge,
     "1-NN": nearest,
@@ -227,5 +231,5 @@ def _taken(values: Tensor, rows: Tensor) -> Tensor:
 _LAYERS, _RATE, _BEYOND, _SMALL = (128, 128, 128), 3e-3, 1.02, 0.1
 """Hidden layers, largest rate of learning, how far a network may reach beyond its range, and share of small changes."""
 
-_PAIRS, _NETWORKS, _BATCHES = 11, 22, 33
+_PAIRS, _NETWORKS, _BATCHES, _GOALS = 11, 22, 33, 44
 """Seeds of what is drawn."""

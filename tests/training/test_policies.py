@@ -8,7 +8,7 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from hydrostat.training import policies as room  # noqa: E402
-from hydrostat.training.policies import POLICIES, Budget, TriedPairs  # noqa: E402
+from hydrostat.training.policies import WAYS, Budget, TriedPairs  # noqa: E402
 from hydrostat.training.trials import NetworkReach  # noqa: E402
 
 
@@ -37,7 +37,7 @@ def test_each_way_is_as_near_as_it_can_be(pairs: TriedPairs, monkeypatch: pytest
     monkeypatch.setattr(room, "SMALL", replace(room.SMALL, layers=(8,), cycles=4, updates=4, batch=16))
     trials, goals = StraightReach(), 1.8 * torch.rand(2, 50, 2, generator=torch.Generator().manual_seed(1)) - 0.9
     left = {}
-    for name, way in POLICIES.items():
+    for name, way in WAYS.items():
         act = way(trials, pairs, Budget(steps=300, epochs=1, batch=64))
         acts = act(goals, goals)
         assert acts.abs().max() <= 1.0
