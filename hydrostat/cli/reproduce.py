@@ -55,12 +55,16 @@ def reproduce(
     (tolerances and errors), figure-5.12 (from anywhere), table-noise and table-reward; table-policies
     has other ways to a policy, on the same outcomes, and table-gradient the best of them. It learns in networks of our
     hand, one number for each finger, several seeds at once, and says which claims hold. Needs the extra rl.
+    figure-5.13 is the same method in FetchReach, figure-5.13-hand in HandReach, whose curves are published; both are of
+    gymnasium-robotics.
 
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
+    from hydrostat.cli.reproduce_reference import REFERENCE_TABLES, reproduce_reference
     from hydrostat.cli.reproduce_trials import GRADIENT, POLICIES, TRIALS, reproduce_trials
 
-    there = (*THINGS, *TRIALS, POLICIES, GRADIENT)
+    trials = (*TRIALS, POLICIES, GRADIENT)
+    there = (*THINGS, *trials, *REFERENCE_TABLES)
     asked = there if "all" in what else tuple(what)
     for name in asked:
         if name not in there:
@@ -70,8 +74,10 @@ def reproduce(
     out.mkdir(parents=True, exist_ok=True)
     if tables := [name for name in asked if name in THINGS]:
         _compare(tables, study, bodies, out, jobs)
-    if trials := [name for name in asked if name not in THINGS]:
-        reproduce_trials(trials, _robot(bodies[0]), out, size=size, model=model, seeds=seeds, goals=targets, jobs=jobs)
+    if names := [name for name in asked if name in trials]:
+        reproduce_trials(names, _robot(bodies[0]), out, size=size, model=model, seeds=seeds, goals=targets, jobs=jobs)
+    if references := [name for name in asked if name in REFERENCE_TABLES]:
+        reproduce_reference(references, out, size=size, seeds=seeds)
 
 
 def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", out: Path, jobs: int) -> None:

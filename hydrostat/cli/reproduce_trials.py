@@ -1,9 +1,10 @@
 """`reproduce_trials`: the thesis's experiments with reinforcement learning, for `hydrostat reproduce`."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
-    from hydrostat.training.experiments import Experiment
+    from hydrostat.training.experiments import Experiment, Ran
     from hydrostat.training.run_experiment import Judged
 
 TRIALS = ("figure-5.8", "figure-5.9", "figure-5.10", "figure-5.12", "table-noise", "table-reward")
@@ -49,11 +50,9 @@ def reproduce_trials(
         goals: that each policy is judged by in the simulator.
         jobs: processes that sample where there is no model.
     """
-    try:
+    with trials_missing():
         from hydrostat.training.experiments import EXPERIMENTS
         from hydrostat.training.run_experiment import run_experiment
-    except ModuleNotFoundError as error:
-        raise HydrostatError(f'this needs {error.name}; install it: pip install "hydrostat[rl]"') from None
     from hydrostat.plot import save_png
     from hydrostat.robot import replace_file
     from hydrostat.simulation import Simulation
@@ -84,9 +83,13 @@ def reproduce_trials(
         ):
             print(_line(judged, width), flush=True)
             done.append(judged)
-        kept = _told(experiment, done)
+        runs = {judged.name: judged.ran for judged in done}
+        kept = judged_claims(experiment, runs)
+        for judged in done:
+            exact = np.where(np.isnan(judged.exact), -1.0, judged.exact)
+            kept["runs"][judged.name]["in the simulator [cm]"] = exact.tolist()
         replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
-        print(f"Wrote {save_png(_drawn(experiment, done), out / f'{name}.png')} and {name}.json")
+        print(f"Wrote {save_png(drawn_runs(experiment, runs), out / f'{name}.png')} and {name}.json")
 
 
 def _policies(
@@ -116,7 +119,7 @@ def _policies(
             found, used = interquartile(np.nanmean(exact, axis=1)), _used(name, many, known, usual)
             row = {"way": name, "pairs": many, "equilibria": used, "seeds": np.nanmean(exact, axis=1).tolist()}
             rows.append({**row, "p99": float(np.nanquantile(exact, 0.99))})
-            text = f"{name:24}{many:8}{used:12}{_span(found, 3):>22}{100 * found.mean / width:8.3f}"
+            text = f"{name:24}{many:8}{used:12}{spanned(found, 3):>22}{100 * found.mean / width:8.3f}"
             print(f"{text}{np.nanquantile(exact, 0.99):10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
     replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}
@@ -157,46 +160,57 @@ def _line(judged: "Judged", width: float) -> str:
     ran, exact = judged.ran, judged.exact
     seeds = interquartile(10.0 * np.nanmean(exact, axis=1))
     numbers = [
-        _span(interquartile(final(ran)), 2),
-        _span(interquartile(10.0 * ran.epochs.tolerance[-1]), 2),
-        _span(interquartile(10.0 * ran.best[0].mean(axis=1)), 2),
-        _span(interquartile(10.0 * ran.best[-1].mean(axis=1)), 2),
-        _span(seeds, 2),
+        spanned(interquartile(final(ran)), 2),
+        spanned(interquartile(10.0 * ran.epochs.tolerance[-1]), 2),
+        spanned(interquartile(10.0 * ran.best[0].mean(axis=1)), 2),
+        spanned(interquartile(10.0 * ran.best[-1].mean(axis=1)), 2),
+        spanned(seeds, 2),
     ]
     lost = int(np.isnan(exact).sum())
     text = f"{judged.name:18}{int(ran.epochs.actions[-1]):8}" + "".join(f"{number:>19}" for number in numbers)
     return f"{text}{100 * seeds.mean / width:8.2f}{lost:6}"
 
 
-def _span(found: object, digits: int) -> str:
+def spanned(found: object, digits: int) -> str:
+    """An interval as text."""
     mean, low, high = (getattr(found, name) for name in ("mean", "low", "high"))
     return f"{mean:.{digits}f} ({low:.{digits}f}-{high:.{digits}f})"
 
 
-def _told(experiment: "Experiment", done: "Sequence[Judged]") -> dict[str, object]:
-    """Say what the claims come to; all numbers, for a file."""
+@contextmanager
+def trials_missing() -> Iterator[None]:
+    """Say which library is missing for reinforcement learning (HydrostatError)."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        raise HydrostatError(f'this needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+
+
+def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[str, Any]:
+    """Say what the claims come to; all numbers of the runs, for a file."""
     from hydrostat.training.verdict import interquartile, verdict
 
-    ran, claims = {judged.name: judged.ran for judged in done}, list[dict[str, object]]()
+    claims = list[dict[str, object]]()
     for claim in experiment.claims:
         values = claim.measure(ran)
         word = verdict(values, claim.above)
-        print(f"  {claim.text}: {word}, {_span(interquartile(values), 3)} {claim.unit}, above {claim.above:g} claimed")
+        print(
+            f"  {claim.text}: {word}, {spanned(interquartile(values), 3)} {claim.unit}, above {claim.above:g} claimed"
+        )
         claims.append({"claim": claim.text, "verdict": word, "seeds": values.tolist(), "above": claim.above})
     runs = {
-        judged.name: {
-            "actions": judged.ran.epochs.actions.tolist(),
-            "success": judged.ran.epochs.success.tolist(),
-            "distance [cm]": judged.ran.epochs.distance.tolist(),
-            "tolerance [cm]": judged.ran.epochs.tolerance.tolist(),
-            "in the simulator [cm]": np.where(np.isnan(judged.exact), -1.0, judged.exact).tolist(),
+        name: {
+            "actions": run.epochs.actions.tolist(),
+            "success": run.epochs.success.tolist(),
+            "distance [cm]": run.epochs.distance.tolist(),
+            "tolerance [cm]": run.epochs.tolerance.tolist(),
         }
-        for judged in done
+        for name, run in ran.items()
     }
     return {"title": experiment.title, "claims": claims, "runs": runs}
 
 
-def _drawn(experiment: "Experiment", done: "Sequence[Judged]") -> "Figure":
+def drawn_runs(experiment: "Experiment", ran: "Mapping[str, Ran]") -> "Figure":
     """Curves of all runs: interquartile means over the seeds, and what lies between the seeds."""
     from hydrostat.plot import draw_curves
 
@@ -208,9 +222,7 @@ def _drawn(experiment: "Experiment", done: "Sequence[Judged]") -> "Figure":
     panes = {}
     for shown in experiment.shown:
         label, unit = words[shown]
-        panes[label] = {
-            judged.name: (judged.ran.epochs.actions, unit * getattr(judged.ran.epochs, shown)) for judged in done
-        }
+        panes[label] = {name: (run.epochs.actions, unit * getattr(run.epochs, shown)) for name, run in ran.items()}
     return draw_curves(panes)
 
 

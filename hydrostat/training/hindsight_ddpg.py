@@ -259,8 +259,7 @@ class HindsightDdpg:
     def test(self, policy: Policy, tests: int) -> np.ndarray:
         """Distances after each action of a policy without exploration, (horizon, seeds, tests)."""
         draw = torch.Generator().manual_seed(_TESTS)
-        states, _, goals = self.trials.begin(draw, (1, tests))
-        states, goals = (part.expand(self._seeds, -1, -1) for part in (states, goals))
+        states, _, goals = self.trials.begin_alike(draw, (self._seeds, tests))
         far: list[np.ndarray] = []
         with torch.no_grad():
             for _ in range(self.trials.horizon):

@@ -1,7 +1,7 @@
 """`Trials`: episodes of many copies of a task at once, as `HindsightDdpg` learns in them."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -37,6 +37,12 @@ class Trials(ABC):
     @abstractmethod
     def begin(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
         """Begin episodes: states, what is reached, goals."""
+
+    def begin_alike(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
+        """Begin the same episodes for every seed."""
+        seeds, many = shape
+        states, reached, goals = (part.expand(seeds, -1, -1) for part in self.begin(draw, (1, many)))
+        return states, reached, goals
 
     @abstractmethod
     def act(self, acts: Tensor) -> tuple[Tensor, Tensor]:
@@ -133,54 +139,72 @@ class NetworkReach(Trials):
 
 
 class GymnasiumTrials(Trials):
-    """A goal-based environment of gymnasium, such as FetchReach, one copy for each episode; slow, and for reference."""
+    """A goal-based environment of gymnasium-robotics, such as FetchReach, one copy for each episode.
 
-    def __init__(self, name: str, *, horizon: int, scale: float = 100.0) -> None:
-        """An environment by its name.
+    Its numbers are as gymnasium gives them, lengths in metres. It is for reference: our method in tasks of others.
+    """
 
-        Args:
-            name: as gymnasium knows it.
-            horizon: actions of an episode.
-            scale: what goals are multiplied by: 100 makes centimetres of metres.
-
-        Raises:
-            HydrostatError: there is no such environment here.
-        """
-        import gymnasium
-
-        try:
-            import gymnasium_robotics
-
-            gymnasium.register_envs(gymnasium_robotics)
-        except ModuleNotFoundError as error:
-            raise HydrostatError(f"{name} needs {error.name}; install it: pip install gymnasium-robotics") from None
-        self._make = lambda: gymnasium.make(name, max_episode_steps=horizon)
-        self.horizon, self._scale, self._envs = horizon, scale, list[Any]()
-        probe = self._make()
-        spaces: Any = probe.observation_space
+    def __init__(self, make: Callable[[], Any], *, horizon: int) -> None:
+        """What makes a copy of an environment that is cut off after so many actions, such as `robotics_task`."""
+        self.horizon, self._make, self._envs = horizon, make, [make()]
+        spaces = self._envs[0].observation_space
         self.states, self.goals = spaces["observation"].shape[0], spaces["desired_goal"].shape[0]
-        self.actions = probe.action_space.shape[0]  # type: ignore[index]
-        self._shape = (1, 1)
+        self.actions = self._envs[0].action_space.shape[0]
 
     def begin(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
         """Begin an episode in each."""
-        self._shape, many = shape, shape[0] * shape[1]
-        self._envs += [self._make() for _ in range(many - len(self._envs))]
-        seeds = torch.randint(2**31, (many,), generator=draw).tolist()
-        seen = [env.reset(seed=seed)[0] for env, seed in zip(self._envs, seeds, strict=False)]
-        return tuple(self._told(seen, name) for name in ("observation", "achieved_goal", "desired_goal"))  # type: ignore[return-value]
+        return self._begun(torch.randint(_SEEDS, shape, generator=draw))
+
+    def begin_alike(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
+        """Begin the same episodes for every seed, each in a copy of its own."""
+        return self._begun(torch.randint(_SEEDS, (1, shape[1]), generator=draw).expand(shape))
 
     def act(self, acts: Tensor) -> tuple[Tensor, Tensor]:
         """Do a step of each."""
-        rows = acts.flatten(0, 1).double().numpy()
+        rows = acts.flatten(0, 1).numpy()
         seen = [env.step(row)[0] for env, row in zip(self._envs, rows, strict=False)]
-        return self._told(seen, "observation"), self._told(seen, "achieved_goal")
+        return self._told(seen, "observation", acts.shape), self._told(seen, "achieved_goal", acts.shape)
 
     def distances(self, reached: Tensor, goals: Tensor) -> Tensor:
-        """Distances, in the unit of the goals."""
+        """Norms of what is missed [m], which is the tasks' own measure."""
         return (reached - goals).norm(dim=-1)
 
-    def _told(self, seen: Sequence[dict[str, np.ndarray]], name: str) -> Tensor:
-        scale = 1.0 if name == "observation" else self._scale
+    def _begun(self, seeds: Tensor) -> Begun:
+        self._envs += [self._make() for _ in range(seeds.numel() - len(self._envs))]
+        rows = zip(self._envs, seeds.flatten().tolist(), strict=False)
+        seen = [env.reset(seed=seed)[0] for env, seed in rows]
+        states, reached, goals = (
+            self._told(seen, name, seeds.shape) for name in ("observation", "achieved_goal", "desired_goal")
+        )
+        return states, reached, goals
+
+    @staticmethod
+    def _told(seen: Sequence[Mapping[str, np.ndarray]], name: str, shape: Sequence[int]) -> Tensor:
         rows = torch.tensor(np.array([each[name] for each in seen]), dtype=torch.float32)
-        return scale * rows.unflatten(0, self._shape)
+        return rows.unflatten(0, tuple(shape[:2]))
+
+
+def robotics_task(name: str, horizon: int) -> Any:
+    """Make an environment of gymnasium-robotics by its name.
+
+    Raises:
+        HydrostatError: it is not installed, or no MuJoCo that it runs with.
+    """
+    try:
+        import gymnasium
+        import gymnasium_robotics
+    except ModuleNotFoundError as error:
+        raise HydrostatError(f"{name} needs {error.name}; install it: {_ROBOTICS}") from None
+    gymnasium.register_envs(gymnasium_robotics)
+    try:
+        return gymnasium.make(name, max_episode_steps=horizon)
+    except AssertionError:
+        told = f"{name} does not run with the MuJoCo that is installed; install one that it runs with: {_ROBOTICS}"
+        raise HydrostatError(told) from None
+
+
+_SEEDS = 2**31
+"""Environments are begun with seeds below this."""
+
+_ROBOTICS = 'pip install gymnasium-robotics "mujoco<3.6"'
+"""What was tried: gymnasium-robotics 1.4.2 with MuJoCo 3.3 and 3.5; it does not run with 3.17 and 4.0."""
