@@ -106,7 +106,7 @@ def test_an_experiment_writes_its_table_picture_and_verdicts(
         for name, run in short.runs.items()
     }
     monkeypatch.setattr(room, "EXPERIMENTS", {"table-noise": replace(short, runs=runs)})
-    options = {"size": "minutes", "model": tmp_path / "strip.model", "seeds": 2, "jobs": 1}
+    options = {"size": "minutes", "model": tmp_path / "strip.model", "seeds": 2, "goals": None, "jobs": 1}
     command.reproduce_trials(["table-noise"], robot, tmp_path, **options)
     told = capsys.readouterr().out
     assert "0.1 ends nearer than 0.01 (E47): " in told
