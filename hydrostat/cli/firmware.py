@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from shlex import join
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,20 +11,28 @@ from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import counted
 
+if TYPE_CHECKING:
+    from hydrostat.control import Calibration
+
 
 def firmware(
     robot: RobotFolder,
     out: OutFolder,
-    board: Annotated[str, typer.Option(metavar="uno|mega", help="Which board: two motors, or six.")] = "uno",
-    port: Annotated[str | None, typer.Option(metavar="PORT", help="Write it to this board: /dev/ttyACM0.")] = None,
+    board: Annotated[
+        str | None, typer.Option(metavar="uno|mega,...", help="Which boards: two motors each, or six.")
+    ] = None,
+    port: Annotated[
+        str | None, typer.Option(metavar="PORT,...", help="Write it to these boards: /dev/ttyACM0.")
+    ] = None,
     motor: Annotated[str, typer.Option(metavar="KEY", help="Motor with an encoder, of the kit's table.")] = "25d",
     counts: Annotated[float | None, typer.Option(metavar="N", help="Of the encoder in a turn of the spool.")] = None,
     rpm: Annotated[float | None, typer.Option(metavar="N", help="Turns a minute without load.")] = None,
 ) -> None:
     """Build the firmware of a robot for an Arduino with geared motors, and write it to the board.
 
-    Its limits come from robot.toml and motors.toml; where a motor there has no counts they are added. Without --port
-    nothing is written to a board, and the command that would do it is shown. Needs Debian's gcc-avr and avr-libc, and
+    Its limits come from robot.toml and motors.toml; where a motor there has no counts they are added. More motors than
+    a board bears are spread over several, each with its own port. Without --port nothing is written to a board, and
+    the command that would do it is shown. Needs Debian's gcc-avr and avr-libc, and
     avrdude to write. Then: hydrostat calibrate ROBOT --port firmware:/dev/ttyACM0.
 
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
@@ -40,7 +48,7 @@ def firmware(
     for name, value in (("counts", usual), ("rpm", turns)):
         if not 0 < value < 1e6:
             raise InputError(f"--{name} {value:g}: must be above 0")
-    kind, folder = build.board_kind(board), robot if robot.is_dir() else robot.parent
+    folder = robot if robot.is_dir() else robot.parent
     loaded = read_robot(robot)
     if not loaded.winches:
         raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
@@ -48,19 +56,50 @@ def firmware(
         calibration = control.read_calibration(folder, loaded)
     else:
         calibration = control.usual_calibration(loaded)
-    given = control.Calibration(
-        tuple(replace(each, counts=counts or each.counts or usual) for each in calibration.motors)
-    )
-    image = build.build_firmware(build.firmware_settings(loaded, given, rpm=turns), board, out)
+    boards = _boards(board, calibration)
+    given = build.on_boards(calibration, boards)
+    given = control.Calibration(tuple(replace(each, counts=counts or each.counts or usual) for each in given.motors))
+    ports = port.split(",") if port else []
+    if ports and len(ports) != given.boards:
+        raise InputError(f"--port {port}: {counted(given.boards, 'board')} need a port each, with commas between them")
+    places = [out if given.boards == 1 else out / f"board_{number}" for number in range(1, given.boards + 1)]
+    stall = known[motor].stall_current
+    texts = [
+        build.firmware_settings(loaded, given, rpm=turns, stall=stall, board=number)
+        for number in range(1, given.boards + 1)
+    ]
+    images = [build.build_firmware(*each) for each in zip(texts, boards, places, strict=False)]
     if given != calibration:
         print(f"{control.write_calibration(folder, given)}: {usual:g} counts in a turn of each spool")
-    print(
-        f"{board}: {counted(len(given.motors), 'motor')}, wired so (driver's PWM, direction, encoder A and B, current):"
-    )
-    for each, pins in zip(sorted(given.motors, key=lambda one: one.number), kind.wiring, strict=False):
-        print(f"  {each.number} {each.winch}: {', '.join(pins)}")
-    command = build.flash_command(board, port or "PORT", image)
-    print(f"Wrote {image}; {'writing it to the board' if port else 'to write it to a board'}: {join(command)}")
-    if port:
-        build.flash(command)
+    for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
+        _tell(kind, number, given)
+        command = build.flash_command(kind, ports[number - 1] if ports else "PORT", image)
+        print(f"Wrote {image}; {'writing it to the board' if port else 'to write it to a board'}: {join(command)}")
+        if ports:
+            build.flash(command)
+    if ports:
         print(f"{port}: written. Let all cables out, then: hydrostat calibrate {folder} --port firmware:{port}")
+
+
+def _boards(asked: str | None, calibration: "Calibration") -> list[str]:
+    """Kinds of boards as asked for, the last again and again while motors are left; else the smallest that fit."""
+    from hydrostat.control.firmware_build import board_kind
+    from hydrostat.fabrication.parts.board import board_for
+
+    found, motors = [each.strip() for each in asked.split(",")] if asked else [], len(calibration.motors)
+    if not asked and calibration.boards > 1:
+        return [board_for(len(calibration.places(number))) for number in range(1, calibration.boards + 1)]
+    while (room := sum(board_kind(each).motors for each in found)) < motors:
+        found.append(found[-1] if asked else board_for(motors - room))
+    return found
+
+
+def _tell(kind: str, number: int, given: "Calibration") -> None:
+    """Say which motor is wired to which pins of a board."""
+    from hydrostat.control.firmware_build import board_kind
+
+    motors = sorted((given.motors[place] for place in given.places(number)), key=lambda one: one.number)
+    name = kind if given.boards == 1 else f"board {number}, {kind}"
+    print(f"{name}: {counted(len(motors), 'motor')}, wired so (driver's PWM, direction, encoder A and B, current):")
+    for each, pins in zip(motors, board_kind(kind).wiring, strict=False):
+        print(f"  {each.number} {each.winch}: {', '.join(pins)}")

@@ -27,6 +27,7 @@ class WinchMotor:
         growth: of the radius as cable lies on cable [m/rad].
         current: the most that the motor may draw [A].
         counts: of its encoder in a turn of the spool; only for motors on a board with our firmware.
+        board: or line that it hangs on, from 1, where there are several.
     """
 
     winch: str
@@ -37,10 +38,13 @@ class WinchMotor:
     growth: float = 0.0
     current: float = 0.4
     counts: float | None = None
+    board: int = 1
 
     def __post_init__(self) -> None:
         if not 0 <= self.number <= 252:
             raise InputError(f"{self.winch}: a motor has a number from 0 to 252, not {self.number}")
+        if not 1 <= self.board <= 16:
+            raise InputError(f"{self.winch}: boards are counted from 1 to 16, not {self.board}")
         if self.turns not in (1, -1):
             raise InputError(f"{self.winch}: turns must be 1 or -1, not {self.turns}")
         for name, value, most in (("radius", self.radius, 0.5), ("current", self.current, 30.0)):
@@ -79,6 +83,15 @@ class Calibration:
         return Calibration(tuple(replace(each, zero=each.zero or 0.0) for each in self.motors))
 
     @property
+    def boards(self) -> int:
+        """How many boards or lines its motors hang on."""
+        return max(motor.board for motor in self.motors)
+
+    def places(self, board: int) -> list[int]:
+        """Places of the motors of a board in the order of the winches."""
+        return [place for place, motor in enumerate(self.motors) if motor.board == board]
+
+    @property
     def done(self) -> bool:
         """Whether all zeros are known."""
         return all(spool.zero is not None for spool in self.motors)
@@ -92,9 +105,15 @@ class Calibration:
         for name in given:
             if name not in wanted:
                 raise InputError(f'{CALIBRATION}: there is no winch "{name}"; there are: {", ".join(wanted)}')
-        numbers = [spool.number for spool in self.motors]
+        numbers = [(spool.board, spool.number) for spool in self.motors]
         if len(set(numbers)) < len(numbers) or len(set(given)) < len(given):
-            raise InputError(f"{CALIBRATION}: each winch has one motor, and each motor a number of its own")
+            raise InputError(
+                f"{CALIBRATION}: each winch has one motor, and each motor a number of its own on its board"
+            )
+        if missing := set(range(1, self.boards + 1)) - {spool.board for spool in self.motors}:
+            raise InputError(
+                f"{CALIBRATION}: boards are counted 1, 2, ...; none of the motors is on board {min(missing)}"
+            )
 
     def contractions(self, angles: Vector) -> Vector:
         """Cable taken in by each winch [m]."""
@@ -147,6 +166,8 @@ def write_calibration(folder: Path, calibration: Calibration) -> Path:
             f"growth = {float(spool.growth)!r}  # of the radius [m/rad]\n",
             f"current = {float(spool.current)!r}  # at most [A]\n",
         ]
+        if calibration.boards > 1:
+            lines.append(f"board = {spool.board}\n")
         if spool.counts is not None:
             lines.append(f"counts = {float(spool.counts)!r}  # of the encoder in a turn of the spool\n")
     return replace_file(folder / CALIBRATION, "".join(lines).encode())
@@ -161,6 +182,7 @@ _KEYS: dict[str, tuple[type, ...]] = {
     "growth": (int, float),
     "current": (int, float),
     "counts": (int, float),
+    "board": (int,),
 }
 
 

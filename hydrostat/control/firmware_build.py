@@ -5,12 +5,13 @@ import shutil
 import subprocess
 import zlib
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib import resources
-from math import pi
+from math import inf, pi
 from pathlib import Path
 
 from hydrostat.control.bus_link import LinkLimits
-from hydrostat.control.calibration import CALIBRATION, Calibration
+from hydrostat.control.calibration import CALIBRATION, Calibration, WinchMotor
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication.parts.board import BOARDS, BoardKind
 from hydrostat.robot import Robot, replace_file
@@ -19,19 +20,52 @@ SPARE = 0.025
 """What a motor may turn beyond travel and release [m]: slack that calibration takes up."""
 
 
-def robot_word(robot: Robot, calibration: Calibration) -> str:
-    """The word by which a board says what it was built for: the robot's name, and a sum of its settings."""
+def on_boards(calibration: Calibration, boards: Sequence[str]) -> Calibration:
+    """Motors as they are, if the boards bear them so; else one board filled after the other, zeros unknown.
+
+    Raises:
+        InputError: the boards do not bear all.
+    """
+    room = [board_kind(board).motors for board in boards]
+    if calibration.boards <= len(room) and all(
+        len(calibration.places(number)) <= most for number, most in enumerate(room, 1)
+    ):
+        return calibration
+    places = [(board, number) for board, most in enumerate(room, 1) for number in range(1, most + 1)]
+    if len(places) < len(calibration.motors):
+        raise InputError(
+            f"the robot has {len(calibration.motors)} motors, and --board {','.join(boards)} bears {len(places)}"
+        )
+    pairs = zip(calibration.motors, places, strict=False)
+    return Calibration(tuple(replace(motor, board=board, number=n, zero=None) for motor, (board, n) in pairs))
+
+
+def robot_word(robot: Robot, calibration: Calibration, board: int = 1) -> str:
+    """The word by which a board says what it was built for: the robot's name, which of several, a sum of settings."""
     name = re.sub(r"[^A-Za-z0-9_-]+", "-", robot.name)[:20] or "robot"
-    return f"{name}.{zlib.crc32(_numbers(robot, calibration).encode()):08x}"
+    which = f"-{board}" if calibration.boards > 1 else ""
+    return f"{name}{which}.{zlib.crc32(_numbers(robot, calibration, board, inf).encode()):08x}"
 
 
-def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float) -> str:
-    """The text of settings.h for a robot whose motors turn so fast without load [rpm].
+SPIN_UP, EFFORT = 0.02, 0.5
+"""Time in which a motor without load comes to two thirds of its speed [s], as `winches.c` assumes; and the share of its
+bound of current that it may take to gain speed."""
+
+
+def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float, stall: float = 2.0, board: int = 1) -> str:
+    """The text of settings.h for one board of a robot.
+
+    Args:
+        robot: whose limits they are.
+        calibration: which motors hang on which board, and what they may draw.
+        rpm: of the motors without load.
+        stall: what they draw when they are held [A]: they gain speed so that half of their bound is left for the load.
+        board: which one.
 
     Raises:
         InputError: motors that are not numbered from 1 without a gap, turn the wrong way, or have no counts.
     """
-    ordered = sorted(calibration.motors, key=lambda motor: motor.number)
+    ordered = _ordered(calibration, board)
     if [motor.number for motor in ordered] != list(range(1, len(ordered) + 1)):
         raise InputError(f"{CALIBRATION}: motors of a board are numbered 1, 2, ... as they are plugged in")
     for motor in ordered:
@@ -43,13 +77,14 @@ def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float) -> 
                 "motor and those of its encoder, A for B, and write 1"
             )
     most = max(motor.counts or 0.0 for motor in ordered)
+    gain = EFFORT * rpm / 60 / SPIN_UP / stall  # turns/s2 for an ampere of the bound
     return (
         f"/* Settings of {robot.name}, made by hydrostat firmware from robot.toml and {CALIBRATION}. */\n"
-        f'#define ROBOT "{robot_word(robot, calibration)}"\n'
+        f'#define ROBOT "{robot_word(robot, calibration, board)}"\n'
         f"#define DCS {len(ordered)}\n#define SERVOS 0\n#define DEADLINE_MS 200\n"
         f"#define FREE_SPEED {round(rpm / 60 * most)} /* of a motor without load [1/s] */\n"
         "/* least and greatest place, greatest speed [1/s], acceleration [1/s2], sign of the encoder, current [mA] */\n"
-        f"#define MOTORS {{ \\\n{_numbers(robot, calibration)}}}\n"
+        f"#define MOTORS {{ \\\n{_numbers(robot, calibration, board, gain)}}}\n"
     )
 
 
@@ -97,13 +132,17 @@ def board_kind(board: str) -> BoardKind:
     return BOARDS[board]
 
 
-def _numbers(robot: Robot, calibration: Calibration) -> str:
+def _ordered(calibration: Calibration, board: int) -> list[WinchMotor]:
+    return sorted((calibration.motors[place] for place in calibration.places(board)), key=lambda motor: motor.number)
+
+
+def _numbers(robot: Robot, calibration: Calibration, board: int, gain: float) -> str:
     """Limits of the motors in their order, counted from where they stand when the board is switched on."""
     winches, limits, lines = {winch.name: winch for winch in robot.winches}, LinkLimits(), ""
-    for motor in sorted(calibration.motors, key=lambda each: each.number):
+    for motor in _ordered(calibration, board):
         winch, counts = winches[motor.winch], (motor.counts or 0.0) / (2 * pi * motor.radius)
         numbers = [-counts * (winch.release + SPARE), counts * (winch.travel + SPARE)]
-        numbers += [counts * limits.speed, counts * limits.rise]
+        numbers += [counts * limits.speed, min(counts * limits.rise, gain * motor.current * (motor.counts or 0.0))]
         text = ", ".join(str(round(number)) for number in (*numbers, 1, 1e3 * motor.current))
         lines += f"    {{{text}}}, /* {re.sub(r'[^ -)+-~]', ' ', winch.name)} */ \\\n"
     return lines

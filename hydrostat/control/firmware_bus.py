@@ -68,13 +68,13 @@ class FirmwareBus(Bus):
             told = self._surely("I").split()
             if told[:2] != ["ok", "hydrostat"] or len(told) < 7:
                 raise HydrostatError("what answers on this port is not hydrostat's firmware; flash it first")
-            if int(told[5]) != len(self._scale):
-                raise HydrostatError(f"the board was built for {told[5]} motors, and {len(self._scale)} are asked for")
             if self._robot not in ("", told[4]):
                 raise HydrostatError(
                     f"the board was built for {told[4]}, not for {self._robot} as it is now; "
-                    "`hydrostat firmware` builds and writes it anew"
+                    "write it anew by `hydrostat firmware`, or mind the order of the ports"
                 )
+            if int(told[5]) != len(self._scale):
+                raise HydrostatError(f"the board was built for {told[5]} motors, and {len(self._scale)} are asked for")
             self.forgot = told[-1] == "new"
             proved = self._stops_by_itself(1e-3 * float(told[6]))
             self._must("O", "to let go")

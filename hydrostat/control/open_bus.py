@@ -13,8 +13,10 @@ from hydrostat.control.emulated_servos import EmulatedServo, LiveChain
 from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.firmware_build import robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
+from hydrostat.control.joined_bus import JoinedBus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
+from hydrostat.units import counted
 
 EMULATED = "emulated"
 """What is written for motors that are not there, but behave like servos."""
@@ -30,39 +32,54 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
     """A bus to the motors of a calibration.
 
     Args:
-        text: KIND:PORT or KIND:PORT@BAUD, or "emulated".
+        text: KIND:PORT or KIND:PORT@BAUD, with a comma between the ports of several boards; or "emulated".
         robot: whose motors they are.
         calibration: of the motors.
         tensions: what the cables of each winch pull together [N], by contractions [m]: the load of emulated motors.
 
     Raises:
-        InputError: no such kind.
-        HydrostatError: the port cannot be opened, or pyserial is not there.
+        InputError: no such kind, or not a port for each board of the calibration.
+        HydrostatError: a port cannot be opened, or pyserial is not there.
     """
     check_port(text)
     if text == EMULATED:
         return _emulated(calibration, tensions)
-    kind, _, place = text.partition(":")
+    kind, _, rest = text.partition(":")
     make, usual = _KINDS[kind]
-    name, _, baud = place.partition("@")
-    return make(open_line(name, int(baud or usual)), robot, calibration)
+    ports, buses = rest.split(","), list[Bus]()
+    if len(ports) != calibration.boards:
+        boards = counted(calibration.boards, "board")
+        raise InputError(f"--port {text}: has {counted(len(ports), 'port')}, and motors.toml has motors on {boards}")
+    try:
+        for board, port in enumerate(ports, 1):
+            name, _, baud = port.partition("@")
+            buses.append(make(open_line(name, int(baud or usual)), robot, calibration, board))
+    except BaseException:
+        for bus in buses:
+            bus.close()
+        raise
+    parts = [(bus, calibration.places(board)) for board, bus in enumerate(buses, 1)]
+    return buses[0] if len(buses) == 1 else JoinedBus(parts)
 
 
 def check_port(text: str) -> None:
     """Check words for motors, as in `open_bus` (InputError: no such kind, no port, or no baud rate)."""
-    kind, _, place = text.partition(":")
-    if text != EMULATED and (kind not in _KINDS or not place):
+    kind, _, rest = text.partition(":")
+    ports = rest.split(",")
+    if text != EMULATED and (kind not in _KINDS or not all(ports) or len(set(ports)) < len(ports)):
         shown = ", ".join(f"{each}:/dev/ttyUSB0" for each in _KINDS)
-        raise InputError(f"--port {text}: write {EMULATED}, or one such as {shown}")
-    _, at, baud = place.partition("@")
-    if at and not baud.isdecimal():
-        raise InputError(f"--port {text}: the baud rate after @ must be a number, such as 57600")
+        raise InputError(
+            f"--port {text}: write {EMULATED}, or one such as {shown}; commas part those of several boards"
+        )
+    for port in ports:
+        _, at, baud = port.partition("@")
+        if at and not baud.isdecimal():
+            raise InputError(f"--port {text}: the baud rate after @ must be a number, such as 57600")
 
 
 def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:
     """Servos that stand where nothing is taken in, each with the load of its cables."""
-    servos = [EmulatedServo(each.number, angle=each.zero or 0.0, model=1240) for each in calibration.motors]
-
+    servos = [EmulatedServo(n, angle=each.zero or 0.0, model=1240) for n, each in enumerate(calibration.motors, 1)]
     chain, known, torques = LiveChain(servos), -1.0, np.zeros(len(servos))
 
     def load(index: int) -> Callable[[float], float]:
@@ -92,27 +109,31 @@ def open_line(name: str, baud: int) -> Port:
         raise HydrostatError(f"{name} cannot be opened ({error}); look at the plug, the name and your rights") from None
 
 
-def _dynamixel(line: Port, _robot: Robot, calibration: Calibration) -> Bus:
-    return DynamixelBus(line, [motor.number for motor in calibration.motors])
+def _dynamixel(line: Port, _robot: Robot, calibration: Calibration, board: int) -> Bus:
+    return DynamixelBus(line, _numbers(calibration, board))
 
 
-def _feetech(line: Port, _robot: Robot, calibration: Calibration) -> Bus:
-    return FeetechBus(line, [motor.number for motor in calibration.motors])
+def _feetech(line: Port, _robot: Robot, calibration: Calibration, board: int) -> Bus:
+    return FeetechBus(line, _numbers(calibration, board))
 
 
-def _firmware(line: Port, robot: Robot, calibration: Calibration) -> Bus:
+def _firmware(line: Port, robot: Robot, calibration: Calibration, board: int) -> Bus:
     """Motors of one board, whose settings are those of the robot now."""
-    counts = [motor.counts for motor in calibration.motors]
+    counts = [calibration.motors[place].counts for place in calibration.places(board)]
     if None in counts:
         line.close()
         raise InputError("motors.toml has no counts of the motors' encoders; `hydrostat firmware` adds them")
-    numbers = [motor.number for motor in calibration.motors]
-    return FirmwareBus(line, [count or 0.0 for count in counts], numbers, robot=robot_word(robot, calibration))
+    word = robot_word(robot, calibration, board)
+    return FirmwareBus(line, [count or 0.0 for count in counts], _numbers(calibration, board), robot=word)
 
 
-_KINDS: dict[str, tuple[Callable[[Port, Robot, Calibration], Bus], int]] = {
+def _numbers(calibration: Calibration, board: int) -> list[int]:
+    return [calibration.motors[place].number for place in calibration.places(board)]
+
+
+_KINDS: dict[str, tuple[Callable[[Port, Robot, Calibration, int], Bus], int]] = {
     "dynamixel": (_dynamixel, 57600),
     "feetech": (_feetech, 1_000_000),
     "firmware": (_firmware, 250_000),
 }
-"""What makes a bus of a line, and its usual baud rate."""
+"""What makes a bus of a line and the number of its board, and its usual baud rate."""

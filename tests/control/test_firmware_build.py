@@ -37,13 +37,13 @@ def motors(robot: Robot) -> Calibration:
 
 
 def test_settings_are_the_robots_limits_in_counts(robot: Robot, motors: Calibration) -> None:
-    """By hand: a turn of 31.4 mm has 1,000 counts, so a millimetre has 31.8."""
+    """By hand: a turn of 31.4 mm has 1,000 counts, so a millimetre has 31.8; of 2 A at stall a tenth is for speed."""
     text = firmware_settings(robot, motors, rpm=60.0)
     assert f'#define ROBOT "{robot_word(robot, motors)}"' in text
     assert "#define DCS 2\n#define SERVOS 0" in text
     assert "#define FREE_SPEED 1000 " in text
     rows = re.findall(r"\{(-?\d+), (\d+), (\d+), (\d+), 1, (\d+)\}, /\* (.*) \*/", text)
-    assert rows == [("-796", "1751", "1910", "31831", "400", name) for name in (w.name for w in robot.winches[::-1])]
+    assert rows == [("-796", "1751", "1910", "5000", "400", name) for name in (w.name for w in robot.winches[::-1])]
 
 
 def test_words_of_boards_change_with_what_they_hold(robot: Robot, motors: Calibration) -> None:
@@ -129,8 +129,10 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     tool.write_text(f'#!/bin/sh\necho "$@" >> {noted}\n')
     tool.chmod(0o755)
     monkeypatch.setenv("PATH", str(tool.parent), prepend=":")
-    few = run(app, ["firmware", str(folder), "--out", str(tmp_path / "few")])
-    assert isinstance(few.exception, InputError)
+    few = run(
+        app, ["firmware", str(folder), "--board", "uno", "--port", "/dev/ttyACM7", "--out", str(tmp_path / "few")]
+    )
+    assert "2 boards need a port each" in str(few.exception)
     assert not (tmp_path / "few").exists()
     given = ["firmware", str(folder), "--board", "mega", "--out", str(tmp_path / "built")]
     shown = run(app, given)
@@ -146,6 +148,13 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
         == f"-p atmega2560 -c wiring -b 115200 -D -P /dev/ttyACM7 -U flash:w:{image}:i".split()
     )
     assert image.read_text().startswith(":10")
+    noted.unlink()
+    both = run(app, [*given[:2], "--board", "uno", "--out", str(tmp_path / "two"), "--port", "/dev/one,/dev/two"])
+    assert both.exit_code == 0, both.output
+    assert "board 2, uno: 1 motor, wired" in both.output
+    written = [line.split("flash:w:")[1] for line in noted.read_text().splitlines()]
+    assert written == [f"{tmp_path}/two/board_{number}/winches.hex:i" for number in (1, 2)]
+    assert [each.board for each in read_calibration(folder, robot_of(folder)).motors] == [1, 1, 2]
 
 
 def robot_of(folder: Path) -> Robot:

@@ -207,7 +207,7 @@ def power_facts(given: SheetInput) -> Facts | None:
         "A motor that runs away at once has its two wires swapped: the board stops it after 0.2 s.",
     ]
     if len(plan.boards) > 1:
-        mind.append("hydrostat drives one board at a time: servos on one bus have no such bound.")
+        mind.append("Each board has its own USB cable; tell hydrostat their ports with commas: firmware:PORT,PORT.")
     return {
         "rows": [list(row) for row in plan.table.texts],
         "mind": mind,
