@@ -30,14 +30,17 @@ def train(
     goals: Annotated[int, typer.Option(metavar="N", help="Unseen goals that policies are judged by.")] = 100,
     seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
     contact: Annotated[bool, typer.Option("--contact", help="The body feels itself.")] = False,
+    together: Annotated[int, typer.Option(metavar="N", help="Episodes side by side.")] = 4,
+    processes: Annotated[int, typer.Option(metavar="N", help="That share them; the curve is the same.")] = 1,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint in DIR.")] = False,
 ) -> None:
     """Learn by trial and error (reinforcement learning) to bring the markers of a robot to goals.
 
     Without --model every action is an equilibrium of the simulator. Policies are always judged by the simulator itself,
     on goals that they have not seen. curve.json and curve.png show how it went, and TensorBoard, where it is installed,
-    reads DIR/tensorboard. Needs the extra rl. For a body that stands still, inverse kinematics and
-    `hydrostat learn` are better and cheaper; this is for comparison, and for tasks that have no other way.
+    reads DIR/tensorboard. Episodes go on side by side, and --processes share them. Needs the extra rl. For a body
+    that stands still, inverse kinematics and `hydrostat learn` are better and cheaper; this is for comparison, and for
+    tasks that have no other way.
 
     Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
     """
@@ -69,10 +72,11 @@ def train(
         print(f"{point.steps:11}{point.equilibria:12}  {lengths}  {share}   {spent}", flush=True)
 
     options = training.TrainOptions(
-        method=training.TrainMethod(method), steps=steps, seed=seed, every=max(1, steps // 10)
+        method=training.TrainMethod(method), steps=steps, seed=seed, every=max(1, steps // 10), together=together
     )
     with one_interrupt("stopping; the last checkpoint is kept, --resume goes on"):
-        trained, curve = training.train(env, wanted, options, out, resume=resume, judge_in=judged, tell=tell)
+        more = {"resume": resume, "processes": processes}
+        trained, curve = training.train(env, wanted, options, out, judge_in=judged, tell=tell, **more)
     last = curve[-1]
     print(f"{1e3 * last.mean:.2f} mm, {100 * last.mean / size:.2f} % of the size, on {goals} unseen goals")
     print(f"Wrote {_picture(curve, method, out)}")

@@ -180,6 +180,20 @@ class ReachEnv(gymnasium.Env):
                 taken[one], taken[group[1]] = max(value, 0.0) * self._high[one], max(-value, 0.0) * self._high[group[1]]
         return taken
 
+    def kept(self) -> dict[str, Any]:
+        """What the next episode depends on, and what it has cost until now."""
+        return {
+            "random": self.np_random.bit_generator.state,
+            "world": self.world.kept(),
+            "uncounted": self.uncounted,
+        }
+
+    def go_on(self, kept: Mapping[str, Any]) -> None:
+        """Go on, from the next episode, where an environment was that has been kept."""
+        self.np_random.bit_generator.state = kept["random"]
+        self.world.go_on(kept["world"])
+        self.uncounted = kept["uncounted"]
+
     def render(self) -> np.ndarray | None:
         """The picture of where the robot is, (height, width, 3), bytes."""
         if self.render_mode != "rgb_array":

@@ -1,8 +1,10 @@
 """`train`: reinforcement learning of a policy by stable-baselines3, with progress, checkpoints and resumption."""
 
 import json
+import math
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from importlib.util import find_spec
@@ -39,7 +41,8 @@ class TrainOptions:
         updates: after each action.
         rate: of learning.
         noise: standard deviation of what is added to actions (DDPG, TD3).
-        every: actions from one evaluation to the next.
+        every: actions from one evaluation to the next; or a few more, as no episode is cut short.
+        together: episodes side by side; their actions are learned from together.
 
     Raises:
         InputError: a number that cannot be.
@@ -54,9 +57,10 @@ class TrainOptions:
     rate: float = 1e-3
     noise: float = 0.1
     every: int = 1_000
+    together: int = 4
 
     def __post_init__(self) -> None:
-        for name in ("steps", "batch", "updates", "every"):
+        for name in ("steps", "batch", "updates", "every", "together"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
         if not 0 <= self.noise <= 1:
@@ -122,6 +126,7 @@ def train(
     out: Path,
     *,
     resume: bool = False,
+    processes: int = 1,
     judge_in: ReachEnv | None = None,
     tell: Callable[[CurvePoint], None] = lambda _: None,
 ) -> tuple[Any, list[CurvePoint]]:
@@ -136,6 +141,7 @@ def train(
         out: folder, made if need be.
         judge_in: where policies are judged, such as the exact simulator; in `env` if left out.
         resume: go on from the checkpoint in `out`: the same curve as without a break.
+        processes: that share the episodes side by side; the curve does not depend on it.
         tell: called after each evaluation.
 
     Returns:
@@ -143,61 +149,78 @@ def train(
 
     Raises:
         HydrostatError: stable-baselines3 is not there, or sb3-contrib where the method is of it.
-        InputError: there is no checkpoint to go on from.
+        InputError: there is no checkpoint to go on from, or one of other options; more processes than episodes.
     """
-    learner = _learner(env, options)
-    out.mkdir(parents=True, exist_ok=True)
-    curve: list[CurvePoint] = []
-    if resume:
-        learner, curve = _resumed(type(learner), env, out)
-    learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
-    while (done := learner.num_timesteps) < options.steps:
-        learner._last_obs = None  # each stretch begins with an episode of its own
-        learner.learn(min(options.every, options.steps - done), reset_num_timesteps=False)
-        left = judge(judge_in or env, lambda seen: learner.predict(seen, deterministic=True)[0], goals)
-        point = CurvePoint(
-            steps=learner.num_timesteps,
-            equilibria=env.world.equilibria - env.uncounted,
-            mean=float(left.mean()),
-            median=float(np.median(left)),
-            worst=float(left.max()),
-            success=float((left < env.options.tolerance).mean()),
-        )
-        curve.append(point)
-        told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
-        replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
-        _record(learner, point)
-        _keep(learner, env, out)
-        tell(point)
+    if not 1 <= processes <= options.together:
+        raise InputError(f"processes must be 1 to {options.together}, the episodes side by side, not {processes}")
+    curve = _curve(options, out) if resume else []
+    with _copies(env, options, processes) as copies:
+        learner = _resumed(copies, options, out) if resume else _learner(env, copies, options)
+        out.mkdir(parents=True, exist_ok=True)
+        learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
+        while learner.num_timesteps < options.steps:
+            _stretch(learner, options, env.options.steps * options.together)
+            left = judge(judge_in or env, lambda seen: learner.predict(seen, deterministic=True)[0], goals)
+            point = CurvePoint(
+                steps=learner.num_timesteps,
+                equilibria=copies.equilibria,
+                mean=float(left.mean()),
+                median=float(np.median(left)),
+                worst=float(left.max()),
+                success=float((left < env.options.tolerance).mean()),
+            )
+            curve.append(point)
+            told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
+            replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
+            _record(learner, point)
+            _keep(learner, out)
+            tell(point)
     return learner, curve
 
 
-def _learner(env: ReachEnv, options: TrainOptions) -> Any:
-    """What learns, before its first step (HydrostatError: its library is not installed)."""
-    try:
-        import torch
-        from stable_baselines3 import HerReplayBuffer
-        from stable_baselines3.common.noise import NormalActionNoise
+@contextmanager
+def _copies(env: ReachEnv, options: TrainOptions, processes: int) -> Iterator[Any]:
+    """Episodes side by side, until no more are needed (HydrostatError: stable-baselines3 is not installed)."""
+    from hydrostat.training.side_by_side import SideBySide
 
-        made = _algorithm(options.method)
-    except ModuleNotFoundError as error:
-        raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    copies = SideBySide(env, options.together, processes=processes)
+    try:
+        yield copies
+    finally:
+        copies.close()
+
+
+def _stretch(model: Any, options: TrainOptions, whole: int) -> None:
+    """Learn from as many actions as are due until the next evaluation, in whole episodes of so many together."""
+    due = min(options.every, options.steps - model.num_timesteps)
+    model._last_obs = None  # each stretch begins with episodes of its own
+    model.learn(whole * math.ceil(due / whole), reset_num_timesteps=False)
+
+
+def _learner(env: ReachEnv, copies: Any, options: TrainOptions) -> Any:
+    """What learns, before its first step."""
+    made = _algorithm(options.method)
+    import torch
+    from stable_baselines3 import HerReplayBuffer
+    from stable_baselines3.common.noise import NormalActionNoise
+    from stable_baselines3.common.vec_env import VecMonitor
+
     torch.set_num_threads(1)
-    steps, size = env.options.steps, env.action_space.shape[0]  # type: ignore[index]
+    whole, size = env.options.steps * options.together, env.action_space.shape[0]  # type: ignore[index]
     more: dict[str, Any] = {}
     if options.method in (TrainMethod.DDPG, TrainMethod.TD3):
         more["action_noise"] = NormalActionNoise(np.zeros(size), np.full(size, options.noise))
     return made(
         "MultiInputPolicy",
-        env,
+        VecMonitor(copies),
         replay_buffer_class=HerReplayBuffer,
         replay_buffer_kwargs={"n_sampled_goal": 4, "goal_selection_strategy": "future"},
         policy_kwargs={"net_arch": list(options.layers), "activation_fn": torch.nn.SiLU},
         learning_rate=options.rate,
         batch_size=options.batch,
-        gamma=max(1.0 - 1.0 / steps, 0.0),
-        gradient_steps=options.updates,
-        learning_starts=max(100, 2 * steps),
+        gamma=max(1.0 - 1.0 / env.options.steps, 0.0),
+        gradient_steps=options.updates * options.together,
+        learning_starts=max(100, 2 * whole),
         buffer_size=max(options.steps, 1_000),
         seed=options.seed,
         device="cpu",
@@ -206,13 +229,15 @@ def _learner(env: ReachEnv, options: TrainOptions) -> Any:
 
 
 def _algorithm(method: TrainMethod) -> Any:
-    """The class that learns by a method (ModuleNotFoundError: its library is not installed)."""
-    if method is TrainMethod.TQC:
-        from sb3_contrib import TQC
+    """The class that learns by a method (HydrostatError: its library is not installed)."""
+    try:
+        if method is TrainMethod.TQC:
+            from sb3_contrib import TQC
 
-        return TQC
-    import stable_baselines3
-
+            return TQC
+        import stable_baselines3
+    except ModuleNotFoundError as error:
+        raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
     return getattr(stable_baselines3, method.name)
 
 
@@ -225,7 +250,7 @@ def _record(model: Any, point: CurvePoint) -> None:
     model.logger.close()
 
 
-def _keep(model: Any, env: ReachEnv, out: Path) -> None:
+def _keep(model: Any, out: Path) -> None:
     """Write all that the next step depends on."""
     import torch
 
@@ -234,27 +259,35 @@ def _keep(model: Any, env: ReachEnv, out: Path) -> None:
     state = {
         "numpy": np.random.get_state(legacy=False),  # noqa: NPY002
         "torch": torch.get_rng_state(),
-        "env": env.np_random.bit_generator.state,
         "actions": model.action_space.np_random.bit_generator.state,
-        "equilibria": (env.world.equilibria, env.uncounted),
+        "copies": model.env.kept(),
     }
     replace_file(out / "state.pkl", pickle.dumps(state))
 
 
-def _resumed(made: Any, env: ReachEnv, out: Path) -> tuple[Any, list[CurvePoint]]:
-    """Bring everything to where a checkpoint of one's own was; gives the model and the curve until then."""
-    import torch
-
+def _curve(options: TrainOptions, out: Path) -> list[CurvePoint]:
+    """The curve until a checkpoint (InputError: there is none, or one that was made in another way)."""
     if not (out / "state.pkl").exists():
         raise InputError(f"{out}: there is no checkpoint to go on from; begin anew, without --resume")
-    curve = [CurvePoint(**each) for each in json.loads((out / "curve.json").read_text())["curve"]]
-    model = made.load(out / "model.zip", env=env, device="cpu")
-    model.env._reset_seeds()  # or the next episode would begin as the first
+    kept = json.loads((out / "curve.json").read_text())
+    for name, value in json.loads(json.dumps(asdict(options))).items():
+        was = kept["options"].get(name)
+        if was != value and name not in ("steps", "every"):
+            raise InputError(f"{out}: this was begun with {name} = {was}, not {value}; go on with the same")
+    return [CurvePoint(**each) for each in kept["curve"]]
+
+
+def _resumed(copies: Any, options: TrainOptions, out: Path) -> Any:
+    """The model of a checkpoint of one's own, with everything as it was then."""
+    import torch
+    from stable_baselines3.common.vec_env import VecMonitor
+
+    torch.set_num_threads(1)
+    model = _algorithm(options.method).load(out / "model.zip", env=VecMonitor(copies), device="cpu")
     model.load_replay_buffer(out / "experience.pkl", truncate_last_traj=False)
     state = pickle.loads((out / "state.pkl").read_bytes())
     np.random.set_state(state["numpy"])  # noqa: NPY002
     torch.set_rng_state(state["torch"])
-    env.np_random.bit_generator.state = state["env"]
     model.action_space.np_random.bit_generator.state = state["actions"]
-    env.world.equilibria, env.uncounted = state["equilibria"]
-    return model, curve
+    copies.go_on(state["copies"])
+    return model

@@ -28,6 +28,14 @@ class World(ABC):
     def reach(self, contractions: Vector) -> Vector | None:
         """Coordinates of all markers [m] at contractions [m]; None where no equilibrium is found."""
 
+    def kept(self) -> tuple[int, ...]:
+        """How far it has come: equilibria, and what else the next episode depends on."""
+        return (self.equilibria,)
+
+    def go_on(self, kept: tuple[int, ...]) -> None:
+        """Go on where a world was that has been kept."""
+        (self.equilibria,) = kept
+
 
 class ExactWorld(World):
     """Equilibria of the simulator, each from the one before: with friction the way counts."""
@@ -80,6 +88,14 @@ class MixedWorld(World):
     def equilibria(self) -> int:  # type: ignore[override]
         """Equilibria of the exact world."""
         return self._worlds[1].equilibria
+
+    def kept(self) -> tuple[int, ...]:
+        """Equilibria, and which episode it is."""
+        return (self.equilibria, self._episode)
+
+    def go_on(self, kept: tuple[int, ...]) -> None:
+        """Go on with the episode after."""
+        self._worlds[1].equilibria, self._episode = kept
 
     def begin(self) -> None:
         """Go to the next episode."""

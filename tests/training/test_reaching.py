@@ -149,22 +149,63 @@ def test_judging_costs_no_equilibria(goals: list[Vector]) -> None:
     assert left == pytest.approx(by_hand)
 
 
+QUIET = pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+
+
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+@QUIET
 def test_it_learns_and_a_run_that_was_killed_goes_on_the_same_way(goals: list[Vector], tmp_path: Path) -> None:
     pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
 
     def run(steps: int, out: str, *, resume: bool = False) -> list:
-        options = TrainOptions(method=TrainMethod.SAC, steps=steps, every=150, layers=(32, 32), batch=64, rate=3e-3)
+        options = TrainOptions(method=TrainMethod.SAC, steps=steps, every=152, layers=(32, 32), batch=64, rate=3e-3)
         return train(straight(), goals, options, tmp_path / out, resume=resume)[1]
 
-    whole = run(450, "whole")
+    whole = run(456, "whole")
     assert whole[-1].mean < 0.95 * judge(straight(), lambda seen: np.zeros(3), goals).mean()
-    run(300, "broken")
-    assert run(450, "broken", resume=True) == whole
+    run(304, "broken")
+    assert run(456, "broken", resume=True) == whole
 
 
-@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+@pytest.mark.slow  # six processes begin
+@QUIET
+def test_the_curve_is_the_same_whoever_works(goals: list[Vector], tmp_path: Path) -> None:
+    """Episodes of three actions, four side by side, exact in every third: by one process, four, and one, then two.
+
+    Equilibria are counted in all of them: of a goal and three actions for each exact episode.
+    """
+    pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+
+    def run(processes: int, out: str, steps: int = 120, *, resume: bool = False) -> list:
+        robot = gallery_robot("starfish")
+        world = MixedWorld(Straight(), ExactWorld(robot), every=3)
+        env = ReachEnv(robot, world=world, options=ReachOptions(steps=3))
+        options = TrainOptions(method=TrainMethod.DDPG, steps=steps, every=50, layers=(8,), batch=16)
+        more = {"resume": resume, "processes": processes, "judge_in": straight(steps=3)}
+        return train(env, goals, options, tmp_path / out, **more)[1]  # type: ignore[arg-type]
+
+    curve = run(1, "one")
+    assert [point.steps for point in curve] == [60, 120]
+    assert len({point.mean for point in curve}) == 2
+    assert curve[0].equilibria == 4 * 4 * 2  # five whole episodes and the beginning of a sixth: exact are 0 and 3
+    assert run(4, "four") == curve
+    run(1, "broken", 60)
+    assert run(2, "broken", resume=True) == curve
+
+
+def test_what_does_not_fit_a_checkpoint_is_told(goals: list[Vector], tmp_path: Path) -> None:
+    pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+    with pytest.raises(InputError, match="processes must be 1 to 4"):
+        train(straight(), goals, TrainOptions(), tmp_path, processes=5)
+    with pytest.raises(InputError, match="there is no checkpoint"):
+        train(straight(), goals, TrainOptions(), tmp_path, resume=True)
+    (tmp_path / "state.pkl").touch()
+    (tmp_path / "curve.json").write_text('{"options": {"method": "ddpg-her"}, "curve": []}')
+    with pytest.raises(InputError, match="begun with method = ddpg-her, not sac-her"):
+        train(straight(), goals, TrainOptions(), tmp_path, resume=True)
+
+
+@QUIET
 @pytest.mark.parametrize("method", ["SAC", "DDPG", "TQC"])
 def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: list[Vector]) -> None:
     name = "sb3_contrib" if method == "TQC" else "stable_baselines3"
@@ -195,7 +236,7 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: li
         assert alone.inverted(goal) == pytest.approx(asked, abs=1e-7)
 
 
-@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+@QUIET
 def test_tensorboard_reads_what_the_curve_says(goals: list[Vector], tmp_path: Path) -> None:
     pytest.importorskip("sb3_contrib", reason="sb3-contrib is not installed")
     reader = pytest.importorskip("tensorboard.backend.event_processing.event_accumulator", reason="no tensorboard")

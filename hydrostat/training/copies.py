@@ -1,0 +1,109 @@
+"""`Copies`: copies of an environment, here or in a process of their own; light to import, as processes do it."""
+
+import signal
+from collections.abc import Mapping
+from copy import deepcopy
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import Any
+
+import numpy as np
+
+from hydrostat.errors import HydrostatError
+from hydrostat.training.reach_env import ReachEnv
+
+
+class Copies:
+    """Copies of an environment, one after another."""
+
+    def __init__(self, env: ReachEnv, count: int) -> None:
+        """So many."""
+        self._envs, self._answer = [deepcopy(env) for _ in range(count)], list[Any]()
+
+    def ask(self, name: str, *given: Any) -> None:
+        """Do what is called so with something for each copy, if anything is given."""
+        rows = zip(*given, strict=True) if given else [()] * len(self._envs)
+        self._answer = [getattr(self, f"_{name}")(env, *row) for env, row in zip(self._envs, rows, strict=True)]
+
+    def answer(self) -> list[Any]:
+        """What came of it."""
+        return self._answer
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+    @staticmethod
+    def _reset(env: ReachEnv, seed: int | None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+        return env.reset(seed=seed)
+
+    @staticmethod
+    def _step(env: ReachEnv, action: np.ndarray) -> tuple[dict[str, np.ndarray], float, bool, dict[str, Any]]:
+        seen, reward, _, over, info = env.step(action)
+        told = {**info, "TimeLimit.truncated": over}
+        if over:
+            told["terminal_observation"] = seen
+            seen, _ = env.reset()
+        return seen, reward, over, told
+
+    @staticmethod
+    def _kept(env: ReachEnv) -> dict[str, Any]:
+        return env.kept()
+
+    @staticmethod
+    def _go_on(env: ReachEnv, kept: Mapping[str, Any]) -> None:
+        env.go_on(kept)
+
+
+class CopiesElsewhere:
+    """Copies of an environment in a process of their own."""
+
+    def __init__(self, env: ReachEnv, count: int) -> None:
+        """So many, in a new process."""
+        context = get_context("spawn")
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_work, args=(theirs, env, count), daemon=True)
+        self._process.start()
+        theirs.close()
+
+    def ask(self, name: str, *given: Any) -> None:
+        """Have it done."""
+        self._pipe.send((name, given))
+
+    def answer(self) -> list[Any]:
+        """Wait for what came of it (HydrostatError: it has died, or what it met)."""
+        try:
+            done, error = self._pipe.recv()
+        except EOFError:
+            raise HydrostatError("a process that solves for poses has died; --resume goes on") from None
+        if error is not None:
+            raise error
+        return done
+
+    def close(self) -> None:
+        """End the process."""
+        self._pipe.close()
+        self._process.join(_PATIENCE)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+
+
+def _work(pipe: Connection, env: ReachEnv, count: int) -> None:
+    """Do what is asked until nobody asks any more; Ctrl-C is for the one who asks."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    copies = Copies(env, count)
+    while True:
+        try:
+            name, given = pipe.recv()
+        except (EOFError, OSError):
+            return
+        try:
+            copies.ask(name, *given)
+            told = copies.answer(), None
+        except HydrostatError as error:
+            told = [], error
+        pipe.send(told)
+
+
+_PATIENCE = 5.0
+"""Seconds that a process has to end by itself."""
