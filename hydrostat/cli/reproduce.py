@@ -52,8 +52,9 @@ def reproduce(
     hand, and another range of motion.
 
     Reinforcement learning (section 5.4) has figure-5.8 (one action or ten), figure-5.9 (curricula), figure-5.10
-    (tolerances and errors), figure-5.12 (from anywhere), table-noise and table-reward; table-policies
-    has other ways to a policy, on the same outcomes, and table-gradient the best of them. It learns in networks of our
+    (tolerances and errors), figure-5.12 (from anywhere), table-noise and table-reward; figure-5.14-trial
+    puts it beside others that learn from the pairs that it tried; table-policies has
+    other ways to a policy, on the same outcomes, and table-gradient the best of them. It learns in networks of our
     hand, one number for each finger, several seeds at once, and says which claims hold. Needs the extra rl.
     figure-5.13 is the same method in FetchReach, figure-5.13-hand in HandReach, whose curves are published; both are of
     gymnasium-robotics.
@@ -61,9 +62,9 @@ def reproduce(
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
     from hydrostat.cli.reproduce_reference import REFERENCE_TABLES, reproduce_reference
-    from hydrostat.cli.reproduce_trials import GRADIENT, POLICIES, TRIALS, reproduce_trials
+    from hydrostat.cli.reproduce_trials import GRADIENT, POLICIES, SHARED, TRIALS, reproduce_trials
 
-    trials = (*TRIALS, POLICIES, GRADIENT)
+    trials = (*TRIALS, SHARED, POLICIES, GRADIENT)
     there = (*THINGS, *trials, *REFERENCE_TABLES)
     asked = there if "all" in what else tuple(what)
     for name in asked:

@@ -1,23 +1,19 @@
 """`reproduce_trials`: the thesis's experiments with reinforcement learning, for `hydrostat reproduce`."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from hydrostat.cli.sample import told
-from hydrostat.errors import HydrostatError
+from hydrostat.cli.trial_tables import drawn_runs, judged_claims, shared_table, spanned, trials_missing
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
-    from hydrostat.training.experiments import Experiment, Ran
     from hydrostat.training.run_experiment import Judged
 
 TRIALS = ("figure-5.8", "figure-5.9", "figure-5.10", "figure-5.12", "table-noise", "table-reward")
@@ -25,6 +21,9 @@ TRIALS = ("figure-5.8", "figure-5.9", "figure-5.10", "figure-5.12", "table-noise
 
 POLICIES, GRADIENT = "table-policies", "table-gradient"
 """What other ways to a policy leave, on the same actions and outcomes; and the best of them alone, on more goals."""
+
+SHARED = "figure-5.14-trial"
+"""Trial and error beside others, of the pairs that it tried and of as many drawn evenly."""
 
 
 def reproduce_trials(
@@ -41,7 +40,7 @@ def reproduce_trials(
     """Learn in networks of a robot, judge in the simulator, and say which claims of the thesis hold.
 
     Args:
-        names: of `TRIALS`, `POLICIES` or `GRADIENT`.
+        names: of `TRIALS`, `SHARED`, `POLICIES` or `GRADIENT`.
         robot: which, with contact if its model knows it.
         out: folder for tables and pictures; the model too, if none is given.
         size: minutes, hour or full.
@@ -64,6 +63,9 @@ def reproduce_trials(
     simulation, width = Simulation(robot), 1e3 * robot.body.mesh.size
     count = usual.seeds if seeds is None else seeds
     for name in names:
+        if name == SHARED:
+            _shared(networks, simulation, out, seeds=count, usual=usual)
+            continue
         if name in (POLICIES, GRADIENT):
             _policies(name, networks, simulation, out, seeds=count, usual=usual)
             continue
@@ -90,6 +92,19 @@ def reproduce_trials(
             kept["runs"][judged.name]["in the simulator [cm]"] = exact.tolist()
         replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
         print(f"Wrote {save_png(drawn_runs(experiment, runs), out / f'{name}.png')} and {name}.json")
+
+
+def _shared(networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials") -> None:
+    """Trial and error beside others, of the pairs that it tried and of pairs drawn evenly."""
+    from hydrostat.training.policies import Budget
+    from hydrostat.training.run_experiment import finger_pairs
+    from hydrostat.training.shared_data import compare_on_shared_data
+    from hydrostat.training.trials import NetworkReach
+
+    budget = Budget(steps=max(500, usual.steps // 3), epochs=usual.small)
+    trials = NetworkReach(networks, groups=finger_pairs(networks))
+    compared = compare_on_shared_data(trials, simulation, seeds=seeds, goals=usual.goals, budget=budget, tell=told())
+    shared_table(SHARED, compared, out, 1e3 * simulation.robot.body.mesh.size)
 
 
 def _policies(
@@ -169,61 +184,6 @@ def _line(judged: "Judged", width: float) -> str:
     lost = int(np.isnan(exact).sum())
     text = f"{judged.name:18}{int(ran.epochs.actions[-1]):8}" + "".join(f"{number:>19}" for number in numbers)
     return f"{text}{100 * seeds.mean / width:8.2f}{lost:6}"
-
-
-def spanned(found: object, digits: int) -> str:
-    """An interval as text."""
-    mean, low, high = (getattr(found, name) for name in ("mean", "low", "high"))
-    return f"{mean:.{digits}f} ({low:.{digits}f}-{high:.{digits}f})"
-
-
-@contextmanager
-def trials_missing() -> Iterator[None]:
-    """Say which library is missing for reinforcement learning (HydrostatError)."""
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        raise HydrostatError(f'this needs {error.name}; install it: pip install "hydrostat[rl]"') from None
-
-
-def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[str, Any]:
-    """Say what the claims come to; all numbers of the runs, for a file."""
-    from hydrostat.training.verdict import interquartile, verdict
-
-    claims = list[dict[str, object]]()
-    for claim in experiment.claims:
-        values = claim.measure(ran)
-        word = verdict(values, claim.above)
-        print(
-            f"  {claim.text}: {word}, {spanned(interquartile(values), 3)} {claim.unit}, above {claim.above:g} claimed"
-        )
-        claims.append({"claim": claim.text, "verdict": word, "seeds": values.tolist(), "above": claim.above})
-    runs = {
-        name: {
-            "actions": run.epochs.actions.tolist(),
-            "success": run.epochs.success.tolist(),
-            "distance [cm]": run.epochs.distance.tolist(),
-            "tolerance [cm]": run.epochs.tolerance.tolist(),
-        }
-        for name, run in ran.items()
-    }
-    return {"title": experiment.title, "claims": claims, "runs": runs}
-
-
-def drawn_runs(experiment: "Experiment", ran: "Mapping[str, Ran]") -> "Figure":
-    """Curves of all runs: interquartile means over the seeds, and what lies between the seeds."""
-    from hydrostat.plot import draw_curves
-
-    words = {
-        "success": ("share of successes", 1.0),
-        "distance": ("mean distance [mm]", 10.0),
-        "tolerance": ("tolerance [mm]", 10.0),
-    }
-    panes = {}
-    for shown in experiment.shown:
-        label, unit = words[shown]
-        panes[label] = {name: (run.epochs.actions, unit * getattr(run.epochs, shown)) for name, run in ran.items()}
-    return draw_curves(panes)
 
 
 class _Trials(NamedTuple):

@@ -101,14 +101,19 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
     return figure
 
 
-def draw_costs(curves: Mapping[str, Sequence[tuple[float, float]]], *, width: float = WIDTH) -> Figure:
-    """Mean errors [mm] of ways to a policy over the equilibria that each has used, as (equilibria, error); inches."""
+def draw_costs(
+    curves: Mapping[str, Sequence[tuple[float, float]]],
+    used: str = "equilibria of the simulator",
+    *,
+    width: float = WIDTH,
+) -> Figure:
+    """Mean errors [mm] of ways to a policy over what each has used, as (used, error); inches."""
     figure, axes = new_chart("", "", width=width, height=4.0)
     for number, (name, points) in enumerate(curves.items()):
         across, up = zip(*sorted(points), strict=True)
         colour = WINCHES[number % len(WINCHES)]
         axes.plot(across, up, color=colour, linewidth=1.4, marker="o", markersize=5, label=name)
-    _logarithmic(axes, "equilibria of the simulator", "mean error in the simulator [mm]")
+    _logarithmic(axes, used, "mean error in the simulator [mm]")
     axes.legend(frameon=False, fontsize=8, labelcolor=INK, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     figure.subplots_adjust(right=0.72)
     return figure

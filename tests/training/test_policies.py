@@ -1,13 +1,17 @@
 """Ways to a policy on the same pairs. Oracles: NumPy, and a robot of networks whose outcomes are known."""
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch")
 
+from hydrostat.cli.trial_tables import shared_table  # noqa: E402
 from hydrostat.training import policies as room  # noqa: E402
+from hydrostat.training import shared_data  # noqa: E402
 from hydrostat.training.policies import WAYS, Budget, TriedPairs  # noqa: E402
 from hydrostat.training.trials import NetworkReach  # noqa: E402
 
@@ -59,3 +63,40 @@ def test_slopes_go_through_to_the_actions(pairs: TriedPairs) -> None:
     assert acts.grad is not None
     assert (acts.grad == 2.0).all()
     assert not trials.reach(acts).requires_grad
+
+
+def test_others_learn_from_what_was_tried(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    """Of a straight map: ridge finds it from either pairs, 1-NN leaves what NumPy says, more pairs leave less."""
+    monkeypatch.setattr(shared_data, "SMALL", replace(room.SMALL, layers=(8,), cycles=4, updates=4, batch=16))
+    goals = 1.8 * torch.rand(1, 50, 2, generator=torch.Generator().manual_seed(1)) - 0.9
+    learners = []
+
+    def exact(simulation, trials, act, seeds, many):
+        wanted = goals.expand(seeds, many, -1)
+        return trials.distances(trials.reach(act(wanted, wanted)), wanted).numpy()
+
+    class Kept(shared_data.HindsightDdpg):
+        def __init__(self, *given, **more):
+            super().__init__(*given, **more)
+            learners.append(self)
+
+    monkeypatch.setattr(shared_data, "exact_distances", exact)
+    monkeypatch.setattr(shared_data, "HindsightDdpg", Kept)
+    budget = Budget(steps=60, epochs=8, batch=32)
+    found = list(shared_data.compare_on_shared_data(StraightReach(), None, seeds=2, goals=50, budget=budget))  # type: ignore[arg-type]
+    assert [each.pairs for each in found[::8]] == [40, 80, 160, 320]
+    left = {(each.way, each.pairs): each.exact for each in found}
+    assert len(left) == 4 * 8
+    for data in ("shared", "independent"):
+        assert left[f"ridge, {data}", 320].max() < 1e-3
+        assert left[f"1-NN, {data}", 320].mean() < left[f"1-NN, {data}", 40].mean()
+    tried = learners[0].tried[1][:, :80]
+    apart = np.linalg.norm(goals.numpy()[:, :, None] - tried[:, None], axis=-1).min(axis=2)
+    np.testing.assert_allclose(left["1-NN, shared", 80], apart, atol=1e-3)
+    assert left[shared_data.BEST, 320].mean() <= 1.2 * left[shared_data.TRIED, 40].mean()
+
+    shared_table("figure", found, tmp_path, 100.0)
+    told = capsys.readouterr().out
+    assert "a network ends nearer than ridge regression (N16): contradicted" in told
+    assert len(json.loads((tmp_path / "figure.json").read_text())["rows"]) == 32
+    assert (tmp_path / "figure.png").exists()

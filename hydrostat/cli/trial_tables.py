@@ -1,0 +1,100 @@
+"""Tables, verdicts and pictures of learning by trial, for `hydrostat reproduce`."""
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hydrostat.errors import HydrostatError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from hydrostat.training.experiments import Experiment, Ran
+    from hydrostat.training.shared_data import OfPairs
+
+
+def spanned(found: object, digits: int) -> str:
+    """An interval as text."""
+    mean, low, high = (getattr(found, name) for name in ("mean", "low", "high"))
+    return f"{mean:.{digits}f} ({low:.{digits}f}-{high:.{digits}f})"
+
+
+@contextmanager
+def trials_missing() -> Iterator[None]:
+    """Say which library is missing for reinforcement learning (HydrostatError)."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        raise HydrostatError(f'this needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+
+
+def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[str, Any]:
+    """Say what the claims come to; all numbers of the runs, for a file."""
+    from hydrostat.training.verdict import interquartile, verdict
+
+    claims = list[dict[str, object]]()
+    for claim in experiment.claims:
+        values = claim.measure(ran)
+        word = verdict(values, claim.above)
+        print(
+            f"  {claim.text}: {word}, {spanned(interquartile(values), 3)} {claim.unit}, above {claim.above:g} claimed"
+        )
+        claims.append({"claim": claim.text, "verdict": word, "seeds": values.tolist(), "above": claim.above})
+    runs = {
+        name: {
+            "actions": run.epochs.actions.tolist(),
+            "success": run.epochs.success.tolist(),
+            "distance [cm]": run.epochs.distance.tolist(),
+            "tolerance [cm]": run.epochs.tolerance.tolist(),
+        }
+        for name, run in ran.items()
+    }
+    return {"title": experiment.title, "claims": claims, "runs": runs}
+
+
+def drawn_runs(experiment: "Experiment", ran: "Mapping[str, Ran]") -> "Figure":
+    """Curves of all runs: interquartile means over the seeds, and what lies between the seeds."""
+    from hydrostat.plot import draw_curves
+
+    words = {
+        "success": ("share of successes", 1.0),
+        "distance": ("mean distance [mm]", 10.0),
+        "tolerance": ("tolerance [mm]", 10.0),
+    }
+    panes = {}
+    for shown in experiment.shown:
+        label, unit = words[shown]
+        panes[label] = {name: (run.epochs.actions, unit * getattr(run.epochs, shown)) for name, run in ran.items()}
+    return draw_curves(panes)
+
+
+def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: float) -> None:
+    """Tell what each way leaves after so many pairs, which claims hold at the end, and draw it; width in mm."""
+    from hydrostat.plot import draw_costs, save_png
+    from hydrostat.robot import replace_file
+    from hydrostat.training.shared_data import ORDERS
+    from hydrostat.training.verdict import interquartile, verdict
+
+    print(f"\n{name}: trial and error (T=1, 4 x 30, shaped, the goal alone) beside others, judged in the simulator")
+    print(f"{'way':24}{'pairs':>8}{'mean [mm]':>22}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
+    ends, rows, curves = dict[str, np.ndarray](), list[dict[str, Any]](), dict[str, list[tuple[float, float]]]()
+    for each in compared:
+        exact = 10.0 * each.exact
+        ends[each.way] = seeds = np.nanmean(exact, axis=1)
+        found, high = interquartile(seeds), float(np.nanquantile(exact, 0.99))
+        text = f"{each.way:24}{each.pairs:8}{spanned(found, 3):>22}{100 * found.mean / width:8.3f}"
+        print(f"{text}{high:10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
+        rows.append({"way": each.way, "pairs": each.pairs, "seeds": seeds.tolist(), "p99": high})
+        curves.setdefault(each.way, []).append((each.pairs, found.mean))
+    claims = []
+    for order in ORDERS:
+        lead = ends[order.farther] - ends[order.nearer]
+        word = verdict(lead, 0.0)
+        print(f"  {order.text}: {word}, by {spanned(interquartile(lead), 3)} mm")
+        claims.append({"claim": order.text, "verdict": word, "seeds": lead.tolist()})
+    replace_file(out / f"{name}.json", (json.dumps({"claims": claims, "rows": rows}, indent=1) + "\n").encode())
+    print(f"Wrote {save_png(draw_costs(curves, 'pairs of actions and outcomes'), out / f'{name}.png')} and {name}.json")
