@@ -50,13 +50,13 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
 def _line(name: str, ran: "Ran") -> str:
     """A run in numbers."""
     from hydrostat.training.experiments import final
-    from hydrostat.training.reference import actions_until
+    from hydrostat.training.reference import none_missed_from
     from hydrostat.training.verdict import interquartile
 
     success = spanned(interquartile(final(ran)), 2)
     left = spanned(interquartile(10.0 * ran.best[-1].mean(axis=1)), 1)
-    slowest = f"{actions_until(ran, 1.0).max():.0f}".replace("inf", "never")
-    return f"{name:10}{int(ran.epochs.actions[-1]):8}{success:>20}{left:>24}{slowest:>18}"
+    sure = f"{none_missed_from(ran):.0f}".replace("inf", "never")
+    return f"{name:10}{int(ran.epochs.actions[-1]):8}{success:>20}{left:>24}{sure:>18}"
 
 
 _SIZES = {"minutes": (2, 5), "hour": (5, 10), "full": (10, 50)}

@@ -10,8 +10,7 @@ from gymnasium import spaces
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import Contact, Robot, load_robot
-from hydrostat.simulation import Simulation
+from hydrostat.robot import Contact, Pose, Robot, load_robot
 from hydrostat.training.worlds import ExactWorld, World
 
 BEYOND = 1.02
@@ -113,7 +112,7 @@ class ReachEnv(gymnasium.Env):
             achieved_goal=place,
             desired_goal=place,
         )
-        self.uncounted = 0
+        self.uncounted, self._pictures = 0, None
         self._taken, self._at, self._goal, self._step = np.zeros(len(self._low)), self.rest, self.rest, 0
 
     def reset(
@@ -195,20 +194,22 @@ class ReachEnv(gymnasium.Env):
         self.uncounted = kept["uncounted"]
 
     def render(self) -> np.ndarray | None:
-        """The picture of where the robot is, (height, width, 3), bytes."""
+        """The picture of where the robot is and should be, (height, width, 3), bytes; always of one size.
+
+        It is solved for anew in the simulator, whatever the world.
+        """
         if self.render_mode != "rgb_array":
             return None
-        import matplotlib.pyplot as plt
+        from hydrostat.training.reach_pictures import ReachPictures
 
-        from hydrostat.plot import draw_pose
-        from hydrostat.plot.picture_file import figure_pixels
-
-        pose = Simulation(self.robot).solve(self._taken, strict=False)
-        figure = draw_pose(self.robot, pose)
-        try:
-            return (255 * figure_pixels(figure)[..., :3]).astype(np.uint8)
-        finally:
-            plt.close(figure)
+        if self._pictures is None:
+            self._pictures = ReachPictures(self.robot)
+        markers, places = self.robot.markers, self._goal.reshape(-1, self._dim).tolist()
+        goals = {markers[row].name: tuple(places[row]) for row in (self.seen[:: self._dim] // self._dim).tolist()}
+        words = (
+            f"{1e3 * self._info()['distance']:.1f} mm from the goal, after action {self._step} of {self.options.steps}"
+        )
+        return self._pictures.draw(self._taken, Pose(name="goal", targets=goals), words)
 
     def _spread(self, action: np.ndarray) -> Vector:
         changes = np.zeros(len(self._low))

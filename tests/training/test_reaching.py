@@ -1,5 +1,6 @@
 """Environments in which robots reach. Oracles: the simulator, sums by hand, the checkers of those who use them."""
 
+from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
@@ -54,7 +55,7 @@ def test_checkers_of_both_libraries_pass(incremental: bool) -> None:
         world=Straight(),
         options=ReachOptions(steps=5, incremental=incremental),
     )
-    check_env(made.unwrapped, skip_render_check=True)
+    check_env(made.unwrapped)
     checker = pytest.importorskip("stable_baselines3.common.env_checker", reason="no stable-baselines3")
     checker.check_env(made.unwrapped)
 
@@ -102,6 +103,33 @@ def test_pairs_move_one_of_two_winches_and_increments_add_up() -> None:
         observation = env.step(np.array([1.0, 0.5, -1.0]))[0]
     begin = np.array([2 * winch.release / (winch.travel + winch.release) - 1 for winch in robot.winches])
     assert observation["observation"] == pytest.approx(np.clip(begin + np.array([0.6, 0.3, -0.6]), -1, 1))
+
+
+@pytest.mark.usefixtures("unchecked")
+def test_pictures_show_robot_and_goal_in_one_frame() -> None:
+    """On white paper, of one size whatever the pose; another goal is another picture, and crosses are dark.
+
+    The pixels that a goal changes are near to where it is: no more than a tenth of the picture.
+    """
+    robot = gallery_robot("starfish")
+    name = robot.markers[0].name
+    options = ReachOptions(steps=2, markers=[name])
+    env = ReachEnv(robot, world=Straight(), options=options, render_mode="rgb_array")
+    shown = []
+    for goal in (env.rest[:2], env.rest[:2] + 0.01):
+        env.reset(options={"goal": goal})
+        shown.append(env.render())
+    env.step(np.full(3, 0.5))
+    shown.append(deepcopy(env).render())
+    assert {(picture.shape, picture.dtype.name) for picture in shown} == {(shown[0].shape, "uint8")}
+    assert all((picture[0, 0] == 255).all() for picture in shown)
+    assert all(picture.mean() > 200 for picture in shown)
+    body = slice(60, None)  # below the words
+    other = (shown[0][body] != shown[1][body]).any(axis=2)
+    assert 0 < other.mean() < 0.1
+    assert shown[1][body][other].min() < 60
+    assert (shown[2][body] != shown[1][body]).any(axis=2).mean() > 0.02
+    assert straight().render() is None
 
 
 def test_markers_that_are_not_asked_for_are_not_looked_at() -> None:

@@ -14,7 +14,7 @@ from hydrostat.errors import HydrostatError  # noqa: E402
 from hydrostat.training import reference as room  # noqa: E402
 from hydrostat.training.experiments import Ran  # noqa: E402
 from hydrostat.training.hindsight_ddpg import DdpgOptions, Epochs, HindsightDdpg  # noqa: E402
-from hydrostat.training.reference import REFERENCES, actions_until  # noqa: E402
+from hydrostat.training.reference import REFERENCES, none_missed_from  # noqa: E402
 from hydrostat.training.trials import GymnasiumTrials, robotics_task  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("unchecked")
@@ -76,11 +76,14 @@ def test_it_learns_to_walk_with_sparse_rewards() -> None:
     assert done.success[0].mean() < 0.8
 
 
-def test_when_a_share_is_first_reached() -> None:
-    success = np.array([[0.1, 0.5], [1.0, 0.6], [0.9, 0.7]])
-    epochs = Epochs(actions=np.array([5, 10, 15]), success=success, distance=success, tolerance=success)
+@pytest.mark.parametrize(("last", "wanted"), [(1.0, 15), (0.95, np.inf)])
+def test_when_no_seed_misses_a_test_any_more(last: float, wanted: float) -> None:
+    success = np.array([[1.0, 1.0], [1.0, 0.6], [1.0, 1.0], [last, 1.0]])
+    epochs = Epochs(actions=np.array([5, 10, 15, 20]), success=success, distance=success, tolerance=success)
     run = REFERENCES["figure-5.13"].experiment.runs["sparse"]
-    assert actions_until(Ran(run=run, epochs=epochs, best=np.ones((1, 2, 1))), 1.0).tolist() == [10, np.inf]
+    assert none_missed_from(Ran(run=run, epochs=epochs, best=np.ones((1, 2, 1)))) == wanted
+    always = replace(epochs, success=np.ones((4, 2)))
+    assert none_missed_from(Ran(run=run, epochs=always, best=np.ones((1, 2, 1)))) == 5
 
 
 def test_settings_are_the_published_ones() -> None:

@@ -1,0 +1,38 @@
+"""`ReachPictures`: what a robot that reaches looks like, frame by frame, always in one frame."""
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.plot.frame import Frame
+from hydrostat.plot.frame_pictures import FramePictures, Picture
+from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import Simulation
+
+
+class ReachPictures:
+    """Pictures of a robot at contractions, with its goal; in each it is as large, and colours mean the same tension."""
+
+    def __init__(self, robot: Robot) -> None:
+        """Room for the body at rest and a share more around it; colours up to the tensions with all cable taken in."""
+        self._robot, self._simulation = robot, Simulation(robot)
+        rest = robot.body.mesh.nodes
+        middle = 0.5 * (rest.min(axis=0) + rest.max(axis=0))
+        most = self._simulation.solve(np.array([winch.travel for winch in robot.winches]), strict=False)
+        room = Frame(nodes=middle + _ROOM * (rest - middle), tensions=most.tensions)
+        self._pictures = FramePictures(robot, [room], width=_WIDTH)
+
+    def __reduce__(self) -> tuple[type["ReachPictures"], tuple[Robot]]:
+        """Make anew what is copied or sent: a figure of matplotlib that was copied draws nothing more."""
+        return ReachPictures, (self._robot,)
+
+    def draw(self, contractions: Vector, goal: Pose, words: str) -> Picture:
+        """The picture at contractions [m], reached from rest, with words below the name of the robot."""
+        pose = self._simulation.solve(contractions, strict=False)
+        frame = Frame(
+            nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions, target=goal, words=words
+        )
+        return self._pictures.draw(frame)
+
+
+_ROOM, _WIDTH = 1.25, 640
+"""How much larger than the body at rest the frame is, and width of a picture [pixels]."""
