@@ -17,7 +17,7 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
     code, out, _ = run("train", starfish, "--steps", 20, "--goals", 3, "--out", tmp_path / "policy")
     assert code == 0
     curve = json.loads((tmp_path / "policy" / "curve.json").read_text())["curve"]
-    assert [point["steps"] for point in curve] == list(range(2, 21, 2))
+    assert [point["steps"] for point in curve] == [4, 8, 12, 16, 20]  # four episodes side by side
     assert curve[-1]["equilibria"] >= 40  # a goal and an action each
     assert out.splitlines()[-2].endswith("on 3 unseen goals")
     assert (tmp_path / "policy" / "curve.png").read_bytes().startswith(b"\x89PNG")
@@ -29,6 +29,7 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
         (["--method", "magic"], "--method magic: there are: ddpg-her, td3-her, sac-her, tqc-her"),
         (["--exact", 3], "--exact is for networks, with --model"),
         (["--horizon", 0], "steps must be 1 or more, not 0"),
+        (["--processes", 5], "processes must be 1 to 4, the episodes side by side, not 5"),
         (["--model", "none.model"], "none.model: cannot be read"),
     ],
 )
