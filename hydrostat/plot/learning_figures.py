@@ -104,6 +104,7 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
 def draw_costs(
     curves: Mapping[str, Sequence[tuple[float, float]]],
     used: str = "equilibria of the simulator",
+    missed: str = "mean error in the simulator [mm]",
     *,
     width: float = WIDTH,
 ) -> Figure:
@@ -113,7 +114,7 @@ def draw_costs(
         across, up = zip(*sorted(points), strict=True)
         colour = WINCHES[number % len(WINCHES)]
         axes.plot(across, up, color=colour, linewidth=1.4, marker="o", markersize=5, label=name)
-    _logarithmic(axes, used, "mean error in the simulator [mm]")
+    _logarithmic(axes, used, missed)
     axes.legend(frameon=False, fontsize=8, labelcolor=INK, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     figure.subplots_adjust(right=0.72)
     return figure

@@ -35,12 +35,14 @@ class OfPairs:
     Attributes:
         way: its name.
         pairs: how many.
-        exact: distances in the simulator [cm], (seeds, goals).
+        expected: distances in the networks that it was learned in [cm], (seeds, goals).
+        exact: distances in the simulator [cm], (seeds, goals); after all pairs alone, as it takes long, else None.
     """
 
     way: str
     pairs: int
-    exact: np.ndarray
+    expected: np.ndarray
+    exact: np.ndarray | None
 
 
 def compare_on_shared_data(
@@ -56,7 +58,7 @@ def compare_on_shared_data(
 
     Args:
         trials: of one action.
-        simulation: of the same robot, which judges.
+        simulation: of the same robot, which judges at the end.
         seeds: how often each begins at random.
         goals: that are asked for in the simulator.
         budget: epochs of trial and error, and steps of the network.
@@ -80,8 +82,15 @@ def compare_on_shared_data(
         for data, pairs in (("shared", tried.first(each * at)), ("independent", drawn.first(each * at))):
             ways |= {f"{name}, {data}": way(trials, pairs, budget) for name, way in OTHERS.items()}
         for name, act in ways.items():
-            exact = exact_distances(simulation, trials, act, seeds, goals)
-            yield OfPairs(way=name, pairs=each * at, exact=exact)
+            exact = exact_distances(simulation, trials, act, seeds, goals) if at == marks[-1] else None
+            yield OfPairs(way=name, pairs=each * at, expected=_expected(trials, act, seeds), exact=exact)
+
+
+def _expected(trials: NetworkReach, act: Act, seeds: int) -> np.ndarray:
+    """Distances [cm] in the networks from goals that none learns from, (seeds, goals)."""
+    states, _, goals = trials.begin_alike(torch.Generator().manual_seed(_GOALS), (seeds, _MANY))
+    with torch.no_grad():
+        return trials.distances(trials.reach(act(states, goals)), goals).numpy()
 
 
 def looked_at(epochs: int) -> tuple[int, ...]:
@@ -106,3 +115,6 @@ ORDERS = (
     Order("trial and error ends nearer than a network of pairs drawn evenly (R90, E61)", BEST, "network, independent"),
 )
 """What the thesis says of the end of its figure, and its conclusion when others have pairs of their own."""
+
+_GOALS, _MANY = 27_182, 1000
+"""Seed and number of the goals in the networks."""
