@@ -45,6 +45,11 @@ def winch_colours(winches: Iterable[Named]) -> dict[str, str]:
     return {winch.name: WINCHES[index % len(WINCHES)] for index, winch in enumerate(winches)}
 
 
+def pose_colours(names: Iterable[str]) -> dict[str, str]:
+    """The colour of each of a robot's poses: those of winches from the end, as few robots have so many."""
+    return {name: WINCHES[-1 - index % len(WINCHES)] for index, name in enumerate(names)}
+
+
 def mix(colour: str, other: str, share: float) -> str:
     """A colour with a share, 0 to 1, of another."""
     pairs = zip(channels(colour), channels(other), strict=True)

@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrostat.design import DesignRequest, RouteOptions, faced
 from hydrostat.design.craft import sewing_minutes
+from hydrostat.drawing.palette import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
@@ -198,8 +199,8 @@ class Designer(Stage):
         fits = ease is not None and len(ease.tensions) == len(shown.cables)
         things = robot_things(shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.tension)
         there = reach is not None and ease is not None and not ease.moving
-        for targets in self._targets():
-            things += target_things(targets, reach.places if reach is not None and there else {})
+        for targets, colour in self._targets():
+            things += target_things(targets, reach.places if reach is not None and there else {}, colour=colour)
         judge = self._document.judge
         flags = finding_things(shown, judge.of(shown, self.wishes) or (), judge.chosen)
         return [*things, *flags, *self.painter.things()]
@@ -258,15 +259,17 @@ class Designer(Stage):
             return None
         return candidate.reach(self.pose)
 
-    def _targets(self) -> list[Any]:
-        """Targets of the pose that is shown; of all that are to be reached where none is."""
+    def _targets(self) -> list[tuple[Any, str]]:
+        """Targets of the pose that is shown; of all that are to be reached where none is, each in its own colour."""
         reach, robot = self._reach(), self._document.robot
         if reach is not None:
-            return [reach.pose.targets]
+            return [(reach.pose.targets, INK)]
         if self.painter.busy or not robot.poses:
             return []
-        wished = [pose.targets for pose in wished_poses(robot, self.wishes)]
-        return wished if sum(map(len, wished)) <= MOST_RINGS else []
+        poses, colours = wished_poses(robot, self.wishes), pose_colours(robot.poses)
+        if sum(len(pose.targets) for pose in poses) > MOST_RINGS:
+            return []
+        return [(pose.targets, colours[pose.name] if len(poses) > 1 else INK) for pose in poses]
 
     def _glimpsed(self, glimpse: Glimpse) -> None:
         """A better network was found; called in a thread of the jobs."""

@@ -69,14 +69,16 @@ def robot_things(
     return things
 
 
-def target_things(targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "") -> list[Thing]:
+def target_things(
+    targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "", colour: str = INK
+) -> list[Thing]:
     """Rings where markers should go [m], keys "target:tip", the chosen one selected, with lines from where they are."""
     things: list[Thing] = []
     for name, target in targets.items():
         key = f"target:{name}"
         if name in places:
-            things.append(Strand(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1))
-        things.append(Dot(key=key, at=target, look=Look.TARGET, colour=INK, stuck=False, chosen=key == chosen))
+            things.append(Strand(points=(places[name], target), stroke=Stroke.MISS, colour=colour, loose=-1))
+        things.append(Dot(key=key, at=target, look=Look.TARGET, colour=colour, stuck=False, chosen=key == chosen))
     return things
 
 

@@ -10,6 +10,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design import RouteOptions, design_cables
+from hydrostat.drawing.palette import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.robot import Pose, Robot
@@ -276,3 +277,17 @@ def test_one_pose_at_least_is_reached(fresh: Studio) -> None:
     assert designer.wishes.poses == ()
     designer.wish_pose("up", False)
     assert designer.wishes.poses == ("down",)
+
+
+def test_targets_of_several_poses_are_told_apart(fresh: Studio) -> None:
+    """Oracle: where the poses want their marker; one pose alone has no colour."""
+
+    def rings() -> dict[tuple[float, ...], str]:
+        things = fresh.designer.things()
+        return {thing.at: thing.colour for thing in things if isinstance(thing, Dot) and thing.look is Look.TARGET}
+
+    assert rings() == {(0.18, 0.06): INK}
+    fresh.designer.wish_pose("down", True)
+    colours = pose_colours(["up", "down"])
+    assert rings() == {(0.18, 0.06): colours["up"], (0.185, -0.05): colours["down"]}
+    assert len({*colours.values(), INK}) == 3
