@@ -27,6 +27,14 @@ def train(
     ] = None,
     exact: Annotated[int, typer.Option(metavar="N", help="With --model: every Nth episode exact; 0: none.")] = 0,
     tolerance: Annotated[str, typer.Option(metavar="LENGTH", help="Mean distance that is a success.")] = "5 mm",
+    sparse: Annotated[bool, typer.Option("--sparse", help="Reward 0 for success and -1, no distance.")] = False,
+    incremental: Annotated[bool, typer.Option("--incremental", help="Actions add to what was taken in.")] = False,
+    marker: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="That shall reach; all if not given.")
+    ] = None,
+    pair: Annotated[
+        list[str] | None, typer.Option(metavar="ONE,OTHER", help="Winches of one number: the one, or the other.")
+    ] = None,
     goals: Annotated[int, typer.Option(metavar="N", help="Unseen goals that policies are judged by.")] = 100,
     seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
     contact: Annotated[bool, typer.Option("--contact", help="The body feels itself.")] = False,
@@ -43,6 +51,8 @@ def train(
     tasks that have no other way.
 
     Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
+
+    Example: hydrostat train examples/starfish --horizon 5 --incremental --marker top --pair left,right --out build/top
     """
     try:
         from hydrostat import training
@@ -57,7 +67,14 @@ def train(
     if exact and model is None:
         raise InputError("--exact is for networks, with --model; without, every episode is exact")
     loaded = read_robot(robot)
-    reach = training.ReachOptions(steps=horizon, tolerance=parse_quantity(tolerance, LENGTH))
+    reach = training.ReachOptions(
+        markers=marker or (),
+        pairs=[[name.strip() for name in one.split(",")] for one in pair or ()],
+        steps=horizon,
+        incremental=incremental,
+        tolerance=parse_quantity(tolerance, LENGTH),
+        shaped=not sparse,
+    )
     judged = training.ReachEnv(loaded, options=reach, contact=contact)
     networks = None if model is None else _networks(model, judged.robot)
     env = training.ReachEnv(judged.robot, world=_world(networks, judged.robot, exact), options=reach)
@@ -66,10 +83,7 @@ def train(
     print("    actions  equilibria  mean     median   worst    within  CPU", flush=True)
 
     def tell(point: "CurvePoint") -> None:
-        lengths = "  ".join(f"{1e3 * value:4.2f} mm" for value in (point.mean, point.median, point.worst))
-        share = f"{100 * point.success:3.0f} %"
-        spent = f"{time.process_time() - began:.0f} s"
-        print(f"{point.steps:11}{point.equilibria:12}  {lengths}  {share}   {spent}", flush=True)
+        print(f"{_line(point)}   {time.process_time() - began:.0f} s", flush=True)
 
     options = training.TrainOptions(
         method=training.TrainMethod(method), steps=steps, seed=seed, every=max(1, steps // 10), together=together
@@ -80,8 +94,14 @@ def train(
     last = curve[-1]
     print(f"{1e3 * last.mean:.2f} mm, {100 * last.mean / size:.2f} % of the size, on {goals} unseen goals")
     print(f"Wrote {_picture(curve, method, out)}")
-    if networks is not None and horizon == 1:
+    if networks is not None and training.is_portable(env):
         print(f"Wrote {save_model(training.portable_policy(trained, env, networks), out / 'policy.model')}")
+
+
+def _line(point: "CurvePoint") -> str:
+    """How good a policy was, in numbers."""
+    lengths = "  ".join(f"{1e3 * value:4.2f} mm" for value in (point.mean, point.median, point.worst))
+    return f"{point.steps:11}{point.equilibria:12}  {lengths}  {100 * point.success:3.0f} %"
 
 
 def _picture(curve: "list[CurvePoint]", name: str, out: Path) -> Path:

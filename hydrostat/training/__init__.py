@@ -5,7 +5,7 @@ Needs the extra `rl`. Environments are registered with gymnasium as hydrostat/Re
 
 import gymnasium
 
-from hydrostat.training.portable import portable_policy
+from hydrostat.training.portable import is_portable, portable_policy
 from hydrostat.training.reach_env import ReachEnv, ReachOptions
 from hydrostat.training.train import CurvePoint, TrainMethod, TrainOptions, held_out_goals, judge, train
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
@@ -21,6 +21,7 @@ __all__ = [
     "TrainOptions",
     "World",
     "held_out_goals",
+    "is_portable",
     "judge",
     "portable_policy",
     "register",

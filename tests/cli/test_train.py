@@ -29,6 +29,9 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
         (["--method", "magic"], "--method magic: there are: ddpg-her, td3-her, sac-her, tqc-her"),
         (["--exact", 3], "--exact is for networks, with --model"),
         (["--horizon", 0], "steps must be 1 or more, not 0"),
+        (["--marker", "nose"], 'has no marker "nose"; it has: '),
+        (["--pair", "left,nose"], 'has no winch "nose"; it has: '),
+        (["--pair", "left"], "a pair has two winches, not 1: left"),
         (["--processes", 5], "processes must be 1 to 4, the episodes side by side, not 5"),
         (["--model", "none.model"], "none.model: cannot be read"),
     ],
@@ -37,3 +40,19 @@ def test_what_is_wrong_is_told(run: Run, starfish: Path, tmp_path: Path, words: 
     code, _, err = run("train", starfish, "--out", tmp_path / "policy", *words)
     assert code == 2
     assert told in err
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+def test_what_an_action_is_can_be_asked_for(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """A pair has one number, a marker two coordinates; two steps of a tenth of the range bring it nowhere far."""
+    library = pytest.importorskip("stable_baselines3.common.save_util", reason="stable-baselines3 is not installed")
+    words = ["--steps", 8, "--goals", 2, "--horizon", 2, "--incremental", "--sparse", "--marker", "top"]
+    code, out, _ = run("train", starfish, *words, "--pair", "left,right", "--out", tmp_path)
+    assert (code, "policy.model" in out) == (0, False)
+    kept, _, _ = library.load_from_zip_file(tmp_path / "model.zip")
+    assert kept["action_space"].shape == (2,)
+    assert kept["observation_space"]["desired_goal"].shape == (2,)
+    assert kept["observation_space"]["observation"].shape == (3,)
+    curve = json.loads((tmp_path / "curve.json").read_text())["curve"]
+    assert [point["steps"] for point in curve] == [8]  # four episodes of two actions side by side are one stretch
