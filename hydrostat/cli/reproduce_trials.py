@@ -101,7 +101,7 @@ def _shared(networks: "LearnedModel", simulation: "Simulation", out: Path, *, se
     from hydrostat.training.shared_data import compare_on_shared_data
     from hydrostat.training.trials import NetworkReach
 
-    budget = Budget(steps=max(500, usual.steps // 6), epochs=usual.small)
+    budget = Budget(steps=max(2000, usual.steps // 6), epochs=usual.small)
     trials = NetworkReach(networks, groups=finger_pairs(networks))
     compared = compare_on_shared_data(trials, simulation, seeds=seeds, goals=usual.goals, budget=budget, tell=told())
     shared_table(SHARED, compared, out, 1e3 * simulation.robot.body.mesh.size)
