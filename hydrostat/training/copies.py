@@ -66,15 +66,18 @@ class CopiesElsewhere:
         theirs.close()
 
     def ask(self, name: str, *given: Any) -> None:
-        """Have it done."""
-        self._pipe.send((name, given))
+        """Have it done (HydrostatError: the process has died)."""
+        try:
+            self._pipe.send((name, given))
+        except OSError:
+            raise HydrostatError(_DIED) from None
 
     def answer(self) -> list[Any]:
         """Wait for what came of it (HydrostatError: it has died, or what it met)."""
         try:
             done, error = self._pipe.recv()
-        except EOFError:
-            raise HydrostatError("a process that solves for poses has died; --resume goes on") from None
+        except (EOFError, OSError):
+            raise HydrostatError(_DIED) from None
         if error is not None:
             raise error
         return done
@@ -107,3 +110,5 @@ def _work(pipe: Connection, env: ReachEnv, count: int) -> None:
 
 _PATIENCE = 5.0
 """Seconds that a process has to end by itself."""
+
+_DIED = "a process that solves for poses has died; train again, with resume, to go on from the last checkpoint"

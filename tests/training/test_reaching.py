@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.simulation import Simulation
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
@@ -219,6 +219,32 @@ def test_the_curve_is_the_same_whoever_works(goals: list[Vector], tmp_path: Path
     assert run(4, "four") == curve
     run(1, "broken", 60)
     assert run(2, "broken", resume=True) == curve
+
+
+@pytest.mark.slow  # a process begins
+def test_a_process_that_dies_is_told_and_none_is_left_over() -> None:
+    pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+    from multiprocessing import active_children
+
+    from hydrostat.training.side_by_side import SideBySide
+
+    copies = SideBySide(straight(steps=2), 2, processes=2)
+    try:
+        copies.reset()
+        seen = copies.step(np.zeros((2, 3)))[0]
+        assert {name: rows.shape for name, rows in seen.items()} == {
+            "observation": (2, 3),
+            "achieved_goal": (2, len(straight().seen)),
+            "desired_goal": (2, len(straight().seen)),
+        }
+        dead = active_children()[0]
+        dead.kill()
+        dead.join()
+        with pytest.raises(HydrostatError, match="a process that solves for poses has died"):
+            copies.step(np.zeros((2, 3)))
+    finally:
+        copies.close()
+    assert active_children() == []
 
 
 def test_what_does_not_fit_a_checkpoint_is_told(goals: list[Vector], tmp_path: Path) -> None:
