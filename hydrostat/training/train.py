@@ -3,6 +3,7 @@
 import json
 import math
 import pickle
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -130,7 +131,7 @@ def train(
     judge_in: ReachEnv | None = None,
     tell: Callable[[CurvePoint], None] = lambda _: None,
 ) -> tuple[Any, list[CurvePoint]]:
-    """Learn a policy; `out` gets curve.json and a checkpoint after each evaluation.
+    """Learn a policy; `out` gets curve.json and a checkpoint after each evaluation, both whole whenever it is killed.
 
     Where tensorboard is installed, `out`/tensorboard gets files for it.
 
@@ -155,7 +156,7 @@ def train(
         raise InputError(f"processes must be 1 to {options.together}, the episodes side by side, not {processes}")
     curve = _curve(options, out) if resume else []
     with _copies(env, options, processes) as copies:
-        learner = _resumed(copies, options, out) if resume else _learner(env, copies, options)
+        learner = _resumed(copies, options, _checkpoint(curve, out)) if resume else _learner(env, copies, options)
         out.mkdir(parents=True, exist_ok=True)
         learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
         while learner.num_timesteps < options.steps:
@@ -170,10 +171,8 @@ def train(
                 success=float((left < env.options.tolerance).mean()),
             )
             curve.append(point)
-            told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
-            replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
             _record(learner, point)
-            _keep(learner, out)
+            _keep(learner, options, curve, out)
             tell(point)
     return learner, curve
 
@@ -250,24 +249,36 @@ def _record(model: Any, point: CurvePoint) -> None:
     model.logger.close()
 
 
-def _keep(model: Any, out: Path) -> None:
-    """Write all that the next step depends on."""
+def _checkpoint(curve: list[CurvePoint], out: Path) -> Path:
+    """The folder of the last evaluation's checkpoint."""
+    return out / f"checkpoint-{curve[-1].steps}"
+
+
+def _keep(model: Any, options: TrainOptions, curve: list[CurvePoint], out: Path) -> None:
+    """Write all that the next step depends on, then the curve that ends there, and drop the checkpoint before."""
     import torch
 
-    model.save(out / "model.zip")
-    model.save_replay_buffer(out / "experience.pkl")
+    folder = _checkpoint(curve, out)
+    folder.mkdir(exist_ok=True)
+    model.save(folder / "model.zip")
+    model.save_replay_buffer(folder / "experience.pkl")
     state = {
         "numpy": np.random.get_state(legacy=False),  # noqa: NPY002
         "torch": torch.get_rng_state(),
         "actions": model.action_space.np_random.bit_generator.state,
         "copies": model.env.kept(),
     }
-    replace_file(out / "state.pkl", pickle.dumps(state))
+    replace_file(folder / "state.pkl", pickle.dumps(state))
+    told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
+    replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
+    for old in out.glob("checkpoint-*"):
+        if old != folder:
+            shutil.rmtree(old)
 
 
 def _curve(options: TrainOptions, out: Path) -> list[CurvePoint]:
     """The curve until a checkpoint (InputError: there is none, or one that was made in another way)."""
-    if not (out / "state.pkl").exists():
+    if not (out / "curve.json").exists():
         raise InputError(f"{out}: there is no checkpoint to go on from; begin anew, without --resume")
     kept = json.loads((out / "curve.json").read_text())
     for name, value in json.loads(json.dumps(asdict(options))).items():
@@ -277,15 +288,15 @@ def _curve(options: TrainOptions, out: Path) -> list[CurvePoint]:
     return [CurvePoint(**each) for each in kept["curve"]]
 
 
-def _resumed(copies: Any, options: TrainOptions, out: Path) -> Any:
+def _resumed(copies: Any, options: TrainOptions, folder: Path) -> Any:
     """The model of a checkpoint of one's own, with everything as it was then."""
     import torch
     from stable_baselines3.common.vec_env import VecMonitor
 
     torch.set_num_threads(1)
-    model = _algorithm(options.method).load(out / "model.zip", env=VecMonitor(copies), device="cpu")
-    model.load_replay_buffer(out / "experience.pkl", truncate_last_traj=False)
-    state = pickle.loads((out / "state.pkl").read_bytes())
+    model = _algorithm(options.method).load(folder / "model.zip", env=VecMonitor(copies), device="cpu")
+    model.load_replay_buffer(folder / "experience.pkl", truncate_last_traj=False)
+    state = pickle.loads((folder / "state.pkl").read_bytes())
     np.random.set_state(state["numpy"])  # noqa: NPY002
     torch.set_rng_state(state["torch"])
     model.action_space.np_random.bit_generator.state = state["actions"]

@@ -50,7 +50,7 @@ def test_what_an_action_is_can_be_asked_for(run: Run, starfish: Path, tmp_path: 
     words = ["--steps", 8, "--goals", 2, "--horizon", 2, "--incremental", "--sparse", "--marker", "top"]
     code, out, _ = run("train", starfish, *words, "--pair", "left,right", "--out", tmp_path)
     assert (code, "policy.model" in out) == (0, False)
-    kept, _, _ = library.load_from_zip_file(tmp_path / "model.zip")
+    kept, _, _ = library.load_from_zip_file(tmp_path / "checkpoint-8" / "model.zip")
     assert kept["action_space"].shape == (2,)
     assert kept["observation_space"]["desired_goal"].shape == (2,)
     assert kept["observation_space"]["observation"].shape == (3,)

@@ -192,7 +192,9 @@ def test_it_learns_and_a_run_that_was_killed_goes_on_the_same_way(goals: list[Ve
     whole = run(456, "whole")
     assert whole[-1].mean < 0.95 * judge(straight(), lambda seen: np.zeros(3), goals).mean()
     run(304, "broken")
+    (tmp_path / "broken" / "checkpoint-456").mkdir()  # it was killed while it wrote the next
     assert run(456, "broken", resume=True) == whole
+    assert [path.name for path in (tmp_path / "broken").glob("checkpoint-*")] == ["checkpoint-456"]
 
 
 @pytest.mark.slow  # six processes begin
@@ -253,7 +255,6 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: list[Vector], tmp_path: P
         train(straight(), goals, TrainOptions(), tmp_path, processes=5)
     with pytest.raises(InputError, match="there is no checkpoint"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
-    (tmp_path / "state.pkl").touch()
     (tmp_path / "curve.json").write_text('{"options": {"method": "ddpg-her"}, "curve": []}')
     with pytest.raises(InputError, match="begun with method = ddpg-her, not sac-her"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
