@@ -208,7 +208,7 @@ def _seams(pattern: SpacePattern) -> Check:
     worst = max((seam.mismatch for seam in pattern.seams), default=0.0)
     return Check(
         what=f"both sides of each of {len(pattern.seams)} seams are equally long",
-        measured=f"at most {worst:.1%} apart",
+        measured=f"at most {worst:.1%} apart, beyond half a millimetre",
         allowed=f"{MOST_EASE:.0%}, eased in",
         passed=worst <= MOST_EASE,
     )

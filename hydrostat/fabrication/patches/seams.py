@@ -41,8 +41,8 @@ class Seam:
 
     @property
     def mismatch(self) -> float:
-        """How much longer the longer side is: 0.01 for 1 %."""
-        return max(self.lengths) / min(self.lengths) - 1
+        """How much longer the longer side is beyond what hands see (`SEEN`): 0.01 for 1 %."""
+        return max(max(self.lengths) - min(self.lengths) - SEEN, 0.0) / min(self.lengths)
 
     def place(self, along: float, side: int) -> tuple[float, float]:
         """Place of the seam on its first (0) or second (1) patch [mm]."""
@@ -106,6 +106,8 @@ def _seam(
     return Seam(patches=numbers, closed=closed, solid=patches[0].disc.vertices[local[0]], sides=(one, other))
 
 
+SEEN = 0.5
+"""A difference of lengths [mm] that nobody who cuts and sews cloth sees: that of a line of a pen. Assumed."""
 _SPACING = 60.0  # about how far apart notches are along a seam [mm]
 _SHORTEST = 10.0  # a seam shorter than that [mm] needs no notch
 _PAIR = 5.0  # how far apart the strokes of a double notch are [mm]

@@ -8,7 +8,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.patches.cutting import MOST_GIVE, Cutting, cut_skin, front_and_back, thin_direction
 from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import disc_of
-from hydrostat.fabrication.patches.seams import find_seams
+from hydrostat.fabrication.patches.seams import Seam, find_seams
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -130,3 +130,18 @@ def test_bodies_that_cannot_be_cut_are_refused():
 
     with pytest.raises(InputError, match="flat body"):
         skin_mesh(mesh_body(strip_mesh(4, 2)))
+
+
+def test_short_seams_are_not_refused_for_what_nobody_sees() -> None:
+    """By hand: of 5 mm and 5.4 mm nothing is left, of 10 mm and 11.5 mm a tenth, of 100 mm and 106.5 mm 6 %."""
+
+    def straight(length: float) -> np.ndarray:
+        return np.array([[0.0, 0.0], [length, 0.0]])
+
+    def mismatch(one: float, other: float) -> float:
+        solid = np.array([[0.0, 0.0, 0.0], [one, 0.0, 0.0]])
+        return Seam(patches=(0, 1), closed=False, solid=solid, sides=(straight(one), straight(other))).mismatch
+
+    assert mismatch(5.0, 5.4) == 0.0
+    assert mismatch(11.5, 10.0) == pytest.approx(0.1)
+    assert mismatch(100.0, 106.5) == pytest.approx(0.06)

@@ -1,0 +1,78 @@
+"""Networks of a coarse mesh on a finer one, and what a few samples of the finer one mend.
+
+    hydrostat sample FINE --count 60 --contact --seed 9 --out build/test
+    hydrostat sample FINE --count 100 --contact --seed 3 --out build/train
+    python benchmarks/learned_finer.py FINE build/hand.model build/train build/test [--counts 10,30,100] [--roll 15]
+
+FINE is the folder of the same robot with smaller elements. The model is corrected by so many of the first samples.
+Known: how far markers are from where the networks expect them, at the contractions of samples that nothing was learned
+from. Rolled: answers for the first markers of these, solved on the fine body from rest; how far they miss. Errors in
+mm, and in % of the body's size.
+"""
+
+import argparse
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from machine import machine
+
+import numpy as np  # isort: skip
+
+import hydrostat as hs
+from hydrostat.learning import LearnedModel, Samples, correct_model, load_model, read_samples
+from hydrostat.learning.compare import targets_of
+
+
+def known(model: LearnedModel, test: Samples) -> np.ndarray:
+    """How far markers are from where they are expected [m]."""
+    expected = np.array([model.expect(taken)[0][: test.markers[0].size] for taken in test.contractions])
+    return np.linalg.norm(expected.reshape(test.markers.shape) - test.markers, axis=-1)
+
+
+def rolled(model: LearnedModel, test: Samples, simulation: hs.Simulation) -> np.ndarray:
+    """How far markers are from their targets in the simulator [m], at what the model answers."""
+    rows = np.array([model.solve(target).contractions for target in targets_of(test)])
+    found = simulation.solve_many(rows, jacobians=False, threads=1).markers
+    return np.linalg.norm(found.reshape(test.markers.shape) - test.markers, axis=-1)
+
+
+def told(missed: np.ndarray, size: float) -> str:
+    """Mean, its share of the size, and the largest."""
+    good = 1e3 * missed[np.isfinite(missed)]
+    lost = f" {int(np.isnan(missed).any(axis=1).sum())} lost" if np.isnan(missed).any() else ""
+    return f"{good.mean():9.3f}{good.mean() / size / 10:8.3f}{good.max():9.3f}{lost}"
+
+
+def main() -> None:
+    """Print errors before and after correction."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("robot", "model", "train", "test"):
+        parser.add_argument(name, type=Path)
+    parser.add_argument("--counts", default="10,30,100")
+    parser.add_argument("--roll", type=int, default=0)
+    given = parser.parse_args()
+    robot, model = hs.load_robot(given.robot), load_model(given.model)
+    if model.facts["contact"] and robot.contact is None:
+        robot = replace(robot, contact=hs.Contact())
+    train, test, size = read_samples(given.train), read_samples(given.test), robot.body.mesh.size
+    print(machine())
+    coarse = f"networks of {model.facts['samples']} samples of a coarse mesh"
+    print(f"{robot.name}, {len(robot.body.mesh.nodes)} nodes; {coarse}")
+    print(f"{'corrected by':>12}{'known':>9}{'%':>8}{'max':>9}{'CPU s':>8}   of {len(test)} samples")
+    models, counts = {0: model}, [int(count) for count in given.counts.split(",")]
+    for count in (0, *counts):
+        began = time.process_time()
+        if count:
+            models[count] = correct_model(model, train.first(count))
+        seconds = time.process_time() - began
+        print(f"{count:12}{told(known(models[count], test), size)}{seconds:8.1f}", flush=True)
+    if given.roll:
+        simulation, few = hs.Simulation(robot), test.first(given.roll)
+        print(f"{'corrected by':>12}{'rolled':>9}{'%':>8}{'max':>9}   of {given.roll} targets")
+        for count in (0, counts[-1]):
+            print(f"{count:12}{told(rolled(models[count], few, simulation), size)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
