@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def spanned(found: object, digits: int) -> str:
     """An interval as text."""
     mean, low, high = (getattr(found, name) for name in ("mean", "low", "high"))
-    return f"{mean:.{digits}f} ({low:.{digits}f}-{high:.{digits}f})"
+    return f"{mean:.{digits}f} ({low:.{digits}f}{' to ' if low < 0 else '-'}{high:.{digits}f})"
 
 
 @contextmanager

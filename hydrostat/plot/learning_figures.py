@@ -108,15 +108,23 @@ def draw_costs(
     *,
     width: float = WIDTH,
 ) -> Figure:
-    """Mean errors [mm] of ways to a policy over what each has used, as (used, error); inches."""
+    """Mean errors [mm] of ways to a policy over what each has used, as (used, error); inches.
+
+    Ways whose names begin with the same words before a comma have one colour, and lines of other kinds.
+    """
     figure, axes = new_chart("", "", width=width, height=4.0)
-    for number, (name, points) in enumerate(curves.items()):
+    heads = list(dict.fromkeys(name.partition(",")[0] for name in curves))
+    seen = dict.fromkeys(heads, 0)
+    for name, points in curves.items():
         across, up = zip(*sorted(points), strict=True)
-        colour = WINCHES[number % len(WINCHES)]
-        axes.plot(across, up, color=colour, linewidth=1.4, marker="o", markersize=5, label=name)
+        head = name.partition(",")[0]
+        colour, dashes = WINCHES[heads.index(head) % len(WINCHES)], ("-", "--", ":")[seen[head] % 3]
+        seen[head] += 1
+        axes.plot(across, up, color=colour, linestyle=dashes, linewidth=1.4, marker="o", markersize=5, label=name)
     _logarithmic(axes, used, missed)
+    left, lower, _, tall = axes.get_position().bounds
+    axes.set_position((left, lower, 0.7 - left, tall))
     axes.legend(frameon=False, fontsize=8, labelcolor=INK, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    figure.subplots_adjust(right=0.72)
     return figure
 
 
