@@ -38,10 +38,10 @@ def rolled(model: LearnedModel, test: Samples, simulation: hs.Simulation) -> np.
 
 
 def told(missed: np.ndarray, size: float) -> str:
-    """Mean, its share of the size, and the largest."""
+    """Mean, its share of the size, median and the largest."""
     good = 1e3 * missed[np.isfinite(missed)]
     lost = f" {int(np.isnan(missed).any(axis=1).sum())} lost" if np.isnan(missed).any() else ""
-    return f"{good.mean():9.3f}{good.mean() / size / 10:8.3f}{good.max():9.3f}{lost}"
+    return f"{good.mean():9.3f}{good.mean() / size / 10:8.3f}{np.median(good):9.3f}{good.max():9.3f}{lost}"
 
 
 def main() -> None:
@@ -59,7 +59,7 @@ def main() -> None:
     print(machine())
     coarse = f"networks of {model.facts['samples']} samples of a coarse mesh"
     print(f"{robot.name}, {len(robot.body.mesh.nodes)} nodes; {coarse}")
-    print(f"{'corrected by':>12}{'known':>9}{'%':>8}{'max':>9}{'CPU s':>8}   of {len(test)} samples")
+    print(f"{'corrected by':>12}{'known':>9}{'%':>8}{'median':>9}{'max':>9}{'CPU s':>8}   of {len(test)} samples")
     models, counts = {0: model}, [int(count) for count in given.counts.split(",")]
     for count in (0, *counts):
         began = time.process_time()
@@ -69,7 +69,7 @@ def main() -> None:
         print(f"{count:12}{told(known(models[count], test), size)}{seconds:8.1f}", flush=True)
     if given.roll:
         simulation, few = hs.Simulation(robot), test.first(given.roll)
-        print(f"{'corrected by':>12}{'rolled':>9}{'%':>8}{'max':>9}   of {given.roll} targets")
+        print(f"{'corrected by':>12}{'rolled':>9}{'%':>8}{'median':>9}{'max':>9}   of {given.roll} targets")
         for count in (0, counts[-1]):
             print(f"{count:12}{told(rolled(models[count], few, simulation), size)}", flush=True)
 
