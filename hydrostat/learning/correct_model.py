@@ -56,5 +56,5 @@ def correct_model(
     return replace(model, facts=facts, forward=trained.networks)
 
 
-_STEPS, _RATE = 1500, 2e-3
+_STEPS, _RATE = 6000, 6e-3
 """How long and how fast networks learn on, unless told."""
