@@ -38,7 +38,10 @@ def motors_card(page: WindowPage) -> None:
             port.props('dense outlined aria-label="Port of the motors"').style("flex: 1; min-width: 0").mark(
                 "motors-port"
             )
-            port.tooltip("emulated, dynamixel:PORT, feetech:PORT or firmware:PORT; @BAUD after it sets another rate")
+            port.tooltip(
+                "emulated, dynamixel:PORT, feetech:PORT or firmware:PORT; @BAUD after it sets another rate, "
+                "a comma parts the ports of several boards"
+            )
             connect = ui.button("Connect", on_click=lambda: page.act_slowly(hardware.connect, port.value.strip()))
             connect.props("flat dense no-caps").mark("motors-connect")
         with ui.element("div").classes("studio-row").style("gap: 8px") as after:
