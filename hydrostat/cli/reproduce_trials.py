@@ -125,7 +125,7 @@ def _policies(
     every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
     known = int(networks.facts["samples"])
     print(f"\n{table}: ways to a policy of one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator")
-    print(f"{'way':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>22}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
+    print(f"{'way':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>24}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
     rows: list[dict[str, object]] = []
     for name, way in list(WAYS.items())[: 1 if table == GRADIENT else None]:
         for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
@@ -134,7 +134,7 @@ def _policies(
             found, used = interquartile(np.nanmean(exact, axis=1)), _used(name, many, known, usual)
             row = {"way": name, "pairs": many, "equilibria": used, "seeds": np.nanmean(exact, axis=1).tolist()}
             rows.append({**row, "p99": float(np.nanquantile(exact, 0.99))})
-            text = f"{name:24}{many:8}{used:12}{spanned(found, 3):>22}{100 * found.mean / width:8.3f}"
+            text = f"{name:24}{many:8}{used:12}{spanned(found, 3):>24}{100 * found.mean / width:8.3f}"
             print(f"{text}{np.nanquantile(exact, 0.99):10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
     replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}

@@ -137,7 +137,7 @@ WAYS: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
 }
 """By their names in tables."""
 
-PAIRS_ALONE, UNFILLED = ("ridge", "1-NN", "cloned"), ("trial and error",)
+PAIRS_ALONE, UNFILLED = ("ridge", "1-NN", "cloned", "constant"), ("trial and error",)
 """Ways that cost their pairs and nothing else, tried with several numbers of them; and ways that cost trials alone."""
 
 
