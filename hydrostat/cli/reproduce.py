@@ -40,6 +40,9 @@ def reproduce(
     targets: Annotated[int | None, typer.Option(metavar="N", help="How many targets.")] = None,
     seeds: Annotated[int | None, typer.Option(metavar="N", help="How often networks begin at random.")] = None,
     jobs: Annotated[int, typer.Option(metavar="N", help="Processes that sample; -1: one on each core.")] = -1,
+    epochs: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Epochs (500 actions) to learn by trial in.")
+    ] = None,
     model: Annotated[
         Path | None, typer.Option(metavar="MODEL", help="Networks to learn by trial in; else samples are made.")
     ] = None,
@@ -62,7 +65,7 @@ def reproduce(
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
     from hydrostat.cli.reproduce_reference import REFERENCE_TABLES, reproduce_reference
-    from hydrostat.cli.reproduce_trials import GRADIENT, POLICIES, SHARED, TRIALS, reproduce_trials
+    from hydrostat.cli.reproduce_trials import GRADIENT, POLICIES, SHARED, TRIALS, HowMuch, reproduce_trials
 
     trials = (*TRIALS, SHARED, POLICIES, GRADIENT)
     there = (*THINGS, *trials, *REFERENCE_TABLES)
@@ -76,7 +79,8 @@ def reproduce(
     if tables := [name for name in asked if name in THINGS]:
         _compare(tables, study, bodies, out, jobs)
     if names := [name for name in asked if name in trials]:
-        reproduce_trials(names, _robot(bodies[0]), out, size=size, model=model, seeds=seeds, goals=targets, jobs=jobs)
+        much = HowMuch(size=size, seeds=seeds, goals=targets, epochs=epochs)
+        reproduce_trials(names, _robot(bodies[0]), out, much, model=model, jobs=jobs)
     if references := [name for name in asked if name in REFERENCE_TABLES]:
         reproduce_reference(references, out, size=size, seeds=seeds)
 

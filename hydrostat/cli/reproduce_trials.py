@@ -26,16 +26,24 @@ SHARED = "figure-5.14-trial"
 """Trial and error beside others, of the pairs that it tried and of as many drawn evenly."""
 
 
+class HowMuch(NamedTuple):
+    """How long trials take.
+
+    Attributes:
+        size: minutes, hour or full.
+        seeds: how often each run begins at random; as many as the size has if left out, and so below.
+        goals: that each policy is judged by in the simulator.
+        epochs: of 500 actions that runs learn for.
+    """
+
+    size: str
+    seeds: int | None = None
+    goals: int | None = None
+    epochs: int | None = None
+
+
 def reproduce_trials(
-    names: Sequence[str],
-    robot: "Robot",
-    out: Path,
-    *,
-    size: str,
-    model: Path | None,
-    seeds: int | None,
-    goals: int | None,
-    jobs: int,
+    names: Sequence[str], robot: "Robot", out: Path, much: HowMuch, *, model: Path | None, jobs: int
 ) -> None:
     """Learn in networks of a robot, judge in the simulator, and say which claims of the thesis hold.
 
@@ -43,10 +51,8 @@ def reproduce_trials(
         names: of `TRIALS`, `SHARED`, `POLICIES` or `GRADIENT`.
         robot: which, with contact if its model knows it.
         out: folder for tables and pictures; the model too, if none is given.
-        size: minutes, hour or full.
+        much: how long they take.
         model: that `hydrostat learn` wrote.
-        seeds: how often each run begins at random.
-        goals: that each policy is judged by in the simulator.
         jobs: processes that sample where there is no model.
     """
     with trials_missing():
@@ -56,12 +62,13 @@ def reproduce_trials(
     from hydrostat.robot import replace_file
     from hydrostat.simulation import Simulation
 
-    usual, tell = _SIZES[size], told()
-    usual = usual if goals is None else usual._replace(goals=goals)
+    usual, tell = _SIZES[much.size], told()
+    usual = usual if much.goals is None else usual._replace(goals=much.goals)
+    usual = usual if much.epochs is None else usual._replace(small=much.epochs, large=much.epochs)
     networks = _networks(robot, out, model, usual.samples, jobs)
     networks.check(robot)
     simulation, width = Simulation(robot), 1e3 * robot.body.mesh.size
-    count = usual.seeds if seeds is None else seeds
+    count = usual.seeds if much.seeds is None else much.seeds
     for name in names:
         if name == SHARED:
             _shared(networks, simulation, out, seeds=count, usual=usual)

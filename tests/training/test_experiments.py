@@ -106,12 +106,12 @@ def test_an_experiment_writes_its_table_picture_and_verdicts(
         for name, run in short.runs.items()
     }
     monkeypatch.setattr(room, "EXPERIMENTS", {"table-noise": replace(short, runs=runs)})
-    options = {"size": "minutes", "model": tmp_path / "strip.model", "seeds": 2, "goals": None, "jobs": 1}
-    command.reproduce_trials(["table-noise"], robot, tmp_path, **options)
+    much = command.HowMuch("minutes", seeds=2, epochs=3)
+    command.reproduce_trials(["table-noise"], robot, tmp_path, much, model=tmp_path / "strip.model", jobs=1)
     told = capsys.readouterr().out
     assert "0.1 ends nearer than 0.01 (E47): " in told
     assert told.count("\nnoise 0") == 3
     kept = json.loads((tmp_path / "table-noise.json").read_text())
     assert len(kept["claims"]) == 2
-    assert np.array(kept["runs"]["noise 0.1"]["success"]).shape == (12, 2)
+    assert np.array(kept["runs"]["noise 0.1"]["success"]).shape == (3, 2)
     assert (tmp_path / "table-noise.png").stat().st_size > 10_000
