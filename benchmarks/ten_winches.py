@@ -1,14 +1,21 @@
 """Ten emulated winches play poses of the cupping hand at 50 Hz under the loads of its finite elements; a cable is cut.
 
-    python benchmarks/ten_winches.py [--seconds 600]
+    python benchmarks/ten_winches.py [--seconds 600] [--clock]
 
 Time is that of the emulation. Counted are frames in which a motor was not heard, and frames longer than 20 ms. The
 error of a pose is the largest distance of any node between the pose of what the motors have in truth and that of what
 they were told, at the end of a frame, where each key is held and on the way between. The guard knows the same
-loads as the motors feel. No motor of metal turns.
+loads as the motors feel.
+
+With --clock time is that of this computer. A frame is late when it begins more than 5 ms after its time, and lost when
+its time passed while another went on; motors that were stopped are armed anew, and told.
+No motor of metal turns.
 """
 
 import argparse
+import os
+import time
+from contextlib import suppress
 
 import machine
 import numpy as np
@@ -23,6 +30,7 @@ from hydrostat.control import (
     WinchMotor,
     tensions_along,
 )
+from hydrostat.control.emulated_servos import LiveChain
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import Profile, Simulation
@@ -30,28 +38,32 @@ from hydrostat.simulation import Profile, Simulation
 FRAME = 0.02  # [s]
 CLOSED = 0.012  # that flexors take in [m]
 CUT = "index flexor"
+LATE = 5e-3
+"""A frame that begins so much after its time is late [s]."""
 
 
 class TenWinches:
     """Emulated motors on a link, with the load of the cables of a robot."""
 
-    def __init__(self, robot: Robot, profile: Profile) -> None:
+    def __init__(self, robot: Robot, profile: Profile, *, live: bool = False) -> None:
         self.pulls, self.cut = tensions_along(robot, profile), -1
         radii = [winch.spool_radius for winch in robot.winches]
         self.servos = [EmulatedServo(n, model=1240) for n in range(1, len(radii) + 1)]
-        self.chain, self.radii = EmulatedChain(self.servos), np.array(radii)
+        self.chain, self.radii = (LiveChain if live else EmulatedChain)(self.servos), np.array(radii)
         self.chain.STEP = 2e-3
         self._known, self._torques = -1.0, np.zeros(len(radii))
         for index, servo in enumerate(self.servos):
             servo.constant = 0.93 / 1.8
             servo.load = lambda _, index=index: self.torque(index)
         numbers = [servo.number for servo in self.servos]
-        bus = DynamixelBus(self.chain, numbers, clock=self.chain.clock, wait=self.chain.wait)
+        clocks = {} if live else {"clock": self.chain.clock, "wait": self.chain.wait}
+        bus = DynamixelBus(self.chain, numbers, **clocks)
         spools = [
             WinchMotor(winch=winch.name, number=number, zero=0.0, radius=winch.spool_radius)
             for winch, number in zip(robot.winches, numbers, strict=True)
         ]
-        self.link = BusLink(bus, robot.winches, Calibration(tuple(spools)), clock=self.chain.clock)
+        clocks.pop("wait", None)
+        self.link = BusLink(bus, robot.winches, Calibration(tuple(spools)), **clocks)
         constants = np.array([fact.constant for fact in self.link.identify()])
         self.link.guard = TensionGuard(self.pulls, constants, tuple(winch.name for winch in robot.winches))
         self.link.arm()
@@ -95,13 +107,53 @@ def apart(simulation: Simulation, first: np.ndarray, second: np.ndarray) -> floa
     return float(np.linalg.norm(one.nodes - two.nodes, axis=1).max())
 
 
+def by_the_clock(robot: Robot, profile: Profile, seconds: float) -> None:
+    """Play for so long by the clock of this computer, and tell what was late, lost or stopped."""
+    winches, length = TenWinches(robot, profile, live=True), float(profile.times[-1])
+    winches.link.watch()
+    begin, told, stops, errors, before = time.monotonic(), 0, list[str](), list[float](), os.getloadavg()[0]
+    late, lost, unheard = list[float](), 0, 0
+    while (passed := time.monotonic() - begin) < seconds:
+        due = (told + 1) * FRAME
+        time.sleep(max(0.0, due - passed))
+        behind = time.monotonic() - begin - due
+        missed = int(behind / FRAME)
+        lost, told = lost + missed, told + 1 + missed
+        late += [behind] if behind > LATE else []
+        try:
+            winches.link.send(profile.at(told * FRAME % length), time.monotonic(), speed=0.06)
+            asked = time.monotonic()
+            winches.link.read(asked)
+            reading = winches.link.reading
+            unheard += reading is None or bool((reading.stamps < asked).any())
+            errors.append(float(np.abs(winches.places - profile.at((told - 1) * FRAME % length)).max()))
+        except HydrostatError as error:
+            stops.append(f"at {time.monotonic() - begin:.0f} s: {error}")
+            with suppress(HydrostatError):  # tried again at the next frame
+                winches.link.arm()
+    winches.link.close()
+    told_late = f"{len(late)} begun more than {1e3 * LATE:g} ms late (latest {1e3 * max(late, default=0.0):.0f} ms)"
+    middle, most = 1e3 * np.median(errors), 1e3 * np.quantile(errors, 0.99)
+    print(f"{machine.machine()}; {seconds:g} s by the clock, {len(robot.winches)} winches at {1 / FRAME:g} Hz")
+    print(f"load {before:.1f} at first, {os.getloadavg()[0]:.1f} at last")
+    print(f"{told} frames; {lost} lost, {told_late}, {unheard} in which a motor was not heard; {len(stops)} stops")
+    print(f"motors behind the frame before: {middle:.2f} mm in the middle, {most:.2f} mm at p99")
+    for line in stops[:20]:
+        print(line)
+
+
 def main() -> None:
     """Play, measure, cut."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seconds", type=float, default=600.0)
-    seconds = parser.parse_args().seconds
+    parser.add_argument("--clock", action="store_true", help="by the clock of this computer")
+    given = parser.parse_args()
+    seconds = given.seconds
     robot = load_robot(gallery_folder("cupping_hand"))
     profile = moves(robot)
+    if given.clock:
+        by_the_clock(robot, profile, seconds)
+        return
     winches, simulation = TenWinches(robot, profile), Simulation(robot)
     frames = lost = late = 0
     held: list[tuple[np.ndarray, np.ndarray]] = []
