@@ -30,6 +30,7 @@ from hydrostat.control import (
     WinchMotor,
     tensions_along,
 )
+from hydrostat.control.bus import steady
 from hydrostat.control.emulated_servos import LiveChain
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot, gallery_folder, load_robot
@@ -122,7 +123,7 @@ def by_the_clock(robot: Robot, profile: Profile, seconds: float) -> None:
         late += [behind] if behind > LATE else []
         try:
             winches.link.send(profile.at(told * FRAME % length), time.monotonic(), speed=0.06)
-            asked = time.monotonic()
+            asked = steady()
             winches.link.read(asked)
             reading = winches.link.reading
             unheard += reading is None or bool((reading.stamps < asked).any())

@@ -1,10 +1,19 @@
 """`Bus`: the contract of a chain of motors on one cable to this computer."""
 
+import time
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, Protocol, runtime_checkable
 
 from hydrostat.arrays import Vector
+
+_AWAKE = getattr(time, "CLOCK_BOOTTIME", getattr(time, "CLOCK_MONOTONIC", None))
+"""Runs on while the computer sleeps, on Linux and macOS, where `time.monotonic` stands still meanwhile."""
+
+
+def steady() -> float:
+    """Time of a clock that only runs forward, and runs on while the computer sleeps [s]."""
+    return time.monotonic() if _AWAKE is None else time.clock_gettime(_AWAKE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +84,7 @@ class Bus(ABC):
 
     Attributes:
         kind: words that begin every line about it.
-        forgot: whether its motors have lost their count since they were calibrated; known once they are identified.
+        forgot: whether its motors have lost their count since they were calibrated, as far as is known.
     """
 
     kind: ClassVar[str]
@@ -94,6 +103,13 @@ class Bus(ABC):
     @abstractmethod
     def arm(self, currents: Vector) -> None:
         """Switch torque on where they stand, each bounded to a current [A] (HydrostatError: one did not take it)."""
+
+    def rewatch(self) -> None:  # noqa: B027 - where nothing watches by itself there is nothing to do
+        """Let the own watchdogs of armed motors begin anew: they may have fired while others were armed.
+
+        Raises:
+            HydrostatError: one does not.
+        """
 
     @abstractmethod
     def read(self) -> Reading:

@@ -1,16 +1,15 @@
 """`BusLink`: motors on a bus as a link in contractions, which turn only when armed, and stand when in doubt."""
 
 import threading
-import time
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control.bus import Bus, MotorFacts, Reading
+from hydrostat.control.bus import Bus, MotorFacts, Reading, steady
 from hydrostat.control.calibration import Calibration
 from hydrostat.control.guard import TensionGuard
 from hydrostat.control.link import Link
@@ -23,6 +22,8 @@ AHEAD = 0.12
 """A goal is never further ahead of a motor than it turns in this time [s]: a dead host leaves it no further."""
 LOST = 0.2
 """A reading so old is a fault [s]."""
+FASTEST = 0.5
+"""No limit of speed is greater [m/s]."""
 BEYOND = 5e-4
 """Motors may be so far beyond the limits of their winch, by what the motor rounds and the cable gives [m]."""
 HOTTEST = 75.0
@@ -55,6 +56,11 @@ class LinkLimits:
     speed: float = 0.06
     rise: float = 1.0
 
+    def __post_init__(self) -> None:
+        for name, value, most in (("speed", self.speed, FASTEST), ("rise", self.rise, 100.0)):
+            if not 0 < value <= most:
+                raise InputError(f"limits of motors: {name} must be above 0 and at most {most:g}, not {value:g}")
+
 
 class BusLink(Link):
     """A link to real motors: limits, deadline, guard, state and log; all that turns goes through it.
@@ -84,7 +90,7 @@ class BusLink(Link):
         limits: LinkLimits | None = None,
         guard: TensionGuard | None = None,
         log: Callable[[str], None] = lambda _: None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = steady,
     ) -> None:
         """A closed link (InputError: the calibration is of other winches)."""
         if [spool.winch for spool in calibration.motors] != [winch.name for winch in winches]:
@@ -93,7 +99,7 @@ class BusLink(Link):
         self.facts: tuple[MotorFacts, ...] = ()
         self.reading: Reading | None = None
         self._bus, self._calibration, self.guard, self._log, self._clock = bus, calibration, guard, log, clock
-        self.limits, self._names = limits or LinkLimits(), [winch.name for winch in winches]
+        self.limits, self._names = limits or LinkLimits(), _named(calibration)
         self._low = np.array([-winch.release for winch in winches], dtype=float)
         self._high = np.array([winch.travel for winch in winches], dtype=float)
         self._places = self._goal = np.zeros(len(winches))
@@ -102,6 +108,7 @@ class BusLink(Link):
         self._began = clock()
         self._lock, self._over = threading.RLock(), threading.Event()
         self._watch: threading.Thread | None = None
+        self._stops = 0  # how often it was told to stop
 
     @property
     def currents(self) -> Vector | None:
@@ -111,10 +118,9 @@ class BusLink(Link):
     def identify(self) -> tuple[MotorFacts, ...]:
         """Ask every motor who it is (HydrostatError: one is silent, or another model)."""
         with self._lock:
-            try:
+            self.facts = ()
+            with self._stopping():
                 self.facts = self._bus.identify()
-            except HydrostatError as error:
-                raise self._fault(str(error)) from None
             done = self._calibration.done and not self._bus.forgot
             self._to(LinkState.CALIBRATED if done else LinkState.IDENTIFIED)
             for fact, name in zip(self.facts, self._names, strict=True):
@@ -125,25 +131,27 @@ class BusLink(Link):
     def arm(self) -> None:
         """Let motors turn from now on (HydrostatError: not calibrated, out of the limits, or one is not heard)."""
         with self._lock:
-            if self.state in (LinkState.CLOSED, LinkState.IDENTIFIED):
-                needed = "identify the motors" if self.state is LinkState.CLOSED else "calibrate them"
-                if self._bus.forgot:
-                    needed += " anew, as their board was switched off or reset since (docs/motors.md)"
-                raise HydrostatError(f"motors cannot be armed: first {needed}")
-            try:
+            stops = self._stops
+            self._must_be_known()
+            with self._stopping():
                 self.reading = self._bus.read()
                 self._judge(self._clock(), armed=False)
                 self._bus.arm(np.array([spool.current for spool in self._calibration.motors]))
-            except HydrostatError as error:
-                raise self._fault(str(error)) from None
             self._goal, self._speed, self._sent, self.why = self._places.copy(), 0.0, self._clock(), ""
             self._marked[:] = self._sent
+            if self.guard is not None:
+                self.guard.begin()
             self._to(LinkState.ARMED)
+            if self._stops != stops:  # by another thread, which did not wait for this one
+                raise self._stopped(LinkState.STOPPED, "stopped while they were armed")
 
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
         """Let the motors go to contractions, within limits."""
         with self._lock:
             self._must_be_armed()
+            if np.shape(contractions) != self._low.shape or not np.isfinite(contractions).all() or not speed >= 0:
+                words = f"told {len(self._names)} finite contractions at a speed, not {contractions} at {speed:g} m/s"
+                raise self._stopped(LinkState.HOLD, f"motors must be {words}; arm them anew")
             since = self._clock() - self._sent
             if since > DEADLINE:
                 raise self._stopped(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
@@ -154,31 +162,31 @@ class BusLink(Link):
             if (np.abs(near - self._goal) == 0).all() and np.abs(self._goal - self._places).max(initial=0.0) < 1e-4:
                 self._speed = 0.0
             rates = max(self._speed, 1e-3) / self._calibration.radii(near)
-            try:
+            with self._stopping():
                 self._bus.write(self._calibration.angles(near), rates)
-            except HydrostatError as error:
-                raise self._fault(str(error)) from None
             self._sent = self._clock()
+            if self.state is not LinkState.ARMED:  # stopped by another thread, maybe before this was written
+                self._bus.stop()
+                self._must_be_armed()
 
     def read(self, now: float) -> Vector:
         """Contractions as last heard of [m]."""
         with self._lock:
             if self.state is LinkState.FAULT:
                 raise HydrostatError(self.why)
-            try:
+            with self._stopping():
                 self.reading = self._bus.read()
                 self._judge(self._clock(), armed=self.state is LinkState.ARMED)
-            except HydrostatError as error:
-                raise self._fault(str(error)) from None
             return self._places.copy()
 
     def stop(self) -> None:
-        """Let the motors stand."""
-        with suppress(Exception):
-            self._bus.stop()
-        with suppress(Exception):
-            if self.state is LinkState.ARMED:
-                self._stopped(LinkState.STOPPED, "stopped")
+        """Let the motors stand; whoever is about to tell or arm them in another thread sees it, and stops them too."""
+        self._stops += 1
+        if self.state is LinkState.ARMED:
+            self._stopped(LinkState.STOPPED, "stopped")
+        else:
+            with suppress(Exception):
+                self._bus.stop()
 
     def close(self) -> None:
         """Stop the motors, and let them go for good."""
@@ -255,6 +263,18 @@ class BusLink(Link):
         """Currents, positive as cable is taken in [A]."""
         return reading.currents * [spool.turns for spool in self._calibration.motors]
 
+    def _must_be_known(self) -> None:
+        """Raise what is missing before motors may be armed, whatever went wrong since."""
+        needed = ""
+        if self._over.is_set() or not self.facts:
+            needed = "identify the motors"
+        elif self._bus.forgot:
+            needed = "calibrate them anew, as a motor or its board was switched off or reset since (docs/motors.md)"
+        elif not self._calibration.done:
+            needed = "calibrate them"
+        if needed:
+            raise HydrostatError(f"motors cannot be armed: first {needed}")
+
     def _must_be_armed(self) -> None:
         if self.state is not LinkState.ARMED:
             raise HydrostatError(f"the motors do not turn: {self.why or self.state}")
@@ -263,17 +283,42 @@ class BusLink(Link):
         return self._stopped(LinkState.FAULT, why)
 
     def _stopped(self, state: LinkState, why: str) -> HydrostatError:
-        """Stop the motors, go to a state, and give the error that says why."""
-        self._bus.stop()
-        self.why = why
-        self._to(state)
+        """Stop the motors, go to a state, and give the error that says why.
+
+        The state is another one before they are told, so that whoever tells them meanwhile sees it.
+        """
+        self.why, before, self.state = why, self.state, state
+        with suppress(Exception):
+            self._bus.stop()
+        if state is not before:
+            self._tell_state()
         return HydrostatError(why)
+
+    @contextmanager
+    def _stopping(self) -> Iterator[None]:
+        """Stop the motors on whatever goes wrong within, with its words."""
+        try:
+            yield
+        except HydrostatError as error:
+            raise self._fault(str(error)) from None
+        except BaseException as error:
+            self._fault(f"{type(error).__name__} {error}".strip())
+            raise
 
     def _to(self, state: LinkState) -> None:
         if state is not self.state:
             self.state = state
-            self._say(f"{state}{f': {self.why}' if self.why and state is not LinkState.ARMED else ''}")
+            self._tell_state()
+
+    def _tell_state(self) -> None:
+        self._say(f"{self.state}{f': {self.why}' if self.why and self.state is not LinkState.ARMED else ''}")
 
     def _say(self, words: str) -> None:
         with suppress(Exception):
             self._log(f"{self._bus.kind}: {self._clock() - self._began:.3f} s: {words}")
+
+
+def _named(calibration: Calibration) -> list[str]:
+    """Names of the winches, with those of their boards where there are several."""
+    several = calibration.boards > 1
+    return [f"{motor.winch} (board {motor.board})" if several else motor.winch for motor in calibration.motors]

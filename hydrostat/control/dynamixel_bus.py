@@ -91,7 +91,7 @@ class DynamixelBus(ServoBus):
         """Facts of the servos; each watchdog is armed and tried."""
         with self._lock:
             firmware = {number: self._pinged(number) for number in self._numbers}
-            self._known = True
+            self._known, self._holding = True, False
             for number in self._numbers:
                 self._set(number, TORQUE, 0, 1)
                 self._set(number, MODE, 5 if self._models[number].measures else 4, 1)
@@ -117,8 +117,15 @@ class DynamixelBus(ServoBus):
                 self._set(number, GOAL, self._steps(number), 4)  # and then goes on to the last
                 self._bound(number, most)
                 self._set(number, TORQUE, 1, 1)
+            self._holding = True
+            self.rewatch()  # at last: who waits for others to be armed would be told nothing
+
+    def rewatch(self) -> None:
+        """Arm the watchdogs of all at once; one that has fired refuses goals until it is reset."""
+        with self._lock:
+            self._tell_all(WATCHDOG, dict.fromkeys(self._numbers, bytes(1)))
             armed = set[int]()
-            for _ in range(5):  # at last, and all at once: who waits for others to be armed would be told nothing
+            for _ in range(5):
                 self._tell_all(WATCHDOG, {number: bytes([WATCH]) for number in self._numbers})
                 armed = {packet.number for packet in self._ask_all(WATCHDOG, 1) if packet.content[1] == WATCH}
                 if armed.issuperset(self._numbers):
@@ -139,8 +146,7 @@ class DynamixelBus(ServoBus):
                 last["volts"][index], last["temperatures"][index] = 0.1 * _signed(told[18:20]), told[20]
                 stamps[index] = self._clock()
                 faults[index] = self._fault(packet)
-            self._last = Reading(**last, stamps=stamps, faults=tuple(faults))
-            return self._last
+            return self._heard(Reading(**last, stamps=stamps, faults=tuple(faults)))
 
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds to all at once; none answers."""

@@ -35,13 +35,13 @@ class EmulatedSts(EmulatedServo):
         if place + len(data) <= STATE:
             self.table[place : place + len(data)] = data
             if place == TORQUE and data[0] == 1:
-                self._put(GOAL, round(self.angle / TICK))
+                self._put(GOAL, round(self.counted / TICK))
         return 0
 
     def step(self, now: float, dt: float) -> None:
         """Let time pass, to an instant [s]."""
         on = bool(self.table[TORQUE]) and not self.ails.hot
-        goal, rise = self._number(GOAL) * TICK, (self.table[RISE] or 1000) * 100 * TICK
+        goal, rise = self.origin + self._number(GOAL) * TICK, (self.table[RISE] or 1000) * 100 * TICK
         limit = int.from_bytes(self.table[GOAL + 4 : GOAL + 6], "little") * TICK or 6.0
         limit = min(limit, 6.0, sqrt(2 * rise * abs(goal - self.angle)))
         wanted = float(np.clip((goal - self.angle) / dt, -limit, limit))
@@ -51,7 +51,7 @@ class EmulatedSts(EmulatedServo):
         self.speed = speed
         self.angle += speed * dt
         current = min(self.load(self.angle) / self.constant, STALL) if on else 0.0
-        self._put(STATE, round(self.angle / TICK))
+        self._put(STATE, round(self.counted / TICK))
         self.table[STATE + 6 : STATE + 8] = bytes([74, 85 if self.ails.hot else 35])
         self._put(STATE + 13, round(current / AMPERE))
 

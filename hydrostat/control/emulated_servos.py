@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from math import inf, sqrt
+from math import inf, pi, sqrt
 
 from hydrostat.control.dynamixel_bus import (
     CURRENT,
@@ -60,6 +60,7 @@ class EmulatedServo:
         model: number of the model.
         angle: of its spool [rad].
         speed: [rad/s].
+        origin: angle from which it counts: 0, or begin of the turn in which it was switched on last [rad].
         load: torque of its cable by angle [N m], which pulls it back.
         constant: torque by current [N m/A].
         ails: what is wrong with it.
@@ -69,6 +70,7 @@ class EmulatedServo:
     model: int = 1200
     angle: float = 0.0
     speed: float = 0.0
+    origin: float = 0.0
     load: Callable[[float], float] = lambda _: 0.0
     constant: float = 0.35
     ails: Ails = field(default_factory=Ails)
@@ -82,11 +84,16 @@ class EmulatedServo:
         self.heard, self.moved = -inf, 0.0
 
     def begin_anew(self) -> None:
-        """Lose power for a moment: what is not lasting is as when it is switched on, torque off."""
+        """Lose power for a moment: what is not lasting is as when it is switched on, torque off, turns forgotten."""
         mode = self.table[MODE]
+        self.speed, self.origin = 0.0, 2 * pi * (self.angle // (2 * pi))
         self.__post_init__()
         self.table[MODE] = mode
-        self.speed = 0.0
+
+    @property
+    def counted(self) -> float:
+        """Angle by its own count [rad]."""
+        return self.angle - self.origin
 
     def get(self, place: int, size: int) -> int:
         """A register."""
@@ -117,7 +124,7 @@ class EmulatedServo:
             return 0x07
         self.table[place : place + len(data)] = data
         if place == TORQUE:
-            self.set(GOAL, round(self.angle / TICK), 4)
+            self.set(GOAL, round(self.counted / TICK), 4)
         return 0
 
     def step(self, now: float, dt: float) -> None:
@@ -127,7 +134,7 @@ class EmulatedServo:
         if watch > 0 and now - self.heard > 0.02 * watch:
             self.set(WATCHDOG, -1, 1)
         stopped = self.get(WATCHDOG, 1) == -1 and not self.ails.deaf_watchdog
-        goal = self.angle if stopped or not on else TICK * self.get(GOAL, 4)
+        goal = self.angle if stopped or not on else self.origin + TICK * self.get(GOAL, 4)
         rise = SPEEDING * self.get(PROFILE, 4) or 1e3
         limit = min(TURNING * self.get(PROFILE + 4, 4) or 6.0, sqrt(2 * rise * abs(goal - self.angle)))
         wanted = max(-limit, min(limit, (goal - self.angle) / dt))
@@ -146,7 +153,7 @@ class EmulatedServo:
         model = MODELS[self.model]
         current = min(self.torque / self.constant, model.stall) if self.table[TORQUE] and not self.ails.hot else 0.0
         self.set(STATE, round(1e3 * current / (1.0 if model.measures else model.stall)), 2)
-        self.set(STATE + 6, round(self.angle / TICK), 4)
+        self.set(STATE + 6, round(self.counted / TICK), 4)
         self.table[HARDWARE] = 0x04 if self.ails.hot else 0
         self.table[146] = 85 if self.ails.hot else 35
 

@@ -57,7 +57,7 @@ class FeetechBus(ServoBus):
         """Facts of the servos; none has a watchdog, none is written to its lasting memory."""
         with self._lock:
             facts = tuple(self._fact(index, number) for index, number in enumerate(self._numbers))
-            self._known = True
+            self._known, self._holding = True, False
             return facts
 
     def arm(self, currents: Vector) -> None:
@@ -69,6 +69,7 @@ class FeetechBus(ServoBus):
             self._stand(all_heard=True)
             for number in self._numbers:
                 self._set(number, TORQUE, b"\x01", "its torque switch")
+            self._holding = True
 
     def read(self) -> Reading:
         """What was last heard of each."""
@@ -83,8 +84,7 @@ class FeetechBus(ServoBus):
                 last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
                 stamps[index] = self._clock()
                 faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)
-            self._last = Reading(**last, stamps=stamps, faults=tuple(faults))
-            return self._last
+            return self._heard(Reading(**last, stamps=stamps, faults=tuple(faults)))
 
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds to all at once; none answers."""

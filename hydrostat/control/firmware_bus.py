@@ -9,10 +9,11 @@ from typing import ClassVar
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+from hydrostat.control.bus import Bus, MotorFacts, Port, Reading, steady
 from hydrostat.errors import HydrostatError
 
 PROOF = 0.05  # current at which the watchdog is tried [A]
+ANEW = "it was switched off or reset, and its motors count anew; calibrate them anew"
 
 
 class FirmwareBus(Bus):
@@ -31,7 +32,7 @@ class FirmwareBus(Bus):
         numbers: Sequence[int] = (),
         *,
         robot: str = "",
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = steady,
         wait: Callable[[float], None] = time.sleep,
         answer: float = 0.05,
     ) -> None:
@@ -51,6 +52,7 @@ class FirmwareBus(Bus):
         self._order = np.argsort(numbers) if numbers else np.arange(len(self._scale))  # motors as the board has them
         self._lock, self._number, self._heard, self._refused = threading.RLock(), 0, b"", ""
         self._known = self._closed = False
+        self._bounds = ""  # of the currents of armed motors; empty where none are
         self._robot, self.forgot = robot, False
         nothing = np.full(len(self._scale), np.nan)
         self._last = Reading(
@@ -75,7 +77,7 @@ class FirmwareBus(Bus):
                 )
             if int(told[5]) != len(self._scale):
                 raise HydrostatError(f"the board was built for {told[5]} motors, and {len(self._scale)} are asked for")
-            self.forgot = told[-1] == "new"
+            self.forgot, self._bounds = told[-1] == "new", ""
             proved = self._stops_by_itself(1e-3 * float(told[6]))
             self._must("O", "to let go")
             self._known = True
@@ -91,8 +93,16 @@ class FirmwareBus(Bus):
     def arm(self, currents: Vector) -> None:
         """Switch torque on where they stand; the board refuses more current than its settings allow."""
         with self._lock:
+            marked = self._surely("I").endswith(" marked")  # numbers of lines begin anew with this one
+            self._see_that_it_counts_on(marked)
             bounds = " ".join(str(max(1, round(1e3 * most))) for most in currents[self._order].tolist())
             self._must(f"A {bounds}", "its bounds of current")
+            self._bounds = bounds
+
+    def rewatch(self) -> None:
+        """Arm them once more where they stand, if the board has stopped them for silence meanwhile."""
+        with self._lock:
+            self._must(f"A {self._bounds}", "its bounds of current")
 
     def read(self) -> Reading:
         """What was last heard of each."""
@@ -104,8 +114,11 @@ class FirmwareBus(Bus):
                 faults = [f"refused: {self._refused}" if self._refused else ""] * len(self._scale)
                 if told[1] not in ("armed", "off"):
                     faults = [f"board stopped: {told[1]}"] * len(faults)
-                if told[2] != "0":
+                if told[2] != "0":  # whose fault it was, so that no other one is named
+                    faults = [""] * len(faults)
                     faults[int(self._order[int(told[2]) - 1])] = told[1]
+                if told[1] == "off" and self._bounds:
+                    self.forgot, faults = True, [f"board: {ANEW}"] * len(faults)
                 self._refused = ""
                 self._last = Reading(
                     angles=numbers[:, 0] / self._scale,
@@ -133,10 +146,18 @@ class FirmwareBus(Bus):
 
     def close(self) -> None:
         """Stop; they hold until the power is off."""
-        self.stop()
-        with suppress(Exception), self._lock:
+        with self._lock:  # nobody tells it anything between the two
+            self.stop()
             self._closed = True
-            self._port.close()
+            with suppress(Exception):
+                self._port.close()
+
+    def _see_that_it_counts_on(self, marked: bool) -> None:
+        """Raise that the board was reset since it was identified, as it begins to count at 0 then, wherever it is."""
+        off = self._bounds and (self._ask("R") or "").startswith("ok off ")
+        if off or (not marked and not self.forgot):
+            self.forgot = True
+            raise HydrostatError(f"the board does not arm its motors: {ANEW}")
 
     def _stops_by_itself(self, deadline: float) -> bool:
         """Whether the board, armed where it stands, says that silence stopped it."""

@@ -49,6 +49,10 @@ class TensionGuard:
         self._limits = limits or GuardLimits()
         self._missed = np.full(len(names), np.nan)  # since when a cable is not felt [s]
 
+    def begin(self) -> None:
+        """Forget what was missed before motors were armed."""
+        self._missed = np.full(len(self._names), np.nan)
+
     def fault(self, contractions: Vector, currents: Vector, radii: Vector, now: float) -> str:
         """What is wrong, in words; empty for nothing.
 

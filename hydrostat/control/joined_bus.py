@@ -1,6 +1,6 @@
 """`JoinedBus`: motors on several lines as one bus."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import TypeVar
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.control.bus import Bus, MotorFacts, Reading
+from hydrostat.errors import HydrostatError
 
 _Item = TypeVar("_Item")
 
@@ -15,39 +16,45 @@ _Item = TypeVar("_Item")
 class JoinedBus(Bus):
     """Motors on several boards or lines, in the order of the winches.
 
-    Each part keeps its own watchdog. What one part raises is raised by the whole, and a `BusLink` then stops all.
+    Each part keeps its own watchdog. What one part raises is raised by the whole, with the number of its board, and a
+    `BusLink` then stops all.
     """
 
     def __init__(self, parts: Sequence[tuple[Bus, Sequence[int]]]) -> None:
         """Buses, each with the places of its motors in the whole; all places once."""
         self._parts = [(bus, np.asarray(places)) for bus, places in parts]
         self._count = sum(len(places) for _, places in self._parts)
-        self.kind, self.forgot = parts[0][0].kind, False  # type: ignore[misc]  # that of its parts
+        self.kind = parts[0][0].kind  # type: ignore[misc]  # that of its parts
+
+    @property
+    def forgot(self) -> bool:  # type: ignore[override]
+        """Whether motors of any part have lost their count."""
+        return any(bus.forgot for bus, _ in self._parts)
 
     def identify(self) -> tuple[MotorFacts, ...]:
         """Facts of the motors of all parts; each part tries its own watchdogs."""
-        told = [bus.identify() for bus, _ in self._parts]
-        self.forgot = any(bus.forgot for bus, _ in self._parts)
-        return self._whole(told)
+        return self._whole(self._each(lambda bus, _: bus.identify()))
 
     def mark(self) -> None:
         """Let each part remember that its motors are calibrated."""
-        for bus, _ in self._parts:
-            bus.mark()
-        self.forgot = False
+        self._each(lambda bus, _: bus.mark())
 
     def arm(self, currents: Vector) -> None:
         """Switch torque on in all parts, one after the other; all stop if one does not take it."""
         try:
-            for bus, places in self._parts:
-                bus.arm(currents[places])
+            self._each(lambda bus, places: bus.arm(currents[places]))
+            self.rewatch()  # those of the first may have fired while the last were armed
         except BaseException:
             self.stop()
             raise
 
+    def rewatch(self) -> None:
+        """Let the watchdogs of all parts begin anew."""
+        self._each(lambda bus, _: bus.rewatch())
+
     def read(self) -> Reading:
         """What was last heard of all motors."""
-        told = [bus.read() for bus, _ in self._parts]
+        told = self._each(lambda bus, _: bus.read())
 
         def joined(name: str) -> Vector:
             return np.array(self._whole([getattr(reading, name) for reading in told]))
@@ -63,8 +70,7 @@ class JoinedBus(Bus):
 
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds to all parts."""
-        for bus, places in self._parts:
-            bus.write(angles[places], speeds[places])
+        self._each(lambda bus, places: bus.write(angles[places], speeds[places]))
 
     def stop(self) -> None:
         """Let the motors of all parts stand."""
@@ -78,6 +84,16 @@ class JoinedBus(Bus):
         for bus, _ in self._parts:
             with suppress(Exception):
                 bus.close()
+
+    def _each(self, ask: Callable[[Bus, np.ndarray], _Item]) -> list[_Item]:
+        """What each part answers, asked with the places of its motors; what goes wrong is told with its number."""
+        told = []
+        for number, (bus, places) in enumerate(self._parts, 1):
+            try:
+                told.append(ask(bus, places))
+            except HydrostatError as error:
+                raise HydrostatError(f"board {number}: {error}") from None
+        return told
 
     def _whole(self, told: Sequence[Sequence[_Item]]) -> tuple[_Item, ...]:
         """What the parts tell of their motors, in the order of the whole."""

@@ -5,13 +5,18 @@ import time
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
-from hydrostat.control.bus import Bus, Port, Reading
+from hydrostat.control.bus import Bus, Port, Reading, steady
 from hydrostat.control.dynamixel_packets import Packet, PacketReader
 from hydrostat.errors import HydrostatError
+
+TURNED = 0.75 * 2 * np.pi
+"""No servo turns so far between two answers [rad]: who says so has begun to count anew."""
+ANEW = "it has lost its power for a moment, and its count of turns with it; calibrate it anew"
 
 
 class ServoBus(Bus):
@@ -24,7 +29,7 @@ class ServoBus(Bus):
         port: Port,
         numbers: Sequence[int],
         *,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = steady,
         wait: Callable[[float], None] = time.sleep,
         answer: float = 0.02,
     ) -> None:
@@ -40,6 +45,8 @@ class ServoBus(Bus):
         self._port, self._numbers, self._clock, self._wait, self._answer = port, tuple(numbers), clock, wait, answer
         self._lock, self._reader = threading.RLock(), self.packets()
         self._known = self._closed = False  # whether it is known who they are, and whether the line is let go
+        self._holding = False  # whether torque is on since they were heard last
+        self.forgot = False
         nothing = np.full(len(self._numbers), np.nan)
         self._last = Reading(
             angles=nothing,
@@ -58,10 +65,27 @@ class ServoBus(Bus):
 
     def close(self) -> None:
         """Stop; torque stays on, so that no load falls, and a watchdog armed."""
-        self.stop()
-        with suppress(Exception), self._lock:
+        with self._lock:  # nobody tells them anything between the two
+            self.stop()
             self._closed = True
-            self._port.close()
+            with suppress(Exception):
+                self._port.close()
+
+    def mark(self) -> None:
+        """Their zeros are known."""
+        self.forgot = False
+
+    def _heard(self, reading: Reading) -> Reading:
+        """Keep a reading as the last; a motor that holds and has jumped by a turn or so is at fault from then on.
+
+        A servo that is switched on counts from within one turn, whatever it had counted before.
+        """
+        jumped = np.abs(reading.angles - self._last.angles) > TURNED  # NaN: not heard yet
+        faults = list(reading.faults)
+        for index in np.flatnonzero(jumped & self._holding).tolist():
+            faults[index], self.forgot = ANEW, True
+        self._last = replace(reading, faults=tuple(faults))
+        return self._last
 
     def _stand(self, *, all_heard: bool = False) -> None:
         """Goals where each was heard first, told at once and again: questions, answers and goals may be lost."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control.bus import Bus, Reading
+from hydrostat.control.bus import Bus, Reading, steady
 from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.model_tensions import WinchPull
 from hydrostat.errors import HydrostatError
@@ -66,7 +66,7 @@ def take_up_slack(
     found: Callable[[TakenUp], None],
     *,
     most: float = 0.04,
-    clock: Callable[[], float] = time.monotonic,
+    clock: Callable[[], float] = steady,
     wait: Callable[[float], None] = time.sleep,
 ) -> tuple[TakenUp, ...]:
     """Find the zeros of all motors, one after the other, while the others stand; all stand at their zeros at the end.

@@ -186,9 +186,9 @@ class Session:
 
     def key(self, name: str) -> bool:
         """Heed a key of the current stage; whether it meant something."""
+        if name == "escape":
+            self.hardware.hold()  # without waiting for whoever works with the session just now
         with self._lock:
-            if name == "escape":
-                self.hardware.hold()
             meant = self.document.is_open and bool(self._try(lambda: self.current.key(name)))
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
         return meant

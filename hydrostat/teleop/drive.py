@@ -88,8 +88,8 @@ def drive(
     news, switching = threading.Event(), sys.getswitchinterval()
     sys.setswitchinterval(SWITCHING)
     source.news = way.news = news
-    driven, end = DriveLoop(motors, way, source), clock() + seconds
     try:
+        driven, end = DriveLoop(motors, way, source), clock() + seconds
         while driven.step(clock()) and clock() < end:
             tell(driven)
             news.wait(TICK)

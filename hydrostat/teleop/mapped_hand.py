@@ -53,8 +53,8 @@ class MappedHand(DriveSource):
             try:
                 self._reading = self._hand.read()
                 self._error, self._well = "", self._clock()
-            except HydrostatError as error:
-                self._error = str(error)
+            except Exception as error:  # noqa: BLE001 - of whatever kind: nobody is heard, and why is told
+                self._error = str(error) or type(error).__name__
                 self._over.wait(0.05)
             if self.news is not None:
                 self.news.set()

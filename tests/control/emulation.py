@@ -1,5 +1,7 @@
 """Winches that are not there: emulated servos that pull at springs, on a link."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hydrostat.control.bus_link import BusLink
@@ -75,3 +77,15 @@ class Rig:
     def places(self) -> np.ndarray:
         """Where they are in truth [m]."""
         return np.array([RADIUS * (servo.angle - 1.0) for servo in self.servos])
+
+
+def together(chains: Sequence[EmulatedChain]) -> None:
+    """Let lines live in the same time: what passes on one passes on all."""
+    waits = [chain.wait for chain in chains]
+
+    def wait(seconds: float) -> None:
+        for each in waits:
+            each(seconds)
+
+    for chain in chains:
+        chain.wait = wait  # type: ignore[method-assign]

@@ -15,7 +15,7 @@ typedef struct {
     char encoder;
     int channel, block; /* block: the shaft is held fast */
     double angle, speed, current, stiffness, slack, wire, fastest, least, most;
-    int cut; /* the encoder's cable is cut */
+    int cut; /* 1: the encoder's cable is cut; 2: the wire of its second channel is; 3: its channels are swapped */
 } Plant;
 
 static avr_t *avr;
@@ -56,11 +56,12 @@ static void pin(char port, int number, int value) {
 
 static void encode(Plant *plant) {
     static const int gray[4] = {0, 1, 3, 2};
-    if (plant->cut)
+    if (plant->cut == 1)
         return;
-    int phase = gray[(int)floor(plant->angle) & 3];
+    int phase = gray[(int)floor(plant->cut == 3 ? -plant->angle : plant->angle) & 3];
     pin(plant->encoder, plant->channel, phase & 1);
-    pin(plant->encoder, plant->channel + 1, phase >> 1);
+    if (plant->cut != 2)
+        pin(plant->encoder, plant->channel + 1, phase >> 1);
 }
 
 /* Units: counts of the encoder [1], s, A, V. 12 V, 3600 counts/s without load, 2 A at stall, 20 ms to speed. */

@@ -55,7 +55,7 @@ typedef struct {
     float aim, wish, pace, gain, most, sum; /* goal, place on the way, its speed, its gain, the greatest [1/tick], integral */
     int32_t before;                   /* place a tick ago */
     uint16_t bound, milliamps;
-    uint8_t hot, stuck; /* ticks of too much current, of no motion */
+    uint8_t hot, stuck; /* ticks of too much current, of full power without motion */
 } Motor;
 
 enum State { OFF, ARMED, SILENT, CURRENT, STALL, ENCODER, BEYOND };
@@ -236,10 +236,12 @@ static void follow(uint8_t i) {
     int16_t whole = lroundf(fmaxf(-255, fminf(255, power)));
     drive(i, abs(whole) < 4 ? 0 : whole);
     motor->hot = motor->milliamps > motor->bound ? motor->hot + 1 : 0;
-    motor->stuck = abs(whole) > 200 && speed == 0 ? motor->stuck + 1 : 0;
+    /* An encoder with one wire trembles by a count, one with swapped wires runs away: neither is motion. */
+    uint8_t moves = (whole > 0 ? speed : -speed) * 10 * RATE >= FREE_SPEED;
+    motor->stuck = abs(whole) > 200 && !moves ? motor->stuck + 1 : 0;
     if (motor->hot >= RATE / 20)
         fault(CURRENT, i);
-    else if (motor->stuck >= RATE / 5)
+    else if (motor->stuck >= RATE / 10)
         fault(STALL, i);
     else if (now < limits[i].low - BEYOND_BY || now > limits[i].high + BEYOND_BY)
         fault(BEYOND, i);

@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 
@@ -57,6 +58,7 @@ class Hardware:
         self._robot: Robot | None = None
         self._lock, self._over = threading.RLock(), threading.Event()
         self._goal = self._places = self._pulls = np.zeros(0)
+        self._shown = False  # whether the goal is what is shown, not what there was before
         self._alive = 0.0
         self._thread: threading.Thread | None = None
 
@@ -111,7 +113,7 @@ class Hardware:
         else:
             calibration = read_calibration(folder, robot)
         with self._lock:
-            self._robot = robot
+            self._robot, self._shown = robot, False
             self._goal = self._places = self._pulls = np.zeros(len(robot.winches))
         link = BusLink(self._opener(port, robot, calibration, self._load), robot.winches, calibration)
         try:
@@ -133,6 +135,7 @@ class Hardware:
                 raise InputError("connect the motors first")
             link.arm()
             self._places, self._alive = link.read(time.monotonic()), time.monotonic()
+            self._goal = self._goal if self._shown else self._places
             link.watch()
             self.words = ""
         if self._thread is None:
@@ -141,10 +144,15 @@ class Hardware:
         self._ring()
 
     def hold(self, why: str = "") -> None:
-        """Let motors stand; they must be armed anew. Nothing happens where none turn."""
-        with self._lock:
-            if self._link is not None and self.armed:
-                self._link.stop()
+        """Let motors stand; they must be armed anew. Nothing happens where none turn.
+
+        It waits for no other thread, not even for one that arms them just now: they are not armed then.
+        """
+        link = self._link
+        if link is not None:
+            before = link.state
+            link.stop()
+            if before is LinkState.ARMED:
                 self.words = why
         self._ring()
 
@@ -170,6 +178,7 @@ class Hardware:
             for cable, tension in zip(robot.cables, shape.tensions.tolist(), strict=True):
                 pulls[cable.winch] += tension
             self._goal, self._pulls = np.array(shape.contractions, dtype=float), np.array(list(pulls.values()))
+            self._shown = True
 
     def beat(self) -> None:
         """Take a sign of life of a page that somebody looks at."""
@@ -197,7 +206,8 @@ class Hardware:
                 except Exception as error:  # noqa: BLE001 - whatever it is, motors stop
                     link.stop()
                     self.words = f"the motors stopped: {error}"
-            self._bell.ring(Topic.DRIVE)
+            with suppress(Exception):  # who shows it may have gone; this thread is who stops motors
+                self._bell.ring(Topic.DRIVE)
 
     def _same(self, robot: Robot) -> bool:
         """Whether another state of the document has the same winches."""

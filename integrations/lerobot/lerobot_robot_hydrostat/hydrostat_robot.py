@@ -156,7 +156,7 @@ class HydrostatRobot(Robot):
                         motors.ask(motors.places if motors.moving else motors.command)
                     motors.drive(time.monotonic())
                 self._way.see(motors.places)
-        except HydrostatError as error:
-            self._error = str(error)
+        except Exception as error:  # noqa: BLE001 - of whatever kind, it is told to who asks next
+            self._error = str(error) or type(error).__name__
         finally:
             motors.hold()

@@ -1,5 +1,6 @@
 """Motors behind the studio. Oracle: emulated servos, which know where they are."""
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -165,3 +166,50 @@ def test_the_kits_speed_by_hand(session: Session) -> None:
     if "25D" in name:
         assert speed == pytest.approx(2 * np.pi * radius * 35 / 60 * (1 - load / 1.373))
     assert 0.01 < speed < 0.07
+
+
+def test_escape_stops_motors_while_another_thread_works_with_the_session(session: Session) -> None:
+    hardware = session.hardware
+    hardware.connect("emulated")
+    hardware.arm()
+    hardware.beat()
+    with session._lock:  # a thread that solves something long
+        pressed = threading.Thread(target=session.key, args=("escape",))
+        pressed.start()
+        assert until(lambda: hardware.state is LinkState.STOPPED, 1.0)
+    pressed.join()
+
+
+def test_a_stop_while_motors_are_armed_leaves_them_standing(session: Session) -> None:
+    hardware = session.hardware
+    hardware.connect("emulated")
+    link = hardware._link
+    assert link is not None
+    arm = link._bus.arm
+
+    def slow(currents: np.ndarray) -> None:
+        arm(currents)
+        pressed = threading.Thread(target=hardware.hold)
+        pressed.start()
+        pressed.join(5.0)
+        assert not pressed.is_alive()  # it did not wait
+
+    link._bus.arm = slow  # type: ignore[method-assign]
+    with pytest.raises(HydrostatError, match="stopped while they were armed"):
+        hardware.arm()
+    assert hardware.state is LinkState.STOPPED
+
+
+def test_motors_armed_before_anything_is_shown_stay_where_they_are(session: Session) -> None:
+    hardware = session.hardware
+    hardware.connect("emulated")
+    link = hardware._link
+    assert link is not None
+    hardware.arm()
+    hardware._goal = np.full(len(hardware.places), 0.006)
+    assert until(lambda: (hardware.beat(), min(hardware.places.values()) > 0.0055)[1])
+    hardware.hold()
+    hardware._goal = np.zeros(len(hardware.places))  # as it is when motors are connected
+    hardware.arm()
+    until(lambda: bool(hardware.beat()), 0.5)
+    assert min(hardware.places.values()) > 0.0055
