@@ -1,11 +1,14 @@
 """Faults that are injected into emulated motors: do they stay within limits, stop in time, and is each told?
 
-    python benchmarks/motor_faults.py [--count 10000] [--seed 0] [--seconds 600]
+    python benchmarks/motor_faults.py [--count 10000] [--seed 0] [--seconds 600] [--boards]
 
 Three winches with emulated servos pull at springs, in seven runs of ten those of Dynamixel, else those of Feetech,
 while a host tells them goals 50 times a second. Bytes are dropped, flipped, doubled and delayed both ways; servos fall
 silent, get stuck, run hot, begin anew; lines are unplugged, hosts die or sleep; half of the servos have a watchdog that
 does not stop them, as those of the 330 series, and Feetech's have none.
+With --boards two to four lines with one to three motors each are joined as one bus, four runs of ten of Dynamixel, two
+of Feetech, four of boards with our firmware, emulated too; what is hard befalls one or more of them, and somebody arms
+them anew afterwards.
 Time is that of the emulation. Counted are motions beyond limits, pulls more than 5 % above what the bound of the
 current allows, motors that still turn 250 ms after the last command, and faults that no word was said of.
 """
@@ -22,6 +25,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "control"))
 
 from fault_campaign import Campaign
 from machine import machine
+from several_boards import BoardsCampaign
 
 
 def main() -> None:
@@ -30,9 +34,11 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=float("inf"), help="of CPU, at most")
+    parser.add_argument("--boards", action="store_true", help="several boards as one bus")
     given = parser.parse_args()
     print(machine())
-    campaign, began = Campaign(np.random.default_rng(given.seed), seconds=2.0, share=0.25), time.process_time()
+    kind = BoardsCampaign if given.boards else Campaign
+    campaign, began = kind(np.random.default_rng(given.seed), seconds=2.0, share=0.25), time.process_time()
     with suppress(KeyboardInterrupt):
         while campaign.injected < given.count and time.process_time() - began < given.seconds:
             campaign.run()

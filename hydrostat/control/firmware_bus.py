@@ -53,6 +53,7 @@ class FirmwareBus(Bus):
         self._lock, self._number, self._heard, self._refused = threading.RLock(), 0, b"", ""
         self._known = self._closed = False
         self._bounds = ""  # of the currents of armed motors; empty where none are
+        self._stood = True  # whether they were told to stand since they were armed
         self._robot, self.forgot = robot, False
         nothing = np.full(len(self._scale), np.nan)
         self._last = Reading(
@@ -97,7 +98,7 @@ class FirmwareBus(Bus):
             self._see_that_it_counts_on(marked)
             bounds = " ".join(str(max(1, round(1e3 * most))) for most in currents[self._order].tolist())
             self._must(f"A {bounds}", "its bounds of current")
-            self._bounds = bounds
+            self._bounds, self._stood = bounds, False
 
     def rewatch(self) -> None:
         """Arm them once more where they stand, if the board has stopped them for silence meanwhile."""
@@ -112,9 +113,10 @@ class FirmwareBus(Bus):
                 slots = np.argsort(self._order)
                 numbers = np.array(told[3:], dtype=np.float64).reshape(-1, 2)[slots]
                 faults = [f"refused: {self._refused}" if self._refused else ""] * len(self._scale)
-                if told[1] not in ("armed", "off"):
+                stopped = told[1] not in ("armed", "off") and not self._stood  # who stands falls silent, too
+                if stopped:
                     faults = [f"board stopped: {told[1]}"] * len(faults)
-                if told[2] != "0":  # whose fault it was, so that no other one is named
+                if stopped and told[2] != "0":  # whose fault it was, so that no other one is named
                     faults = [""] * len(faults)
                     faults[int(self._order[int(told[2]) - 1])] = told[1]
                 if told[1] == "off" and self._bounds:
@@ -141,6 +143,7 @@ class FirmwareBus(Bus):
         """Let them stand, told three times."""
         with suppress(Exception), self._lock:
             if self._known and not self._closed:
+                self._stood = True
                 for _ in range(3):
                     self._send("S")
 

@@ -74,23 +74,36 @@ class Campaign:
         for servo in rig.servos:
             servo.ails.deaf_watchdog = bool(random.random() < 0.5)
         rig.begin()
-        noises = [Noise(random, self.share) for _ in range(2)]
-        rig.chain.towards, rig.chain.back = noises
-        rig.chain.watch = lambda: self._watch(rig)
+        noises = self.noises(rig)
         end = rig.chain.now + self.seconds
         while rig.chain.now < end:
             self._drive(rig, min(0.4, end - rig.chain.now))
             if rig.link.state is not LinkState.ARMED:
                 self._again(rig)
-        rig.chain.towards = rig.chain.back = lambda data: data
+        self.quiet(rig)
         for noise in noises:
             self.count.update(noise.count)
         self._hard(rig)
 
+    def noises(self, rig: Rig) -> list[Noise]:
+        """Noise on its line, and a look at it at each step."""
+        rig.chain.towards, rig.chain.back = noises = [Noise(self.random, self.share) for _ in range(2)]
+        rig.chain.watch = lambda: self._watch(rig)
+        return noises
+
+    def quiet(self, rig: Rig) -> None:
+        """No noise any more."""
+        rig.chain.towards = rig.chain.back = lambda data: data
+
+    def goal(self, rig: Rig) -> np.ndarray:
+        """Where to go, sometimes beyond the limits [m]."""
+        del rig
+        return self.random.uniform(-0.01, 0.05, 3)
+
     def _drive(self, rig: Rig, seconds: float) -> str:
         """Tell goals; give the words of what ended it."""
         try:
-            rig.go(self.random.uniform(-0.01, 0.05, 3), seconds, speed=float(self.random.uniform(0.01, 0.06)))
+            rig.go(self.goal(rig), seconds, speed=float(self.random.uniform(0.01, 0.06)))
         except HydrostatError as error:
             return str(error)
         return ""
@@ -104,13 +117,17 @@ class Campaign:
                 continue
             return
 
-    def _hard(self, rig: Rig) -> None:
-        kind, servo = HARD[self.random.integers(len(HARD))], rig.servos[int(self.random.integers(3))]
-        for _ in range(5):  # what noise has left behind is over before something else goes wrong
+    def _settle(self, rig: Rig) -> None:
+        """What noise has left behind is over before something else goes wrong."""
+        for _ in range(5):
             if rig.link.state is LinkState.ARMED and not self._drive(rig, 0.3):
                 break
             self._again(rig)
         self._drive(rig, float(self.random.uniform(0.02, 0.3)))
+
+    def _hard(self, rig: Rig) -> None:
+        kind, servo = HARD[self.random.integers(len(HARD))], rig.servos[int(self.random.integers(3))]
+        self._settle(rig)
         self.count[kind] += 1
         words, last = "", rig.chain.now
         if kind in ("deaf", "stuck", "hot"):
@@ -135,9 +152,11 @@ class Campaign:
         if np.abs(rig.places - before).max() > 1e-6:
             self.wrong[f"still turning {rig.chain.now - last - 0.5:.2f} s after the last command, {kind}"] += 1
 
+    zero = 1.0  # angle of motors with nothing taken in [rad]
+
     def _watch(self, rig: Rig) -> None:
         for servo in rig.servos:
-            if not LOW - BEYOND <= RADIUS * (servo.angle - 1.0) <= HIGH + BEYOND:
+            if not LOW - BEYOND <= RADIUS * (servo.angle - self.zero) <= HIGH + BEYOND:
                 self.wrong["beyond limits"] += 1
             if servo.speed > 0 and servo.torque > 1.05 * CURRENT * CONSTANT:
                 self.wrong["pulls too hard"] += 1

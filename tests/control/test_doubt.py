@@ -201,6 +201,28 @@ def test_a_board_that_was_reset_is_told_and_not_armed_again() -> None:
     assert board.winches[0].angle == pytest.approx(where, abs=5)
 
 
+def test_a_board_that_fell_silent_on_hold_is_armed_again() -> None:
+    """Motors that stand are told nothing, and their board says so: that is no fault."""
+    board = Board()
+    line = FirmwareBus(board, [1000.0, 1000.0], clock=board.clock, wait=board.run)
+    line.identify()
+    line.mark()
+    spools = tuple(replace(each, zero=0.0) for each in SPOOLS[:2])
+    link = BusLink(line, WINCHES[:2], Calibration(spools), clock=board.clock)
+    link.identify()
+    link.arm()
+    board.run(1.0)
+    with pytest.raises(HydrostatError, match="nothing was told for"):
+        link.send(np.full(2, 0.01), 0.0, speed=0.06)
+    board.run(1.0)
+    link.arm()
+    for _ in range(60):
+        link.send(np.full(2, 0.01), 0.0, speed=0.06)
+        board.run(0.01)
+        places = link.read(0.0)
+    assert places == pytest.approx([0.01, 0.01], abs=2e-4)
+
+
 def two_lines(*, first: int = 1, second: int = 8) -> tuple[BusLink, list[EmulatedServo], list[EmulatedChain]]:
     """A link to two lines of servos with working watchdogs, the second one slow to arm."""
     servos = [[EmulatedServo(n, angle=1.0, model=1060) for n in range(1, count + 1)] for count in (first, second)]
