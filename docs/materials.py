@@ -32,7 +32,7 @@ the 100 % moduli and densities of the silicones, the fit to flexfoam-it v and Al
 at hand: elongations at break, NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, how the maker names its
 foams. What is assumed is called so.
 
-Codes such as R52, N5 and E30 cite points of the [thesis](thesis.md).
+"The thesis" is [this one](thesis.md).
 """
 
 

@@ -1,5 +1,6 @@
 """docs/thesis.md keeps both ends: each code that is cited stands in it, each place that it names exists."""
 
+import inspect
 import re
 from pathlib import Path
 
@@ -63,6 +64,7 @@ def test_the_list_is_whole(listed: dict[str, tuple[str, str]]) -> None:
 
 @pytest.mark.parametrize("pattern", SOURCES)
 def test_what_is_cited_is_listed(pattern: str, listed: dict[str, tuple[str, str]]) -> None:
+    assert coded({"a": "as told (R31)", "b": "an N20 motor"}) == ["a: R31"]
     assert unknown(cited(pattern), listed) == []
 
 
@@ -72,6 +74,42 @@ def test_places_exist(listed: dict[str, tuple[str, str]]) -> None:
 
 def test_what_the_package_cites_has_a_place(listed: dict[str, tuple[str, str]]) -> None:
     assert [code for code in cited("hydrostat/**/*.py") if listed[code][1] == "not yet"] == []
+
+
+def coded(texts: dict[str, str]) -> list[str]:
+    """Which of some texts hold codes."""
+    return [f"{name}: {code}" for name, text in texts.items() for code in set(CODE.findall(text)) - set(LOOK_ALIKE)]
+
+
+def test_what_users_read_in_python_has_no_codes() -> None:
+    """`help()` of all that is public, and of its methods: a code without its key means nothing there (finding 45)."""
+    import hydrostat as hs
+
+    texts = {}
+    for name in hs.__all__:
+        thing = getattr(hs, name)
+        texts[name] = inspect.getdoc(thing) or ""
+        if inspect.isclass(thing):
+            texts |= {
+                f"{name}.{key}": inspect.getdoc(value) or "" for key, value in vars(thing).items() if callable(value)
+            }
+    assert len(texts) > 100
+    assert coded(texts) == []
+
+
+def test_what_the_command_line_says_has_no_codes() -> None:
+    from typer.main import get_command
+
+    from hydrostat.cli.main import app
+    from hydrostat.robot import MATERIALS
+
+    commands = get_command(app).commands  # type: ignore[attr-defined]
+    texts = {
+        name: " ".join([command.help or "", *(getattr(each, "help", "") or "" for each in command.params)])
+        for name, command in commands.items()
+    }
+    texts |= {name: f"{material.source} {material.note}" for name, material in MATERIALS.items()}
+    assert coded(texts) == []
 
 
 def test_the_checks_can_fail() -> None:

@@ -1,5 +1,7 @@
 """`Constraints`: what makes a network one that can be built."""
 
+# Of the thesis (docs/thesis.md): R12, R14, R44, R53, E12
+
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, isfinite
@@ -51,21 +53,21 @@ class Range:
 
 @dataclass(frozen=True, kw_only=True)
 class Constraints:
-    """Limits that every returned network keeps (R12, R14, R44); lengths in metres, at rest.
+    """Limits that every returned network keeps; lengths in metres, at rest.
 
     `hydrostat.design.buildable` tells whether a network keeps them, and how each of them is measured.
 
     Attributes:
         winch_zones: winches stand in one of these only; anywhere in the body if there is none.
         keep_out: no cable passes here.
-        still: cables run in sheaths here, so that they move nothing (R14).
+        still: cables run in sheaths here, so that they move nothing.
         mount: winches in the body, or beside it; None: as the robot's own winches are, in the body if it has none.
             Winches in the world stand at places of the robot's own winches.
         built_in: whether new winches in a flat body stand only where motor, spool and housing fit, if they fit
             anywhere; those of a network to be improved stay about where they are.
-        cables_per_winch: most cables of one winch (R44).
+        cables_per_winch: most cables of one winch.
         clearance: least distance of a cable from the edge of the body.
-        depth: in space, how far under the surface cables run, sewn to the skin; 0: on it (R53). It takes the place of
+        depth: in space, how far under the surface cables run, sewn to the skin; 0: on it. It takes the place of
             the clearance, and winches stand in the world. None: anywhere.
         winch_clearance: least distance of a winch in the body from its edge.
         winch_gap: least distance between two winches, unless both stand in the world.
@@ -81,9 +83,9 @@ class Constraints:
         travel: the most that a winch takes in.
         release: the most that a winch lets out.
         spool_radius: of the winches.
-        slack: the most that a stopper may leave loose (E12).
+        slack: the most that a stopper may leave loose.
         spool_ratio: most times by which a cable's own spool may be larger or smaller than its winch's; 1: none may.
-        leads: whether a cable may run in a sheath from its winch to where bending should begin (R14).
+        leads: whether a cable may run in a sheath from its winch to where bending should begin.
         mirror: axis whose sign a left-right symmetric network does not feel: "x", "y" or "z"; None: no symmetry. The
             mirror is the plane where that coordinate is 0, the middle of what was drawn.
         locked_winches: names of the robot's own winches that stay.

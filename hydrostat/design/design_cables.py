@@ -1,5 +1,7 @@
 """`design_cables`, `find_network`: from poses to winches and cables."""
 
+# Of the thesis (docs/thesis.md): R2, R35, F1, E28
+
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import TypedDict, Unpack
@@ -40,7 +42,7 @@ def design_cables(
     watch: Watch | None = None,
     **asked: Unpack[Asked],
 ) -> Network:
-    """Find a network of winches and cables that brings a robot into some poses (R2, R35, F1, E28).
+    """Find a network of winches and cables that brings a robot into some poses.
 
     Args:
         robot: body, pins and markers; its own winches and cables are left aside but for those that are locked.

@@ -1,5 +1,7 @@
 """`Network`: a designed robot with everything that tells how good it is and how it came about."""
 
+# Of the thesis (docs/thesis.md): E24
+
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -82,7 +84,7 @@ class Network:
         robot: the robot with the new network.
         source: the robot that it was designed for.
         request: what was asked, with the constraints that it keeps.
-        reached: what the new network reaches of each pose by its own winches; the true score (E24).
+        reached: what the new network reaches of each pose by its own winches; the true score.
         built: rms error over markers and poses expected of a robot as it is built, its commands played open loop [m]:
             `hydrostat.design.expected_error` with the uncertainty of the request.
         alternatives: other networks, the best first; by counts where the number of winches was found.

@@ -1,5 +1,7 @@
 """`DesignRequest`: what a design is asked, and how its method shall work."""
 
+# Of the thesis (docs/thesis.md): F1, E28, M8 to M10, R39, R40, R43, E23, E24, E21
+
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any, Self
@@ -45,7 +47,7 @@ class RouteOptions:
         polish: steps of refinement of a whole network.
         simplicity: how much a simple network is worth: at 1 a cable must lower the error as built by 2 %, a winch by
             4 %, a hole by 0.3 %; 0 keeps all that help at all.
-        reach: how much it is worth that markers can be brought elsewhere too (F1, E28), in every direction within
+        reach: how much it is worth that markers can be brought elsewhere too, in every direction within
             travel and tension: a network that reaches twice as far may miss the poses by 2^reach times as much.
     """
 
@@ -87,7 +89,7 @@ ROUTE_RANGES = {
 
 @dataclass(frozen=True, kw_only=True)
 class TreeOptions:
-    """How winch trees are grown; lengths in units of the mean mesh edge unless said otherwise (M8 to M10).
+    """How winch trees are grown; lengths in units of the mean mesh edge unless said otherwise.
 
     Raises InputError for muscles of no kind that there is.
 
@@ -95,14 +97,14 @@ class TreeOptions:
         fibres: a muscle on every mesh edge, or one in every element.
         effort: weight of squared tensions in the activation: the larger, the weaker the muscles and the error left.
         stages: steps in which the target is approached.
-        thresholds: numbers of candidate fibres to try (R39).
-        distances: largest gaps to bridge between two fibres to try (R40).
-        growth_steps: most fibres joined to one route (R40).
+        thresholds: numbers of candidate fibres to try.
+        distances: largest gaps to bridge between two fibres to try.
+        growth_steps: most fibres joined to one route.
         turn: sharpest turn of a route [degrees].
         shortest: least length of a route worth a cable.
-        phis: weights of the mean against the spread in the score to try (R43, E23).
+        phis: weights of the mean against the spread in the score to try.
         shares: most ways to share the cables among the winches to try, the evenest first.
-        trials: most networks whose poses are solved (E24).
+        trials: most networks whose poses are solved.
         loss: how much of the pose error leaving out cables may add, as a fraction.
         lead_penalty: how much the score loses for a lead as long as the body.
     """
@@ -134,10 +136,10 @@ class TreeOptions:
         """The thesis's search as it stands: one value of each knob, one network, none chosen by its pose error.
 
         Args:
-            threshold: number of candidate fibres (R39).
-            distance: largest gap between two fibres that are joined, in mean mesh edges (R40).
-            steps: most fibres joined to one route (R40).
-            phi: weight of the mean against the spread in the score (R43).
+            threshold: number of candidate fibres.
+            distance: largest gap between two fibres that are joined, in mean mesh edges.
+            steps: most fibres joined to one route.
+            phi: weight of the mean against the spread in the score.
         """
         return cls(
             thresholds=(threshold,),

@@ -41,8 +41,10 @@ class Named(Protocol):
 
 
 def winch_colours(winches: Iterable[Named]) -> dict[str, str]:
-    """The colour of each of a robot's winches, by name."""
-    return {winch.name: WINCHES[index % len(WINCHES)] for index, winch in enumerate(winches)}
+    """The colour of each of a robot's winches, by name; darker ones from the ninth on, and again from the 17th."""
+    count = len(WINCHES)
+    colours = [*WINCHES, *(mix(colour, INK, 0.55) for colour in WINCHES)]
+    return {winch.name: colours[index % (2 * count)] for index, winch in enumerate(winches)}
 
 
 def pose_colours(names: Iterable[str]) -> dict[str, str]:

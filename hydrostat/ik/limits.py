@@ -1,5 +1,7 @@
 """`Limits`: how far, how fast and how hard winches may pull."""
 
+# Of the thesis (docs/thesis.md): E18
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -15,7 +17,7 @@ from hydrostat.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What the winches may do (E18), beside their travel and release.
+    """What the winches may do, beside their travel and release.
 
     Attributes:
         contraction: least and largest contraction of a winch [m], in place of -release and travel.

@@ -1,5 +1,7 @@
 """`solve_ik`: the contractions that bring a robot nearest to a pose, by descents from several beginnings."""
 
+# Of the thesis (docs/thesis.md): R31 to R33, E18
+
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import count, islice
@@ -35,7 +37,7 @@ def solve_ik(
     seconds: float | None = None,
     progress: Tell | None = None,
 ) -> ReachedPose:
-    """Bounded Gauss-Newton through the sensitivities of the equilibrium (R31 to R33, E18).
+    """Bounded Gauss-Newton through the sensitivities of the equilibrium.
 
     Minimises half the squares of what targets and objectives miss while the winches stay within their limits. Each step
     is linearised by dx/da; equilibria on the way are only as sharp as they must be, the last one is exact. The answer

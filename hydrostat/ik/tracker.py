@@ -1,5 +1,7 @@
 """`Tracker`: contractions for targets that move, fit to be streamed."""
 
+# Of the thesis (docs/thesis.md): R34
+
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Protocol, runtime_checkable
@@ -52,7 +54,7 @@ class PoseModel(Protocol):
 
 
 class Tracker:
-    """Any-time inverse kinematics: each update is one trust-region step nearer, and a pose of its own (R34).
+    """Any-time inverse kinematics: each update is one trust-region step nearer, and a pose of its own.
 
     Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once; with an
     accuracy its nodes may be so far from it [m]. Slack cables are kept just short of taut, so that they can join

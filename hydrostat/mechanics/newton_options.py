@@ -1,5 +1,7 @@
 """What Newton is told: how far and how long it goes, what rounding hides; and the reasons why it ends."""
 
+# Of the thesis (docs/thesis.md): M4
+
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -19,7 +21,7 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonOptions:
-    """How far and how long Newton goes (M4).
+    """How far and how long Newton goes.
 
     Attributes:
         tolerance: largest nodal force left over, as a fraction of the largest applied force.

@@ -1,5 +1,7 @@
 """`Cable`: a tendon, a line from a winch through the body to a stopper; and how cables get their names."""
 
+# Of the thesis (docs/thesis.md): R23, R25, R28, E12, R14, E11, E3
+
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from copy import copy
@@ -15,15 +17,15 @@ LARGEST_FRICTION = 2.0  # no coefficient of friction is larger: one half turn wo
 
 @dataclass(frozen=True, kw_only=True)
 class Cable:
-    """A cable (tendon); without friction it has one tension along its run (R23, R25, R28).
+    """A cable (tendon); without friction it has one tension along its run.
 
     Attributes:
         winch: name of the winch that pulls it.
         points: via points in the rest pose [m]; the first at the winch, the last the stopper.
-        stiffness: of the whole cable when taut [N/m] (k = 2K, E3).
-        smoothing: half the elongation over which it becomes taut [m] (eps of R25).
-        slack: how much the winch takes in before it begins to be taut [m] (E12).
-        sheathed: pairs (i, j) of point indices between which it runs in a sheath of fixed length (R14, E11).
+        stiffness: of the whole cable when taut [N/m] (k = 2K of the thesis).
+        smoothing: half the elongation over which it becomes taut [m] (its eps).
+        slack: how much the winch takes in before it begins to be taut [m].
+        sheathed: pairs (i, j) of point indices between which it runs in a sheath of fixed length.
         friction: coefficient mu at the via points: where it bends by an angle, its tension differs between the two
             sides by at most a factor exp(mu * angle) (capstan).
         spool_radius: of its own step on the shaft of its winch [m]; None: that of the winch. It takes in as much more

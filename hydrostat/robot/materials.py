@@ -5,6 +5,8 @@ that stress at twice its length. Foams are given by what is known of them, which
 from this table.
 """
 
+# Of the thesis (docs/thesis.md): R22, E9, M1, N5, N6, E30, R52
+
 import math
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -38,7 +40,7 @@ class Relaxation:
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """An isotropic material: elastic (R22), and optionally viscous.
+    """An isotropic material: elastic, and optionally viscous.
 
     Attributes:
         young: Young's modulus [Pa].
@@ -96,7 +98,7 @@ class Material:
 
     @property
     def lame(self) -> tuple[float, float]:
-        """Lame's parameters mu and lambda [Pa] (R22, E9)."""
+        """Lame's parameters mu and lambda [Pa]."""
         mu = self.young / (2 * (1 + self.poisson))
         return mu, self.young * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
 
@@ -193,7 +195,7 @@ _TABLE = (
         density=40,
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
-        source="assumed: loosely stuffed toy filling in a felt skin; the thesis gives no value (M1)",
+        source="assumed: loosely stuffed toy filling in a felt skin; the thesis gives no value",
         note=(
             "No measured modulus of a stuffed body was found. Loose filling has none of its own: its thickness under a"
             " pressure p falls as a power of p, so it stiffens from almost nothing as it is stuffed tighter. 30 kPa is"
@@ -238,12 +240,12 @@ _TABLE = (
         density=160,
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
-        source="density from the thesis's table (N5); all else assumed, no modulus is published (E30)",
+        source="density from the thesis's table; all else assumed, no modulus is published",
         note=(
             "60 kPa is a guess, kept so that saved robots keep their tensions, and probably low: the square law takes"
             " flexfoam-it v to 1.2 MPa at this density, and the thesis's other foam, 240 kg/m^3 with 77 psi = 0.531 MPa"
-            " (N6), to 0.24 MPa. That 0.531 MPa is not this foam's: its density differs, and in the thesis the number"
-            " stands beside coffee of 445 kg/m^3 as of similar density (E30). Measure before believing a tension."
+            ", to 0.24 MPa. That 0.531 MPa is not this foam's: its density differs, and in the thesis the number"
+            " stands beside coffee of 445 kg/m^3 as of similar density. Measure before believing a tension."
         ),
     ),
     Material(
@@ -291,7 +293,7 @@ _TABLE = (
             "hardness 30 Shore A and density: technical bulletin of the maker (Smooth-On); Young's modulus from the"
             " hardness (A. N. Gent, Rubber Chem. Technol. 31, 1958); Poisson's ratio and range assumed"
         ),
-        note="The thesis's moulds are cast of it (R52), not its robots. A hardness fixes the modulus to 20 % at best.",
+        note="The thesis's moulds are cast of it, not its robots. A hardness fixes the modulus to 20 % at best.",
     ),
     Material(
         name="pdms",
@@ -302,7 +304,7 @@ _TABLE = (
         largest_squeeze=0.4,
         source=(
             "Sylgard 184, 10:1, cured at 25 C: I. D. Johnston et al., J. Micromech. Microeng. 24, 035017, 2014;"
-            " density from the thesis's table (N5) and the maker (Dow); Poisson's ratio and range assumed"
+            " density from the thesis's table and the maker (Dow); Poisson's ratio and range assumed"
         ),
         note=(
             "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C (Johnston 2014); 20 MPa / ratio, so 2 MPa at 10:1,"

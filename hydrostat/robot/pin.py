@@ -1,5 +1,7 @@
 """`Pin`: where the robot is held, a boundary condition."""
 
+# Of the thesis (docs/thesis.md): R29, E10
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +16,7 @@ DEFAULT_STIFFNESS = 100e3  # stiffness of a pin [N/m] (M2): about a hundred time
 
 @dataclass(frozen=True, kw_only=True)
 class Pin:
-    """Boundary condition: holds every node within `radius` of `at`, or in a box; if none, the point itself (R29, E10).
+    """Boundary condition: holds every node within `radius` of `at`, or in a box; if none, the point itself.
 
     Attributes:
         at: middle of the pin [m]; None with `box`.

@@ -1,5 +1,6 @@
 """First robots from nothing but a body in space, to be edited from there."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 
@@ -48,6 +49,7 @@ def sketch_surface(
     element_size: float | None = None,
     nodes: int | None = None,
     material: str = "flexfoam-it x",
+    tell: Callable[[str], None] | None = None,
 ) -> SurfaceSketch:
     """Robot from the bytes of a scan or CAD model; coordinates count in mm if the file does not say.
 
@@ -59,6 +61,7 @@ def sketch_surface(
         element_size: [m]; None: so that there are about as many nodes as asked for.
         nodes: wanted; None: as many as the thesis's hand has; not used with an element size.
         material: a name from the table.
+        tell: called with what is done next, such as "healing 12,000 triangles".
 
     Raises:
         InputError: the file is no body.
@@ -70,10 +73,13 @@ def sketch_surface(
     known, nodes = find_material(material), NODES if nodes is None else nodes
     before = read_surface(content, name=file, size=size)
     _check_scale(before.size, size)
+    told = tell or _silent
+    told(f"healing {len(before.triangles):,} triangles")
     healing = heal(before, resolution=(element_size or _guess(before, nodes)) / 4)
     closed, meshes = healing.surface, {}
 
     def fill(trial: float) -> Mesh:
+        told(f"filling it with elements of {1e3 * trial:.3g} mm" + f", try {len(meshes) + 1}" * bool(meshes))
         meshes[trial] = tetrahedralise(closed, trial)
         return meshes[trial]
 
@@ -90,7 +96,12 @@ def sketch_surface(
         mesh=meshes[length] if length in meshes else fill(length),
         healing=healing,
     )
+    told("finding ends, winches and cables")
     return SurfaceSketch(_first_robot(body, name), before, healing)
+
+
+def _silent(stage: str) -> None:
+    """Nobody listens."""
 
 
 def inflated(outline: Outline, height: float) -> bytes:

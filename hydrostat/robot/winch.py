@@ -1,5 +1,7 @@
 """`Winch`: an actuator, a motor with a spool that takes in cable (tendon)."""
 
+# Of the thesis (docs/thesis.md): R12, R27
+
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -17,7 +19,7 @@ class Mount(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Winch:
-    """All cables of a winch share its contraction, on the spool of the winch or on steps of their own (R12, R27).
+    """All cables of a winch share its contraction, on the spool of the winch or on steps of their own.
 
     Attributes:
         name: unique in the robot.

@@ -1,5 +1,7 @@
 """`Branch`: the equilibria that hang together while contractions go from one place to another."""
 
+# Of the thesis (docs/thesis.md): E20
+
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
@@ -63,7 +65,7 @@ class CriticalPoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Branch:
-    """Equilibria along a straight line of contractions (E20).
+    """Equilibria along a straight line of contractions.
 
     Attributes:
         begin: contractions where it begins [m].

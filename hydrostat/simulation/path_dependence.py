@@ -1,5 +1,7 @@
 """`path_dependence`: whether contractions alone decide the pose, or also the loading path (E20)."""
 
+# Of the thesis (docs/thesis.md): E20
+
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -30,7 +32,7 @@ class FoundPose:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PathDependence:
-    """Where a robot comes to rest at the same contractions after different ways there (E20).
+    """Where a robot comes to rest at the same contractions after different ways there.
 
     Attributes:
         contractions: of all the poses [m].

@@ -1,5 +1,7 @@
 """`Simulation`: quasi-static equilibria, sensitivities and motions of one robot."""
 
+# Of the thesis (docs/thesis.md): R17, R23 to R29, E14, R33, E16
+
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, partial
 
@@ -29,7 +31,7 @@ from hydrostat.simulation.still import check_still
 
 
 class Simulation:
-    """Quasi-static equilibrium of a tendon-driven robot: where it rests when its winches take in cable (R17, R23-R29).
+    """Quasi-static equilibrium of a tendon-driven robot: where it rests when its winches take in cable.
 
     It is never changed by a solve: threads may share it, and it can be sent to other processes. What is known of a
     pose, its factorised Hessian included, travels with the pose.
@@ -93,7 +95,7 @@ class Simulation:
         """Equilibrium at the given contractions.
 
         With friction it depends on the way there. This is then followed from `start` in small increments, in which all
-        contractions change in proportion (E14).
+        contractions change in proportion.
 
         Args:
             contractions: cable taken in [m].
@@ -181,7 +183,7 @@ class Simulation:
                 check_apart(self.robot.body.mesh, start.nodes)
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
-        """Sensitivities dx/da of the nodes at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
+        """Sensitivities dx/da of the nodes at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da.
 
         Cables with friction go on slipping where they are at the limit of it, and stick elsewhere.
 
@@ -203,7 +205,7 @@ class Simulation:
         return np.einsum("pc,pcdw->pdw", anchors.weights, self.jacobian(pose)[anchors.stencils])
 
     def adjoint(self, pose: SolvedPose, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
-        """Sensitivities of a number L of an equilibrium to contractions, slack, routes, material, by one solve (E16).
+        """Sensitivities of a number L of an equilibrium to contractions, slack, routes, material, by one solve.
 
         Cables with friction slip on or stick as for `jacobian`; what has slipped before the pose was begun from stays.
 

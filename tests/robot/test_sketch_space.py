@@ -27,7 +27,10 @@ def tapered(turned: bool = False) -> Surface:
 @pytest.mark.parametrize("turned", [False, True])
 def test_sketch(turned: bool, tmp_path: Path) -> None:
     """Held at the thicker end, with a cable along it and a marker at the other; read again it is the same."""
-    sketch = sketch_surface(write_ply(tapered(turned)), file="bar.ply", name="bar", nodes=600)
+    told: list[str] = []
+    sketch = sketch_surface(write_ply(tapered(turned)), file="bar.ply", name="bar", nodes=600, tell=told.append)
+    assert [words.split()[0] for words in dict.fromkeys(told)][:2] == ["healing", "filling"]
+    assert told[-1] == "finding ends, winches and cables"
     robot = sketch.robot
     assert sketch.healing.clean
     assert len(robot.body.mesh.nodes) == pytest.approx(600, rel=0.1)

@@ -1,14 +1,18 @@
 """What screens are sent. The oracle is the robot's own mesh and anchors."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import gallery_robot
 
+from hydrostat.drawing.palette import winch_colours
+from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.geometry.anchors import locate
 from hydrostat.robot import Robot
 from hydrostat.studio.view.picture import Picture, opened, packet
-from hydrostat.studio.view.robot_things import robot_things, target_things
-from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Look
+from hydrostat.studio.view.robot_things import robot_things, target_things, winch_bars
+from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Look, rest_shape
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -113,3 +117,14 @@ def test_values_are_those_of_the_shown_nodes(robot: Robot) -> None:
     _, arrays = opened(picture.frame(mesh.nodes, [], {}, values=values))
     shown = np.arange(len(mesh.nodes)) if mesh.dim == 2 else np.unique(mesh.boundary)
     assert np.allclose(arrays["values"][:, 0], values[shown], atol=1e-6)
+
+
+def test_winches_have_the_marks_of_the_kit() -> None:
+    """The sheet's own marks in the view and in the bars of Pose (finding 34); a colour each, up to sixteen."""
+    robot = gallery_robot("starfish")
+    marks = winch_marks_of(robot)
+    dots = [thing for thing in robot_things(robot) if isinstance(thing, Dot) and thing.key.startswith("winch:")]
+    assert {dot.label: dot.short for dot in dots} == marks
+    assert {bar.winch: bar.mark for bar in winch_bars(robot, rest_shape(robot), 20.0)} == marks
+    many = [replace(robot.winches[0], name=f"winch_{number}") for number in range(16)]
+    assert len(set(winch_colours(many).values())) == 16

@@ -10,7 +10,8 @@ SILICONE_PRICE = 40.0  # of a kilogram of Mold Max 30 [USD]: measured on none, c
 _EQUAL = ("flexfoam-it", "ecoflex", "dragon skin")  # beginnings of names of castable materials that come as two parts
 _PLATINUM = ("ecoflex", "dragon skin")  # of these, those that are cured by platinum
 
-THESIS = "thesis on cable-driven soft robots (R52, N2, N5)"
+# R52, N2, N5
+THESIS = "thesis on cable-driven soft robots"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,6 +153,6 @@ def _casting_notes(foams: bool, *, silicone: bool) -> tuple[str, ...]:
     if silicone:
         notes.append(
             f"Silicone at {SILICONE_PRICE:g} USD a kilogram: measured on none, check yours; the thesis paid about "
-            "100 USD for a mould (N2)."
+            "100 USD for a mould."
         )
     return tuple(notes)

@@ -107,7 +107,7 @@ def _layers(spool: Spool, winch: Winch, wound: Wound) -> tuple[str, ...]:
         found.append(
             f'{who} of winch "{winch.name}" {lies} in {groove.layers} layers: {radius} grows from '
             f"{groove.radius:.1f} to {outer:.1f} mm, so the last turns take in "
-            f"{100 * (outer / groove.radius - 1):.0f} % more than was simulated (E13)"
+            f"{100 * (outer / groove.radius - 1):.0f} % more than was simulated"
         )
     return tuple(found)
 

@@ -94,7 +94,11 @@ def skin_mesh(body: Body) -> SkinMesh:
     """The skin of a body as one patch of small triangles (InputError: flat, hollow, in pieces, or with a handle)."""
     if body.mesh.dim != 3:
         raise InputError("a flat body has a flat pattern of its own")
-    surface = body.healing.surface if body.healing else _boundary(body)
+    return skin_of_surface(body.healing.surface if body.healing else _boundary(body))
+
+
+def skin_of_surface(surface: Surface) -> SkinMesh:
+    """A closed surface [m] as one patch of small triangles [mm] (InputError: hollow, in pieces, or with a handle)."""
     mesh = SkinMesh(
         vertices=1e3 * surface.vertices,
         triangles=surface.triangles.astype(np.int64),

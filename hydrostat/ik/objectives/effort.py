@@ -1,5 +1,7 @@
 """`Effort`: what the winches do for a pose."""
 
+# Of the thesis (docs/thesis.md): E18
+
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -20,7 +22,7 @@ class EffortKind(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Effort(Objective):
-    """Squared contractions, tensions or slack lengths, against co-contraction and loose cables (E18).
+    """Squared contractions, tensions or slack lengths, against co-contraction and loose cables.
 
     Attributes:
         of: what is kept small.

@@ -1,5 +1,7 @@
 """`MarkerGoal`: markers at points."""
 
+# Of the thesis (docs/thesis.md): R31, E19
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -29,7 +31,7 @@ AXES = "xyz"
 
 @dataclass(frozen=True, kw_only=True)
 class MarkerGoal(Objective):
-    """Markers where they should be: weight x (position - target) of each, along the axes that are not free (R31, E19).
+    """Markers where they should be: weight x (position - target) of each, along the axes that are not free.
 
     Attributes:
         targets: where each marker should go [m].

@@ -1,5 +1,7 @@
 """`InverseProblem`: what inverse kinematics sees of a state, and the step that its linear model promises."""
 
+# Of the thesis (docs/thesis.md): M7, E18
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -17,11 +19,11 @@ from hydrostat.simulation import Simulation, check_still
 
 @dataclass(frozen=True, kw_only=True)
 class InverseOptions:
-    """How inverse kinematics searches (M7).
+    """How inverse kinematics searches.
 
     Attributes:
         effort: marker error, as a fraction of the body's size, that the tension at full travel of a winch is worth: a
-            small regulariser against cables that pull in vain (E18). It falls with the error, so it hides no target.
+            small regulariser against cables that pull in vain. It falls with the error, so it hides no target.
         tolerance: error, as a fraction of the body's size, at which a goal counts as reached.
         progress: the search ends where the linearised problem promises to lower the objective by less than this
             fraction.

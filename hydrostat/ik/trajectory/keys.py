@@ -1,5 +1,7 @@
 """`Keyframe`: a pose to be taken on the way, and the search for its contractions; what is checked of given poses."""
 
+# Of the thesis (docs/thesis.md): R58
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
@@ -24,7 +26,7 @@ class Keyframe:
 
     Attributes:
         target: where markers should be [m]; or a solved pose, whose contractions are taken as they are, such as
-            `simulation.rest` or one that was taught (R58).
+            `simulation.rest` or one that was taught.
         time: when, counted from the start [s]; as soon as the limits allow if left out.
         name: for reports; that of the pose if left out.
     """

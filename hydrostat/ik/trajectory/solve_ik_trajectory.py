@@ -1,5 +1,7 @@
 """`solve_ik_trajectory`: one pose after another, within limits on the speed of the winches."""
 
+# Of the thesis (docs/thesis.md): R58, R72, E20
+
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -53,7 +55,7 @@ def solve_ik_trajectory(
     options: TrajectoryOptions | None = None,
     tell: Tell | None = None,
 ) -> Trajectory:
-    """From a pose through keyframes, each found from the one before, so that the branch is kept (R58, R72, E20).
+    """From a pose through keyframes, each found from the one before, so that the branch is kept.
 
     "smooth": contractions are C2 in time and pass keyframes without a stop where they can. "linear": contractions go
     along lines, as the thesis has it; their speed changes at once. "straight": markers go along straight lines.

@@ -92,6 +92,12 @@ class TimelineView(ui.element, component="static/timeline.js"):
             self.update()
 
 
+def winch_badge(mark: str, colour: str) -> None:
+    """The mark of a winch in the kit, as W1, in its colour."""
+    style = "border-radius: 4px; padding: 1px 4px; font-size: 11px; font-weight: 600; color: white; flex: none"
+    ui.label(mark).style(f"{style}; background: {colour}").tooltip("What the kit calls this winch")
+
+
 def _shares(robot: Robot, contractions: Mapping[str, float]) -> list[float]:
     """How far the winches go, from 0 for all that is let out to 1 for all that can be taken in."""
     shares = []

@@ -42,7 +42,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
     from hydrostat.geometry.files.outline_file import read_drawing
     from hydrostat.ik.first_pose import with_first_pose
 
-    report.progress("reading and meshing", 0, 3)
+    report.progress("reading", 0, 3)
     file, content, size, lines = draft.file, draft.content, draft.size, ()
     behind = None
     if draft.is_drawing:
@@ -54,8 +54,9 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         if draft.is_picture:
             behind = backdrop(draft.content, content, name=file, size=size)
         if draft.inflate is None:
-            made = _drawn(report, draft, _flat(draft, file, content), lines, None)
+            made = _drawn(report, draft, _flat(report, draft, file, content), lines, None)
             return replace(made, behind=behind)
+        report.progress("inflating the outline", 0, 3)
         content, file, size = inflated(drawing.outline, draft.inflate), f"{PurePath(file).stem}.ply", None
     sketch = sketch_surface(
         content,
@@ -65,6 +66,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         element_size=draft.element_size,
         nodes=draft.nodes,
         material=draft.material,
+        tell=lambda stage: report.progress(stage, 0, 3),
     )
     made = _drawn(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
     report.part(made)
@@ -72,7 +74,8 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
     return replace(made, robot=with_first_pose(sketch.robot))
 
 
-def _flat(draft: BodyDraft, file: str, content: bytes) -> Robot:
+def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:
+    report.progress("meshing", 0, 3)
     return sketch_robot(
         content,
         file=file,

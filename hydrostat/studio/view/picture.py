@@ -178,7 +178,7 @@ def _style(thing: Thing) -> dict[str, Any]:
     if isinstance(thing, Dot):
         return {
             "key": thing.key, "look": str(thing.look), "colour": thing.colour, "label": thing.label,
-            "chosen": thing.chosen, "radius": thing.radius, "about": thing.about,
+            "short": thing.short, "chosen": thing.chosen, "radius": thing.radius, "about": thing.about,
         }  # fmt: skip
     if isinstance(thing, Strand):
         return {"key": thing.key, "stroke": str(thing.stroke), "colour": thing.colour, "chosen": thing.chosen}

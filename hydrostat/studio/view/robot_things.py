@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing.palette import INK, MUTED, winch_colours
+from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Cable, Mount, Point, Robot, obstacle_lines
 from hydrostat.simulation import as_posed
 from hydrostat.studio.view.pinned import pinned_points
@@ -32,7 +33,7 @@ def robot_things(
     are drawn on a scale up to the largest, obstacles that move where they are carried to [m]. With `vias` each point of
     a cable is a dot that can be taken hold of; else only its stopper is shown.
     """
-    colours = winch_colours(robot.winches)
+    colours, marks = winch_colours(robot.winches), winch_marks_of(robot)
     things: list[Thing] = [
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, colour=MUTED, loose=-1)
         for line in obstacle_lines(as_posed(robot, carried))
@@ -58,6 +59,7 @@ def robot_things(
                 look=Look.WINCH,
                 colour=colours[winch.name],
                 label=winch.name,
+                short=marks[winch.name],
                 stuck=winch.mount is Mount.BODY,
                 chosen=key in chosen,
             )
@@ -128,6 +130,7 @@ class Bar:
     """What one winch does."""
 
     winch: str  # its name
+    mark: str  # of it in the kit, as W1
     colour: str  # of it
     contraction: float  # cable taken in [m]
     travel: float  # the most it can take in [m]
@@ -138,13 +141,14 @@ class Bar:
 
 def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
     """A bar for each winch: what it does in a shape, beside the most that a cable bears [N]."""
-    colours = winch_colours(robot.winches)
+    colours, marks = winch_colours(robot.winches), winch_marks_of(robot)
     largest = dict.fromkeys(colours, 0.0)
     for cable, tension in zip(robot.cables, np.asarray(shape.tensions).tolist(), strict=True):
         largest[cable.winch] = max(largest[cable.winch], tension)
     return [
         Bar(
             winch=winch.name,
+            mark=marks[winch.name],
             colour=colours[winch.name],
             contraction=contraction,
             travel=winch.travel,

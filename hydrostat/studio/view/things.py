@@ -77,6 +77,7 @@ class Dot:
     look: Look  # how it is drawn
     colour: str  # such as "#0b5fa5"
     label: str = ""  # written beside it; "" for nothing
+    short: str = ""  # written in it, as W1; "": what its label begins with
     about: str = ""  # of a flag: key of the part whose words it shows while the pointer is there
     stuck: bool = True  # whether it moves with the body
     chosen: bool = False  # whether it is selected

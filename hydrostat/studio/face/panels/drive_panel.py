@@ -3,9 +3,10 @@
 from nicegui import events, ui
 
 from hydrostat.drawing.palette import ERROR, winch_colours
+from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Winch
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.elements import Knob
+from hydrostat.studio.face.elements import Knob, winch_badge
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
@@ -38,9 +39,9 @@ def drive_panel(page: WindowPage) -> None:
     cards: list[_Card] = []
 
     def build() -> None:
-        winches = session.document.robot.winches
+        winches, marks = session.document.robot.winches, winch_marks_of(session.document.robot)
         colours, size = winch_colours(winches), 68 if len(winches) <= MANY else 50
-        cards[:] = [_Card(page, winch, colours[winch.name], size) for winch in winches]
+        cards[:] = [_Card(page, winch, marks[winch.name], colours[winch.name], size) for winch in winches]
 
     def show() -> None:
         commands, places, tensions = driver.commands(), driver.places(), driver.tensions()
@@ -64,7 +65,7 @@ def drive_panel(page: WindowPage) -> None:
 class _Card:
     """A winch: its knob, its box, the tension of its cables."""
 
-    def __init__(self, page: WindowPage, winch: Winch, colour: str, size: int) -> None:
+    def __init__(self, page: WindowPage, winch: Winch, mark: str, colour: str, size: int) -> None:
         self.name = winch.name
         self._page, self._typing = page, False
         driver, least, most = page.session.driver, -1e3 * winch.release, 1e3 * winch.travel
@@ -74,9 +75,11 @@ class _Card:
             self._knob.style(f"width: {size}px; height: {size}px; flex: none; margin: -3px 0 -5px -4px")
             self._knob.mark(f"knob-{winch.name}")
             with ui.element("div").style("flex: 1; min-width: 0; display: flex; flex-direction: column; gap: 5px"):
-                name = ui.label(winch.name).style(
-                    "font-weight: 600; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
-                )
+                with ui.element("div").style("display: flex; align-items: center; gap: 6px; min-width: 0"):
+                    winch_badge(mark, colour)
+                    name = ui.label(winch.name).style(
+                        "font-weight: 600; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
+                    )
                 name.tooltip(f"{winch.name}: {least:g} to {most:g} mm")
                 with ui.element("div").style("height: 5px; border-radius: 3px; background: var(--line); width: 100%"):
                     self._bar = ui.element("div").style("height: 5px; border-radius: 3px; width: 0%")

@@ -3,6 +3,7 @@
 from nicegui import events, ui
 
 from hydrostat.drawing.palette import winch_colours
+from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.part import Kind, find_part, keys_of
@@ -194,7 +195,8 @@ def _part_words(robot: Robot, key: str) -> tuple[str, str]:
         radius = robot.pins[part.index].radius
         return f"Pin {part.index + 1}", f"{1e3 * radius:.3g} mm" if radius else "box"
     if part.kind is Kind.WINCH:
-        return robot.winches[part.index].name, "winch"
+        name = robot.winches[part.index].name
+        return name, f"winch {winch_marks_of(robot)[name]}"
     return robot.markers[part.index].name, "marker"
 
 

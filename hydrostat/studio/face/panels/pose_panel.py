@@ -4,6 +4,7 @@ from nicegui import ui
 
 from hydrostat.drawing.palette import ERROR
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.elements import winch_badge
 from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
@@ -160,9 +161,7 @@ class _BarRow:
     def __init__(self, bar: Bar) -> None:
         with ui.element("div").style("width: 100%").mark(f"pose-bar-{bar.winch}"):
             with ui.element("div").classes("studio-row").style("gap: 8px; font-size: 13px"):
-                ui.element("div").style(
-                    f"width: 10px; height: 10px; border-radius: 5px; flex: none; background: {bar.colour}"
-                )
+                winch_badge(bar.mark, bar.colour)
                 name = ui.label(bar.winch).style(
                     "flex: 1; min-width: 0; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
                 )

@@ -68,7 +68,7 @@ export class Shown {
     if (other) this.newBody(flat, arrays);
     const before = new Map(this.dots.map((dot) => [dot.key, dot]));
     this.dots = head.things.filter((thing) => thing.kind === "dot").map((dot) => ({
-      ...dot, short: initials(dot.label), x: -99, y: -99, depth: 0, density: 1, place: [0, 0, 0], slot: before.get(dot.key)?.slot,
+      ...dot, short: dot.short || initials(dot.label), x: -99, y: -99, depth: 0, density: 1, place: [0, 0, 0], slot: before.get(dot.key)?.slot,
     }));
     this.points = new Float32Array(3 * head.things.reduce((most, thing) => Math.max(most, thing.first + thing.count), 0));
     this.lines = head.things.filter((thing) => thing.kind === "line");
