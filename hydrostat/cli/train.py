@@ -11,22 +11,26 @@ from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
 if TYPE_CHECKING:
-    from hydrostat.learning import LearnedModel
-    from hydrostat.robot import Robot
-    from hydrostat.training import CurvePoint, World
+    from hydrostat.training import CurvePoint
 
 
 def train(
     robot: RobotFolder,
     out: Annotated[Path, typer.Option(metavar="DIR", help="For curves, checkpoints and the policy.")],
+    task: Annotated[str, typer.Option(metavar="NAME", help="reach or reach-with-hysteresis.")] = "reach",
     method: Annotated[str, typer.Option(metavar="NAME", help="sac-her, td3-her, ddpg-her or tqc-her.")] = "sac-her",
     steps: Annotated[int, typer.Option(metavar="N", help="Actions to learn from.")] = 10_000,
-    horizon: Annotated[int, typer.Option(metavar="T", help="Actions in an episode.")] = 1,
+    horizon: Annotated[int | None, typer.Option(metavar="T", help="Actions in an episode; 1 to reach.")] = None,
     model: Annotated[
         Path | None, typer.Option(metavar="MODEL", help="Learn in the networks that hydrostat learn wrote.")
     ] = None,
     exact: Annotated[int, typer.Option(metavar="N", help="With --model: every Nth episode exact; 0: none.")] = 0,
-    tolerance: Annotated[str, typer.Option(metavar="LENGTH", help="Mean distance that is a success.")] = "5 mm",
+    tolerance: Annotated[
+        str | None, typer.Option(metavar="LENGTH", help="Mean distance that is a success; 5 mm to reach.")
+    ] = None,
+    friction: Annotated[
+        float | None, typer.Option(metavar="MU", help="Coefficient of cables that rub; 0.2 if not given.")
+    ] = None,
     sparse: Annotated[bool, typer.Option("--sparse", help="Reward 0 for success and -1, no distance.")] = False,
     incremental: Annotated[bool, typer.Option("--incremental", help="Actions add to what was taken in.")] = False,
     marker: Annotated[
@@ -42,7 +46,7 @@ def train(
     processes: Annotated[int, typer.Option(metavar="N", help="That share them; the curve is the same.")] = 1,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint in DIR.")] = False,
 ) -> None:
-    """Learn by trial and error (reinforcement learning) to bring the markers of a robot to goals.
+    """Learn by trial and error (reinforcement learning), such as to bring the markers of a robot to goals.
 
     Without --model every action is an equilibrium of the simulator. Policies are always judged by the simulator itself,
     on goals that they have not seen. curve.json and curve.png show how it went, and TensorBoard, where it is installed,
@@ -50,15 +54,20 @@ def train(
     that stands still, inverse kinematics and `hydrostat learn` are better and cheaper; this is for comparison, and for
     tasks that have no other way.
 
+    With --task reach-with-hysteresis cables rub, and the way counts; --model is then of the robot without friction, so
+    that what is learned from is wrong.
+
     Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
 
     Example: hydrostat train examples/starfish --horizon 5 --incremental --marker top --pair left,right --out build/top
+
+    Example: hydrostat train examples/letter_s --task reach-with-hysteresis --friction 0.3 --steps 400 --out build/rubs
     """
     try:
         from hydrostat import training
     except ModuleNotFoundError as error:
         raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
-    from hydrostat.learning import save_model
+    from hydrostat.learning import load_model, save_model
     from hydrostat.units import LENGTH, parse_quantity
 
     methods = [str(each) for each in training.TrainMethod]
@@ -66,18 +75,21 @@ def train(
         raise InputError(f"--method {method}: there are: {', '.join(methods)}")
     if exact and model is None:
         raise InputError("--exact is for networks, with --model; without, every episode is exact")
-    loaded = read_robot(robot)
-    reach = training.ReachOptions(
+    made, loaded = training.task_of(task).env, read_robot(robot)
+    asked = training.TaskOptions(
         markers=marker or (),
         pairs=[[name.strip() for name in one.split(",")] for one in pair or ()],
         steps=horizon,
         incremental=incremental,
-        tolerance=parse_quantity(tolerance, LENGTH),
+        tolerance=None if tolerance is None else parse_quantity(tolerance, LENGTH),
         shaped=not sparse,
+        contact=contact,
+        friction=friction,
     )
-    judged = training.ReachEnv(loaded, options=reach, contact=contact)
-    networks = None if model is None else _networks(model, judged.robot)
-    env = training.ReachEnv(judged.robot, world=_world(networks, judged.robot, exact), options=reach)
+    env, judged = (made.for_task(loaded, asked) for _ in range(2))
+    networks = None if model is None else load_model(model)
+    if networks is not None:
+        env.learn_in(networks, exact=exact)
     wanted = training.held_out_goals(judged, goals, seed)
     size, began = judged.unit, time.process_time()
     print("    actions  equilibria  mean     median   worst    within  CPU", flush=True)
@@ -94,7 +106,7 @@ def train(
     last = curve[-1]
     print(f"{1e3 * last.mean:.2f} mm, {100 * last.mean / size:.2f} % of the size, on {goals} unseen goals")
     print(f"Wrote {_picture(curve, method, out)}")
-    if networks is not None and training.is_portable(env):
+    if networks is not None and env.portable:
         print(f"Wrote {save_model(training.portable_policy(trained, env, networks), out / 'policy.model')}")
 
 
@@ -115,20 +127,3 @@ def _picture(curve: "list[CurvePoint]", name: str, out: Path) -> Path:
     successes = np.array([[point.success] for point in curve])
     panes = {"mean distance [mm]": {name: (steps, distances)}, "share of successes": {name: (steps, successes)}}
     return save_png(draw_curves(panes), out / "curve.png")
-
-
-def _networks(path: Path, robot: "Robot") -> "LearnedModel":
-    from hydrostat.learning import load_model
-
-    networks = load_model(path)
-    networks.check(robot)
-    return networks
-
-
-def _world(networks: "LearnedModel | None", robot: "Robot", exact: int) -> "World":
-    from hydrostat.training import ExactWorld, LearnedWorld, MixedWorld
-
-    if networks is None:
-        return ExactWorld(robot)
-    learned = LearnedWorld(networks)
-    return MixedWorld(learned, ExactWorld(robot), every=exact) if exact else learned

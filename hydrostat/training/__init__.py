@@ -1,38 +1,47 @@
 """Reinforcement learning: goal-based environments of any robot (gymnasium), and policies learned in them.
 
-Needs the extra `rl`. Environments are registered with gymnasium as hydrostat/Reach-v0 when this is imported.
+Needs the extra `rl`. Once this is imported, environments of all `TASKS`, such as hydrostat/Reach-v0, are registered.
 """
 
 import gymnasium
 
-from hydrostat.training.portable import is_portable, portable_policy
+from hydrostat.training.goal_env import GoalEnv, TaskOptions
+from hydrostat.training.hysteresis_env import HysteresisEnv
+from hydrostat.training.portable import portable_policy
 from hydrostat.training.reach_env import ReachEnv, ReachOptions
+from hydrostat.training.tasks import TASKS, Task, task_of
 from hydrostat.training.train import CurvePoint, TrainMethod, TrainOptions, held_out_goals, judge, train
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
 __all__ = [
+    "TASKS",
     "CurvePoint",
     "ExactWorld",
+    "GoalEnv",
+    "HysteresisEnv",
     "LearnedWorld",
     "MixedWorld",
     "ReachEnv",
     "ReachOptions",
+    "Task",
+    "TaskOptions",
     "TrainMethod",
     "TrainOptions",
     "World",
     "held_out_goals",
-    "is_portable",
     "judge",
     "portable_policy",
     "register",
+    "task_of",
     "train",
 ]
 
 
 def register() -> None:
     """Register the environments with gymnasium, once."""
-    if "hydrostat/Reach-v0" not in gymnasium.registry:
-        gymnasium.register("hydrostat/Reach-v0", "hydrostat.training.reach_env:ReachEnv")
+    for task in TASKS.values():
+        if task.id not in gymnasium.registry:
+            gymnasium.register(task.id, f"{task.env.__module__}:{task.env.__name__}")
 
 
 register()

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import HydrostatError
-from hydrostat.training.reach_env import ReachEnv
+from hydrostat.training.goal_env import GoalEnv
 
 
 class Copies:
     """Copies of an environment, one after another."""
 
-    def __init__(self, env: ReachEnv, count: int) -> None:
+    def __init__(self, env: GoalEnv, count: int) -> None:
         """So many."""
         self._envs, self._answer = [deepcopy(env) for _ in range(count)], list[Any]()
 
@@ -33,11 +33,11 @@ class Copies:
         """Nothing is open."""
 
     @staticmethod
-    def _reset(env: ReachEnv, seed: int | None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    def _reset(env: GoalEnv, seed: int | None) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
         return env.reset(seed=seed)
 
     @staticmethod
-    def _step(env: ReachEnv, action: np.ndarray) -> tuple[dict[str, np.ndarray], float, bool, dict[str, Any]]:
+    def _step(env: GoalEnv, action: np.ndarray) -> tuple[dict[str, np.ndarray], float, bool, dict[str, Any]]:
         seen, reward, _, over, info = env.step(action)
         told = {**info, "TimeLimit.truncated": over}
         if over:
@@ -46,18 +46,18 @@ class Copies:
         return seen, reward, over, told
 
     @staticmethod
-    def _kept(env: ReachEnv) -> dict[str, Any]:
+    def _kept(env: GoalEnv) -> dict[str, Any]:
         return env.kept()
 
     @staticmethod
-    def _go_on(env: ReachEnv, kept: Mapping[str, Any]) -> None:
+    def _go_on(env: GoalEnv, kept: Mapping[str, Any]) -> None:
         env.go_on(kept)
 
 
 class CopiesElsewhere:
     """Copies of an environment in a process of their own."""
 
-    def __init__(self, env: ReachEnv, count: int) -> None:
+    def __init__(self, env: GoalEnv, count: int) -> None:
         """So many, in a new process."""
         context = get_context("spawn")
         self._pipe, theirs = context.Pipe()
@@ -91,7 +91,7 @@ class CopiesElsewhere:
             self._process.join()
 
 
-def _work(pipe: Connection, env: ReachEnv, count: int) -> None:
+def _work(pipe: Connection, env: GoalEnv, count: int) -> None:
     """Do what is asked until nobody asks any more; Ctrl-C is for the one who asks."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     copies = Copies(env, count)

@@ -27,7 +27,7 @@ def portable_policy(trained: Any, env: ReachEnv, model: LearnedModel) -> Learned
         InputError: a policy that needs to see more than the goal, or networks of another robot.
     """
     model.check(env.robot)
-    if not is_portable(env):
+    if not env.portable:
         raise InputError("only a policy of one action, of all markers and of each winch alone can be taken along")
     layers = _layers(trained.policy.actor)
     count = len(env.seen)
@@ -48,12 +48,6 @@ def portable_policy(trained: Any, env: ReachEnv, model: LearnedModel) -> Learned
     policy = Perceptrons(sizes=sizes, numbers=np.concatenate([*numbers, straight])[None])
     facts = {**model.facts, "inverse_error": None, "policy": type(trained).__name__}
     return replace(model, facts=facts, inverse=policy)
-
-
-def is_portable(env: ReachEnv) -> bool:
-    """Whether a policy sees nothing but the goal: one action, all markers, each winch alone."""
-    options, names = env.options, [marker.name for marker in env.robot.markers]
-    return options.steps == 1 and not (options.incremental or options.pairs) and list(options.markers or names) == names
 
 
 def _layers(actor: Any) -> list[tuple[np.ndarray, np.ndarray]]:

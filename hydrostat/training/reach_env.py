@@ -1,17 +1,18 @@
 """`ReachEnv`: a robot brings its markers to a goal (gymnasium, goal-based)."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
 
-import gymnasium
 import numpy as np
 from gymnasium import spaces
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import Contact, Pose, Robot, load_robot
-from hydrostat.training.worlds import ExactWorld, World
+from hydrostat.learning import LearnedModel
+from hydrostat.robot import Pose, Robot
+from hydrostat.training.goal_env import GoalEnv, TaskOptions, loaded
+from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
 BEYOND = 1.02
 """An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
@@ -47,7 +48,7 @@ class ReachOptions:
             raise InputError(f"tolerance must be above 0 m, not {self.tolerance:g}")
 
 
-class ReachEnv(gymnasium.Env):
+class ReachEnv(GoalEnv):
     """Goal-based environment: actions are contractions, goals are where markers are at contractions drawn at random.
 
     Observations hold the contractions (from -1 to 1), where the markers are and where they should be, counted from rest
@@ -58,9 +59,7 @@ class ReachEnv(gymnasium.Env):
         world: that is asked where markers go.
         options: of the task.
         seen: which coordinates of all markers are looked at.
-        unit: of places in observations [m].
         rest: coordinates of all markers at rest [m].
-        uncounted: equilibria that judged a policy, and are no cost of learning it.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 4}  # type: ignore[misc]
@@ -86,7 +85,7 @@ class ReachEnv(gymnasium.Env):
         Raises:
             InputError: a robot without winches or markers, or names that it does not have.
         """
-        self.robot = _with_contact(_loaded(robot), contact)
+        self.robot = loaded(robot, contact)
         self.world = world or ExactWorld(self.robot)
         self.options, self.render_mode = options or ReachOptions(), render_mode
         robot_ = self.robot
@@ -112,8 +111,8 @@ class ReachEnv(gymnasium.Env):
             achieved_goal=place,
             desired_goal=place,
         )
-        self.uncounted, self._pictures = 0, None
-        self._taken, self._at, self._goal, self._step = np.zeros(len(self._low)), self.rest, self.rest, 0
+        self.steps, self.tolerance, self._pictures = self.options.steps, self.options.tolerance, None
+        self._taken, self._at, self._goal = np.zeros(len(self._low)), self.rest, self.rest
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
@@ -121,19 +120,21 @@ class ReachEnv(gymnasium.Env):
         """Go to rest, with a new goal; or with the goal given in `options` as "goal", coordinates [m]."""
         super().reset(seed=seed)
         self.world.begin()
-        given = (options or {}).get("goal")
-        goal = None if given is None else np.asarray(given, dtype=float).ravel()
-        while goal is None:
-            drawn = self.world.reach(self.contractions(self.np_random.uniform(-1.0, 1.0, len(self._groups))))
-            goal = None if drawn is None else drawn[self.seen]
-        self._goal = self.rest.copy()
+        given = dict(options or {})
+        while "goal" not in given:
+            given = {**given, **(self.drawn(self.np_random) or {})}
+        goal = np.asarray(given["goal"], dtype=float).ravel()
+        if goal.shape != (len(self.seen),):
+            raise InputError(f"a goal has {len(self.seen)} coordinates, not {goal.size}")
+        self._goal, self.taken_steps = self.rest.copy(), 0
         self._goal[self.seen] = goal
-        self._taken, self._at, self._step = np.clip(np.zeros(len(self._low)), self._low, self._high), self.rest, 0
+        self.world.back()
+        self._taken, self._at = self._begun(given)
         return self._observation(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
         """Take in cable by an action; an episode is cut off after its steps."""
-        self._step += 1
+        self.taken_steps += 1
         action = np.asarray(action, dtype=float)
         if self.options.incremental:
             change = 0.1 * (self._high - self._low) * self._spread(np.clip(action, -1.0, 1.0))
@@ -145,21 +146,13 @@ class ReachEnv(gymnasium.Env):
             self._taken, self._at = taken, reached
         observation, info = self._observation(), self._info()
         reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))
-        return observation, reward, False, self._step >= self.options.steps, info
+        return observation, reward, False, self.taken_steps >= self.steps, info
 
     def compute_reward(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> float | np.ndarray:
         """Reward of places for goals, one or a row each; nothing else decides about it."""
         far = self.distances(achieved, desired)
         tolerance = self.options.tolerance
         return -far / tolerance if self.options.shaped else -np.asarray(far >= tolerance, dtype=float)
-
-    def compute_terminated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
-        """Whether an episode has come to its end: never before its steps."""
-        return np.zeros(np.shape(achieved)[:-1], dtype=bool)
-
-    def compute_truncated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
-        """Whether an episode is cut off here."""
-        return np.full(np.shape(achieved)[:-1], self._step >= self.options.steps)
 
     def distances(self, achieved: np.ndarray, desired: np.ndarray) -> float | np.ndarray:
         """Mean distance of the markers [m], one or a row each, of places as they are observed."""
@@ -179,24 +172,53 @@ class ReachEnv(gymnasium.Env):
                 taken[one], taken[group[1]] = max(value, 0.0) * self._high[one], max(-value, 0.0) * self._high[group[1]]
         return taken
 
+    @classmethod
+    def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
+        """Reach as the command line asks for it."""
+        given.refuse("friction")
+        return cls(robot, options=reach_options(given), contact=given.contact)
+
+    @property
+    def portable(self) -> bool:  # type: ignore[override]
+        """Whether a policy sees nothing but the goal: one action, all markers, each winch alone."""
+        options, names = self.options, [marker.name for marker in self.robot.markers]
+        moved_alone = not (options.incremental or options.pairs)
+        return options.steps == 1 and moved_alone and list(options.markers or names) == names
+
+    @property
+    def equilibria(self) -> int:
+        """Equilibria of the exact simulator that were asked for."""
+        return self.world.equilibria
+
+    def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:
+        """A goal: where contractions at random lead from rest."""
+        self.world.back()
+        reached = self.world.reach(self.anywhere(random))
+        return None if reached is None else {"goal": reached[self.seen]}
+
+    def anywhere(self, random: np.random.Generator) -> Vector:
+        """Contractions of an action at random [m]."""
+        return self.contractions(random.uniform(-1.0, 1.0, len(self._groups)))
+
+    def learn_in(self, model: LearnedModel, *, exact: int = 0) -> None:
+        """Ask networks where markers go, and the simulator in every so many episodes (InputError: of another robot)."""
+        self._check(model)
+        networks = LearnedWorld(model)
+        self.world = MixedWorld(networks, self.world, every=exact) if exact else networks
+
     def kept(self) -> dict[str, Any]:
         """What the next episode depends on, and what it has cost until now."""
-        return {
-            "random": self.np_random.bit_generator.state,
-            "world": self.world.kept(),
-            "uncounted": self.uncounted,
-        }
+        return {**super().kept(), "world": self.world.kept()}
 
     def go_on(self, kept: Mapping[str, Any]) -> None:
         """Go on, from the next episode, where an environment was that has been kept."""
-        self.np_random.bit_generator.state = kept["random"]
+        super().go_on(kept)
         self.world.go_on(kept["world"])
-        self.uncounted = kept["uncounted"]
 
     def render(self) -> np.ndarray | None:
         """The picture of where the robot is and should be, (height, width, 3), bytes; always of one size.
 
-        It is solved for anew in the simulator, whatever the world.
+        Networks know no shape: where they are asked, the pose is that of the simulator, from rest.
         """
         if self.render_mode != "rgb_array":
             return None
@@ -206,10 +228,18 @@ class ReachEnv(gymnasium.Env):
             self._pictures = ReachPictures(self.robot)
         markers, places = self.robot.markers, self._goal.reshape(-1, self._dim).tolist()
         goals = {markers[row].name: tuple(places[row]) for row in (self.seen[:: self._dim] // self._dim).tolist()}
-        words = (
-            f"{1e3 * self._info()['distance']:.1f} mm from the goal, after action {self._step} of {self.options.steps}"
-        )
-        return self._pictures.draw(self._taken, Pose(name="goal", targets=goals), words)
+        far = 1e3 * self._info()["distance"]
+        words = f"{far:.1f} mm from the goal, after action {self.taken_steps} of {self.steps}"
+        return self._pictures.draw(self.world.pose, self._taken, Pose(name="goal", targets=goals), words)
+
+    def _check(self, model: LearnedModel) -> None:
+        """Check that networks are of this robot (InputError: of another)."""
+        model.check(self.robot)
+
+    def _begun(self, given: Mapping[str, Any]) -> tuple[Vector, Vector]:
+        """Contractions and places of all markers at the beginning of an episode [m]."""
+        del given
+        return np.clip(np.zeros(len(self._low)), self._low, self._high), self.rest
 
     def _spread(self, action: np.ndarray) -> Vector:
         changes = np.zeros(len(self._low))
@@ -232,12 +262,10 @@ class ReachEnv(gymnasium.Env):
         return {"distance": far, "is_success": far < self.options.tolerance}
 
 
-def _loaded(robot: Robot | str) -> Robot:
-    return robot if isinstance(robot, Robot) else load_robot(robot)
-
-
-def _with_contact(robot: Robot, contact: bool) -> Robot:
-    return replace(robot, contact=Contact()) if contact and robot.contact is None else robot
+def reach_options(given: TaskOptions) -> ReachOptions:
+    """How a robot reaches, as the command line asks for it."""
+    own = given.given("steps", "tolerance", "markers", "pairs", "incremental", "shaped")
+    return ReachOptions(**own)
 
 
 def _groups(robot: Robot, pairs: Sequence[Sequence[str]]) -> tuple[tuple[int, ...], ...]:

@@ -6,7 +6,7 @@ from hydrostat.arrays import Vector
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.frame_pictures import FramePictures, Picture
 from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, SolvedPose
 
 
 class ReachPictures:
@@ -25,9 +25,9 @@ class ReachPictures:
         """Make anew what is copied or sent: a figure of matplotlib that was copied draws nothing more."""
         return ReachPictures, (self._robot,)
 
-    def draw(self, contractions: Vector, goal: Pose, words: str) -> Picture:
-        """The picture at contractions [m], reached from rest, with words below the name of the robot."""
-        pose = self._simulation.solve(contractions, strict=False)
+    def draw(self, pose: SolvedPose | None, contractions: Vector, goal: Pose, words: str) -> Picture:
+        """The picture of a pose, with words below the name of the robot; without one, of contractions [m] from rest."""
+        pose = pose or self._simulation.solve(contractions, strict=False)
         frame = Frame(
             nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions, target=goal, words=words
         )

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.errors import HydrostatError
 from hydrostat.training.copies import Copies, CopiesElsewhere
-from hydrostat.training.reach_env import ReachEnv
+from hydrostat.training.goal_env import GoalEnv
 
 try:
     from stable_baselines3.common.vec_env import VecEnv
@@ -21,7 +21,7 @@ class SideBySide(VecEnv):
     Each copy has a generator of its own, begun with the seed and its number.
     """
 
-    def __init__(self, env: ReachEnv, count: int, *, processes: int = 1) -> None:
+    def __init__(self, env: GoalEnv, count: int, *, processes: int = 1) -> None:
         """So many copies of an environment, shared by some processes; with one, all is done in this."""
         made = Copies if processes == 1 else CopiesElsewhere
         self._env, self._parts = env, np.array_split(np.arange(count), processes)
@@ -31,7 +31,7 @@ class SideBySide(VecEnv):
     @property
     def equilibria(self) -> int:
         """Equilibria of the exact simulator that learning has cost in all copies."""
-        return sum(kept["world"][0] - kept["uncounted"] for kept in self.kept())
+        return sum(kept["equilibria"] - kept["uncounted"] for kept in self.kept())
 
     def kept(self) -> list[dict[str, Any]]:
         """What the next episodes depend on, of each copy."""

@@ -4,7 +4,7 @@ import json
 import math
 import pickle
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from enum import StrEnum
@@ -17,7 +17,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import replace_file
-from hydrostat.training.reach_env import ReachEnv
+from hydrostat.training.goal_env import GoalEnv
 
 
 class TrainMethod(StrEnum):
@@ -89,46 +89,40 @@ class CurvePoint:
     success: float
 
 
-def held_out_goals(env: ReachEnv, count: int, seed: int) -> list[Vector]:
-    """Goals that training does not see, from a generator of their own [m]; they are counted nowhere."""
-    before, goals = env.world.equilibria, []
+def held_out_goals(env: GoalEnv, count: int, seed: int) -> list[dict[str, Any]]:
+    """Goals that training does not see, from a generator of their own: `options` for `reset`; counted nowhere."""
+    before, goals = env.equilibria, []
     random = np.random.default_rng([seed, 77])
-    env.world.begin()
     while len(goals) < count:
-        goal = env.world.reach(env.contractions(random.uniform(-1.0, 1.0, env.action_space.shape[0])))  # type: ignore[index]
+        goal = env.drawn(random)
         if goal is not None:
-            goals.append(goal[env.seen])
-    _uncount(env, before)
+            goals.append(goal)
+    env.uncounted += env.equilibria - before
     return goals
 
 
-def judge(env: ReachEnv, act: Callable[[dict[str, Vector]], np.ndarray], goals: list[Vector]) -> Vector:
-    """Mean distance of the markers at the end of an episode for each goal [m]; equilibria are counted nowhere."""
-    before, left = env.world.equilibria, []
+def judge(env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goals: Sequence[Mapping[str, Any]]) -> Vector:
+    """Distance at the end of an episode for each goal [m]; equilibria are counted nowhere."""
+    before, left = env.equilibria, []
     for goal in goals:
-        observation, info = env.reset(options={"goal": goal})
+        observation, info = env.reset(options=goal)
         over = False
         while not over:
             observation, _, _, over, info = env.step(act(observation))
         left.append(info["distance"])
-    _uncount(env, before)
+    env.uncounted += env.equilibria - before  # what judges a policy is no cost of learning it
     return np.array(left)
 
 
-def _uncount(env: ReachEnv, before: int) -> None:
-    """Equilibria that judge a policy are no cost of learning it."""
-    env.uncounted += env.world.equilibria - before
-
-
 def train(
-    env: ReachEnv,
-    goals: list[Vector],
+    env: GoalEnv,
+    goals: Sequence[Mapping[str, Any]],
     options: TrainOptions,
     out: Path,
     *,
     resume: bool = False,
     processes: int = 1,
-    judge_in: ReachEnv | None = None,
+    judge_in: GoalEnv | None = None,
     tell: Callable[[CurvePoint], None] = lambda _: None,
 ) -> tuple[Any, list[CurvePoint]]:
     """Learn a policy; `out` gets curve.json and a checkpoint after each evaluation, both whole whenever it is killed.
@@ -137,7 +131,7 @@ def train(
 
     Args:
         env: what is learned in.
-        goals: that a policy is judged by [m].
+        goals: that a policy is judged by, as `held_out_goals` gives them.
         options: how.
         out: folder, made if need be.
         judge_in: where policies are judged, such as the exact simulator; in `env` if left out.
@@ -160,7 +154,7 @@ def train(
         out.mkdir(parents=True, exist_ok=True)
         learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
         while learner.num_timesteps < options.steps:
-            _stretch(learner, options, env.options.steps * options.together)
+            _stretch(learner, options, env.steps * options.together)
             left = judge(judge_in or env, lambda seen: learner.predict(seen, deterministic=True)[0], goals)
             point = CurvePoint(
                 steps=learner.num_timesteps,
@@ -168,7 +162,7 @@ def train(
                 mean=float(left.mean()),
                 median=float(np.median(left)),
                 worst=float(left.max()),
-                success=float((left < env.options.tolerance).mean()),
+                success=float((left < env.tolerance).mean()),
             )
             curve.append(point)
             _record(learner, point)
@@ -178,7 +172,7 @@ def train(
 
 
 @contextmanager
-def _copies(env: ReachEnv, options: TrainOptions, processes: int) -> Iterator[Any]:
+def _copies(env: GoalEnv, options: TrainOptions, processes: int) -> Iterator[Any]:
     """Episodes side by side, until no more are needed (HydrostatError: stable-baselines3 is not installed)."""
     from hydrostat.training.side_by_side import SideBySide
 
@@ -196,7 +190,7 @@ def _stretch(model: Any, options: TrainOptions, whole: int) -> None:
     model.learn(whole * math.ceil(due / whole), reset_num_timesteps=False)
 
 
-def _learner(env: ReachEnv, copies: Any, options: TrainOptions) -> Any:
+def _learner(env: GoalEnv, copies: Any, options: TrainOptions) -> Any:
     """What learns, before its first step."""
     made = _algorithm(options.method)
     import torch
@@ -205,7 +199,7 @@ def _learner(env: ReachEnv, copies: Any, options: TrainOptions) -> Any:
     from stable_baselines3.common.vec_env import VecMonitor
 
     torch.set_num_threads(1)
-    whole, size = env.options.steps * options.together, env.action_space.shape[0]  # type: ignore[index]
+    whole, size = env.steps * options.together, env.action_space.shape[0]  # type: ignore[index]
     more: dict[str, Any] = {}
     if options.method in (TrainMethod.DDPG, TrainMethod.TD3):
         more["action_noise"] = NormalActionNoise(np.zeros(size), np.full(size, options.noise))
@@ -217,7 +211,7 @@ def _learner(env: ReachEnv, copies: Any, options: TrainOptions) -> Any:
         policy_kwargs={"net_arch": list(options.layers), "activation_fn": torch.nn.SiLU},
         learning_rate=options.rate,
         batch_size=options.batch,
-        gamma=max(1.0 - 1.0 / env.options.steps, 0.0),
+        gamma=max(1.0 - 1.0 / env.steps, 0.0),
         gradient_steps=options.updates * options.together,
         learning_starts=max(100, 2 * whole),
         buffer_size=max(options.steps, 1_000),

@@ -20,8 +20,15 @@ class World(ABC):
 
     equilibria: int = 0
 
-    @abstractmethod
+    pose: SolvedPose | None = None
+    """Where the robot is, where that is known; None at rest, and in networks, which know no shape."""
+
     def begin(self) -> None:
+        """Begin an episode, at rest."""
+        self.back()
+
+    @abstractmethod
+    def back(self) -> None:
         """Go back to rest."""
 
     @abstractmethod
@@ -43,20 +50,19 @@ class ExactWorld(World):
     def __init__(self, robot: Robot, *, from_rest: bool = True) -> None:
         """A robot; poses begin from rest unless the way shall count."""
         self._simulation, self._from_rest = Simulation(robot), from_rest
-        self._pose: SolvedPose | None = None
 
-    def begin(self) -> None:
+    def back(self) -> None:
         """Go back to rest."""
-        self._pose = None
+        self.pose = None
 
     def reach(self, contractions: Vector) -> Vector | None:
         """Coordinates at an equilibrium."""
         self.equilibria += 1
-        start = None if self._from_rest else self._pose
+        start = None if self._from_rest else self.pose
         pose = self._simulation.solve(contractions, start=start, strict=False)
         if not pose.result.converged:
             return None
-        self._pose = pose
+        self.pose = pose
         return np.array(list(pose.markers.values())).ravel()
 
 
@@ -67,7 +73,7 @@ class LearnedWorld(World):
         """Networks of a robot."""
         self._model, self._count = model, len(model.facts["markers"]) * model.facts["dim"]
 
-    def begin(self) -> None:
+    def back(self) -> None:
         """Go back to rest, which networks do not remember."""
 
     def reach(self, contractions: Vector) -> Vector | None:
@@ -78,11 +84,16 @@ class LearnedWorld(World):
 class MixedWorld(World):
     """A network, and the exact simulator in every so many episodes."""
 
-    def __init__(self, learned: LearnedWorld, exact: ExactWorld, *, every: int) -> None:
+    def __init__(self, learned: World, exact: World, *, every: int) -> None:
         """Both, and how often the exact one is asked (InputError: not a number from 1)."""
         if every < 1:
             raise InputError(f"every must be 1 or more, not {every}")
         self._worlds, self._every, self._episode = (learned, exact), every, -1
+
+    @property
+    def pose(self) -> SolvedPose | None:  # type: ignore[override]
+        """Where the exact robot is, in its episodes."""
+        return self._now.pose
 
     @property
     def equilibria(self) -> int:  # type: ignore[override]
@@ -100,7 +111,11 @@ class MixedWorld(World):
     def begin(self) -> None:
         """Go to the next episode."""
         self._episode += 1
-        self._now.begin()
+        self.back()
+
+    def back(self) -> None:
+        """Go back to rest."""
+        self._now.back()
 
     def reach(self, contractions: Vector) -> Vector | None:
         """Coordinates by whichever has this episode."""

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.robot import gallery_folder
+
 Run = Callable[..., tuple[int, str, str]]
 pytest.importorskip("gymnasium", reason="gymnasium is not installed")
 
@@ -33,6 +35,8 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
         (["--pair", "left,nose"], 'has no winch "nose"; it has: '),
         (["--pair", "left"], "a pair has two winches, not 1: left"),
         (["--processes", 5], "processes must be 1 to 4, the episodes side by side, not 5"),
+        (["--friction", 0.2], "this task has no friction: leave it out"),
+        (["--task", "fly"], "there is no task 'fly'; there are: reach, reach-with-hysteresis"),
         (["--model", "none.model"], "none.model: cannot be read"),
     ],
 )
@@ -56,3 +60,17 @@ def test_what_an_action_is_can_be_asked_for(run: Run, starfish: Path, tmp_path: 
     assert kept["observation_space"]["observation"].shape == (3,)
     curve = json.loads((tmp_path / "curve.json").read_text())["curve"]
     assert [point["steps"] for point in curve] == [8]  # four episodes of two actions side by side are one stretch
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
+def test_other_tasks_are_learned_by_their_names(run: Run, tmp_path: Path) -> None:
+    """An exact episode with friction is a goal, a start and an action."""
+    pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+    words = ["--task", "reach-with-hysteresis", "--friction", 0.3, "--steps", 8, "--goals", 2, "--out", tmp_path]
+    code, out, _ = run("train", gallery_folder("letter_s"), *words)
+    assert code == 0
+    curve = json.loads((tmp_path / "curve.json").read_text())["curve"]
+    assert [point["steps"] for point in curve] == [4, 8]
+    assert curve[-1]["equilibria"] >= 24
+    assert "policy.model" not in out

@@ -2,6 +2,7 @@
 
 from copy import deepcopy
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,6 +28,8 @@ from hydrostat.training import (  # noqa: E402
     train,
 )
 from hydrostat.training.worlds import LearnedWorld  # noqa: E402
+
+Goals = list[dict[str, Any]]
 
 
 class Straight(LearnedWorld):
@@ -164,16 +167,16 @@ def test_a_mixed_world_counts_exact_episodes_only() -> None:
 
 
 @pytest.fixture
-def goals() -> list[Vector]:
+def goals() -> Goals:
     return held_out_goals(straight(), 20, 0)
 
 
-def test_judging_costs_no_equilibria(goals: list[Vector]) -> None:
+def test_judging_costs_no_equilibria(goals: Goals) -> None:
     env = straight()
     env.world.equilibria = 0
     left = judge(env, lambda seen: np.zeros(3), goals)
     middle = Straight().reach(env.contractions(np.zeros(3)))
-    by_hand = [np.linalg.norm((middle - goal).reshape(-1, 2), axis=1).mean() for goal in goals]
+    by_hand = [np.linalg.norm((middle - goal["goal"]).reshape(-1, 2), axis=1).mean() for goal in goals]
     assert left == pytest.approx(by_hand)
 
 
@@ -182,7 +185,7 @@ QUIET = pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWa
 
 @pytest.mark.slow
 @QUIET
-def test_it_learns_and_a_run_that_was_killed_goes_on_the_same_way(goals: list[Vector], tmp_path: Path) -> None:
+def test_it_learns_and_a_run_that_was_killed_goes_on_the_same_way(goals: Goals, tmp_path: Path) -> None:
     pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
 
     def run(steps: int, out: str, *, resume: bool = False) -> list:
@@ -199,7 +202,7 @@ def test_it_learns_and_a_run_that_was_killed_goes_on_the_same_way(goals: list[Ve
 
 @pytest.mark.slow  # six processes begin
 @QUIET
-def test_the_curve_is_the_same_whoever_works(goals: list[Vector], tmp_path: Path) -> None:
+def test_the_curve_is_the_same_whoever_works(goals: Goals, tmp_path: Path) -> None:
     """Episodes of three actions, four side by side, exact in every third: by one process, four, and one, then two.
 
     Equilibria are counted in all of them: of a goal and three actions for each exact episode.
@@ -249,7 +252,7 @@ def test_a_process_that_dies_is_told_and_none_is_left_over() -> None:
     assert active_children() == []
 
 
-def test_what_does_not_fit_a_checkpoint_is_told(goals: list[Vector], tmp_path: Path) -> None:
+def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) -> None:
     pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
     with pytest.raises(InputError, match="processes must be 1 to 4"):
         train(straight(), goals, TrainOptions(), tmp_path, processes=5)
@@ -262,7 +265,7 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: list[Vector], tmp_path: P
 
 @QUIET
 @pytest.mark.parametrize("method", ["SAC", "DDPG", "TQC"])
-def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: list[Vector]) -> None:
+def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Goals) -> None:
     name = "sb3_contrib" if method == "TQC" else "stable_baselines3"
     library = pytest.importorskip(name, reason=f"{name} is not installed")
     from hydrostat.learning import LearnedModel, physics_hash
@@ -286,13 +289,13 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: li
     object.__setattr__(model, "facts", {**model.facts, "dim": 2})
     alone = portable_policy(trained, env, model)
     for goal in goals[:5]:
-        observation, _ = env.reset(options={"goal": goal})
+        observation, _ = env.reset(options=goal)
         asked = env.contractions(trained.predict(observation, deterministic=True)[0])
-        assert alone.inverted(goal) == pytest.approx(asked, abs=1e-7)
+        assert alone.inverted(goal["goal"]) == pytest.approx(asked, abs=1e-7)
 
 
 @QUIET
-def test_tensorboard_reads_what_the_curve_says(goals: list[Vector], tmp_path: Path) -> None:
+def test_tensorboard_reads_what_the_curve_says(goals: Goals, tmp_path: Path) -> None:
     pytest.importorskip("sb3_contrib", reason="sb3-contrib is not installed")
     reader = pytest.importorskip("tensorboard.backend.event_processing.event_accumulator", reason="no tensorboard")
     options = TrainOptions(method=TrainMethod.TQC, steps=60, every=30, layers=(8,), batch=16)

@@ -1,0 +1,120 @@
+"""`GoalEnv`: what training asks of an environment, whatever the task."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import gymnasium
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.learning import LearnedModel
+from hydrostat.robot import Contact, Robot, load_robot
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskOptions:
+    """What is asked of a task by name; what is None is as the task has it.
+
+    Attributes:
+        markers: that shall reach; all if empty.
+        pairs: winches that work against one another, moved by one number of the action.
+        steps: actions in an episode (T).
+        incremental: whether an action adds to the contractions.
+        tolerance: largest distance that is a success [m].
+        shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
+        contact: whether the body feels itself, where robot.toml says nothing of it.
+        friction: coefficient, of what the task is about.
+    """
+
+    markers: Sequence[str] = ()
+    pairs: Sequence[Sequence[str]] = ()
+    steps: int | None = None
+    incremental: bool = False
+    tolerance: float | None = None
+    shaped: bool = True
+    contact: bool = False
+    friction: float | None = None
+
+    def given(self, *names: str) -> dict[str, Any]:
+        """Those of these attributes that are not None, by name."""
+        return {name: value for name in names if (value := getattr(self, name)) is not None}
+
+    def refuse(self, *names: str) -> None:
+        """Refuse what a task does not have (InputError: one of these attributes is given)."""
+        for name in names:
+            if getattr(self, name) not in (None, False, ()):
+                raise InputError(f"this task has no {name}: leave it out")
+
+
+class GoalEnv(gymnasium.Env, ABC):
+    """Goal-based environment with episodes of a fixed number of actions, as `train` and `judge` use it.
+
+    Attributes:
+        portable: whether a policy needs to see nothing but the goal.
+        robot: that does it.
+        unit: of places in observations [m].
+        steps: actions in an episode (T).
+        tolerance: largest distance that is a success [m].
+        taken_steps: actions of this episode until now.
+        uncounted: of `equilibria`, those that judged a policy: no cost of learning it.
+    """
+
+    portable: bool = False
+    robot: Robot
+    unit: float
+    steps: int
+    tolerance: float
+    taken_steps: int = 0
+    uncounted: int = 0
+
+    @classmethod
+    @abstractmethod
+    def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
+        """Make one from what is asked on the command line (InputError: something that the task does not have)."""
+
+    @property
+    @abstractmethod
+    def equilibria(self) -> int:
+        """How many solves of the exact simulator have been asked for, those that judged included."""
+
+    @abstractmethod
+    def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:
+        """Draw an episode: `options` for `reset`; None where what was drawn has no equilibrium."""
+
+    @abstractmethod
+    def compute_reward(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> float | np.ndarray:
+        """Reward of what is achieved for what is desired, one or a row each; nothing else decides about it."""
+
+    def learn_in(self, model: LearnedModel, *, exact: int = 0) -> None:
+        """Ask networks in place of the simulator, and the simulator in every so many episodes (InputError: cannot)."""
+        del model, exact
+        raise InputError("this task is not one of equilibria that networks know: learn it in the simulator")
+
+    def compute_terminated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
+        """Whether an episode has come to its end: never before its steps."""
+        return np.zeros(np.shape(achieved)[:-1], dtype=bool)
+
+    def compute_truncated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
+        """Whether an episode is cut off here."""
+        return np.full(np.shape(achieved)[:-1], self.taken_steps >= self.steps)
+
+    def kept(self) -> dict[str, Any]:
+        """What the next episode depends on, and what it has cost until now."""
+        return {
+            "random": self.np_random.bit_generator.state,
+            "equilibria": self.equilibria,
+            "uncounted": self.uncounted,
+        }
+
+    def go_on(self, kept: Mapping[str, Any]) -> None:
+        """Go on, from the next episode, where an environment was that has been kept."""
+        self.np_random.bit_generator.state = kept["random"]
+        self.uncounted = kept["uncounted"]
+
+
+def loaded(robot: Robot | str, contact: bool = False) -> Robot:
+    """A robot, itself or from its folder; one that feels itself if asked for and robot.toml says nothing of it."""
+    made = robot if isinstance(robot, Robot) else load_robot(robot)
+    return replace(made, contact=Contact()) if contact and made.contact is None else made

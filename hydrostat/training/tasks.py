@@ -1,0 +1,40 @@
+"""`TASKS`: what a robot can learn by trial and error, by name."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hydrostat.errors import InputError
+from hydrostat.training.goal_env import GoalEnv
+from hydrostat.training.hysteresis_env import HysteresisEnv
+from hydrostat.training.reach_env import ReachEnv
+
+
+@dataclass(frozen=True)
+class Task:
+    """Something to learn.
+
+    Attributes:
+        id: by which gymnasium makes its environment.
+        env: its environment.
+        words: what it is, in a line.
+    """
+
+    id: str
+    env: type[GoalEnv]
+    words: str
+
+
+TASKS: Mapping[str, Task] = {
+    "reach": Task("hydrostat/Reach-v0", ReachEnv, "bring markers to goals"),
+    "reach-with-hysteresis": Task(
+        "hydrostat/ReachWithHysteresis-v0", HysteresisEnv, "the same with cables that rub, from a pose at random"
+    ),
+}
+"""By their names on the command line."""
+
+
+def task_of(name: str) -> Task:
+    """The task of a name (InputError: there is none)."""
+    if name not in TASKS:
+        raise InputError(f"there is no task {name!r}; there are: {', '.join(TASKS)}")
+    return TASKS[name]
