@@ -243,6 +243,7 @@ def _sheet(plan: _Plan) -> SheetInput:
         motor=rigid.motor.title,
         winch=most.assembly if most else None,
         base=rigid.base.assembly if rigid.base else None,
+        seat=rigid.seat.assembly,
         stopper=rigid.stopper.assembly if rigid.stopper else None,
         printed=plan.printed,
         tables={table.name: table for table in plan.lists.tables},

@@ -16,10 +16,10 @@ from hydrostat.fabrication.moulds.openings import Sprue, Vent, make_sprue, make_
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
 from hydrostat.fabrication.moulds.positive import Frames, Positive, make_frames, make_positive
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
-from hydrostat.fabrication.moulds.solids import MILLIMETRES, body_solid
 from hydrostat.fabrication.moulds.split import grid
 from hydrostat.fabrication.moulds.stance import Stance, find_stance
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
+from hydrostat.fabrication.solids.body_solid import MILLIMETRES, body_solid
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Material, Robot

@@ -10,8 +10,9 @@ from manifold3d import Manifold
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
-from hydrostat.fabrication.moulds.solids import MILLIMETRES, joined, rod
+from hydrostat.fabrication.moulds.solids import joined, rod
 from hydrostat.fabrication.moulds.stance import Stance
+from hydrostat.fabrication.solids.body_solid import MILLIMETRES
 from hydrostat.fabrication.solids.construct import Cuboid, Sides, sides_text
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Mount, Robot

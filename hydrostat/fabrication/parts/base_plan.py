@@ -43,6 +43,16 @@ def tube_holder(heights: Sequence[float], options: PartOptions) -> Construction:
     return body - Cylinder(depth + 1, _PILOT / 2).moved(0, 0, -1)
 
 
+POST = 12.0  # width of a post [mm]
+
+
+def post(height: float) -> Construction:
+    """A post [mm] with a hole for a screw M3 at both ends, as it stands on the bed."""
+    body: Construction = Box((POST, POST, height)).moved(-POST / 2, -POST / 2, 0)
+    body = body - Cylinder(13, 1.3).moved(0, 0, -1)
+    return body - Cylinder(13, 1.3).moved(0, 0, height - 12)
+
+
 Ring = tuple[Corner, ...]  # a closed line, its first corner not repeated [mm]
 FREE = 15.0  # from a unit to its tube holder [mm]
 

@@ -5,20 +5,19 @@ body stands. It is printed, in tiles if it is larger than the bed, or cut from a
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.base_plan import FREE, HOLDER_DEPTH, BasePlan, Ring, Seat, holder_at, tube_holder
+from hydrostat.fabrication.parts.base_plan import FREE, HOLDER_DEPTH, BasePlan, Ring, Seat, holder_at, post, tube_holder
 from hydrostat.fabrication.parts.housing import SHEET
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, letters
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, sides_text
+from hydrostat.fabrication.solids.construct import Construction, sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 
-_LEG = 12.0
-_BELOW = 10.0  # width of a leg; room below the motors for their wires [mm]
+_BELOW = 10.0  # room below the motors for their wires [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -39,9 +38,17 @@ class BasePlate:
 
 
 def base_plate(
-    robot: Robot, units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float]
+    robot: Robot,
+    units: Sequence[WinchUnit],
+    options: PartOptions,
+    bed: tuple[float, float, float],
+    *,
+    held: Collection[int] = (),
 ) -> BasePlate | None:
-    """The base of all winches outside the body, in pieces that fit the bed (x, y, z) [mm]; None if there are none."""
+    """The base of all winches outside the body, in pieces that fit the bed (x, y, z) [mm]; None if there are none.
+
+    Tubes of cables `held`, by index, are held where they end by something else.
+    """
     outside = [unit for unit in units if unit.mount is Mount.WORLD]
     if not outside:
         return None
@@ -58,7 +65,7 @@ def base_plate(
     holders = _holders(outside, options)
     height = max(unit.motor.depth for unit in outside) + _BELOW - SHEET
     legs = Printed.of(
-        _leg(height),
+        post(height),
         name="base_leg",
         title="Leg of the base",
         count=len(plan.bolts),
@@ -79,7 +86,7 @@ def base_plate(
             ("M2 x 8 mm screw (tube holders)", len(holders)),
         ),
         problems=_too_large([*tiles, legs], bed),
-        warnings=_to_hold(robot, outside),
+        warnings=_to_hold(robot, outside, held),
     )
 
 
@@ -104,13 +111,13 @@ def _tubes(
     )
 
 
-def _to_hold(robot: Robot, units: Sequence[WinchUnit]) -> tuple[str, ...]:
+def _to_hold(robot: Robot, units: Sequence[WinchUnit], held: Collection[int]) -> tuple[str, ...]:
     """A sentence for each cable whose tube ends where it begins, and has to be held there."""
     found = []
     for unit in units:
         for index in unit.cables:
             cable = robot.cables[index]
-            if cable.bare[0]:
+            if cable.bare[0] and index not in held:
                 place = ", ".join(f"{1e3 * value + 0.0:.1f}" for value in cable.points[0])
                 found.append(
                     f'cable C{index + 1} of winch "{unit.winch}" is bare from its beginning: clamp the end of its '
@@ -134,13 +141,6 @@ def _holders(units: Sequence[WinchUnit], options: PartOptions) -> list[Printed]:
             )
         found.append(made[model])
     return found
-
-
-def _leg(height: float) -> Construction:
-    """A post with a hole for a screw at both ends, as it stands on the bed."""
-    body: Construction = Box((_LEG, _LEG, height)).moved(-_LEG / 2, -_LEG / 2, 0)
-    body = body - Cylinder(13, 1.3).moved(0, 0, -1)
-    return body - Cylinder(13, 1.3).moved(0, 0, height - 12)
 
 
 def _assembly(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
+from hydrostat.fabrication.parts.body_seat import BodySeat, body_seat
 from hydrostat.fabrication.parts.grommet import grommet
 from hydrostat.fabrication.parts.motor import Motor, choose_motor
 from hydrostat.fabrication.parts.stopper import Stopper, stopper
@@ -22,6 +23,7 @@ class RigidParts:
     motor: Motor  # that turns all winches
     units: tuple[WinchUnit, ...]  # a winch each
     base: BasePlate | None  # for winches outside the body; None if all are in it
+    seat: BodySeat  # for a body whose winches stand outside; empty if there is none
     stopper: Stopper | None  # one for each cable; None without cables
     grommet: Printed | None  # one for each pinhole, counted; None without pinholes
     cables: int  # how many there are
@@ -42,6 +44,7 @@ class RigidParts:
         ]
         if self.base is not None:
             parts += self.base.printed
+        parts += self.seat.printed
         if self.stopper is not None:
             parts += [replace(part, count=self.cables * part.count) for part in self.stopper.printed]
         if self.grommet is not None:
@@ -54,7 +57,7 @@ class RigidParts:
         counts: Counter[str] = Counter()
         for unit in self.units:
             counts[unit.motor.title] += 1
-        for one in (*self.units, *((self.base,) if self.base else ())):
+        for one in (*self.units, self.seat, *((self.base,) if self.base else ())):
             counts.update(dict(one.bought))
         if self.stopper is not None:
             counts[self.stopper.screw] += self.cables
@@ -62,20 +65,23 @@ class RigidParts:
 
     @property
     def assemblies(self) -> tuple[PartAssembly, ...]:
-        """Each winch, the base with all on it, the stopper."""
+        """Each winch, the base with all on it, the seat, the stopper."""
         base = (self.base.assembly,) if self.base else ()
-        return (*(unit.assembly for unit in self.units), *base, *((self.stopper.assembly,) if self.stopper else ()))
+        seat = (self.seat.assembly,) if self.seat.assembly else ()
+        stopper = (self.stopper.assembly,) if self.stopper else ()
+        return (*(unit.assembly for unit in self.units), *base, *seat, *stopper)
 
     @property
     def problems(self) -> tuple[str, ...]:
         """Reasons why they cannot be built well."""
-        return (*(text for unit in self.units for text in unit.problems), *(self.base.problems if self.base else ()))
+        base = self.base.problems if self.base else ()
+        return (*(text for unit in self.units for text in unit.problems), *base, *self.seat.problems)
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what to mind."""
         base = self.base.warnings if self.base else ()
-        return (*(text for unit in self.units for text in unit.warnings), *self.between, *base)
+        return (*(text for unit in self.units for text in unit.warnings), *self.between, *base, *self.seat.warnings)
 
 
 def rigid_parts(
@@ -97,10 +103,12 @@ def rigid_parts(
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
     chosen = choose_motor(motor, demand.torques, inside=inside, winches=len(robot.winches))
     units = winch_units(robot, options, chosen)
+    seat = body_seat(robot, options, bed)
     return RigidParts(
         motor=chosen,
         units=units,
-        base=base_plate(robot, units, options, bed),
+        base=base_plate(robot, units, options, bed, held=seat.held),
+        seat=seat,
         stopper=stopper(options) if robot.cables else None,
         grommet=replace(grommet(options, hole), count=holes) if holes else None,
         cables=len(robot.cables),

@@ -96,7 +96,10 @@ def _parts(given: SheetInput, height: float) -> dict[str, Canvas]:
     if given.stopper is not None:
         pictures["stopper"] = exploded_picture(given.stopper, of_stopper, width=38.0, height=min(0.6 * height, 52.0))
     if given.base is not None:
-        pictures["base"] = exploded_picture(given.base, {}, width=HALF, height=56.0)
+        wide = HALF if given.seat is None else 0.55 * HALF
+        pictures["base"] = exploded_picture(given.base, {}, width=wide, height=56.0)
+    if given.seat is not None:
+        pictures["seat"] = exploded_picture(given.seat, {}, width=0.4 * HALF, height=56.0)
     return pictures
 
 

@@ -24,6 +24,7 @@ class SheetInput:
     motor: str = "geared motor"  # what its motors are, in words
     winch: PartAssembly | None = None  # the unit that is drawn apart; of several, that with the most cables
     base: PartAssembly | None = None  # with the winches that stand outside the body
+    seat: PartAssembly | None = None  # of the body, where one is made
     stopper: PartAssembly | None = None  # drawn apart
     printed: tuple[Printed, ...] = ()  # all that comes from the printer
     # lists by name; told are "bill_of_materials", "cable_cuts" and "sheath_cuts", if they are there

@@ -137,7 +137,9 @@ def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
                 "Lead the wires out together; sew the skin round them.",
             )
         )
-    if (held := held_text(given.robot)) and given.method is Method.FOAM:
+    if given.seat is not None:
+        steps.append(_seat_step(given.robot))
+    elif (held := held_text(given.robot)) and given.method is Method.FOAM:
         steps.append(AssemblyStep("Hold it", 5, held))
     return tuple(steps)
 
@@ -149,6 +151,19 @@ def _base_step(outside: tuple[str, ...]) -> AssemblyStep:
         f"Screw {marks_text(outside)} to the base plate (print it, or cut parts/base.svg from acrylic), legs below. "
         "Push each tube into its holder and lead it to where its cable begins, in wide bends, none tighter than a cup. "
         "Hold both ends: only so does the tube keep the cable's length. The base stands anywhere the tubes reach.",
+    )
+
+
+def _seat_step(robot: Robot) -> AssemblyStep:
+    ends = any(cable.bare[0] for cable in robot.cables)
+    tubes = "up to the lip, where it ends" if ends else "through the plate and on to the body"
+    return AssemblyStep(
+        "Seat the body",
+        30,
+        "Screw the cup on its posts, the posts on the plate, the legs under it: screws M3. Push each tube from below "
+        f"into its bore, {tubes}, with a drop of glue. Press the end of the body down to the floor of the cup, lines "
+        "through its openings, and sew it there through the holes of the cup, round and round. What hangs is hung by "
+        "the legs from a shelf, the seat upside down.",
     )
 
 

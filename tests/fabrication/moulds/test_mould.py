@@ -21,8 +21,8 @@ from hydrostat.fabrication.moulds.halves import Halves
 from hydrostat.fabrication.moulds.mould import TOP_RIM, Mould, make_mould, mould_problems
 from hydrostat.fabrication.moulds.openings import Sprue, make_sprue
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
-from hydrostat.fabrication.moulds.solids import body_solid
 from hydrostat.fabrication.solids.assembly import interferences
+from hydrostat.fabrication.solids.body_solid import body_solid
 from hydrostat.robot import MATERIALS, Pin, Robot
 
 PARTS = ("upper", "lower", "cavity", "sprue", "vents", "bolts", "slots", "keys")

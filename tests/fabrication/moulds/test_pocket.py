@@ -11,9 +11,10 @@ from hydrostat.fabrication.kit_options import MouldOptions
 from hydrostat.fabrication.moulds.mould import make_mould
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
 from hydrostat.fabrication.moulds.release import fine_surface
-from hydrostat.fabrication.moulds.solids import body_solid, rod
+from hydrostat.fabrication.moulds.solids import rod
 from hydrostat.fabrication.moulds.stance import Stance
 from hydrostat.fabrication.solids.assembly import interferences
+from hydrostat.fabrication.solids.body_solid import body_solid
 from hydrostat.robot import Robot
 
 PLAIN = Stance(np.eye(3), 0.0)

@@ -9,7 +9,7 @@ from manifold3d import Manifold
 from mould_robots import blob_body
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.moulds.solids import body_solid, closed_solid
+from hydrostat.fabrication.solids.body_solid import body_solid, closed_solid
 from hydrostat.fabrication.solids.printed import triangles_of
 
 

@@ -91,9 +91,10 @@ def test_it_takes_little_time(name: str, unchecked: None):
 
 
 def test_what_to_mind_of_the_base_is_told():
-    """Oracle: a cable that is bare from its beginning."""
-    robot = gallery_robot("fish_tail")
-    bare = replace(robot, cables=(robot.cables[0], replace(robot.cables[1], sheathed=())))
+    """Oracle: a cable that is bare from its beginning, with a seat for its tube and without."""
+    seated = gallery_robot("fish_tail")
+    robot = replace(seated, cables=(seated.cables[0], replace(seated.cables[1], sheathed=())))
+    bare = replace(robot, pins=robot.pins * 2)
     told = [
         rigid_parts(each, given_demand(each), motor="n20", options=PartOptions(), bed=BED).warnings
         for each in (robot, bare)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from hydrostat.fabrication.moulds.solids import closed_solid
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed, interferences
+from hydrostat.fabrication.solids.body_solid import closed_solid
 from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
 from hydrostat.fabrication.solids.printed import triangles_of
 

@@ -1,0 +1,279 @@
+"""`BodySeat`: a cup for the end by which a body of foam is held, above a plate where its tubes end, on legs.
+
+A body is simulated as held in its pins, and its outside cables as beginning at fixed places behind it. The seat makes
+both true: the cup is as deep as the pin, and the plate has a bore at the very place where each cable begins. In its own
+coordinates it stands upright: the body's end lies on the floor of the cup, z = 0, and the body rises along z.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from manifold3d import Manifold
+from shapely.geometry import LineString, Point, Polygon, box
+from shapely.geometry.polygon import orient
+from shapely.ops import unary_union
+
+from hydrostat.fabrication.kit_options import PartOptions
+from hydrostat.fabrication.parts.base_plan import POST, post
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
+from hydrostat.fabrication.solids.body_solid import MILLIMETRES, body_solid
+from hydrostat.fabrication.solids.construct import Construction, Corner, Cylinder, Prism, sides_text
+from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.robot import Mount, Pin, Robot
+
+_WALL, _FLOOR, _PLATE = 2.4, 4.0, 8.0  # of the cup, its floor and the plate [mm]
+_LIP = 1.5  # of the plate above the end of a tube [mm]
+_MARGIN, _INSET = 11.0, 5.5  # flange round the cup, and how far its screws are from its corner [mm]
+_BEYOND = 14.0  # plate beyond the flange, for the legs [mm]
+_SCREW = 3.4  # hole for a screw M3 [mm]
+_TIE, _TIES_EVERY = 3.0, 30.0  # hole for a thread or cable tie, and about how far apart [mm]
+_UNDER = 70.0  # room below the plate, where tubes bend away [mm]
+_SHORTEST = 28.0  # post that takes a screw at both ends [mm]
+_LEVEL = 1.0  # how far a cable may begin from the plate [mm]
+_WIDER = 1.3  # how much more than what is held the cup may have to enclose
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BodySeat:
+    """A seat for a body whose winches stand outside, or why there is none."""
+
+    printed: tuple[Printed, ...] = ()  # cup, plate, posts, legs
+    assembly: PartAssembly | None = None  # all of it, with the end of the body
+    bought: tuple[tuple[str, int], ...] = ()  # what is bought for it, and how many of each
+    held: tuple[int, ...] = ()  # indices of cables whose tubes are held where they begin
+    problems: tuple[str, ...] = ()  # why it cannot be printed
+    warnings: tuple[str, ...] = ()  # what to mind
+
+
+def body_seat(robot: Robot, options: PartOptions, bed: tuple[float, float, float]) -> BodySeat:
+    """The seat of a body in space, in pieces that fit the bed [mm]; empty, with the reason, where none can be made."""
+    outside = {winch.name for winch in robot.winches if winch.mount is Mount.WORLD}
+    cables = [index for index, cable in enumerate(robot.cables) if cable.winch in outside]
+    if not cables:
+        return BodySeat()
+    plan = _plan(robot, cables, options)
+    if isinstance(plan, str):
+        return BodySeat(warnings=(f"no seat is made for the body, as {plan}: clamp it where it is held",))
+    return plan.seat(robot.name, options, bed)
+
+
+Line = Float[np.ndarray, "2 3"]  # from where a cable begins to where it comes to the body, in the seat's coordinates
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Plan:
+    """The seat from above, and how high its parts are [mm]."""
+
+    end: Manifold  # of the body, a little more than the cup holds
+    cavity: Polygon  # of the cup
+    depth: float  # of the cup
+    below: float  # from the body's end down to where cables begin
+    lines: tuple[Line, ...]  # of the cables that are held
+    held: tuple[int, ...]  # which these are
+    ends: tuple[bool, ...]  # whether the tube of each ends there
+    flange: Polygon  # round the cup, with the posts at its corners
+
+    def seat(self, name: str, options: PartOptions, bed: tuple[float, float, float]) -> BodySeat:
+        """All parts of it."""
+        plate, legs = self._plate(options), post(_UNDER)
+        solids = (
+            Printed.of(self._cup(options), name="seat_cup", title="Cup of the seat", note="Floor down, no support."),
+            Printed.of(plate, name="seat_plate", title="Plate of the seat", note="Narrow holes up, no support."),
+            Printed.of(
+                post(self._tall), name="seat_post", title="Post of the seat", count=4, note="Standing, with a brim."
+            ),
+            Printed.of(legs, name="seat_leg", title="Leg of the seat", count=4, note="Standing, with a brim."),
+        )
+        large = [part for part in solids if not part.fits(bed)]
+        return BodySeat(
+            printed=solids,
+            assembly=self._assembly(name, solids),
+            bought=(("M3 x 10 mm screw (seat)", 16),),
+            held=self.held,
+            problems=tuple(
+                f"{part.name} is {sides_text(part.size)} mm, the bed {sides_text(bed)} mm" for part in large
+            ),
+        )
+
+    @property
+    def _tall(self) -> float:
+        """Height of the posts."""
+        return self.below - _LIP - _FLOOR
+
+    @property
+    def _posts(self) -> tuple[Corner, ...]:
+        return _corners(self.flange.buffer(-_INSET, join_style="mitre"))
+
+    @property
+    def _board(self) -> Polygon:
+        """The plate: as large as the flange and all tubes, and the legs beyond."""
+        tubes = [Point(line[0, :2]).buffer(6.0) for line in self.lines]
+        return box(*unary_union([self.flange, *tubes]).bounds).buffer(_BEYOND, join_style="mitre")
+
+    @property
+    def _legs(self) -> tuple[Corner, ...]:
+        return _corners(self._board.buffer(-POST / 2, join_style="mitre"))
+
+    def _cup(self, options: PartOptions) -> Construction:
+        """Flange and cup, with room for the cables and holes for the thread that holds the body; its floor at z = 0."""
+        around = Polygon(self.cavity.buffer(_WALL).simplify(0.1).exterior)
+        made = Prism(_ring(self.flange), _FLOOR) + Prism(_ring(around), _FLOOR + self.depth)
+        made = made - Prism(_ring(self.cavity), self.depth + 1).moved(z=_FLOOR)
+        for spot, turn in self._ties():
+            hole = Cylinder(3 * _WALL, _TIE / 2).turned(y=90, z=turn)
+            made = made - hole.moved(*spot, _FLOOR + self.depth / 2)
+        for x, y in self._posts:
+            made = made - Cylinder(_FLOOR + 2, _SCREW / 2).moved(x, y, -1)
+        for line in self.lines:
+            made = made - _way(line, options.tube / 2 + 0.75).moved(z=_FLOOR)
+        return made
+
+    def _ties(self) -> list[tuple[Corner, float]]:
+        """Holes through the wall: where each begins outside of it, and its direction inwards [degrees]."""
+        rim, found = self.cavity.exterior, []
+        count = max(4, round(rim.length / _TIES_EVERY))
+        for place in (np.arange(count) + 0.5) / count:
+            one, other = (np.array(rim.interpolate(place + step, normalized=True).coords[0]) for step in (-0.01, 0.01))
+            along = (other - one) / np.linalg.norm(other - one)
+            inward = np.array([-along[1], along[0]])  # the rim runs counter-clockwise
+            x, y = (one + other) / 2 - 2 * _WALL * inward
+            found.append(((float(x), float(y)), math.degrees(math.atan2(inward[1], inward[0]))))
+        return found
+
+    def _plate(self, options: PartOptions) -> Construction:
+        """The plate, its upper side at z = 0; a tube that ends in it stops below a lip, any other goes through."""
+        made: Construction = Prism(_ring(self._board), _PLATE).moved(z=-_PLATE)
+        for line, stops in zip(self.lines, self.ends, strict=True):
+            x, y = line[0, :2]
+            top, play = (-_LIP, 0.05) if stops else (1.0, 0.25)
+            made = made - Cylinder(_PLATE + 1 + top, options.tube / 2 + play).moved(x, y, -_PLATE - 1)
+            made = made - Cylinder(_PLATE, options.cable + 0.2).moved(x, y, -_PLATE + 1)
+        for x, y in (*self._posts, *self._legs):
+            made = made - Cylinder(_PLATE + 2, _SCREW / 2).moved(x, y, -_PLATE - 1)
+        return made.moved(z=_PLATE)
+
+    def _assembly(self, name: str, solids: Sequence[Printed]) -> PartAssembly:
+        cup, plate, posts, legs = solids
+        top = -self.below + _LIP
+        pieces = [
+            Placed(name="body", title="End of the body", solid=self.end, pulled=(0, 0, 25 + self.depth), printed=False),
+            Placed(name=cup.name, title=cup.title, solid=cup.solid.translate((0, 0, -_FLOOR))),
+            Placed(
+                name=plate.name,
+                title=plate.title,
+                solid=plate.solid.translate((0, 0, top - _PLATE)),
+                pulled=(0, 0, -60),
+            ),
+        ]
+        for part, spots, low, pulled in (
+            (posts, self._posts, top, -30.0),
+            (legs, self._legs, top - _PLATE - _UNDER, -90.0),
+        ):
+            pieces += [
+                Placed(
+                    name=f"{part.name} {number}",
+                    title=part.title,
+                    solid=part.solid.translate((*spot, low)),
+                    pulled=(0, 0, pulled),
+                )
+                for number, spot in enumerate(spots, start=1)
+            ]
+        return PartAssembly(name=f"seat of {name}", pieces=tuple(pieces))
+
+
+def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_Plan | str":
+    """How the seat is laid out, or why there can be none."""
+    if robot.body.mesh.dim == 2:
+        return "the body is flat"
+    if len(robot.pins) != 1:
+        return f"it is held in {len(robot.pins)} places" if robot.pins else "it is held nowhere"
+    ways = MILLIMETRES * np.array([robot.cables[index].points[:2] for index in cables])
+    back = (ways[:, 0] - ways[:, 1]).mean(axis=0)
+    body, turn = body_solid(robot.body), _upright(back)
+    body = body.transform(np.column_stack([turn, np.zeros(3)]))
+    floor = body.bounding_box()[2]
+    body, lines = body.translate((0, 0, -floor)), ways @ turn.T - [0, 0, floor]
+    low, top = (reach - floor for reach in _reach(robot.pins[0], turn))
+    if low > 1.0 or top < 1.0:
+        return "it is not held at the end where its cables begin"
+    pinned = robot.pins[0].holds(robot.body.mesh)
+    own = Polygon(box(*_bounds(MILLIMETRES * robot.body.mesh.nodes[pinned] @ turn.T)))
+    cavity = _outline(body, top, options)
+    if cavity is None or cavity.area > _WIDER * own.buffer(5.0).area:
+        return "another part of it is beside the end where it is held"
+    below = float(np.median(-lines[:, 0, 2]))
+    level = [place for place in range(len(cables)) if abs(-lines[place, 0, 2] - below) <= _LEVEL]
+    if below - _LIP - _FLOOR < _SHORTEST:
+        return f"its cables begin {below:.0f} mm behind it, and {_SHORTEST + _LIP + _FLOOR:.0f} mm are needed"
+    held = tuple(lines[place] for place in level)
+    return _Plan(
+        end=body.trim_by_plane((0, 0, -1), -(top + 12.0)),
+        cavity=cavity,
+        depth=top,
+        below=below,
+        lines=held,
+        held=tuple(cables[place] for place in level),
+        ends=tuple(bool(robot.cables[cables[place]].bare[0]) for place in level),
+        flange=_flange(cavity, held, options),
+    )
+
+
+def _upright(back: np.ndarray) -> Float[np.ndarray, "3 3"]:
+    """The turn that brings the axis nearest to a direction to -z, a right-handed one."""
+    axis = int(np.argmax(np.abs(back)))
+    up = -np.sign(back[axis]) * np.eye(3)[axis]
+    side = np.eye(3)[(axis + 1) % 3]
+    return np.array([side, np.cross(up, side), up])
+
+
+def _reach(pin: Pin, turn: Float[np.ndarray, "3 3"]) -> tuple[float, float]:
+    """From where to where a pin holds, along z of the seat [mm]."""
+    if pin.box is not None:
+        heights = MILLIMETRES * np.array(pin.box) @ turn[2]
+        return float(heights.min()), float(heights.max())
+    middle = MILLIMETRES * float(np.dot(pin.at or (0.0, 0.0, 0.0), turn[2]))
+    return middle - MILLIMETRES * pin.radius, middle + MILLIMETRES * pin.radius
+
+
+def _outline(body: Manifold, top: float, options: PartOptions) -> Polygon | None:
+    """What the end of a body covers from above, a little wider; None where it is in several pieces."""
+    rings = body.trim_by_plane((0, 0, -1), -top).project().to_polygons()
+    covered = unary_union([Polygon(ring).buffer(0) for ring in rings]).buffer(options.clearance).simplify(0.1)
+    return orient(Polygon(covered.exterior)) if isinstance(covered, Polygon) else None
+
+
+def _flange(cavity: Polygon, lines: Sequence[Line], options: PartOptions) -> Polygon:
+    """A rectangle round the cup whose corners, with the posts there, leave room for all cables."""
+    ways = [LineString(line[:, :2]).buffer(options.tube / 2 + 1.0) for line in lines]
+    for more in range(0, 60, 2):
+        flange = box(*cavity.buffer(_WALL + _MARGIN + more, join_style="mitre").bounds)
+        posts = _corners(flange.buffer(-_INSET, join_style="mitre"))
+        if not any(box(*Point(spot).buffer(POST / 2).bounds).intersects(way) for spot in posts for way in ways):
+            break
+    return flange
+
+
+def _way(line: Line, radius: float) -> Construction:
+    """What a straight cable or tube needs, from its beginning to 2 mm beyond its end [mm]."""
+    along = line[1] - line[0]
+    length = float(np.linalg.norm(along))
+    tilt = math.degrees(math.acos(along[2] / length))
+    rod = Cylinder(length + 2.0, radius).turned(y=tilt, z=math.degrees(math.atan2(along[1], along[0])))
+    return rod.moved(*(float(value) for value in line[0]))
+
+
+def _bounds(points: Float[np.ndarray, "points 3"]) -> tuple[float, float, float, float]:
+    (x, y, _), (right, high, _) = points.min(axis=0), points.max(axis=0)
+    return float(x), float(y), float(right), float(high)
+
+
+def _corners(area: Polygon) -> tuple[Corner, ...]:
+    left, low, right, high = area.bounds
+    return (left, low), (right, low), (right, high), (left, high)
+
+
+def _ring(area: Polygon) -> tuple[Corner, ...]:
+    return tuple((float(x), float(y)) for x, y in orient(area).exterior.coords[:-1])
