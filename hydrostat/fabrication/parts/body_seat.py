@@ -64,7 +64,7 @@ Line = Float[np.ndarray, "2 3"]  # from where a cable begins to where it comes t
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class _Plan:
+class _SeatPlan:
     """The seat from above, and how high its parts are [mm]."""
 
     end: Manifold  # of the body, a little more than the cup holds
@@ -184,7 +184,7 @@ class _Plan:
         return PartAssembly(name=f"seat of {name}", pieces=tuple(pieces))
 
 
-def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_Plan | str":
+def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPlan | str":
     """How the seat is laid out, or why there can be none."""
     if robot.body.mesh.dim == 2:
         return "the body is flat"
@@ -209,7 +209,7 @@ def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_Plan |
     if below - _LIP - _FLOOR < _SHORTEST:
         return f"its cables begin {below:.0f} mm behind it, and {_SHORTEST + _LIP + _FLOOR:.0f} mm are needed"
     held = tuple(lines[place] for place in level)
-    return _Plan(
+    return _SeatPlan(
         end=body.trim_by_plane((0, 0, -1), -(top + 12.0)),
         cavity=cavity,
         depth=top,
