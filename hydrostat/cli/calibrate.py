@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from hydrostat.arrays import Vector
-    from hydrostat.control import Bus, Calibration, TakenUp, WinchPull
+    from hydrostat.control import Bus, Calibration, SpoolCurve, TakenUp, WinchPull
     from hydrostat.robot import Robot
 
 PAGE = "calibration.html"
@@ -27,6 +27,10 @@ def calibrate(
     port: Annotated[
         str, typer.Option(metavar="KIND:PORT", help="Motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
     ],
+    spools: Annotated[
+        str,
+        typer.Option(metavar="NAMES", help="Also measure these spools by a ruler: winches with commas, or all."),
+    ] = "",
 ) -> None:
     """Find out how far each motor stands from where its cables begin to pull.
 
@@ -35,6 +39,9 @@ def calibrate(
     beside robot.toml; nothing is written into motors. Ctrl-C stops the motors; what was found until then is kept.
 
     The first time motors 1, 2, ... are on the winches in their order; edit motors.toml where they are not.
+
+    With --spools each named winch then takes in all its travel in steps; you type where a mark on its cable is on a
+    ruler.
 
     Example: hydrostat calibrate examples/starfish --port dynamixel:/dev/ttyUSB0
     """
@@ -47,6 +54,7 @@ def calibrate(
     loaded = read_robot(robot)
     if not loaded.winches:
         raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
+    chosen = _chosen(spools, loaded)
     new = not (folder / control.CALIBRATION).exists()
     calibration = control.usual_calibration(loaded) if new else control.read_calibration(folder, loaded)
     kind = port.partition(":")[0]
@@ -59,14 +67,25 @@ def calibrate(
         places = [min(max(int(1e4 * taken), 0), 999) for taken in contractions.tolist()]
         return np.array([load[place] for load, place in zip(loads, places, strict=True)])
 
-    emulated = calibration.known() if port == control.EMULATED else calibration
+    truth = control.layered(calibration.known()) if port == control.EMULATED else calibration
     with one_interrupt(f"{kind}: stopped", signals=(signal.SIGINT, signal.SIGTERM)):
-        bus = control.open_bus(port, loaded, emulated, tensions)
+        bus = control.open_bus(port, loaded, truth, tensions)
         try:
             found, constants = _take_up(kind, bus, folder, calibration, model)
+            curves = _measure(bus, folder, loaded, chosen, truth if port == control.EMULATED else None)
         finally:
             bus.close()
-    _tell(kind, folder, loaded, found, model, constants)
+    _tell(kind, folder, loaded, found, model, constants, curves)
+
+
+def _chosen(spools: str, robot: "Robot") -> list[int]:
+    """Places of the winches whose spools are measured (InputError: no such winch)."""
+    names = [winch.name for winch in robot.winches]
+    wanted = names if spools == "all" else [name.strip() for name in spools.split(",") if name.strip()]
+    for name in wanted:
+        if name not in names:
+            raise InputError(f"--spools {spools}: there is no winch {name}; there are: {', '.join(names)}, or all")
+    return [names.index(name) for name in wanted]
 
 
 def _take_up(
@@ -94,6 +113,60 @@ def _take_up(
     return found, np.array([fact.constant for fact in facts])
 
 
+def _measure(
+    bus: "Bus", folder: Path, robot: "Robot", chosen: "Sequence[int]", truth: "Calibration | None"
+) -> "list[SpoolCurve]":
+    """Curves of the chosen spools, each saved as soon as it is known; emulated ones have a truth for the ruler."""
+    from hydrostat import control
+
+    if not chosen:
+        return []
+    calibration, curves = control.read_calibration(folder, robot), list["SpoolCurve"]()
+    link = control.BusLink(bus, robot.winches, calibration)
+    link.identify()
+    for place in chosen:
+        motor, travel = calibration.motors[place], robot.winches[place].travel
+        print(f"{bus.kind}: {motor.winch}: make a mark on its cable where it is bare, and lay a ruler beside it")
+
+        def read(thought: float, place: int = place, name: str = motor.winch) -> float:
+            if truth is None:
+                return _asked(name)
+            taken = truth.motors[place].contraction(float(bus.read().angles[place]))
+            shown = 5e-4 * round(taken / 5e-4)
+            by_motor = f"{round(1e3 * thought, 1) + 0.0:.1f} mm by its motor"
+            print(f"{bus.kind}: {name}: {by_motor}, {1e3 * shown:.1f} by the emulated ruler")
+            return shown
+
+        curves.append(control.measure_spool(link, motor, place, travel, read))
+        motors = [*calibration.motors]
+        motors[place] = curves[-1].motor
+        calibration = control.Calibration(tuple(motors))
+        control.write_calibration(folder, calibration)
+        print(
+            f"{bus.kind}: {motor.winch}: radius {1e3 * curves[-1].motor.radius:.2f} mm at its zero; at most "
+            f"{1e3 * curves[-1].more:+.1f} mm beside what was thought; readings {1e3 * curves[-1].scatter:.2f} mm "
+            "beside the curve",
+            flush=True,
+        )
+    return curves
+
+
+def _asked(name: str) -> float:
+    """Where a person sees the mark on the ruler [m] (InputError: there is nobody to ask)."""
+    while True:
+        try:
+            told = input(f"{name}: where is the mark on the ruler [mm]? ")
+        except EOFError:
+            raise InputError("--spools asks for readings of a ruler; run it in a terminal") from None
+        try:
+            value = float(told.strip().removesuffix("mm").replace(",", "."))
+        except ValueError:
+            value = float("nan")
+        if abs(value) < 1e4:
+            return 1e-3 * value
+        print(f"{told.strip()!r} is no number; write millimetres, such as 12.5")
+
+
 def _tell(
     kind: str,
     folder: Path,
@@ -101,6 +174,7 @@ def _tell(
     found: "Sequence[TakenUp]",
     model: "Sequence[WinchPull]",
     constants: "Vector",
+    curves: "Sequence[SpoolCurve]",
 ) -> None:
     """Compare with the model, in words and on a page."""
     from hydrostat import control
@@ -115,7 +189,7 @@ def _tell(
                 f"{taken.motor.winch} feels {felt:.0f} N/m where the simulation has {wanted:.0f} N/m: "
                 "look whether motor, cable and material are those of robot.toml"
             )
-    page = write_calibration_page(robot, found, model, constants, notes, folder / PAGE)
+    page = write_calibration_page(robot, found, model, constants, notes, folder / PAGE, curves)
     for note in notes:
         print(f"{kind}: note: {note}")
     print(f"{kind}: saved {folder / control.CALIBRATION}; open {page} to see what was felt")

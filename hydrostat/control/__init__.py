@@ -21,8 +21,9 @@ from hydrostat.control.guard import GuardLimits, TensionGuard
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
 from hydrostat.control.model_tensions import KnownPulls, WinchPull, tensions_along, winch_pulls, winch_tensions
 from hydrostat.control.motors import FASTEST, Motors
-from hydrostat.control.open_bus import EMULATED, check_port, open_bus, open_line
+from hydrostat.control.open_bus import EMULATED, check_port, layered, open_bus, open_line
 from hydrostat.control.player import Player, play
+from hydrostat.control.spool_curve import SpoolCurve, fit_spool, measure_spool
 from hydrostat.control.take_up import TakenUp, take_up_slack
 from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_table
 
@@ -55,6 +56,7 @@ __all__ = [
     "Port",
     "Reading",
     "SimulatedLink",
+    "SpoolCurve",
     "TakenUp",
     "TensionGuard",
     "Timeline",
@@ -62,6 +64,9 @@ __all__ = [
     "WinchPull",
     "arm_motors",
     "check_port",
+    "fit_spool",
+    "layered",
+    "measure_spool",
     "open_bus",
     "open_line",
     "play",

@@ -1,6 +1,8 @@
 """`Calibration`: which motor turns which winch, and what its angle says of the cable; kept as motors.toml."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +26,8 @@ class WinchMotor:
         zero: angle at which the winch has taken in nothing [rad]; None: not calibrated yet.
         turns: 1 where rising angles take cable in, -1 where they let it out.
         radius: of the spool at the zero [m].
-        growth: of the radius as cable lies on cable [m/rad].
+        curve: angles turned since the zero [rad] and cable taken in there [m], rising, as layers make them; straight
+            between and beyond. Empty: the radius alone.
         current: the most that the motor may draw [A].
         counts: of its encoder in a turn of the spool; only for motors on a board with our firmware.
         board: or line that it hangs on, from 1, where there are several.
@@ -35,7 +38,7 @@ class WinchMotor:
     zero: float | None = None
     turns: int = 1
     radius: float
-    growth: float = 0.0
+    curve: tuple[tuple[float, float], ...] = ()
     current: float = 0.4
     counts: float | None = None
     board: int = 1
@@ -52,24 +55,37 @@ class WinchMotor:
                 raise InputError(f"{self.winch}: {name} must be above 0 and at most {most:g}, not {value:g}")
         if self.counts is not None and not 1 <= self.counts <= 1e6:
             raise InputError(f"{self.winch}: counts must be from 1 to a million, not {self.counts:g}")
-        if not 0 <= self.growth <= self.radius:
-            raise InputError(f"{self.winch}: growth must be from 0 to the radius, a radian, not {self.growth:g}")
+        points = np.array([(0.0, 0.0), *self.curve])
+        if points.shape[1:] != (2,) or not (np.isfinite(points).all() and (np.diff(points, axis=0) > 0).all()):
+            raise InputError(
+                f"{self.winch}: curve must be pairs of an angle [rad] and the cable taken in [m], both rising from 0"
+            )
+        if not all(radius <= 0.5 for _, _, radius in self._pieces):
+            raise InputError(f"{self.winch}: curve rises by more than 0.5 m a radian")
 
     def contraction(self, angle: float) -> float:
         """Cable taken in at an angle of the motor [m], NaN before it is calibrated."""
         turned = self.turns * (angle - (np.nan if self.zero is None else self.zero))
-        return self.radius * turned + 0.5 * self.growth * max(turned, 0.0) * turned
+        begin, taken, radius = next((piece for piece in self._pieces if turned > piece[0]), (0.0, 0.0, self.radius))
+        return taken + radius * (turned - begin)
 
     def angle(self, contraction: float) -> float:
         """Angle of the motor at which so much is taken in [rad]."""
-        turned = contraction / self.radius
-        if self.growth > 0 and contraction > 0:
-            turned = (np.sqrt(self.radius**2 + 2 * self.growth * contraction) - self.radius) / self.growth
-        return (np.nan if self.zero is None else self.zero) + self.turns * turned
+        begin, taken, radius = self._piece(contraction)
+        return (np.nan if self.zero is None else self.zero) + self.turns * (begin + (contraction - taken) / radius)
 
     def reach(self, contraction: float) -> float:
         """Radius at which cable runs on when so much is taken in [m]."""
-        return float(np.sqrt(self.radius**2 + 2 * self.growth * max(contraction, 0.0)))
+        return self._piece(contraction)[2]
+
+    def _piece(self, contraction: float) -> tuple[float, float, float]:
+        return next((piece for piece in self._pieces if contraction > piece[1]), (0.0, 0.0, self.radius))
+
+    @cached_property
+    def _pieces(self) -> tuple[tuple[float, float, float], ...]:
+        """Where each straight piece of the curve begins [rad], [m], and its radius [m]; the last piece first."""
+        points = ((0.0, 0.0), *self.curve)
+        return tuple((*one, (two[1] - one[1]) / (two[0] - one[0])) for one, two in pairwise(points))[::-1]
 
 
 @dataclass(frozen=True)
@@ -156,16 +172,18 @@ def read_calibration(folder: Path, robot: Robot) -> Calibration:
 
 def write_calibration(folder: Path, calibration: Calibration) -> Path:
     """Write motors.toml beside robot.toml, whole or not at all; returns its path."""
-    lines = ["# Which motor turns which winch. Made by hydrostat calibrate; zero and growth are of this one robot.\n"]
+    lines = ["# Which motor turns which winch. Made by hydrostat calibrate; zero and curve are of this one robot.\n"]
     for spool in calibration.motors:
         lines += ["\n[[motor]]\n", f'winch = "{spool.winch}"\n', f"number = {spool.number}\n"]
         if spool.zero is not None:
             lines.append(f"zero = {float(spool.zero)!r}  # angle with nothing taken in [rad]\n")
         lines += [f"turns = {spool.turns}\n", f'radius = "{units.format_quantity(spool.radius, units.LENGTH)}"\n']
         lines += [
-            f"growth = {float(spool.growth)!r}  # of the radius [m/rad]\n",
             f"current = {float(spool.current)!r}  # at most [A]\n",
         ]
+        if spool.curve:
+            pairs = ", ".join(f"[{turned:.4f}, {taken:.6f}]" for turned, taken in spool.curve)
+            lines.append(f"curve = [{pairs}]  # angle turned [rad], cable taken in [m]\n")
         if calibration.boards > 1:
             lines.append(f"board = {spool.board}\n")
         if spool.counts is not None:
@@ -179,7 +197,7 @@ _KEYS: dict[str, tuple[type, ...]] = {
     "zero": (int, float),
     "turns": (int,),
     "radius": (str,),
-    "growth": (int, float),
+    "curve": (list,),
     "current": (int, float),
     "counts": (int, float),
     "board": (int,),
@@ -198,6 +216,15 @@ def _spool(entry: dict[str, Any], file: Path) -> WinchMotor:
             raise InputError(f'{file}: [[motor]] of "{name}" needs {key}')
     try:
         given: dict[str, Any] = entry | {"radius": units.parse_quantity(entry["radius"], units.LENGTH)}
+        given["curve"] = _pairs(entry.get("curve", []))
         return WinchMotor(**given)
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+
+
+def _pairs(entries: list[Any]) -> tuple[tuple[float, float], ...]:
+    """A curve as it is written; what is none becomes NaN, which a `WinchMotor` refuses."""
+    try:
+        return tuple((float(turned), float(taken)) for turned, taken in entries)
+    except (TypeError, ValueError):
+        return ((np.nan, np.nan),)

@@ -1,6 +1,7 @@
 """`open_bus`, `open_line`: motors by words such as dynamixel:/dev/ttyUSB0."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
@@ -26,6 +27,23 @@ class EmulatedBus(DynamixelBus):
     """Servos that are not there, in real time; every line says so."""
 
     kind = EMULATED
+
+
+def layered(calibration: Calibration) -> Calibration:
+    """The same with spools a little larger than told, whose cable lies on itself after the first turn.
+
+    Emulated motors have such spools while they are calibrated, and nobody but the ruler is told of it.
+    """
+    turn, cable = 2 * np.pi, 4e-4  # [rad], [m]
+    spools = []
+    for motor in calibration.motors:
+        radius, taken, curve = 1.01 * motor.radius, 0.0, []
+        for layer in range(1, 5):
+            taken += turn * radius
+            curve.append((layer * turn, taken))
+            radius += cable
+        spools.append(replace(motor, radius=1.01 * motor.radius, curve=tuple(curve)))
+    return Calibration(tuple(spools))
 
 
 def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callable[[Vector], Vector]) -> Bus:

@@ -7,9 +7,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
-from hydrostat.control import TakenUp, WinchPull
+from hydrostat.control import SpoolCurve, TakenUp, WinchPull
 from hydrostat.drawing.palette import MUTED, WINCHES
-from hydrostat.drawing.svg import tag
+from hydrostat.drawing.svg import Html, tag
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
 from hydrostat.plot.sheet import MILLIMETRES
@@ -23,8 +23,9 @@ def write_calibration_page(
     constants: Vector,
     notes: Sequence[str],
     path: Path,
+    curves: Sequence[SpoolCurve] = (),
 ) -> Path:
-    """Write a page: a table of the winches, what each motor felt beside what the simulation says, and notes.
+    """Write a page: a table of the winches, what each felt beside what the simulation says, notes, and spools.
 
     Args:
         robot: that was calibrated.
@@ -33,6 +34,7 @@ def write_calibration_page(
         constants: torque of each motor by its current [N m/A]; NaN where it is not known.
         notes: what a person should look at.
         path: of the page.
+        curves: of the spools that were measured by a ruler.
     """
     rows, pictures = [], []
     for index, (each, wanted, constant) in enumerate(zip(found, model, constants.tolist(), strict=True)):
@@ -60,8 +62,33 @@ def write_calibration_page(
         *told,
         table(heads, rows, numbers=range(1, len(heads))),
         grid(*pictures),
+        *(_spools(curves) if curves else ()),
     )
     return replace_file(path, page(f"{robot.name}: calibration", tag("section", *content)).encode())
+
+
+def _spools(curves: Sequence[SpoolCurve]) -> tuple[Html, ...]:
+    """What a ruler found on spools: a table and a picture of each."""
+    rows, pictures = [], []
+    for index, each in enumerate(curves):
+        lengths = (each.motor.radius, each.motor.reach(float(each.readings[-1])), each.more, each.scatter)
+        rows.append((each.motor.winch, *(number(MILLIMETRES * length, 2) for length in lengths)))
+        words = ": cable taken in beside what was thought; points are readings of the ruler, the line is kept"
+        pictures.append(picture(_draw_spool(each), f"spool{index}", each.motor.winch, words))
+    heads = ("winch", "radius at the zero [mm]", "at the end [mm]", "beside at most [mm]", "scatter [mm]")
+    words = (
+        "Cable that lies on cable runs on further out. What a mark on each cable did is kept as a curve in motors.toml."
+    )
+    return tag("h2", "Spools"), tag("p", words), table(heads, rows, numbers=range(1, 5)), grid(*pictures)
+
+
+def _draw_spool(found: SpoolCurve) -> Figure:
+    """Cable beside what was thought before, by turns of the spool."""
+    figure, axes = new_chart("turns of the spool", "more than thought [mm]", width=NARROW, height=2.4)
+    turns = found.turned / (2 * np.pi)
+    axes.plot(turns, MILLIMETRES * (found.readings - found.before), "o", color=WINCHES[0], markersize=4)
+    axes.plot(turns, MILLIMETRES * (found.fitted - found.before), color=MUTED, linewidth=1.2)
+    return figure
 
 
 def reach(found: TakenUp) -> float:

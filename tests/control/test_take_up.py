@@ -76,7 +76,7 @@ def test_ten_hidden_slacks_are_found_to_half_a_millimetre_within_a_minute() -> N
 
 def test_what_the_model_has_slack_is_no_part_of_the_zero_and_spools_grow() -> None:
     winches = Winches(np.array([0.004]))
-    winches.motors = [WinchMotor(winch="flexor", number=1, radius=RADIUS, growth=1e-4)]
+    winches.motors = [WinchMotor(winch="flexor", number=1, radius=RADIUS, curve=((0.5, 0.0041),))]
     (taken,) = winches.take_up(np.array([0.003]))
     assert taken.motor.contraction(winches.begin[0] + 0.004 / RADIUS) == pytest.approx(0.003, abs=3e-4)
 

@@ -1,0 +1,167 @@
+"""`measure_spool`: how much cable a spool takes in by its angle, by a mark on the cable and a ruler beside it."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import nnls
+
+from hydrostat.arrays import Vector
+from hydrostat.control.bus_link import BusLink
+from hydrostat.control.calibration import WinchMotor
+from hydrostat.errors import HydrostatError, InputError
+
+STOPS, LEAST = 7, 4
+"""Places at which the mark is read, and how many of them must be reached."""
+STANDS = 0.3
+"""A winch that stands for so long [s] away from where it shall go is held by its body: that is how far it goes."""
+SLOW, TURN = 0.02, 0.02
+"""Speed from one to the next [m/s]; from one command to the next [s]."""
+WITHIN = 1e-3
+"""Readings may lie so far beside the curve [m]: a ruler read to half a millimetre does far better."""
+LIKELY = (0.7, 1.6)
+"""The radius measured, over that of robot.toml: beyond, it was read in other units or the wrong spool is on."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpoolCurve:
+    """What was measured on a spool.
+
+    Attributes:
+        motor: with its radius and curve.
+        turned: angles of the spool since its zero at each reading [rad].
+        readings: cable taken in by the mark, from the first on [m].
+        before: what the motor's old radius and curve say there [m].
+    """
+
+    motor: WinchMotor
+    turned: Vector
+    readings: Vector
+    before: Vector
+
+    @property
+    def fitted(self) -> Vector:
+        """Cable taken in by the curve, at each reading [m]."""
+        return _taken(self.motor, self.turned)
+
+    @property
+    def scatter(self) -> float:
+        """Mean distance of the readings from the curve, root of squares [m]."""
+        beside = self.readings - self.fitted
+        return float(np.sqrt(np.mean((beside - beside.mean()) ** 2)))
+
+    @property
+    def more(self) -> float:
+        """The most that was taken in beside what was thought, counted from the first reading [m]."""
+        apart = (self.fitted - self.fitted[0]) - (self.before - self.before[0])
+        return float(apart[np.abs(apart).argmax()])
+
+
+def measure_spool(
+    link: BusLink,
+    motor: WinchMotor,
+    place: int,
+    most: float,
+    read: Callable[[float], float],
+    *,
+    clock: Callable[[], float] = time.monotonic,
+    wait: Callable[[float], None] = time.sleep,
+) -> SpoolCurve:
+    """Let a winch take cable in step by step, and ask at each where the mark is; it then goes back to its zero.
+
+    Motors cannot measure this by themselves: they feel forces, and know no length. While somebody reads, motors stand
+    and are told nothing; each step is armed anew.
+
+    Args:
+        link: to all motors, identified and calibrated.
+        motor: of this winch, as calibrated.
+        place: of the winch among the motors.
+        most: cable to take in at most [m], of the winch's travel.
+        read: given what the cable should have taken in [m], asks where the mark is on the ruler [m].
+        clock: that only runs forward [s].
+        wait: lets so much time pass [s].
+
+    Raises:
+        HydrostatError: of the link; a body so stiff that the motor takes too little in; or readings that are no curve.
+    """
+    turned, readings = list[float](), list[float]()
+    try:
+        for goal in np.linspace(0.0, most, STOPS).tolist():
+            there = _go(link, place, goal, clock, wait)
+            taken = float(link.read(clock())[place])
+            assert link.reading is not None
+            turned.append(motor.turns * (float(link.reading.angles[place]) - (motor.zero or 0.0)))
+            readings.append(read(taken))
+            if not there:
+                break
+        _go(link, place, 0.0, clock, wait)
+    finally:
+        link.stop()
+    if len(turned) < LEAST:
+        raise HydrostatError(
+            f"{motor.winch}: its motor stood after {1e3 * taken:.0f} of {1e3 * most:.0f} mm; let its cable "
+            f"off the body, or allow more than {motor.current:g} A in motors.toml, and begin anew"
+        )
+    return fit_spool(motor, np.array(turned), np.array(readings))
+
+
+def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve:
+    """Fit a curve to readings of a ruler [m] at angles of a spool since its zero [rad].
+
+    The ruler may begin anywhere and count either way. Cable on cable lies further out, never further in: so the curve
+    is straight pieces between the angles, each at least as steep as the one before (least squares, none negative).
+
+    Raises:
+        HydrostatError: readings that lie on no such curve, or on one far from the spool's radius.
+    """
+    taken = (readings - readings[0]) * np.sign(readings[-1] - readings[0])
+    begins = turned[1:-1]
+    table = np.stack([np.ones_like(turned), -np.ones_like(turned), turned], axis=1)
+    table = np.hstack([table, np.maximum(turned[:, None] - begins, 0.0)])
+    found = motor.radius * nnls(table, taken / motor.radius)[0]
+    steps, radius = found[3:], float(found[2])
+    if not LIKELY[0] <= radius / motor.radius <= LIKELY[1]:
+        raise HydrostatError(
+            f"{motor.winch}: by the ruler its spool has a radius of {1e3 * radius:.1f} mm, not of "
+            f"{1e3 * motor.radius:.1f} mm; write millimetres, and look that the mark is on the cable of this winch"
+        )
+    angles = [float(begin) for begin, step in zip(begins, steps, strict=True) if step > 1e-9 and begin > 0]
+    angles.append(float(turned[-1]))
+    lengths = [radius * angle + float(steps @ np.maximum(angle - begins, 0.0)) for angle in angles]
+    try:
+        fitted = replace(motor, radius=radius, curve=tuple(zip(angles, lengths, strict=True)))
+    except InputError as error:
+        raise HydrostatError(f"readings of {error}; read them anew") from None
+    curve = SpoolCurve(
+        motor=fitted, turned=turned, readings=taken + (found[1] - found[0]), before=_taken(motor, turned)
+    )
+    beside = np.abs(curve.readings - curve.fitted)
+    if (worst := float(beside.max())) > WITHIN:
+        raise HydrostatError(
+            f"{motor.winch}: reading {int(beside.argmax()) + 1} of {len(turned)} is {1e3 * worst:.1f} mm beside every "
+            "curve that a spool can have; begin this winch anew"
+        )
+    return curve
+
+
+def _taken(motor: WinchMotor, turned: Vector) -> Vector:
+    """Cable taken in at angles since the zero [m]."""
+    origin = replace(motor, zero=0.0, turns=1)
+    return np.array([origin.contraction(angle) for angle in turned.tolist()])
+
+
+def _go(link: BusLink, place: int, goal: float, clock: Callable[[], float], wait: Callable[[float], None]) -> bool:
+    """Arm all, let one winch take so much in while the others stand, and stop them; whether it came there."""
+    link.arm()
+    goals = link.read(clock())
+    now, since = float(goals[place]), clock()
+    goals[place], mark = goal, now
+    while clock() - since < STANDS:
+        link.send(goals, clock(), speed=SLOW)
+        wait(TURN)
+        now = float(link.read(clock())[place])
+        if abs(now - mark) > 1e-4:
+            mark, since = now, clock()
+    link.stop()
+    return abs(now - goal) < 1e-3
