@@ -45,7 +45,7 @@ def test_a_spool_that_is_none_is_named(run: Run, copy: Path) -> None:
     code, _, err = run("calibrate", copy, "--port", "emulated", "--spools", "right,tail")
     assert (code, err) == (
         2,
-        "error: --spools right,tail: there is no winch tail; there are: right, left, feet, or all\n",
+        "hydrostat: --spools right,tail: there is no winch tail; there are: right, left, feet, or all\n",
     )
 
 
