@@ -17,7 +17,7 @@ WORDS = {
     "deaf": ("has not answered",),
     "stuck": ("does not follow", "pulls by", "slack or broken"),
     "hot": ("too hot",),
-    "anew": ("does not follow", "slack or broken", "beyond its limits"),
+    "anew": ("has lost its power", "does not follow", "slack or broken", "beyond its limits"),
     "unplugged": ("is gone",),
     "host dies": ("",),
     "host sleeps": ("nothing was told for",),

@@ -26,7 +26,7 @@ HARMS = ("deaf", "mute", "stuck", "hot", "anew", "unplugged")
 TOLD = WORDS | {
     "mute": ("has not answered",),
     "stuck": (*WORDS["stuck"], "stall"),
-    "anew": (*WORDS["anew"], "has lost its power", "switched off or reset", "has not answered"),
+    "anew": (*WORDS["anew"], "switched off or reset", "has not answered"),
 }
 
 
