@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def train(
     robot: RobotFolder,
     out: Annotated[Path, typer.Option(metavar="DIR", help="For curves, checkpoints and the policy.")],
-    task: Annotated[str, typer.Option(metavar="NAME", help="reach or reach-with-hysteresis.")] = "reach",
+    task: Annotated[str, typer.Option(metavar="NAME", help="reach, reach-with-hysteresis or walk.")] = "reach",
     method: Annotated[str, typer.Option(metavar="NAME", help="sac-her, td3-her, ddpg-her or tqc-her.")] = "sac-her",
     steps: Annotated[int, typer.Option(metavar="N", help="Actions to learn from.")] = 10_000,
     horizon: Annotated[int | None, typer.Option(metavar="T", help="Actions in an episode; 1 to reach.")] = None,
@@ -26,10 +26,13 @@ def train(
     ] = None,
     exact: Annotated[int, typer.Option(metavar="N", help="With --model: every Nth episode exact; 0: none.")] = 0,
     tolerance: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Mean distance that is a success; 5 mm to reach.")
+        str | None, typer.Option(metavar="LENGTH", help="Distance that is a success; 5 mm to reach, 20 to walk.")
     ] = None,
     friction: Annotated[
-        float | None, typer.Option(metavar="MU", help="Coefficient of cables that rub; 0.2 if not given.")
+        float | None, typer.Option(metavar="MU", help="Of cables that rub, 0.2 if not given; of ground, 0.6.")
+    ] = None,
+    actions: Annotated[
+        str | None, typer.Option(metavar="NAME", help="To walk, what an action is: gait or contractions.")
     ] = None,
     sparse: Annotated[bool, typer.Option("--sparse", help="Reward 0 for success and -1, no distance.")] = False,
     incremental: Annotated[bool, typer.Option("--incremental", help="Actions add to what was taken in.")] = False,
@@ -55,13 +58,16 @@ def train(
     tasks that have no other way.
 
     With --task reach-with-hysteresis cables rub, and the way counts; --model is then of the robot without friction, so
-    that what is learned from is wrong.
+    that what is learned from is wrong. With --task walk the robot stands on the ground, without its pins, and goes a
+    way in time; an action is half a second of a gait, or contractions for a tenth of a second.
 
     Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
 
     Example: hydrostat train examples/starfish --horizon 5 --incremental --marker top --pair left,right --out build/top
 
     Example: hydrostat train examples/letter_s --task reach-with-hysteresis --friction 0.3 --steps 400 --out build/rubs
+
+    Example: hydrostat train examples/puppy --task walk --steps 400 --goals 4 --out build/walk
     """
     try:
         from hydrostat import training
@@ -85,6 +91,7 @@ def train(
         shaped=not sparse,
         contact=contact,
         friction=friction,
+        actions=actions,
     )
     env, judged = (made.for_task(loaded, asked) for _ in range(2))
     networks = None if model is None else load_model(model)
@@ -92,7 +99,7 @@ def train(
         env.learn_in(networks, exact=exact)
     wanted = training.held_out_goals(judged, goals, seed)
     size, began = judged.unit, time.process_time()
-    print("    actions  equilibria  mean     median   worst    within  CPU", flush=True)
+    print(f"    actions{env.cost:>12}  mean     median   worst    within  CPU", flush=True)
 
     def tell(point: "CurvePoint") -> None:
         print(f"{_line(point)}   {time.process_time() - began:.0f} s", flush=True)

@@ -11,6 +11,7 @@ from hydrostat.training.portable import portable_policy
 from hydrostat.training.reach_env import ReachEnv, ReachOptions
 from hydrostat.training.tasks import TASKS, Task, task_of
 from hydrostat.training.train import CurvePoint, TrainMethod, TrainOptions, held_out_goals, judge, train
+from hydrostat.training.walk_env import WalkActions, WalkEnv, WalkOptions
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
 __all__ = [
@@ -27,6 +28,9 @@ __all__ = [
     "TaskOptions",
     "TrainMethod",
     "TrainOptions",
+    "WalkActions",
+    "WalkEnv",
+    "WalkOptions",
     "World",
     "held_out_goals",
     "judge",

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import gymnasium
 import numpy as np
@@ -26,6 +26,7 @@ class TaskOptions:
         shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
         contact: whether the body feels itself, where robot.toml says nothing of it.
         friction: coefficient, of what the task is about.
+        actions: what an action is: a name that the task knows.
     """
 
     markers: Sequence[str] = ()
@@ -36,6 +37,7 @@ class TaskOptions:
     shaped: bool = True
     contact: bool = False
     friction: float | None = None
+    actions: str | None = None
 
     def given(self, *names: str) -> dict[str, Any]:
         """Those of these attributes that are not None, by name."""
@@ -59,8 +61,10 @@ class GoalEnv(gymnasium.Env, ABC):
         tolerance: largest distance that is a success [m].
         taken_steps: actions of this episode until now.
         uncounted: of `equilibria`, those that judged a policy: no cost of learning it.
+        cost: what `equilibria` counts, in a word or two.
     """
 
+    cost: ClassVar[str] = "equilibria"
     portable: bool = False
     robot: Robot
     unit: float
@@ -77,7 +81,7 @@ class GoalEnv(gymnasium.Env, ABC):
     @property
     @abstractmethod
     def equilibria(self) -> int:
-        """How many solves of the exact simulator have been asked for, those that judged included."""
+        """How many solves of the exact simulator have been asked for, those that judged included (see `cost`)."""
 
     @abstractmethod
     def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:

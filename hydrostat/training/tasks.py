@@ -7,6 +7,7 @@ from hydrostat.errors import InputError
 from hydrostat.training.goal_env import GoalEnv
 from hydrostat.training.hysteresis_env import HysteresisEnv
 from hydrostat.training.reach_env import ReachEnv
+from hydrostat.training.walk_env import WalkEnv
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,7 @@ TASKS: Mapping[str, Task] = {
     "reach-with-hysteresis": Task(
         "hydrostat/ReachWithHysteresis-v0", HysteresisEnv, "the same with cables that rub, from a pose at random"
     ),
+    "walk": Task("hydrostat/Walk-v0", WalkEnv, "go a way along the ground, held by nothing"),
 }
 """By their names on the command line."""
 

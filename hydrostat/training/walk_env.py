@@ -1,0 +1,276 @@
+"""`WalkEnv`: a robot that nothing holds goes a way along the ground (gymnasium, goal-based)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from gymnasium import spaces
+
+from hydrostat.arrays import Vector
+from hydrostat.closed_set import make_member
+from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.plot.frame_pictures import Picture
+from hydrostat.robot import ObstacleShape, Robot
+from hydrostat.simulation import Motion, Simulation, StepOptions
+from hydrostat.training.gait import Gait, GaitClock
+from hydrostat.training.goal_env import GoalEnv, TaskOptions, loaded
+from hydrostat.training.ground import standing, tilt, with_friction
+
+STEP = 0.02
+"""A time step [s]."""
+
+MOST_TILT = np.deg2rad(20.0)
+"""A body that has turned further has fallen [rad]."""
+
+
+class WalkActions(StrEnum):
+    """What an action is."""
+
+    GAIT = "gait"
+    CONTRACTIONS = "contractions"
+
+
+BEATS: Mapping[WalkActions, int] = {WalkActions.GAIT: 25, WalkActions.CONTRACTIONS: 5}
+"""Time steps of an action: half a second of a gait, a tenth of a second to contractions."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WalkOptions:
+    """How a robot walks.
+
+    Attributes:
+        actions: a member of `WalkActions`, or its text.
+        steps: actions in an episode (T); as many as make five seconds if None.
+        incremental: whether contractions are added, a third of what may be taken in at most; no gait is.
+        speed: at which the longest way that is wanted is gone in an episode, in sizes of the body a second.
+        spread: friction of an episode is drawn within this share of the ground's, up and down.
+        tolerance: of the way wanted, where an episode is a success [m].
+        shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
+
+    Raises:
+        InputError: an unknown word for actions, a gait that is incremental, or a number out of its range.
+    """
+
+    actions: WalkActions | str = WalkActions.GAIT
+    steps: int | None = None
+    incremental: bool = False
+    speed: float = 0.1
+    spread: float = 0.3
+    tolerance: float = 20e-3
+    shaped: bool = True
+
+    def __post_init__(self) -> None:
+        make_member(self, "actions", WalkActions)
+        if self.incremental and self.actions is WalkActions.GAIT:
+            raise InputError("a gait is not incremental: have contractions as actions, or leave it out")
+        if self.steps is not None and self.steps < 1:
+            raise InputError(f"steps must be 1 or more, not {self.steps}")
+        if not 0 <= self.spread < 1:
+            raise InputError(f"spread must be from 0 to below 1, not {self.spread:g}")
+        for name in ("speed", "tolerance"):
+            if not 0 < getattr(self, name) < np.inf:
+                raise InputError(f"{name} must be above 0, not {getattr(self, name):g}")
+
+
+class WalkEnv(GoalEnv):
+    """Goal-based environment in time: a robot upright on the ground, without pins, goes a way in x.
+
+    What is achieved is the way of the middle of mass, in sizes of the body, and whether the robot has fallen (1, else
+    0); wanted is a way, and no fall. A fall counts as one more size of the body, and nothing moves after it. Friction
+    of the ground is drawn for each episode, and not observed.
+
+    An observation has contractions (from -1 to 1), where markers are about the middle of mass, counted from rest, in
+    sizes of the body, and their velocities in sizes a second; of a gait also sine and cosine of its phase, its
+    amplitude and its lag.
+
+    Attributes:
+        robot: as it walks, on the ground.
+        options: of the task.
+        friction: of the ground, about which it is drawn.
+        most: the most that each winch takes in: half of the least travel [m].
+        motion: where it is; None before the first episode.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 4}  # type: ignore[misc]
+    cost = "time steps"
+
+    def __init__(
+        self,
+        robot: Robot | str,
+        *,
+        friction: float | None = None,
+        options: WalkOptions | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        """A robot that walks.
+
+        Args:
+            robot: itself, its folder, or a name such as gallery:puppy; its pins are taken away.
+            friction: Coulomb's coefficient of the ground; as in robot.toml if None, or 0.6 if that has no ground.
+            options: of the task.
+            render_mode: "rgb_array", or None.
+
+        Raises:
+            InputError: a robot without winches or markers, or what `standing` refuses.
+        """
+        self.robot = standing(loaded(robot), friction)
+        self.options, self.render_mode = options or WalkOptions(), render_mode
+        count, marks = len(self.robot.winches), len(self.robot.markers)
+        if not count or not marks:
+            raise InputError(f"robot {self.robot.name!r} needs a winch to be moved by and a marker to be looked at")
+        planes = [thing for thing in self.robot.obstacles if thing.shape is ObstacleShape.PLANE]
+        self.friction = planes[0].friction or 0.0
+        self.most = 0.5 * min(winch.travel for winch in self.robot.winches)
+        mesh, by_gait = self.robot.body.mesh, self.options.actions is WalkActions.GAIT
+        self.unit, self.tolerance = mesh.size, self.options.tolerance
+        self.beat = BEATS[WalkActions(self.options.actions)]
+        self.steps = self.options.steps or round(_SECONDS / (self.beat * STEP))
+        self.action_space = spaces.Box(-1.0, 1.0, (3 if by_gait else count,), np.float32)
+        seen = count + 2 * marks * mesh.dim + (4 if by_gait else 0)
+        goal = spaces.Box(-_FAR, _FAR, (2,), np.float64)
+        body = spaces.Box(-_FAR, _FAR, (seen,), np.float64)
+        self.observation_space = spaces.Dict(observation=body, achieved_goal=goal, desired_goal=goal)
+        self._simulation, self.motion = Simulation(self.robot), None
+        self._masses = self._simulation.body.masses / self._simulation.body.masses.sum()
+        self._made, self._wanted, self._fallen, self._pictures = 0, 0.0, False, None
+        self._clock = GaitClock(count, self.most)
+
+    motion: Motion | None
+
+    def reset(
+        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[dict[str, Vector], dict[str, Any]]:
+        """Stand at the beginning, with a new way and friction; or with "goal" [m] and "friction" of `options`."""
+        super().reset(seed=seed)
+        given = {**self.drawn(self.np_random), **(options or {})}
+        wanted = np.ravel(np.asarray(given["goal"], dtype=float))
+        if wanted.shape != (1,):
+            raise InputError(f"a goal is one way [m], not {wanted.size} numbers")
+        self._wanted, self._fallen, self.taken_steps = float(wanted[0]), False, 0
+        self._simulation = Simulation(with_friction(self.robot, float(given["friction"])))
+        self._given = float(given["friction"])
+        self.motion = self._simulation.still()
+        self._clock = GaitClock(len(self.robot.winches), self.most)
+        return self._observation(), self._info()
+
+    def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
+        """Go on by the time steps of an action; an episode is cut off after its actions."""
+        self.taken_steps += 1
+        for contractions in self._asked(np.clip(np.asarray(action, dtype=float), -1.0, 1.0)):
+            if self._fallen:
+                break
+            self._advance(contractions)
+        observation, info = self._observation(), self._info()
+        reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))
+        return observation, reward, False, self.taken_steps >= self.steps, info
+
+    def compute_reward(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> float | np.ndarray:
+        """Reward of what is achieved for what is desired, one or a row each; nothing else decides about it."""
+        del info
+        far = self.distances(achieved, desired)
+        tolerance = self.options.tolerance
+        return -far / tolerance if self.options.shaped else -np.asarray(far >= tolerance, dtype=float)
+
+    def distances(self, achieved: np.ndarray, desired: np.ndarray) -> float | np.ndarray:
+        """How far ways are from those wanted [m], one or a row each; a fall counts as a size of the body."""
+        return self.unit * np.abs(np.asarray(achieved) - np.asarray(desired)).sum(axis=-1)
+
+    @classmethod
+    def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
+        """Walk as the command line asks for it."""
+        given.refuse("markers", "pairs", "contact")
+        options = WalkOptions(**given.given("actions", "steps", "incremental", "tolerance", "shaped"))
+        return cls(robot, friction=given.friction, options=options)
+
+    @property
+    def equilibria(self) -> int:
+        """Time steps of the simulator that were asked for; none costs more than another."""
+        return self._made
+
+    def drawn(self, random: np.random.Generator) -> dict[str, Any]:
+        """A way, from none to the longest that is wanted [m], and the friction of the ground."""
+        longest = self.options.speed * self.unit * self.steps * self.beat * STEP
+        share = self.options.spread * random.uniform(-1.0, 1.0)
+        return {"goal": [random.uniform(0.0, longest)], "friction": self.friction * (1.0 + share)}
+
+    def go_on(self, kept: Mapping[str, Any]) -> None:
+        """Go on, from the next episode, where an environment was that has been kept."""
+        super().go_on(kept)
+        self._made = kept["equilibria"]
+
+    def render(self) -> Picture | None:
+        """The picture of the robot on the ground, which goes by below it, (height, width, 3), bytes."""
+        if self.render_mode != "rgb_array" or self.motion is None:
+            return None
+        from hydrostat.training.walk_pictures import WalkPictures
+
+        if self._pictures is None:
+            self._pictures = WalkPictures(self.robot, self.most)
+        way, wanted = 1e3 * self.way, 1e3 * self._wanted
+        words = f"{self.motion.time:.1f} s, {way:.0f} of {wanted:.0f} mm" + (", fallen" if self._fallen else "")
+        return self._pictures.draw(self.motion, self.way, words)
+
+    @property
+    def way(self) -> float:
+        """How far the middle of mass has gone in x since the beginning of the episode [m]."""
+        return float((self._masses @ (self._now.nodes - self.robot.body.mesh.nodes))[0])
+
+    @property
+    def _now(self) -> Motion:
+        assert self.motion is not None, "an episode begins with reset"
+        return self.motion
+
+    def _asked(self, action: Vector) -> list[Vector]:
+        """Contractions at the end of each time step of an action [m]."""
+        if self.options.actions is WalkActions.GAIT:
+            gait = Gait.of_action(action, self.most)
+            return [self._clock.after(gait, STEP) for _ in range(self.beat)]
+        begin = self._now.contractions
+        change = self.most / 3.0 * action if self.options.incremental else 0.5 * self.most * (action + 1.0) - begin
+        end = np.clip(begin + change, 0.0, self.most)
+        return [begin + share * (end - begin) for share in (np.arange(self.beat) + 1.0) / self.beat]
+
+    def _advance(self, contractions: Vector) -> None:
+        """Make a time step; a robot that tilts too far has fallen, as has one of which no step is found."""
+        self._made += 1
+        try:
+            self.motion = self._simulation.step(self._now, contractions, STEP, options=StepOptions(scheme="euler"))
+        except NotConvergedError:
+            self._fallen = True
+            return
+        masses = self._simulation.body.masses
+        self._fallen = tilt(masses, self.robot.body.mesh.nodes, self.motion.nodes) > MOST_TILT
+
+    def _observation(self) -> dict[str, Vector]:
+        motion, anchors, rest = self._now, self._simulation.marker_anchors, self.robot.body.mesh.nodes
+        moved = motion.nodes - rest
+        places = (anchors.positions(moved) - self._masses @ moved) / self.unit
+        speeds = anchors.positions(motion.velocities) / self.unit
+        parts = [2.0 * motion.contractions / self.most - 1.0, places.ravel(), speeds.ravel()]
+        if self.options.actions is WalkActions.GAIT:
+            clock, turn = self._clock, 2.0 * np.pi * self._clock.phase
+            parts.append(np.array([np.sin(turn), np.cos(turn), clock.amplitude / self.most, 2.0 * clock.lag]))
+        return {
+            "observation": np.clip(np.concatenate(parts), -_FAR, _FAR),
+            "achieved_goal": np.clip([self.way / self.unit, float(self._fallen)], -_FAR, _FAR),
+            "desired_goal": np.array([self._wanted / self.unit, 0.0]),
+        }
+
+    def _info(self) -> dict[str, Any]:
+        far = self.unit * (abs(self.way - self._wanted) / self.unit + float(self._fallen))
+        return {
+            "distance": far,
+            "is_success": far < self.tolerance,
+            "way": self.way,
+            "fallen": self._fallen,
+            "friction": self._given,
+        }
+
+
+_SECONDS = 5.0
+"""How long an episode is where nothing else is said [s]."""
+
+_FAR = 100.0
+"""Bound of what is observed."""
