@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
-from threading import Lock, Semaphore, Thread
+from threading import Condition, Lock, Semaphore, Thread
 from typing import Any
 
 from hydrostat.errors import HydrostatError, InputError
@@ -32,19 +32,52 @@ class JobState:
 
 
 class Slots:
-    """How many long works may run at a time, of all sessions that share these."""
+    """How many long works may run at a time, of all sessions that share these; more stand in line.
+
+    Work that goes on for as long as a person likes has as many of its own: it would keep the line waiting.
+    """
 
     def __init__(self, count: int) -> None:
-        self._free = Semaphore(count)
+        self._news, self._free, self._line = Condition(), count, list[object]()
+        self._live = Semaphore(count)
 
-    def take(self) -> None:
-        """Begin one; each is given back (InputError: all are taken)."""
-        if not self._free.acquire(blocking=False):
-            raise InputError("this machine is busy with the work of other rooms; try again in a moment")
+    def wait(self, given_up: Callable[[], bool], tell: Callable[[int], None]) -> bool:
+        """Stand in line until one is free; whether it came to that. Each is given back.
+
+        Args:
+            given_up: whether nobody wants it any more, asked twice a second.
+            tell: is told how many are before this one, at first and whenever that changes; not if one is free.
+        """
+        turn, told = object(), -1
+        with self._news:
+            self._line.append(turn)
+            try:
+                while (before := self._line.index(turn)) or not self._free:
+                    if given_up():
+                        return False
+                    if before != told:
+                        tell(told := before)
+                    self._news.wait(0.5)
+                self._free -= 1
+                return True
+            finally:
+                self._line.remove(turn)
+                self._news.notify_all()
 
     def give(self) -> None:
         """One has ended."""
-        self._free.release()
+        with self._news:
+            self._free += 1
+            self._news.notify_all()
+
+    def take_live(self) -> None:
+        """Begin work that goes on for as long as a person likes (InputError: too many do)."""
+        if not self._live.acquire(blocking=False):
+            raise InputError("this machine does that for other rooms already; try again when they have ended it")
+
+    def give_live(self) -> None:
+        """Such work has ended."""
+        self._live.release()
 
 
 class Jobs:
@@ -99,26 +132,21 @@ class Jobs:
                 raise InputError(f"{self.state.title} is still in progress; wait for it or stop it")
             if self._closed:
                 raise InputError("the studio is closing")
-            if self.slots is not None:
-                self.slots.take()
-            spare, self._spare = self._spare, None
-            worker = spare if spare is not None and spare.process.is_alive() else _Worker.started()
-            self._worker, self.state = worker, JobState(title=title)
+            self._worker, self.state = (self._ready() if self.slots is None else None), JobState(title=title)
         self._bell.ring(Topic.JOB)
         calls = (on_part or _nothing, on_done or _nothing, on_end or _nothing)
-        Thread(target=self._follow, args=(worker, function, arguments, *calls), name=title, daemon=True).start()
+        Thread(target=self._follow, args=(function, arguments, *calls), name=title, daemon=True).start()
 
     def stop(self) -> None:
         """Ask the work to end with what it has; asked again, it is ended at once."""
         with self._lock:
             worker, state = self._worker, self.state
-            if worker is None or state is None or not state.running:
-                return
-            if state.stopping:
-                worker.process.kill()
+            if state is None or not state.running:
                 return
             self.state = replace(state, stopping=True)
-            if worker.begun:
+            if worker is not None and state.stopping:
+                worker.process.kill()
+            elif worker is not None and worker.begun:
                 worker.say_stop()
         self._bell.ring(Topic.JOB)
 
@@ -133,19 +161,54 @@ class Jobs:
         for worker in workers:
             worker.end(0.0)
 
+    def _ready(self) -> "_Worker":
+        """A process to work in."""
+        spare, self._spare = self._spare, None
+        return spare if spare is not None and spare.process.is_alive() else _Worker.started()
+
     def _follow(
         self,
-        worker: "_Worker",
         function: Callable[..., Any],
         arguments: tuple[Any, ...],
         on_part: Callable[[Any], None],
         on_done: Callable[[Any], None],
         on_end: Callable[[str], None],
     ) -> None:
-        """Hand the work over and hear what the process says until it ends; in a thread of its own."""
+        """Have the work done when its turn comes; in a thread of its own."""
+        slots, error = self.slots, "stopped"
+        if slots is None or slots.wait(self._given_up, self._in_line):
+            with self._lock:
+                if self._worker is None and not self._given_up():
+                    self._worker = self._ready()
+                worker = self._worker
+            if worker is not None:
+                error = self._work(worker, (function, arguments), on_part, on_done)
+            if slots is not None:
+                slots.give()
+        with self._lock:
+            self._worker = None
+        self._note(running=False, error=error)
+        on_end(error)
+
+    def _given_up(self) -> bool:
+        """Whether nobody wants the work any more."""
+        return self.state is not None and self.state.stopping
+
+    def _in_line(self, before: int) -> None:
+        """Tell that work of other rooms comes first."""
+        self._note(stage=f"waiting for other rooms, {before} before this one" if before else "waiting for other rooms")
+
+    def _work(
+        self,
+        worker: "_Worker",
+        work: tuple[Callable[..., Any], tuple[Any, ...]],
+        on_part: Callable[[Any], None],
+        on_done: Callable[[Any], None],
+    ) -> str:
+        """Hand the work over and hear what the process says until it ends; why it failed, or ""."""
         patience = 0.0
         try:
-            worker.pipe.send(("work", function, arguments))
+            worker.pipe.send(("work", *work))
             self._begun(worker)
             error = self._hear(worker.pipe, on_part, on_done)
             patience = PATIENCE
@@ -157,12 +220,7 @@ class Jobs:
             logging.getLogger("hydrostat").exception("work in another process failed")
             error = f"{type(failed).__name__}: {failed}"
         worker.end(patience)
-        if error and self.state is not None and self.state.stopping:
-            error = "stopped"
-        if self.slots is not None:
-            self.slots.give()
-        self._note(running=False, error=error)
-        on_end(error)
+        return "stopped" if error and self._given_up() else error
 
     def _begun(self, worker: "_Worker") -> None:
         """The process has its work: it can be asked to stop."""

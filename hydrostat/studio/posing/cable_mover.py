@@ -21,6 +21,10 @@ CALM, CALMEST = 4.0, 0.3
 whole body away from rest counts beside a metre of error by so many times the error in sizes of the body, at most the
 second. So it hides no target: it fades as one is reached."""
 
+GAIN = 0.5
+"""Markers that nobody holds rather stay, as in `solve_ik`: the square of their distance from rest weighs this times the
+error, in sizes of the body. An arm that is dragged out of reach yanks no other for the hair that it would gain."""
+
 STILL = 1e-4  # an update that moves no node farther brings it hardly nearer, in sizes of the body
 STILLS = 3  # after so many of them in a row nobody waits for more
 MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
@@ -103,7 +107,7 @@ class CableMover(Mover):
         self._updates += 1
         goals = [] if targets else [_goal(held)]
         try:
-            reached = self._tracker.update(targets, seconds=TICK, objectives=[*goals, self._calm(held)])
+            reached = self._tracker.update(targets, seconds=TICK, objectives=[*goals, *self._calm(held)])
         except HydrostatError as error:
             self._begin(self._pose)
             return self._shape(self._anchored.errors(held, self._pose.nodes), (str(error),)), False
@@ -130,10 +134,15 @@ class CableMover(Mover):
             return None
         return {name: point.target for name, point in held.items()}
 
-    def _calm(self, held: Mapping[str, Held]) -> Closeness:
-        """Wish that the rest of the body stays, the more the farther the targets are."""
-        error = max(self._anchored.errors(held, self._pose.nodes).values()) / self.robot.body.mesh.size
-        return Closeness(pose=self._simulation.rest, of="nodes", weight=min(CALM * error, CALMEST))
+    def _calm(self, held: Mapping[str, Held]) -> list[Closeness]:
+        """Wishes that the body, and markers that nobody holds, stay: the more the farther the targets are."""
+        errors = np.array(list(self._anchored.errors(held, self._pose.nodes).values())) / self.robot.body.mesh.size
+        rest, others = self._simulation.rest, tuple(m.name for m in self.robot.markers if m.name not in held)
+        calm = [Closeness(pose=rest, of="nodes", weight=min(CALM * float(errors.max()), CALMEST))]
+        if others:
+            weight = float(np.sqrt(GAIN * np.linalg.norm(errors)))
+            calm.append(Closeness(pose=rest, of="markers", markers=others, weight=weight))
+        return calm
 
     def _band(self) -> tuple[str, ...]:
         """How far apart friction leaves the markers, in words; nothing without it."""

@@ -32,7 +32,7 @@ class CableProposals:
     """
 
     def __init__(self, document: Document, slots: Slots | None = None) -> None:
-        """None are made before they are switched on; then they are one of the long works that slots are for, if any."""
+        """None are made before they are switched on; then slots, if any, say whether they may."""
         self._document, self._slots = document, slots
         self._news = Condition()
         self._newest: _Question | None = None
@@ -42,12 +42,12 @@ class CableProposals:
         self.on = False  # whether networks are proposed
 
     def switch(self, on: bool) -> None:
-        """Begin to propose networks, or end it and forget what there is (InputError: all slots are taken)."""
+        """Begin to propose networks, or end it and forget what there is (InputError: too many rooms do)."""
         with self._news:
             if on == self.on:
                 return
             if self._slots is not None:
-                (self._slots.take if on else self._slots.give)()
+                (self._slots.take_live if on else self._slots.give_live)()
             self.on, self._newest, self._found = on, None, None
             self._run += 1
             self._news.notify_all()

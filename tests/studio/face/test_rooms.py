@@ -1,6 +1,7 @@
 """Rooms of a class. Oracles: whose robot a screen is shown, and which folders are touched."""
 
 import json
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -9,6 +10,7 @@ from pathlib import Path
 from urllib.error import HTTPError
 from urllib.request import HTTPRedirectHandler, Request, build_opener
 
+import job_works as works
 import pytest
 from toy_server import Server
 from websockets.exceptions import InvalidStatus
@@ -76,23 +78,50 @@ def test_the_room_that_nobody_sees_makes_way(rooms: Rooms, monkeypatch: pytest.M
     assert (rooms.watched(one.watch_key), rooms.watched(two.watch_key)) == (None, two)
 
 
-def test_long_work_waits_for_a_slot() -> None:
-    slots, session = Slots(1), Session()
-    jobs = Jobs(session.bell, slots)
-    slots.take()
-    with pytest.raises(InputError, match="busy with the work of other rooms"):
-        jobs.start("Counting", len, [])
-    assert not jobs.running
-    proposals = CableProposals(session.document, slots)
-    with pytest.raises(InputError, match="busy"):
-        proposals.switch(True)
-    assert not proposals.on
+def test_long_work_stands_in_line() -> None:
+    """Oracle: with one slot works end in the order in which they came; who gives up leaves the line."""
+    slots, order, rooms = Slots(1), list[int](), [Session() for _ in range(3)]
+    jobs = [Jobs(session.bell, slots) for session in rooms]
+    ended = [threading.Event() for _ in jobs]
+    assert slots.wait(lambda: False, print), "somebody else works"
+    for place, job in enumerate(jobs):
+        job.start("Adding", works.add, place, on_done=order.append, on_end=lambda _, own=ended[place]: own.set())
+        until(lambda job=job, place=place: job.state is not None and job.state.stage.endswith(_stage(place)))
+    jobs[1].stop()
+    assert ended[1].wait(60.0)
+    assert (jobs[1].running, jobs[1].state and jobs[1].state.error) == (False, "stopped")
+    until(lambda: jobs[2].state is not None and jobs[2].state.stage.endswith(_stage(1)))
     slots.give()
-    proposals.switch(True)
-    with pytest.raises(InputError, match="busy"):
-        slots.take()
-    proposals.switch(False)
-    slots.take()
+    assert ended[0].wait(60.0)
+    assert ended[2].wait(60.0)
+    assert order == [0, 2]
+    for session in rooms:
+        session.close()
+
+
+def _stage(before: int) -> str:
+    return f"other rooms, {before} before this one" if before else "waiting for other rooms"
+
+
+def until(true: Callable[[], bool]) -> None:
+    """Wait for what another thread does."""
+    end = time.monotonic() + 60.0
+    while not true():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def test_proposals_keep_no_line_waiting() -> None:
+    slots, session = Slots(1), Session()
+    proposals = [CableProposals(session.document, slots) for _ in range(2)]
+    proposals[0].switch(True)
+    with pytest.raises(InputError, match="other rooms"):
+        proposals[1].switch(True)
+    assert not proposals[1].on
+    assert slots.wait(lambda: True, print), "long work has slots of its own"
+    proposals[0].switch(False)
+    proposals[1].switch(True)
+    proposals[1].switch(False)
     session.close()
 
 

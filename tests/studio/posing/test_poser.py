@@ -105,6 +105,17 @@ def test_any_point_of_the_body_can_be_dragged_and_stays_held(starfish: Robot, po
     assert {"point:point_1", "target:point_1"} <= keys
 
 
+@pytest.mark.parametrize("by", [(-0.0107, 0.015), (-0.02, 0.028)])
+def test_an_arm_dragged_out_of_reach_yanks_no_other(starfish: Robot, poser: Poser, by: Point) -> None:
+    """Oracle: the left arm would go 68 mm aside, at the limit of its tension, for the last 2.6 mm of the right one."""
+    at = at_of(starfish, "right")
+    drag_marker(starfish, poser, "right", (at[0] + by[0], at[1] + by[1]))
+    settle(poser)
+    left = at_of(starfish, "left")
+    assert np.linalg.norm(place(starfish, poser, left) - left) < 0.012
+    assert poser.shape().errors["right"] < 0.65 * np.linalg.norm(by), "what its own winch can do is done"
+
+
 @pytest.mark.parametrize("mode", list(Mode))
 def test_a_target_out_of_reach_wrecks_nothing(starfish: Robot, poser: Poser, mode: Mode) -> None:
     poser.set_mode(mode)

@@ -63,7 +63,7 @@ def _state(page: WindowPage) -> Callable[[], None]:
     def refresh() -> None:
         busy.set_visibility(starter.meshing)
         words = jobs.state.stage if jobs.state is not None else ""
-        stage.set_text({"starting": "Reading ..."}.get(words, f"{words.capitalize()} ..."))
+        stage.set_text({"starting": "Reading ..."}.get(words, f"{words[:1].upper()}{words[1:]} ..."))
         wrong.set_visibility(bool(starter.problem))
         problem.set_text(starter.problem)
 

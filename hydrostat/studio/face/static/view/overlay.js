@@ -134,8 +134,9 @@ export class Overlay {
       this.disc(x, y, 1.6, "#ffffff");
     } else if (look === "target") {
       this.halo(view, dot, 15);
-      this.cross(x, y, 9, view.theme.paper, 4.5);
-      this.cross(x, y, 9, this.tone(view, dot.colour), 1.8);
+      const tone = this.tone(view, dot.colour);
+      this.cross(x, y, 9, tone === dot.colour ? "#ffffff" : view.theme.paper, 4.5); // colours of poses are dark ones
+      this.cross(x, y, 9, tone, 1.8);
     } else if (look === "via") {
       this.halo(view, dot, 10);
       this.disc(x, y, lively ? 5.5 : 4, "#ffffff", dot.colour, 2);
