@@ -113,6 +113,8 @@ def train(
     last = curve[-1]
     print(f"{1e3 * last.mean:.2f} mm, {100 * last.mean / size:.2f} % of the size, on {goals} unseen goals")
     print(f"Wrote {_picture(curve, method, out)}")
+    policy = training.policy_of(trained, env, task=task, error=last.mean)
+    print(f"Wrote {policy.save(out / 'actor.policy')}, which runs without PyTorch")
     if networks is not None and env.portable:
         print(f"Wrote {save_model(training.portable_policy(trained, env, networks), out / 'policy.model')}")
 

@@ -1,8 +1,9 @@
 """`Perceptrons`: small networks of one shape, their slopes, and a search on them; no torch is needed to run them."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import no_type_check
+from typing import Self, no_type_check
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -31,6 +32,23 @@ class Perceptrons:
         """How many numbers a network has."""
         wide = [int(size) for size in sizes]
         return sum((one + 1) * two for one, two in pairwise(wide)) + wide[0] * wide[-1]
+
+    @classmethod
+    def of(cls, arrays: Mapping[str, np.ndarray], name: str, inputs: int, outputs: int) -> Self:
+        """Networks of arrays NAME.sizes and NAME.numbers (ValueError: they have not these inputs and outputs)."""
+        sizes, numbers = arrays[f"{name}.sizes"], arrays[f"{name}.numbers"]
+        if not 2 <= len(sizes) <= _LAYERS or sizes[0] != inputs or sizes[-1] != outputs:
+            raise ValueError(f"the {name} network fits no such robot")
+        if ((sizes < 1) | (sizes > _WIDEST)).any() or not len(numbers) or numbers.shape[1] != cls.count(sizes):
+            raise ValueError(f"the {name} network has wrong sizes")
+        return cls(sizes=sizes, numbers=numbers)
+
+    @classmethod
+    def of_layers(cls, layers: Sequence[tuple[np.ndarray, np.ndarray]]) -> Self:
+        """One network of weights (outputs, inputs) and biases of its layers, with no linear map beside them."""
+        sizes = np.array([layers[0][0].shape[1], *(len(offsets) for _, offsets in layers)])
+        numbers = [np.concatenate([weights.T.ravel(), offsets]) for weights, offsets in layers]
+        return cls(sizes=sizes, numbers=np.concatenate([*numbers, np.zeros(int(sizes[0] * sizes[-1]))])[None])
 
     def values(self, point: Vector) -> Float[np.ndarray, "members outputs"]:
         """What each network answers at a point."""
@@ -247,3 +265,6 @@ _GAIN = 1e-3
 
 _FLAT = 1e-14
 """Slopes below this share of what they could be are none."""
+
+_LAYERS, _WIDEST = 64, 100_000
+"""Most layers, and most units in one, of networks of a file."""

@@ -7,7 +7,7 @@ import gymnasium
 
 from hydrostat.training.goal_env import GoalEnv, TaskOptions
 from hydrostat.training.hysteresis_env import HysteresisEnv
-from hydrostat.training.portable import portable_policy
+from hydrostat.training.portable import policy_of, portable_policy
 from hydrostat.training.reach_env import ReachEnv, ReachOptions
 from hydrostat.training.tasks import TASKS, Task, task_of
 from hydrostat.training.train import CurvePoint, TrainMethod, TrainOptions, held_out_goals, judge, train
@@ -34,6 +34,7 @@ __all__ = [
     "World",
     "held_out_goals",
     "judge",
+    "policy_of",
     "portable_policy",
     "register",
     "task_of",

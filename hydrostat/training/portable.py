@@ -1,4 +1,4 @@
-"""`portable_policy`: a policy that was learned, as part of a learned model that runs without torch."""
+"""`policy_of`, `portable_policy`: a policy that was learned, alone or in a learned model; it runs without torch."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -7,9 +7,26 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.learning import LearnedModel
+from hydrostat.learning import LearnedModel, Policy, physics_hash
 from hydrostat.learning.perceptrons import Perceptrons
+from hydrostat.training.goal_env import GoalEnv
 from hydrostat.training.reach_env import ReachEnv
+
+
+def policy_of(trained: Any, env: GoalEnv, *, task: str, error: float) -> Policy:
+    """The policy of a model of stable-baselines3, in any task.
+
+    Args:
+        trained: what was learned.
+        env: in which it was.
+        task: name of the task.
+        error: mean distance that it leaves on unseen goals [m].
+    """
+    seen = env.observation_space.spaces  # type: ignore[attr-defined]
+    sees = [[name, int(np.prod(space.shape))] for name, space in seen.items()]
+    facts = {"task": task, "robot": env.robot.name, "physics": physics_hash(env.robot), "sees": sees}
+    facts |= {"actions": int(np.prod(env.action_space.shape)), "error": error, "method": type(trained).__name__}  # type: ignore[arg-type]
+    return Policy(facts=facts, network=Perceptrons.of_layers(_layers(trained.policy.actor)))
 
 
 def portable_policy(trained: Any, env: ReachEnv, model: LearnedModel) -> LearnedModel:
@@ -41,13 +58,8 @@ def portable_policy(trained: Any, env: ReachEnv, model: LearnedModel) -> Learned
     scale = model.unit[:count] / env.unit  # the networks count markers from their mean, in units of their own
     bias = bias + goals @ ((model.middle[:count] - rest) / env.unit)
     layers[0] = (goals * scale, bias)
-    sizes = np.array([count, *(len(offsets) for _, offsets in layers)])
-    numbers = [np.concatenate([weights.T.ravel(), offsets]) for weights, offsets in layers]
-    straight = np.zeros(int(sizes[0] * sizes[-1]))
-    assert sum(map(len, numbers)) + len(straight) == Perceptrons.count(sizes)
-    policy = Perceptrons(sizes=sizes, numbers=np.concatenate([*numbers, straight])[None])
     facts = {**model.facts, "inverse_error": None, "policy": type(trained).__name__}
-    return replace(model, facts=facts, inverse=policy)
+    return replace(model, facts=facts, inverse=Perceptrons.of_layers(layers))
 
 
 def _layers(actor: Any) -> list[tuple[np.ndarray, np.ndarray]]:

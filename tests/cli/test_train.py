@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.learning import load_policy
 from hydrostat.robot import gallery_folder
 
 Run = Callable[..., tuple[int, str, str]]
@@ -21,7 +22,8 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
     curve = json.loads((tmp_path / "policy" / "curve.json").read_text())["curve"]
     assert [point["steps"] for point in curve] == [4, 8, 12, 16, 20]  # four episodes side by side
     assert curve[-1]["equilibria"] >= 40  # a goal and an action each
-    assert out.splitlines()[-2].endswith("on 3 unseen goals")
+    assert out.splitlines()[-3].endswith("on 3 unseen goals")
+    assert load_policy(tmp_path / "policy" / "actor.policy").facts["task"] == "reach"
     assert (tmp_path / "policy" / "curve.png").read_bytes().startswith(b"\x89PNG")
 
 

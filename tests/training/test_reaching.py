@@ -24,6 +24,7 @@ from hydrostat.training import (  # noqa: E402
     World,
     held_out_goals,
     judge,
+    policy_of,
     portable_policy,
     train,
 )
@@ -265,10 +266,10 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
 
 @QUIET
 @pytest.mark.parametrize("method", ["SAC", "DDPG", "TQC"])
-def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Goals) -> None:
+def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Goals, tmp_path: Path) -> None:
     name = "sb3_contrib" if method == "TQC" else "stable_baselines3"
     library = pytest.importorskip(name, reason=f"{name} is not installed")
-    from hydrostat.learning import LearnedModel, physics_hash
+    from hydrostat.learning import LearnedModel, load_policy, physics_hash
     from hydrostat.learning.perceptrons import Perceptrons
 
     env, random = straight(), np.random.default_rng(5)
@@ -288,10 +289,14 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Go
     )
     object.__setattr__(model, "facts", {**model.facts, "dim": 2})
     alone = portable_policy(trained, env, model)
+    policy = load_policy(policy_of(trained, env, task="reach", error=0.01).save(tmp_path / "actor.policy"))
     for goal in goals[:5]:
         observation, _ = env.reset(options=goal)
-        asked = env.contractions(trained.predict(observation, deterministic=True)[0])
-        assert alone.inverted(goal["goal"]) == pytest.approx(asked, abs=1e-7)
+        action = trained.predict(observation, deterministic=True)[0]
+        assert alone.inverted(goal["goal"]) == pytest.approx(env.contractions(action), abs=1e-7)
+        assert policy.act(observation) == pytest.approx(action, abs=1e-6)  # kept in float32
+    with pytest.raises(InputError, match="the policy must see 10 finite numbers of achieved_goal"):
+        policy.act({**observation, "achieved_goal": np.full(10, np.nan)})
 
 
 @QUIET

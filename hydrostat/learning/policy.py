@@ -1,0 +1,74 @@
+"""`Policy`: what a robot has learned to do by trial and error, in any task, as one file that runs without PyTorch."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.learning.perceptrons import Perceptrons
+from hydrostat.learning.portable_file import PortableFile
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Policy:
+    """From what is seen to an action: tanh of a network.
+
+    Attributes:
+        facts: the task, the robot and its physics, what is seen, and how well it did.
+        network: from all that is seen, in a row, to as many numbers as an action has.
+    """
+
+    facts: Mapping[str, Any]
+    network: Perceptrons
+
+    def act(self, seen: Mapping[str, Vector]) -> Vector:
+        """The action for an observation, numbers from -1 to 1.
+
+        Raises:
+            InputError: something is not seen, or has another number of coordinates than it was learned with.
+        """
+        parts = []
+        for name, count in self.facts["sees"]:
+            part = np.asarray(seen.get(name, ()), dtype=float).ravel()
+            if part.shape != (count,) or not np.isfinite(part).all():
+                raise InputError(f"the policy must see {count} finite numbers of {name}")
+            parts.append(part)
+        return np.tanh(self.network.values(np.concatenate(parts))[0])
+
+    def save(self, path: Path) -> Path:
+        """Write it whole, or not at all (InputError: it cannot be written)."""
+        arrays = {"actor.sizes": self.network.sizes, "actor.numbers": self.network.numbers}
+        return _FILE.write(path, self.facts, arrays)
+
+
+def load_policy(path: Path) -> Policy:
+    """A policy that `hydrostat train` has written.
+
+    Raises:
+        InputError: there is none, it was changed since it was written, or it is not one that this version can use.
+    """
+    return _FILE.read(path, _policy)
+
+
+def _policy(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> Policy:
+    """The policy of its parts (ValueError: they do not fit one another)."""
+    sees, actions = facts["sees"], facts["actions"]
+    sound = all(isinstance(name, str) and type(count) is int and count > 0 for name, count in sees)
+    if not (sees and sound and actions > 0 and isfinite(facts["error"])):
+        raise ValueError("what it sees or does is nothing")
+    inputs = sum(count for _, count in sees)
+    return Policy(facts=facts, network=Perceptrons.of(arrays, "actor", inputs, actions))
+
+
+_FILE = PortableFile(
+    magic=b"HSPOLICY",
+    word="policy",
+    writer="hydrostat train",
+    kinds={"actor.sizes": ("<i8", 1), "actor.numbers": ("<f4", 2)},
+    needs={"task": str, "robot": str, "physics": str, "sees": list, "actions": int, "error": (int, float)},
+)
