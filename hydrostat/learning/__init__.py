@@ -10,7 +10,7 @@ from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel
 from hydrostat.learning.learned_pose import LearnedPose, Tier
 from hydrostat.learning.model_file import load_model, save_model
-from hydrostat.learning.policy import Policy, load_policy
+from hydrostat.learning.portable_policy import PortablePolicy, load_policy
 from hydrostat.learning.sample_folder import SampleFolder
 from hydrostat.learning.sample_plan import SamplePlan, physics_hash, plan_samples
 from hydrostat.learning.sample_robot import BACKENDS, sample_robot
@@ -27,7 +27,7 @@ __all__ = [
     "LearnOptions",
     "LearnedModel",
     "LearnedPose",
-    "Policy",
+    "PortablePolicy",
     "SampleFolder",
     "SamplePlan",
     "Samples",

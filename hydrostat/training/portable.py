@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.learning import LearnedModel, Policy, physics_hash
+from hydrostat.learning import LearnedModel, PortablePolicy, physics_hash
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.training.goal_env import GoalEnv
 from hydrostat.training.reach_env import ReachEnv
 
 
-def policy_of(trained: Any, env: GoalEnv, *, task: str, error: float) -> Policy:
+def policy_of(trained: Any, env: GoalEnv, *, task: str, error: float) -> PortablePolicy:
     """The policy of a model of stable-baselines3, in any task.
 
     Args:
@@ -26,7 +26,7 @@ def policy_of(trained: Any, env: GoalEnv, *, task: str, error: float) -> Policy:
     sees = [[name, int(np.prod(space.shape))] for name, space in seen.items()]
     facts = {"task": task, "robot": env.robot.name, "physics": physics_hash(env.robot), "sees": sees}
     facts |= {"actions": int(np.prod(env.action_space.shape)), "error": error, "method": type(trained).__name__}  # type: ignore[arg-type]
-    return Policy(facts=facts, network=Perceptrons.of_layers(_layers(trained.policy.actor)))
+    return PortablePolicy(facts=facts, network=Perceptrons.of_layers(_layers(trained.policy.actor)))
 
 
 def portable_policy(trained: Any, env: ReachEnv, model: LearnedModel) -> LearnedModel:

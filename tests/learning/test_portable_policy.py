@@ -1,4 +1,4 @@
-"""`Policy`: networks from what is seen to an action. Oracles: sums by hand, forged files."""
+"""`PortablePolicy`: networks from what is seen to an action. Oracles: sums by hand, forged files."""
 
 import hashlib
 import json
@@ -9,16 +9,18 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.learning import Policy, load_policy
+from hydrostat.learning import PortablePolicy, load_policy
 from hydrostat.learning.perceptrons import Perceptrons
 
 FACTS = {"task": "walk", "robot": "strip", "physics": "0", "sees": [["goal", 1], ["place", 2]], "actions": 2}
 
 
-def policy() -> Policy:
+def policy() -> PortablePolicy:
     """tanh of two sums."""
     weights = np.array([[1.0, 0.5, 0.0], [0.0, 0.25, -1.0]])
-    return Policy(facts={**FACTS, "error": 0.0}, network=Perceptrons.of_layers([(weights, np.array([0.0, 0.125]))]))
+    return PortablePolicy(
+        facts={**FACTS, "error": 0.0}, network=Perceptrons.of_layers([(weights, np.array([0.0, 0.125]))])
+    )
 
 
 def test_actions_are_sums_squashed(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`Policy`: what a robot has learned to do by trial and error, in any task, as one file that runs without PyTorch."""
+"""`PortablePolicy`: what a robot learned to do by trial, in any task; one file, which runs without PyTorch."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from hydrostat.learning.portable_file import PortableFile
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Policy:
+class PortablePolicy:
     """From what is seen to an action: tanh of a network.
 
     Attributes:
@@ -46,7 +46,7 @@ class Policy:
         return _FILE.write(path, self.facts, arrays)
 
 
-def load_policy(path: Path) -> Policy:
+def load_policy(path: Path) -> PortablePolicy:
     """A policy that `hydrostat train` has written.
 
     Raises:
@@ -55,14 +55,14 @@ def load_policy(path: Path) -> Policy:
     return _FILE.read(path, _policy)
 
 
-def _policy(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> Policy:
+def _policy(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> PortablePolicy:
     """The policy of its parts (ValueError: they do not fit one another)."""
     sees, actions = facts["sees"], facts["actions"]
     sound = all(isinstance(name, str) and type(count) is int and count > 0 for name, count in sees)
     if not (sees and sound and actions > 0 and isfinite(facts["error"])):
         raise ValueError("what it sees or does is nothing")
     inputs = sum(count for _, count in sees)
-    return Policy(facts=facts, network=Perceptrons.of(arrays, "actor", inputs, actions))
+    return PortablePolicy(facts=facts, network=Perceptrons.of(arrays, "actor", inputs, actions))
 
 
 _FILE = PortableFile(
