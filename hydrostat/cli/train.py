@@ -74,6 +74,7 @@ def train(
     except ModuleNotFoundError as error:
         raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
     from hydrostat.learning import load_model, save_model
+    from hydrostat.simulation import write_profile
     from hydrostat.units import LENGTH, parse_quantity
 
     methods = [str(each) for each in training.TrainMethod]
@@ -84,7 +85,7 @@ def train(
     made, loaded = training.task_of(task).env, read_robot(robot)
     asked = training.TaskOptions(
         markers=marker or (),
-        pairs=[[name.strip() for name in one.split(",")] for one in pair or ()],
+        pairs=tuple([name.strip() for name in one.split(",")] for one in pair or ()),
         steps=horizon,
         incremental=incremental,
         tolerance=None if tolerance is None else parse_quantity(tolerance, LENGTH),
@@ -115,6 +116,9 @@ def train(
     print(f"Wrote {_picture(curve, method, out)}")
     policy = training.policy_of(trained, env, task=task, error=last.mean)
     print(f"Wrote {policy.save(out / 'actor.policy')}, which runs without PyTorch")
+    moves = training.moves_of(judged, policy.act, wanted[0])
+    write_profile(out / "moves.csv", judged.robot, moves)
+    print(f"Wrote {out / 'moves.csv'}, what it does for the first of them; motors play it by hydrostat play")
     if networks is not None and env.portable:
         print(f"Wrote {save_model(training.portable_policy(trained, env, networks), out / 'policy.model')}")
 

@@ -10,7 +10,7 @@ from hydrostat.training.hysteresis_env import HysteresisEnv
 from hydrostat.training.portable import policy_of, portable_policy
 from hydrostat.training.reach_env import ReachEnv, ReachOptions
 from hydrostat.training.tasks import TASKS, Task, task_of
-from hydrostat.training.train import CurvePoint, TrainMethod, TrainOptions, held_out_goals, judge, train
+from hydrostat.training.train import CurvePoint, TrainMethod, TrainOptions, held_out_goals, judge, moves_of, train
 from hydrostat.training.walk_env import WalkActions, WalkEnv, WalkOptions
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
@@ -34,6 +34,7 @@ __all__ = [
     "World",
     "held_out_goals",
     "judge",
+    "moves_of",
     "policy_of",
     "portable_policy",
     "register",

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self
 import gymnasium
 import numpy as np
 
+from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Contact, Robot, load_robot
@@ -62,6 +63,7 @@ class GoalEnv(gymnasium.Env, ABC):
         taken_steps: actions of this episode until now.
         uncounted: of `equilibria`, those that judged a policy: no cost of learning it.
         cost: what `equilibria` counts, in a word or two.
+        moves: of this episode until now: times [s] with contractions [m], as motors would be told them.
     """
 
     cost: ClassVar[str] = "equilibria"
@@ -72,6 +74,7 @@ class GoalEnv(gymnasium.Env, ABC):
     tolerance: float
     taken_steps: int = 0
     uncounted: int = 0
+    moves: list[tuple[float, Vector]]
 
     @classmethod
     @abstractmethod

@@ -17,6 +17,9 @@ from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, Worl
 BEYOND = 1.02
 """An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
 
+PACE = 1.0
+"""From an action to the next, where motors play what was done at rest [s]."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ReachOptions:
@@ -130,6 +133,7 @@ class ReachEnv(GoalEnv):
         self._goal[self.seen] = goal
         self.world.back()
         self._taken, self._at = self._begun(given)
+        self.moves = [(0.0, self._taken)]
         return self._observation(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
@@ -144,6 +148,7 @@ class ReachEnv(GoalEnv):
         reached = self.world.reach(taken)
         if reached is not None:  # where no equilibrium is found the robot stays
             self._taken, self._at = taken, reached
+        self.moves.append((PACE * self.taken_steps, self._taken))
         observation, info = self._observation(), self._info()
         reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))
         return observation, reward, False, self.taken_steps >= self.steps, info

@@ -17,6 +17,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import replace_file
+from hydrostat.simulation import Profile
 from hydrostat.training.goal_env import GoalEnv
 
 
@@ -112,6 +113,13 @@ def judge(env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goals: S
         left.append(info["distance"])
     env.uncounted += env.equilibria - before  # what judges a policy is no cost of learning it
     return np.array(left)
+
+
+def moves_of(env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goal: Mapping[str, Any]) -> Profile:
+    """What motors would be told in an episode, contractions in time; its equilibria are counted nowhere."""
+    judge(env, act, [goal])
+    times, values = zip(*env.moves, strict=True)
+    return Profile(times=np.array(times), values=np.array(values))
 
 
 def train(

@@ -152,6 +152,7 @@ class WalkEnv(GoalEnv):
         self._simulation = Simulation(with_friction(self.robot, float(given["friction"])))
         self._given = float(given["friction"])
         self.motion = self._simulation.still()
+        self.moves = [(0.0, self.motion.contractions)]
         self._clock = GaitClock(len(self.robot.winches), self.most)
         return self._observation(), self._info()
 
@@ -240,6 +241,7 @@ class WalkEnv(GoalEnv):
         except NotConvergedError:
             self._fallen = True
             return
+        self.moves.append((self.motion.time, contractions))
         masses = self._simulation.body.masses
         self._fallen = tilt(masses, self.robot.body.mesh.nodes, self.motion.nodes) > MOST_TILT
 

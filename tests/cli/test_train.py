@@ -22,7 +22,7 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
     curve = json.loads((tmp_path / "policy" / "curve.json").read_text())["curve"]
     assert [point["steps"] for point in curve] == [4, 8, 12, 16, 20]  # four episodes side by side
     assert curve[-1]["equilibria"] >= 40  # a goal and an action each
-    assert out.splitlines()[-3].endswith("on 3 unseen goals")
+    assert out.splitlines()[-4].endswith("on 3 unseen goals")
     assert load_policy(tmp_path / "policy" / "actor.policy").facts["task"] == "reach"
     assert (tmp_path / "policy" / "curve.png").read_bytes().startswith(b"\x89PNG")
 
@@ -39,7 +39,7 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
         (["--processes", 5], "processes must be 1 to 4, the episodes side by side, not 5"),
         (["--friction", 0.2], "this task has no friction: leave it out"),
         (["--task", "fly"], "there is no task 'fly'; there are: reach, reach-with-hysteresis, walk"),
-        (["--task", "walk", "--actions", "hops"], "actions must be one of gait, contractions, not 'hops'"),
+        (["--task", "walk", "--actions", "hops"], 'actions must be one of gait, contractions, not "hops"'),
         (["--task", "walk", "--marker", "top"], "this task has no markers: leave it out"),
         (["--model", "none.model"], "none.model: cannot be read"),
     ],
@@ -78,3 +78,5 @@ def test_other_tasks_are_learned_by_their_names(run: Run, tmp_path: Path) -> Non
     assert [point["steps"] for point in curve] == [4, 8]
     assert curve[-1]["equilibria"] >= 24
     assert "policy.model" not in out
+    code, out, _ = run("play", gallery_folder("letter_s"), tmp_path / "moves.csv", "--speed", 4)
+    assert code == 0
