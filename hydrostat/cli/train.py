@@ -47,6 +47,7 @@ def train(
     contact: Annotated[bool, typer.Option("--contact", help="The body feels itself.")] = False,
     together: Annotated[int, typer.Option(metavar="N", help="Episodes side by side.")] = 4,
     processes: Annotated[int, typer.Option(metavar="N", help="That share them; the curve is the same.")] = 1,
+    watch: Annotated[bool, typer.Option("--watch", help="Show in the browser how policies are judged.")] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint in DIR.")] = False,
 ) -> None:
     """Learn by trial and error (reinforcement learning), such as to bring the markers of a robot to goals.
@@ -95,6 +96,9 @@ def train(
         actions=actions,
     )
     env, judged = (made.for_task(loaded, asked) for _ in range(2))
+    if watch:
+        judged.render_mode = "human"
+        print(f"Policies are shown at {judged.page.address} while they are judged", flush=True)
     networks = None if model is None else load_model(model)
     if networks is not None:
         env.learn_in(networks, exact=exact)

@@ -19,6 +19,8 @@ class Copies:
     def __init__(self, env: GoalEnv, count: int) -> None:
         """So many."""
         self._envs, self._answer = [deepcopy(env) for _ in range(count)], list[Any]()
+        for each in self._envs:
+            each.render_mode = None  # a page for each would be no help to anybody
 
     def ask(self, name: str, *given: Any) -> None:
         """Do what is called so with something for each copy, if anything is given."""

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import gymnasium
 import numpy as np
@@ -12,6 +12,9 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Contact, Robot, load_robot
+
+if TYPE_CHECKING:
+    from hydrostat.plot.live_page import LivePage
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,6 +69,7 @@ class GoalEnv(gymnasium.Env, ABC):
         moves: of this episode until now: times [s] with contractions [m], as motors would be told them.
     """
 
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["human", "rgb_array"], "render_fps": 4}  # type: ignore[misc]
     cost: ClassVar[str] = "equilibria"
     portable: bool = False
     robot: Robot
@@ -75,6 +79,7 @@ class GoalEnv(gymnasium.Env, ABC):
     taken_steps: int = 0
     uncounted: int = 0
     moves: list[tuple[float, Vector]]
+    _page: "LivePage | None" = None
 
     @classmethod
     @abstractmethod
@@ -106,6 +111,35 @@ class GoalEnv(gymnasium.Env, ABC):
     def compute_truncated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
         """Whether an episode is cut off here."""
         return np.full(np.shape(achieved)[:-1], self.taken_steps >= self.steps)
+
+    def picture(self) -> np.ndarray | None:
+        """What is to be seen now, (height, width, 3), bytes, always of one size; None where nothing is."""
+        return None
+
+    def render(self) -> np.ndarray | None:
+        """The picture of now in the mode "rgb_array"; None in others: what is for a human is on a page already."""
+        return self.picture() if self.render_mode == "rgb_array" else None
+
+    def show(self) -> None:
+        """Show the picture of now in the browser, in the mode "human"; done at the end of each reset and step."""
+        if self.render_mode == "human":
+            picture = self.picture()
+            if picture is not None:
+                self.page.show(picture)
+
+    @property
+    def page(self) -> "LivePage":
+        """The page of this machine on which a human sees it; the first picture opens the browser."""
+        from hydrostat.plot.live_page import LivePage
+
+        if self._page is None:
+            self._page = LivePage(f"{self.robot.name}: {type(self).__name__}")
+        return self._page
+
+    def close(self) -> None:
+        """End the page, if there is one."""
+        if self._page is not None:
+            self._page.close()
 
     def kept(self) -> dict[str, Any]:
         """What the next episode depends on, and what it has cost until now."""

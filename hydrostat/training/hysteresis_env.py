@@ -48,7 +48,7 @@ class HysteresisEnv(ReachEnv):
             world: that is asked where markers go; the exact simulator, from pose to pose, if left out.
             options: of the task.
             contact: whether the body feels itself, where robot.toml says nothing of it.
-            render_mode: "rgb_array", or None.
+            render_mode: "rgb_array", "human" or None.
 
         Raises:
             InputError: as for `ReachEnv`, no cable that rubs, or friction below 0.

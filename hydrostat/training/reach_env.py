@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import numpy as np
 from gymnasium import spaces
@@ -65,8 +65,6 @@ class ReachEnv(GoalEnv):
         rest: coordinates of all markers at rest [m].
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 4}  # type: ignore[misc]
-
     def __init__(
         self,
         robot: Robot | str,
@@ -83,7 +81,7 @@ class ReachEnv(GoalEnv):
             world: that is asked where markers go; the exact simulator if left out.
             options: of the task.
             contact: whether the body feels itself, where robot.toml says nothing of it.
-            render_mode: "rgb_array", or None.
+            render_mode: "rgb_array", "human" or None.
 
         Raises:
             InputError: a robot without winches or markers, or names that it does not have.
@@ -134,6 +132,7 @@ class ReachEnv(GoalEnv):
         self.world.back()
         self._taken, self._at = self._begun(given)
         self.moves = [(0.0, self._taken)]
+        self.show()
         return self._observation(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
@@ -149,6 +148,7 @@ class ReachEnv(GoalEnv):
         if reached is not None:  # where no equilibrium is found the robot stays
             self._taken, self._at = taken, reached
         self.moves.append((PACE * self.taken_steps, self._taken))
+        self.show()
         observation, info = self._observation(), self._info()
         reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))
         return observation, reward, False, self.taken_steps >= self.steps, info
@@ -220,13 +220,11 @@ class ReachEnv(GoalEnv):
         super().go_on(kept)
         self.world.go_on(kept["world"])
 
-    def render(self) -> np.ndarray | None:
-        """The picture of where the robot is and should be, (height, width, 3), bytes; always of one size.
+    def picture(self) -> np.ndarray:
+        """What is to be seen: where the robot is and should be.
 
         Networks know no shape: where they are asked, the pose is that of the simulator, from rest.
         """
-        if self.render_mode != "rgb_array":
-            return None
         from hydrostat.training.reach_pictures import ReachPictures
 
         if self._pictures is None:

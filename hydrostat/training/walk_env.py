@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import numpy as np
 from gymnasium import spaces
@@ -11,7 +11,6 @@ from gymnasium import spaces
 from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.plot.frame_pictures import Picture
 from hydrostat.robot import ObstacleShape, Robot
 from hydrostat.simulation import Motion, Simulation, StepOptions
 from hydrostat.training.gait import Gait, GaitClock
@@ -93,7 +92,6 @@ class WalkEnv(GoalEnv):
         motion: where it is; None before the first episode.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 4}  # type: ignore[misc]
     cost = "time steps"
 
     def __init__(
@@ -110,7 +108,7 @@ class WalkEnv(GoalEnv):
             robot: itself, its folder, or a name such as gallery:puppy; its pins are taken away.
             friction: Coulomb's coefficient of the ground; as in robot.toml if None, or 0.6 if that has no ground.
             options: of the task.
-            render_mode: "rgb_array", or None.
+            render_mode: "rgb_array", "human" or None.
 
         Raises:
             InputError: a robot without winches or markers, or what `standing` refuses.
@@ -154,6 +152,7 @@ class WalkEnv(GoalEnv):
         self.motion = self._simulation.still()
         self.moves = [(0.0, self.motion.contractions)]
         self._clock = GaitClock(len(self.robot.winches), self.most)
+        self.show()
         return self._observation(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
@@ -163,6 +162,7 @@ class WalkEnv(GoalEnv):
             if self._fallen:
                 break
             self._advance(contractions)
+        self.show()
         observation, info = self._observation(), self._info()
         reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))
         return observation, reward, False, self.taken_steps >= self.steps, info
@@ -201,9 +201,9 @@ class WalkEnv(GoalEnv):
         super().go_on(kept)
         self._made = kept["equilibria"]
 
-    def render(self) -> Picture | None:
-        """The picture of the robot on the ground, which goes by below it, (height, width, 3), bytes."""
-        if self.render_mode != "rgb_array" or self.motion is None:
+    def picture(self) -> np.ndarray | None:
+        """What is to be seen: the robot, and the ground that goes by below it; None before the first episode."""
+        if self.motion is None:
             return None
         from hydrostat.training.walk_pictures import WalkPictures
 
@@ -243,7 +243,7 @@ class WalkEnv(GoalEnv):
             return
         self.moves.append((self.motion.time, contractions))
         masses = self._simulation.body.masses
-        self._fallen = tilt(masses, self.robot.body.mesh.nodes, self.motion.nodes) > MOST_TILT
+        self._fallen = bool(tilt(masses, self.robot.body.mesh.nodes, self.motion.nodes) > MOST_TILT)
 
     def _observation(self) -> dict[str, Vector]:
         motion, anchors, rest = self._now, self._simulation.marker_anchors, self.robot.body.mesh.nodes

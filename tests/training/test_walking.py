@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders import FOAM, gallery_robot, mesh_body, strip_mesh
+from PIL import Image
 
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
@@ -176,6 +177,29 @@ def test_the_eye_goes_with_the_robot_and_the_ground_goes_by() -> None:
     body = [picture[60:].astype(int) for picture in shown]  # below the words
     assert np.abs(body[1] - body[0]).max() < 60  # no more than rounding
     assert 0 < (np.abs(body[2] - body[0]).max(axis=2) > 60).mean() < 0.05
+
+
+def test_a_human_sees_what_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a page of this machine, after each reset and step; copies that learn show nothing."""
+    from urllib.request import urlopen
+
+    from hydrostat.training.copies import Copies
+
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    drawn = {"goal": [0.1], "friction": 0.6}
+    made = gymnasium.make("hydrostat/Walk-v0", robot=slab(), options=CONTRACTIONS, render_mode="human")
+    made.reset(options=drawn)
+    made.step(np.array([0.5], np.float32))
+    env = made.unwrapped
+    assert (made.render(), opened) == (None, [env.page.address])
+    with urlopen(f"{env.page.address}picture?after=1") as answer:
+        assert answer.headers["x-number"] == "2"
+        shown = np.asarray(Image.open(answer))
+    assert (shown == env.picture()).all()
+    Copies(env, 1).ask("reset", [0])
+    assert len(opened) == 1
+    made.close()
 
 
 def test_the_gallery_s_puppy_is_put_on_the_ground() -> None:
