@@ -22,7 +22,7 @@ def save_model(model: LearnedModel, path: Path) -> Path:
     return _FILE.write(path, model.facts, arrays)
 
 
-def load_model(path: Path) -> LearnedModel:
+def load_model(path: str | Path) -> LearnedModel:
     """A model that `save_model` has written.
 
     Raises:

@@ -16,6 +16,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.given import path_of
 from hydrostat.robot import replace_file
 
 Parts = tuple[dict[str, Any], dict[str, np.ndarray]]
@@ -49,7 +51,7 @@ class PortableFile:
         content = b"".join(parts)
         return replace_file(Path(path), content + hashlib.sha256(content).digest())
 
-    def read(self, path: Path, made: Callable[[dict[str, Any], dict[str, np.ndarray]], Made]) -> Made:
+    def read(self, path: str | Path, made: Callable[[dict[str, Any], dict[str, np.ndarray]], Made]) -> Made:
         """What is made of the facts and the arrays of a file; numbers are float64 or int64.
 
         Args:
@@ -59,14 +61,11 @@ class PortableFile:
         Raises:
             InputError: there is none, it was changed since it was written, or it is none that this version can use.
         """
-        path = Path(path)
+        path = path_of(path, f"a {self.word} is read from its file")
         try:
-            if path.stat().st_size > MOST:
-                raise InputError(f"{path}: is larger than any {self.word}, {MOST // 10**6} MB")
-            content = path.read_bytes()
-        except OSError as error:
-            told = f"{path}: cannot be read ({error.strerror}); name a file that {self.writer} wrote"
-            raise InputError(told) from None
+            content = read_stranger(path, most=MOST)
+        except InputError as error:
+            raise InputError(f"{error}; name a file that {self.writer} wrote") from None
         if not content.startswith(self.magic):
             told = f"{path}: is no {self.word} of this version of hydrostat; name a file that {self.writer} wrote"
             raise InputError(told)

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.given import path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import sample_type
 
@@ -85,17 +87,17 @@ class SampleFolder:
         _write_whole(self.file(shard), content.getvalue())
 
 
-def read_manifest(path: Path) -> dict[str, Any]:
+def read_manifest(path: str | Path) -> dict[str, Any]:
     """What was sampled, from the manifest of a folder.
 
     Raises:
         InputError: there is none, or it is not one of ours.
     """
-    file = Path(path) / MANIFEST
+    file = path_of(path, "samples are read from their folder") / MANIFEST
     try:
-        text = file.read_bytes()[:_MOST_TEXT]
-    except OSError:
-        raise InputError(f"{path}: there is no {MANIFEST}; name a folder that hydrostat sample has written") from None
+        text = read_stranger(file, most=_MOST_TEXT)
+    except InputError as error:
+        raise InputError(f"{error}; name a folder that hydrostat sample has written") from None
     try:
         facts = json.loads(text)
     except ValueError:

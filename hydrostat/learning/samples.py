@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.learning.sample_folder import read_manifest
 from hydrostat.learning.sample_shard import REASONS
 
@@ -76,7 +79,7 @@ class Samples:
         )
 
 
-def read_rows(folder: Path) -> tuple[dict[str, Any], np.ndarray]:
+def read_rows(folder: str | Path) -> tuple[dict[str, Any], np.ndarray]:
     """Manifest and all rows of a folder of samples, in the order of their numbers; a run need not be complete.
 
     Raises:
@@ -89,8 +92,8 @@ def read_rows(folder: Path) -> tuple[dict[str, Any], np.ndarray]:
     parts: list[np.ndarray] = []
     for file in files:
         try:
-            rows = np.load(file, allow_pickle=False)
-        except (OSError, ValueError, EOFError):
+            rows = np.load(BytesIO(read_stranger(file, most=_MOST)), allow_pickle=False)
+        except (InputError, OSError, ValueError, EOFError, TokenError, SyntaxError, MemoryError, OverflowError):
             raise InputError(f"{file}: is damaged; delete it and let hydrostat sample make it again") from None
         if rows.dtype.names is None or rows.ndim != 1 or (parts and rows.dtype != parts[0].dtype):
             raise InputError(f"{file}: has other columns than the files before it; delete it and sample again")
@@ -99,7 +102,7 @@ def read_rows(folder: Path) -> tuple[dict[str, Any], np.ndarray]:
     return facts, rows[np.argsort(rows["number"], kind="stable")]
 
 
-def read_samples(folder: Path) -> Samples:
+def read_samples(folder: str | Path) -> Samples:
     """Samples of a folder that `sample_robot` has written; stable equilibria with slopes alone.
 
     Raises:
@@ -122,3 +125,7 @@ def read_samples(folder: Path) -> Samples:
         nodes=rows["nodes"] if "nodes" in (rows.dtype.names or ()) else None,
         lost=lost,
     )
+
+
+_MOST = 2_000_000_000
+"""No file of samples is larger [bytes]."""

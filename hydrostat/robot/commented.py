@@ -2,6 +2,7 @@
 
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.write import robot_text
+from hydrostat.units import printable
 
 
 def commented_text(robot: Robot, source: str) -> str:
@@ -15,7 +16,7 @@ def commented_text(robot: Robot, source: str) -> str:
     origin = "the middle of the drawing, x to the right, y up" if flat else "where the file of the body has it"
     where = "[0, 0]" if flat else "[0, 0, 0]"
     head = (
-        f"# {robot.name}, begun from {source}. All of it is meant to be changed.\n"
+        f"# {robot.name}, begun from {printable(source)}. All of it is meant to be changed.\n"
         f"# Lengths are in {robot.length_unit}; {where} is {origin}. rest.png shows them.\n"
         "# `hydrostat check` tells what is wrong or risky, the README of hydrostat all keys.\n"
     )

@@ -103,12 +103,15 @@ class ProfileTable:
         try:
             reader = csv.reader(StringIO(content.decode("utf-8-sig"), newline=""))
             rows = [(reader.line_num, row) for row in reader]
-        except (UnicodeDecodeError, csv.Error) as error:
+        except UnicodeDecodeError:
+            raise InputError(f"{name}: is no text in UTF-8; save it again as CSV in UTF-8") from None
+        except csv.Error as error:
             raise InputError(f"{name}: cannot be read as a table ({error})") from None
         names = [winch.name for winch in robot.winches]
         head = [_column(cell.strip(), names) for cell in rows[0][1]] if rows else []
         if TIME not in head or len(set(head)) != len(head):
-            raise InputError(f"{name}, line 1: name the columns: {TIME} and the winches, each once")
+            other = next((said for mark, said in _MARKS.items() if rows and mark in ",".join(rows[0][1])), "")
+            raise InputError(f"{name}, line 1: name the columns: {TIME} and the winches, each once{other}")
         for column in head:
             if column not in (TIME, *names):
                 raise InputError(f'{name}, line 1: there is no winch "{column}"; winches are: {", ".join(names)}')
@@ -201,6 +204,8 @@ TIME = "time_s"
 MILLIMETRES = "_mm"  # ends the head of a column of contractions
 """Name of the column of times [s]."""
 
+
+_MARKS = {";": "; commas part them, not semicolons", "\t": "; commas part them, not tabs"}
 
 _MOST = 50_000_000
 """Bytes that a table of moves may have."""

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 import tracemalloc
 import warnings
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import pytest
 import strangers
+from builders import gallery_robot
 
 from hydrostat.cli.bounded import bounded
 from hydrostat.cli.folders import require_folder, result_folder
@@ -26,6 +28,7 @@ from hydrostat.geometry.healing.heal import heal
 from hydrostat.geometry.triangles.triangulate import triangulate
 from hydrostat.kernel import Compiled
 from hydrostat.robot import replace_file
+from hydrostat.robot.commented import commented_text
 from hydrostat.robot.unfinished import clear_unfinished, unfinished
 
 Run = Callable[..., tuple[int, str, str]]
@@ -70,6 +73,61 @@ def test_drawings_are_counted_before_they_are_read(case: str) -> None:
     with pytest.raises(InputError, match=words):
         read_drawing(make(), name="a.svg", size=0.1)
     assert time.process_time() - began < 10.0
+
+
+SHEETS = {
+    "cut short": "a{" * 40_000,
+    "spaces": "a" + " " * 99_000,
+    "comments in comments": "/*" * 49_000,
+    "rules": "/* a { */ circle { fill: red } " * 2000,
+}
+
+
+@pytest.mark.parametrize("case", SHEETS)
+def test_a_style_sheet_is_read_once(case: str) -> None:
+    """Oracle: the disc; before, the first three took the library a minute to hours."""
+    content = strangers.SVG % f'<style>{SHEETS[case]}</style><circle cx="50" cy="50" r="40"/>'
+    began = time.process_time()
+    assert read_drawing(content.encode(), name="a.svg", size=None).outline.area == pytest.approx(0.005027, rel=1e-3)
+    assert time.process_time() - began < 10.0
+
+
+@pytest.mark.parametrize(("rule", "shapes"), [("circle { visibility: hidden }", 0), (".no { visibility: hidden }", 1)])
+def test_a_style_sheet_still_hides(rule: str, shapes: int) -> None:
+    content = strangers.SVG % f'<style>/* eyes */ {rule}</style><circle cx="50" cy="50" r="40"/>'
+    if shapes:
+        assert read_drawing(content.encode(), name="a.svg", size=None).outline.area > 0.005
+        return
+    with pytest.raises(InputError, match="no closed shape"):
+        read_drawing(content.encode(), name="a.svg", size=None)
+
+
+MALFORMED = {
+    "a transform": ('<g transform="matrix(1,2,3)"><circle r="9"/></g>', "a part of it is missing or malformed"),
+    "a turn": ('<g transform="rotate(nan)"><circle r="9"/></g>', "a part of it is missing or malformed"),
+}
+
+
+@pytest.mark.parametrize("case", MALFORMED)
+def test_what_python_says_of_itself_is_not_passed_on(case: str) -> None:
+    text, words = MALFORMED[case]
+    with pytest.raises(InputError, match=words):
+        read_drawing((strangers.SVG % text).encode(), name="a.svg", size=0.1)
+
+
+@pytest.mark.parametrize("box", ["0 0 0 0", "0 0 -100 100", "a b c", "0 0 1e300 1"])
+def test_a_page_without_a_size_is_refused(box: str) -> None:
+    """Such a viewBox was left out, and the body made a fifth of its size."""
+    content = (strangers.SVG % '<circle cx="50" cy="50" r="40"/>').replace("0 0 100 100", box)
+    with pytest.raises(InputError, match=r"its viewBox, .* must be four numbers, the last two above 0"):
+        read_drawing(content.encode(), name="a.svg", size=None)
+
+
+def test_the_name_of_a_file_stays_in_its_comment() -> None:
+    """Oracle: tomllib; a name with an end of line wrote keys of its own into robot.toml."""
+    text = commented_text(gallery_robot("starfish"), 'a\ngravity = "down"\x1b[31m.svg')
+    assert "gravity" not in tomllib.loads(text)
+    assert text.splitlines()[0].startswith("# starfish, begun from a\\ngravity")
 
 
 OUTLINES = {

@@ -304,6 +304,15 @@ def test_no_changed_file_is_believed(robot: Robot, tmp_path: Path) -> None:
             load_model(file)
 
 
+@pytest.mark.usefixtures("unchecked")
+def test_what_is_no_file_is_no_model() -> None:
+    """A device without an end was read until the memory was full."""
+    with pytest.raises(InputError, match="/dev/zero: is not a file; name a file that hydrostat learn wrote"):
+        load_model("/dev/zero")
+    with pytest.raises(InputError, match="a model is read from its file, not from None"):
+        load_model(None)  # type: ignore[arg-type]
+
+
 def forged(whole: bytes, change: object) -> bytes:
     """A file with another header, and a checksum that fits it."""
     length = int.from_bytes(whole[8:16], "little")

@@ -231,6 +231,9 @@ def test_damaged_files_are_told(plan: SamplePlan, tmp_path: Path) -> None:
     file.write_bytes(file.read_bytes()[:-9])
     with pytest.raises(InputError, match=r"samples-000002.npy: is damaged"):
         read_samples(tmp_path)
+    file.write_bytes(file.read_bytes()[:10] + b"{'descr': [(" + file.read_bytes()[22:])
+    with pytest.raises(InputError, match=r"samples-000002.npy: is damaged"):  # a header that is no Python any more
+        read_samples(tmp_path)
     (tmp_path / "samples.json").write_text("{")
     with pytest.raises(InputError, match=r"samples.json: is no JSON"):
         read_samples(tmp_path)

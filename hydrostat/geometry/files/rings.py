@@ -175,7 +175,12 @@ def without_repeats(points: Ring) -> Ring:
 
 
 def one_line(error: object) -> str:
-    """Give the text of another program's error as a part of a line, in plain letters."""
+    """Give the text of another program's error as a part of a line, in plain letters.
+
+    What Python says of its own lists and types would tell a person nothing.
+    """
+    if isinstance(error, LookupError | TypeError | AttributeError | AssertionError):
+        return "a part of it is missing or malformed"
     return re.sub(r"[^ -~]+", " ", str(error))[:120]
 
 

@@ -60,6 +60,12 @@ def _open(content: bytes, name: str) -> _SvgDocument:
         raise OutlineError(f"{name}: not an SVG drawing, its first element is <{_tag(root)}>: save it as SVG")
     _strip_others(root)
     _check_points(root, name)
+    for element in root.iter():
+        if _tag(element) == "style":
+            element.text = _plain_rules(element.text or "")
+    if root.get("viewBox", "").strip() and _box(root.get("viewBox", "")) is None:
+        said = printable(root.get("viewBox", ""))[:60]
+        raise OutlineError(f"{name}: its viewBox, {said!r}, must be four numbers, the last two above 0: save it again")
     sheet = _sheet(root)
     unit = _normalise(root)
     return _SvgDocument(ElementTree.tostring(root), unit, sheet)
@@ -89,6 +95,14 @@ def _guard(content: bytes, name: str) -> None:
         parser.Parse(content, True)
     except (expat.ExpatError, ValueError, LookupError) as error:
         raise OutlineError(f"{name}: not an SVG drawing ({error}): save it as SVG") from error
+
+
+def _plain_rules(text: str) -> str:
+    """The rules of a style sheet, without comments and what is cut short: in these the reader would search for ever."""
+    first, *others = text.split("/*")
+    said = " ".join([first, *(other.partition("*/")[2] for other in others)])
+    rules = (rule.partition("{") for rule in said.split("}")[:-1])
+    return "\n".join(f"{chosen.strip()} {{{body.strip()}}}" for chosen, _, body in rules if body.strip())
 
 
 def _tag(element: ElementTree.Element) -> str:

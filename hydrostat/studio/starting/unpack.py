@@ -1,7 +1,9 @@
 """`unpacked`: the robot in a .zip, as `Exporter.robot_zip` packs it; nothing of a stranger's archive goes elsewhere."""
 
 import stat
+import zlib
 from io import BytesIO
+from lzma import LZMAError
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from zipfile import BadZipFile, ZipFile, ZipInfo
@@ -24,19 +26,23 @@ def unpacked(name: str, content: bytes) -> tuple[Work, str]:
         InputError: no archive, too large, a file that would climb out of its folder, or not one robot in it.
     """
     shown = quote(PurePosixPath(name.replace("\\", "/")).name[:60])
+    folder = Path()
     try:
         with ZipFile(BytesIO(content)) as archive, TemporaryDirectory() as scratch:
+            folder = Path(scratch)
             entries = _checked(archive.infolist(), shown)
             home = _home(list(entries), shown)
             for path, entry in entries.items():
                 if path.parent == home or home in path.parents:
-                    _write(archive, entry, Path(scratch) / path.relative_to(home), shown)
-            folder = Path(scratch)
+                    _write(archive, entry, folder / path.relative_to(home), shown)
             if note := open_note(folder):
                 raise InputError(f"{shown}: {note}")
             return open_work(folder), text_of(folder)
-    except (BadZipFile, EOFError, NotImplementedError, RuntimeError, OSError) as error:
-        raise InputError(f"{shown}: cannot be unpacked ({error}); take the robot home again") from None
+    except InputError as error:  # of robot.toml, by the name of a scratch folder that nobody knows
+        raise InputError(str(error).replace(f"{folder}/", f"{shown}: ")) from None
+    except (BadZipFile, EOFError, NotImplementedError, RuntimeError, OSError, zlib.error, LZMAError) as error:
+        words = str(error).replace(f"{folder}/", "")
+        raise InputError(f"{shown}: cannot be unpacked ({words}); take the robot home again") from None
 
 
 def _checked(entries: list[ZipInfo], shown: str) -> dict[PurePosixPath, ZipInfo]:

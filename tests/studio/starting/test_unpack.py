@@ -91,3 +91,21 @@ def test_an_entry_that_lies_about_its_size_is_refused() -> None:
     assert whole.count(size) == 2
     with pytest.raises(InputError, match=r"cannot be unpacked|larger than it says"):
         unpacked("x.zip", whole.replace(size, (5).to_bytes(4, "little")))
+
+
+@pytest.mark.parametrize("way", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_bytes_that_cannot_be_unpacked_are_told(way: int) -> None:
+    """Oracle: none of the errors of zlib, lzma and bz2 comes through; the sizes in the archive stay true."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", way) as archive:
+        archive.writestr("robot.toml", TOML)
+    whole = bytearray(buffer.getvalue())
+    begin = 30 + len("robot.toml")
+    whole[begin : begin + 40] = bytes([7]) * 40
+    with pytest.raises(InputError, match=r'^"x.zip": cannot be unpacked'):
+        unpacked("x.zip", bytes(whole))
+
+
+def test_a_complaint_does_not_name_the_scratch_folder() -> None:
+    with pytest.raises(InputError, match=r'^"x.zip": robot.toml, line 8: body.outline: there is no file "starfish'):
+        unpacked("x.zip", packed({"robot/robot.toml": TOML}))

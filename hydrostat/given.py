@@ -1,0 +1,25 @@
+"""What callers give, checked at the door: another kind of thing is told in one line, with what is wanted."""
+
+import os
+from pathlib import Path
+
+from hydrostat.errors import InputError
+
+
+def check_kind(given: object, kind: type | tuple[type, ...], wanted: str) -> None:
+    """Refuse a thing of another kind.
+
+    Args:
+        given: what was given.
+        kind: that it must be of; numbers are no truth values.
+        wanted: the sentence before ", not ...", such as "a kit is made of a Robot".
+    """
+    if not isinstance(given, kind):
+        raise InputError(f"{wanted}, not {given!r:.60}")
+
+
+def path_of(given: object, wanted: str) -> Path:
+    """A path that was given as a text or a path (InputError: as for `check_kind`)."""
+    if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
+        raise InputError(f"{wanted}, not from {given!r:.60}")
+    return Path(given)
