@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import Contract, contractions, positive
+from hydrostat.cli.options import Contract, contractions, middle, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.errors import InputError
 
@@ -103,19 +103,11 @@ def _closed(robot: "Robot", name: str | None, given: dict[str, float]) -> "tuple
 
 def _placed(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
     """The thing where it shall lie."""
-    import numpy as np
-
     from hydrostat.grasp import moved_thing, place_thing
 
     if at is None:
         return place_thing(robot, thing, closed)
-    try:
-        place = 1e-3 * np.array([float(part) for part in at.split(",")])
-    except ValueError:
-        raise InputError(f"--at {at}: write the coordinates of its middle in mm, such as 0,0,90") from None
-    if len(place) != robot.body.mesh.dim:
-        raise InputError(f"--at {at}: the body has {robot.body.mesh.dim} axes; give a coordinate for each")
-    return moved_thing(thing, place)
+    return moved_thing(thing, middle(at, robot.body.mesh.dim))
 
 
 def _direction(text: str, dim: int) -> tuple[float, ...]:

@@ -40,6 +40,19 @@ def asked(option: str, text: str | None, dimension: "Dimension", *, zero: bool =
     return None if text is None else positive(option, text, dimension, zero=zero)
 
 
+def middle(text: str, dim: int) -> "Vector":
+    """Where --at says that the middle of a thing is [m] (InputError: no number in mm for each axis)."""
+    import numpy as np
+
+    try:
+        place = 1e-3 * np.array([float(part) for part in text.split(",")])
+    except ValueError:
+        raise InputError(f"--at {text}: write the coordinates of its middle in mm, such as 0,0,90") from None
+    if len(place) != dim:
+        raise InputError(f"--at {text}: the body has {dim} axes; give a coordinate for each")
+    return place
+
+
 def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
     """Limits from --tension and --equal, such as "left,right" (InputError: no force, a group of fewer than two)."""
     from hydrostat.ik import Limits

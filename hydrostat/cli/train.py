@@ -11,13 +11,16 @@ from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
 if TYPE_CHECKING:
+    from hydrostat.robot import Obstacle, Robot
     from hydrostat.training import CurvePoint
 
 
 def train(
     robot: RobotFolder,
     out: Annotated[Path, typer.Option(metavar="DIR", help="For curves, checkpoints and the policy.")],
-    task: Annotated[str, typer.Option(metavar="NAME", help="reach, reach-with-hysteresis or walk.")] = "reach",
+    task: Annotated[
+        str, typer.Option(metavar="NAME", help="reach, reach-with-hysteresis, push, twist or walk.")
+    ] = "reach",
     method: Annotated[str, typer.Option(metavar="NAME", help="sac-her, td3-her, ddpg-her or tqc-her.")] = "sac-her",
     steps: Annotated[int, typer.Option(metavar="N", help="Actions to learn from.")] = 10_000,
     horizon: Annotated[int | None, typer.Option(metavar="T", help="Actions in an episode; 1 to reach.")] = None,
@@ -26,10 +29,11 @@ def train(
     ] = None,
     exact: Annotated[int, typer.Option(metavar="N", help="With --model: every Nth episode exact; 0: none.")] = 0,
     tolerance: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Distance that is a success; 5 mm to reach, 20 to walk.")
+        str | None,
+        typer.Option(metavar="LENGTH", help="Distance that is a success; 5 mm to reach or push, 20 to walk."),
     ] = None,
     friction: Annotated[
-        float | None, typer.Option(metavar="MU", help="Of cables that rub, 0.2 if not given; of ground, 0.6.")
+        float | None, typer.Option(metavar="MU", help="Of cables that rub, 0.2; of ground, 0.6; of a thing, 0.8.")
     ] = None,
     actions: Annotated[
         str | None, typer.Option(metavar="NAME", help="To walk, what an action is: gait or contractions.")
@@ -41,6 +45,14 @@ def train(
     ] = None,
     pair: Annotated[
         list[str] | None, typer.Option(metavar="ONE,OTHER", help="Winches of one number: the one, or the other.")
+    ] = None,
+    thing: Annotated[
+        str | None, typer.Option("--object", metavar="SHAPE:SIZES", help="To push or twist; else the robot's own.")
+    ] = None,
+    at: Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Middle of the --object [mm]; 0 if left out.")] = None,
+    mass: Annotated[str, typer.Option(metavar="MASS", help="Of the --object.")] = "58 g",
+    tied: Annotated[
+        list[str] | None, typer.Option(metavar="PART", help="Winches with this in their names are moved by one number.")
     ] = None,
     goals: Annotated[int, typer.Option(metavar="N", help="Unseen goals that policies are judged by.")] = 100,
     seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
@@ -60,7 +72,8 @@ def train(
 
     With --task reach-with-hysteresis cables rub, and the way counts; --model is then of the robot without friction, so
     that what is learned from is wrong. With --task walk the robot stands on the ground, without its pins, and goes a
-    way in time; an action is half a second of a gait, or contractions for a tenth of a second.
+    way in time; an action is half a second of a gait, or contractions for a tenth of a second. With --task push or
+    twist a thing with a mass is moved by keyframes, in time: an [[obstacle]] of the robot, or the --object.
 
     Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
 
@@ -69,6 +82,8 @@ def train(
     Example: hydrostat train examples/letter_s --task reach-with-hysteresis --friction 0.3 --steps 400 --out build/rubs
 
     Example: hydrostat train examples/puppy --task walk --steps 400 --goals 4 --out build/walk
+
+    Example: hydrostat train examples/puppy --task push --object sphere:30mm --at -90,60 --steps 400 --out build/push
     """
     try:
         from hydrostat import training
@@ -94,6 +109,8 @@ def train(
         contact=contact,
         friction=friction,
         actions=actions,
+        tied=tied or (),
+        thing=None if thing is None else _thing(loaded, thing, at, mass, friction),
     )
     env, judged = (made.for_task(loaded, asked) for _ in range(2))
     if watch:
@@ -104,10 +121,11 @@ def train(
         env.learn_in(networks, exact=exact)
     wanted = training.held_out_goals(judged, goals, seed)
     size, began = judged.unit, time.process_time()
-    print(f"    actions{env.cost:>12}  mean     median   worst    within  CPU", flush=True)
+    word, factor = judged.measure
+    print(f"    actions{judged.cost:>12}  mean     median   worst    within  CPU", flush=True)
 
     def tell(point: "CurvePoint") -> None:
-        print(f"{_line(point)}   {time.process_time() - began:.0f} s", flush=True)
+        print(f"{_line(point, word, factor)}   {time.process_time() - began:.0f} s", flush=True)
 
     options = training.TrainOptions(
         method=training.TrainMethod(method), steps=steps, seed=seed, every=max(1, steps // 10), together=together
@@ -116,8 +134,9 @@ def train(
         more = {"resume": resume, "processes": processes}
         trained, curve = training.train(env, wanted, options, out, judge_in=judged, tell=tell, **more)
     last = curve[-1]
-    print(f"{1e3 * last.mean:.2f} mm, {100 * last.mean / size:.2f} % of the size, on {goals} unseen goals")
-    print(f"Wrote {_picture(curve, method, out)}")
+    share = f", {100 * last.mean / size:.2f} % of the size" if word == "mm" else ""
+    print(f"{factor * last.mean:.2f} {word}{share}, on {goals} unseen goals")
+    print(f"Wrote {_picture(curve, method, out, word, factor)}")
     policy = training.policy_of(trained, env, task=task, error=last.mean)
     print(f"Wrote {policy.save(out / 'actor.policy')}, which runs without PyTorch")
     moves = training.moves_of(judged, policy.act, wanted[0])
@@ -127,20 +146,31 @@ def train(
         print(f"Wrote {save_model(training.portable_policy(trained, env, networks), out / 'policy.model')}")
 
 
-def _line(point: "CurvePoint") -> str:
+def _thing(robot: "Robot", text: str, at: str | None, mass: str, friction: float | None) -> "Obstacle":
+    """What is pushed or turned, in its place."""
+    from hydrostat.cli.options import middle, positive
+    from hydrostat.grasp import moved_thing, read_thing
+    from hydrostat.units import MASS
+
+    dim = robot.body.mesh.dim
+    thing = read_thing(text, dim, mass=positive("--mass", mass, MASS), friction=0.8 if friction is None else friction)
+    return thing if at is None else moved_thing(thing, middle(at, dim))
+
+
+def _line(point: "CurvePoint", word: str, factor: float) -> str:
     """How good a policy was, in numbers."""
-    lengths = "  ".join(f"{1e3 * value:4.2f} mm" for value in (point.mean, point.median, point.worst))
+    lengths = "  ".join(f"{factor * value:4.2f} {word}" for value in (point.mean, point.median, point.worst))
     return f"{point.steps:11}{point.equilibria:12}  {lengths}  {100 * point.success:3.0f} %"
 
 
-def _picture(curve: "list[CurvePoint]", name: str, out: Path) -> Path:
+def _picture(curve: "list[CurvePoint]", name: str, out: Path, word: str, factor: float) -> Path:
     """Distances and successes over the actions, as PNG."""
     import numpy as np
 
     from hydrostat.plot import draw_curves, save_png
 
     steps = np.array([point.steps for point in curve])
-    distances = np.array([[1e3 * point.mean] for point in curve])
+    distances = np.array([[factor * point.mean] for point in curve])
     successes = np.array([[point.success] for point in curve])
-    panes = {"mean distance [mm]": {name: (steps, distances)}, "share of successes": {name: (steps, successes)}}
+    panes = {f"mean distance [{word}]": {name: (steps, distances)}, "share of successes": {name: (steps, successes)}}
     return save_png(draw_curves(panes), out / "curve.png")

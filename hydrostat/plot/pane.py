@@ -184,7 +184,9 @@ def lay_image(sheet: PictureSheet, image: Render, shift: Place, *, seam: str = S
 
 def _draw_pins(sheet: PictureSheet, robot: Robot, rings: list[Places]) -> None:
     """What holds the robot: a hatched field for each pin, cut along the body's rings [mm]."""
-    body = shapely.Polygon(rings[0], rings[1:]).buffer(0)
+    body = shapely.Polygon()
+    for ring in rings:  # a body of several parts, with holes
+        body = body.symmetric_difference(shapely.Polygon(ring).buffer(0))
     for pin in robot.pins:
         if pin.box is not None:
             field = shapely.box(*MILLIMETRES * np.min(pin.box, axis=0), *MILLIMETRES * np.max(pin.box, axis=0))

@@ -8,9 +8,13 @@ import gymnasium
 from hydrostat.training.goal_env import GoalEnv, TaskOptions
 from hydrostat.training.hysteresis_env import HysteresisEnv
 from hydrostat.training.portable import policy_of, portable_policy
+from hydrostat.training.push_env import PushEnv, PushOptions
 from hydrostat.training.reach_env import ReachEnv, ReachOptions
 from hydrostat.training.tasks import TASKS, Task, task_of
+from hydrostat.training.thing_env import ThingEnv, ThingOptions
+from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld
 from hydrostat.training.train import CurvePoint, TrainMethod, TrainOptions, held_out_goals, judge, moves_of, train
+from hydrostat.training.twist_env import TwistEnv, TwistOptions
 from hydrostat.training.walk_env import WalkActions, WalkEnv, WalkOptions
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
@@ -22,12 +26,21 @@ __all__ = [
     "HysteresisEnv",
     "LearnedWorld",
     "MixedWorld",
+    "PushEnv",
+    "PushOptions",
     "ReachEnv",
     "ReachOptions",
     "Task",
     "TaskOptions",
+    "ThingEnv",
+    "ThingOptions",
+    "ThingPhysics",
+    "ThingState",
+    "ThingWorld",
     "TrainMethod",
     "TrainOptions",
+    "TwistEnv",
+    "TwistOptions",
     "WalkActions",
     "WalkEnv",
     "WalkOptions",

@@ -11,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
-from hydrostat.robot import Contact, Robot, load_robot
+from hydrostat.robot import Contact, Obstacle, Robot, load_robot
 
 if TYPE_CHECKING:
     from hydrostat.plot.live_page import LivePage
@@ -31,6 +31,8 @@ class TaskOptions:
         contact: whether the body feels itself, where robot.toml says nothing of it.
         friction: coefficient, of what the task is about.
         actions: what an action is: a name that the task knows.
+        tied: parts of names: winches whose names have one are moved by one number.
+        thing: that is moved; the robot's own if None.
     """
 
     markers: Sequence[str] = ()
@@ -42,6 +44,8 @@ class TaskOptions:
     contact: bool = False
     friction: float | None = None
     actions: str | None = None
+    tied: Sequence[str] = ()
+    thing: Obstacle | None = None
 
     def given(self, *names: str) -> dict[str, Any]:
         """Those of these attributes that are not None, by name."""
@@ -50,7 +54,7 @@ class TaskOptions:
     def refuse(self, *names: str) -> None:
         """Refuse what a task does not have (InputError: one of these attributes is given)."""
         for name in names:
-            if getattr(self, name) not in (None, False, ()):
+            if getattr(self, name) not in (None, False, (), []):
                 raise InputError(f"this task has no {name}: leave it out")
 
 
@@ -58,6 +62,9 @@ class GoalEnv(gymnasium.Env, ABC):
     """Goal-based environment with episodes of a fixed number of actions, as `train` and `judge` use it.
 
     Attributes:
+        cost: what `equilibria` counts, in a word or two.
+        measure: in which distances are told, and how many of these their unit is.
+        measure: in which distances are told, and how many of it their unit is.
         portable: whether a policy needs to see nothing but the goal.
         robot: that does it.
         unit: of places in observations [m].
@@ -71,6 +78,7 @@ class GoalEnv(gymnasium.Env, ABC):
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["human", "rgb_array"], "render_fps": 4}  # type: ignore[misc]
     cost: ClassVar[str] = "equilibria"
+    measure: ClassVar[tuple[str, float]] = ("mm", 1e3)
     portable: bool = False
     robot: Robot
     unit: float

@@ -62,7 +62,7 @@ class HysteresisEnv(ReachEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Reach as the command line asks for it."""
-        given.refuse("actions")
+        given.refuse("actions", "tied", "thing")
         more = given.given("friction", "contact")
         return cls(robot, options=reach_options(given), **more)
 

@@ -180,7 +180,7 @@ class ReachEnv(GoalEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Reach as the command line asks for it."""
-        given.refuse("friction", "actions")
+        given.refuse("friction", "actions", "tied", "thing")
         return cls(robot, options=reach_options(given), contact=given.contact)
 
     @property

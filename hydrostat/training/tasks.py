@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from hydrostat.errors import InputError
 from hydrostat.training.goal_env import GoalEnv
 from hydrostat.training.hysteresis_env import HysteresisEnv
+from hydrostat.training.push_env import PushEnv
 from hydrostat.training.reach_env import ReachEnv
+from hydrostat.training.twist_env import TwistEnv
 from hydrostat.training.walk_env import WalkEnv
 
 
@@ -30,6 +32,8 @@ TASKS: Mapping[str, Task] = {
     "reach-with-hysteresis": Task(
         "hydrostat/ReachWithHysteresis-v0", HysteresisEnv, "the same with cables that rub, from a pose at random"
     ),
+    "push": Task("hydrostat/Push-v0", PushEnv, "push a free thing to a place"),
+    "twist": Task("hydrostat/Twist-v0", TwistEnv, "turn a free thing by keyframes"),
     "walk": Task("hydrostat/Walk-v0", WalkEnv, "go a way along the ground, held by nothing"),
 }
 """By their names on the command line."""

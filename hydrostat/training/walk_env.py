@@ -181,7 +181,7 @@ class WalkEnv(GoalEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Walk as the command line asks for it."""
-        given.refuse("markers", "pairs", "contact")
+        given.refuse("markers", "pairs", "contact", "tied", "thing")
         options = WalkOptions(**given.given("actions", "steps", "incremental", "tolerance", "shaped"))
         return cls(robot, friction=given.friction, options=options)
 

@@ -38,9 +38,12 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
         (["--pair", "left"], "a pair has two winches, not 1: left"),
         (["--processes", 5], "processes must be 1 to 4, the episodes side by side, not 5"),
         (["--friction", 0.2], "this task has no friction: leave it out"),
-        (["--task", "fly"], "there is no task 'fly'; there are: reach, reach-with-hysteresis, walk"),
+        (["--task", "fly"], "there is no task 'fly'; there are: reach, reach-with-hysteresis, push, twist, walk"),
         (["--task", "walk", "--actions", "hops"], 'actions must be one of gait, contractions, not "hops"'),
         (["--task", "walk", "--marker", "top"], "this task has no markers: leave it out"),
+        (["--task", "twist"], "has nothing to move: give an [[obstacle]] a mass, or give a thing (--object)"),
+        (["--task", "push", "--object", "egg:3mm"], 'there is no thing "egg:3mm"'),
+        (["--task", "push", "--object", "sphere:9mm", "--at", "3"], "--at 3: the body has 2 axes"),
         (["--model", "none.model"], "none.model: cannot be read"),
     ],
 )

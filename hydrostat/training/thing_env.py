@@ -1,0 +1,286 @@
+"""`ThingEnv`: a robot moves a free thing by keyframes (gymnasium, goal-based): what Push and Twist share."""
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from gymnasium import spaces
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.robot import Obstacle, Robot
+from hydrostat.training.goal_env import GoalEnv, TaskOptions, loaded
+from hydrostat.training.thing_pictures import ThingPictures
+from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld, as_drawn, is_clear
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThingOptions:
+    """How a thing is moved.
+
+    Attributes:
+        steps: keyframes of an episode (T).
+        tied: parts of names: winches whose names have one are moved by one number; others are moved alone.
+        travel: most that an action takes in [m]; that of the winch if None.
+        tolerance: largest distance that is a success, in the unit of the task.
+        shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
+        friction: the thing's is drawn within this share of its own, up and down.
+        radius: its radius, likewise.
+        start: along each axis it begins within this of its place [m].
+        physics: how it moves in time.
+
+    Raises:
+        InputError: a number out of its range.
+    """
+
+    steps: int = 4
+    tied: Sequence[str] = ()
+    travel: float | None = None
+    tolerance: float = 5e-3
+    shaped: bool = True
+    friction: float = 0.3
+    radius: float = 0.05
+    start: float = 5e-3
+    physics: ThingPhysics = field(default_factory=ThingPhysics)
+
+    def __post_init__(self) -> None:
+        if self.steps < 1:
+            raise InputError(f"steps must be 1 or more, not {self.steps}")
+        for name in ("tolerance", "travel"):
+            value = getattr(self, name)
+            if value is not None and not 0 < value < np.inf:
+                raise InputError(f"{name} must be above 0, not {value:g}")
+        for name in ("friction", "radius"):
+            if not 0 <= getattr(self, name) < 1:
+                raise InputError(f"{name} is drawn within a share from 0 to below 1, not {getattr(self, name):g}")
+        if not 0 <= self.start < np.inf:
+            raise InputError(f"start must be 0 m or more, not {self.start:g}")
+
+
+class ThingEnv(GoalEnv):
+    """Goal-based environment in time: actions are keyframes, contractions that winches go to; then the hand opens.
+
+    Each episode has a thing of its own: friction, radius and start are drawn, and the policy does not see them, but for
+    where the thing is. Observations hold the contractions (from -1 to 1), where the middle of the thing is, counted
+    from its usual place in sizes of the body, how far it has turned in half turns, and the share of the keyframes that
+    are done. Cost is counted in time steps of the exact simulator that were asked for, `ThingPhysics.beats` for each
+    keyframe.
+
+    Attributes:
+        options: of the task.
+        thing: as it usually is.
+        world: robot and thing, now.
+    """
+
+    cost: ClassVar[str] = "time steps"
+
+    def __init__(
+        self,
+        robot: Robot | str,
+        *,
+        thing: Obstacle | None = None,
+        options: ThingOptions,
+        axis: Sequence[float] = (0.0, 0.0, 1.0),
+        contact: bool = False,
+        render_mode: str | None = None,
+    ) -> None:
+        """A robot that moves a thing.
+
+        Args:
+            robot: itself, its folder, or a name such as gallery:caging_gripper.
+            thing: that is moved, with a mass; the first obstacle of the robot that has one if left out.
+            options: of the task.
+            axis: about which turns count, of any length but 0; of no matter in the plane.
+            contact: whether the body feels itself, where robot.toml says nothing of it.
+            render_mode: "rgb_array", "human" or None.
+
+        Raises:
+            InputError: a robot without winches, no thing, one that is in the body or has no mass.
+        """
+        self.robot = loaded(robot, contact)
+        if not self.robot.winches:
+            raise InputError(f"robot {self.robot.name!r} needs a winch to move a thing by")
+        self.options, self.render_mode = options, render_mode
+        self.thing = _thing(self.robot, thing)
+        if not np.any(axis):
+            raise InputError("the axis of turns must not be 0 along every axis")
+        unit = np.array(axis, dtype=float) / np.linalg.norm(axis)
+        self.world = ThingWorld(self.robot, self.thing, unit, options.physics)
+        self.steps, self.tolerance, self._pictures = options.steps, options.tolerance, None
+        self._groups = _tied(self.robot, options.tied)
+        self._low = np.array([-winch.release for winch in self.robot.winches], dtype=float)
+        travel = np.inf if options.travel is None else options.travel
+        self._high = np.array([min(winch.travel, travel) for winch in self.robot.winches], dtype=float)
+        self._dim, self._size = self.robot.body.mesh.dim, self.robot.body.mesh.size
+        self._usual = self.thing.frame()[0]
+        self._goal = np.zeros(self.goal_size)
+        self.action_space = spaces.Box(-1.0, 1.0, (len(self._groups),), np.float32)
+        goal = spaces.Box(-100.0, 100.0, (self.goal_size,), np.float64)
+        seen = spaces.Box(-100.0, 100.0, (len(self.robot.winches) + self._dim + 2,), np.float64)
+        self.observation_space = spaces.Dict(observation=seen, achieved_goal=goal, desired_goal=goal)
+
+    @property
+    @abstractmethod
+    def goal_size(self) -> int:
+        """How many numbers a goal has."""
+
+    @abstractmethod
+    def achieved(self) -> Vector:
+        """What is achieved now, as a goal."""
+
+    @abstractmethod
+    def draw_goal(self, random: np.random.Generator) -> Vector:
+        """A goal at random."""
+
+    @abstractmethod
+    def distances(self, achieved: np.ndarray, desired: np.ndarray) -> np.ndarray:
+        """What is left from what is achieved to what is desired, one or a row each, in the unit of the tolerance."""
+
+    @abstractmethod
+    def words(self) -> str:
+        """What has been done, in a line."""
+
+    @property
+    def equilibria(self) -> int:
+        """Time steps of the exact simulator that were asked for."""
+        return self.world.time_steps
+
+    def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:
+        """A goal, and a thing: friction and radius as times its own, and where it begins [m]; None: in the body."""
+        options, pick = self.options, random.uniform
+        state = ThingState(
+            friction=1 + options.friction * pick(-1, 1),
+            radius=1 + options.radius * pick(-1, 1),
+            start=tuple((options.start * pick(-1, 1, self._dim)).tolist()),
+        )
+        goal = self.draw_goal(random)
+        return {"goal": goal, **state._asdict()} if is_clear(self.robot, as_drawn(self.thing, state)) else None
+
+    def reset(
+        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[dict[str, Vector], dict[str, Any]]:
+        """Go to rest with what is drawn; or with "goal" and any of "friction", "radius", "start" as `drawn` has them.
+
+        Raises:
+            InputError: a goal or a start of another size.
+        """
+        super().reset(seed=seed)
+        given = dict(options or {})
+        while "goal" not in given:
+            given = {**(self.drawn(self.np_random) or {}), **given}
+        goal, start = np.asarray(given["goal"], dtype=float).ravel(), tuple(given.get("start", ()))
+        if goal.shape != (self.goal_size,):
+            raise InputError(f"a goal has {self.goal_size} numbers, not {goal.size}")
+        if len(start) not in (0, self._dim):
+            raise InputError(f"a start has {self._dim} coordinates, not {len(start)}")
+        self._goal, self.taken_steps = goal, 0
+        self.world.begin(ThingState(float(given.get("friction", 1.0)), float(given.get("radius", 1.0)), start))
+        self.moves = [(0.0, self.world.motion.contractions)]
+        self.show()
+        return self._observation(), self._info()
+
+    def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
+        """Go to a keyframe; after the last one the hand opens, to no contraction."""
+        self.taken_steps += 1
+        self._go(self.contractions(action))
+        over = self.taken_steps >= self.steps
+        if over:
+            self._go(np.clip(np.zeros(len(self._low)), self._low, self._high))
+        self.show()
+        observation, info = self._observation(), self._info()
+        reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))
+        return observation, reward, False, over, info
+
+    def contractions(self, action: np.ndarray) -> Vector:
+        """Contractions of an action [m]: from release to travel."""
+        taken = np.zeros(len(self._low))
+        for value, group in zip(np.clip(action, -1.0, 1.0).tolist(), self._groups, strict=True):
+            rows = list(group)
+            taken[rows] = self._low[rows] + 0.5 * (value + 1.0) * (self._high[rows] - self._low[rows])
+        return taken
+
+    def compute_reward(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> float | np.ndarray:
+        """Reward of what is achieved for what is desired, one or a row each; nothing else decides about it."""
+        left = self.distances(achieved, desired)
+        tolerance = self.options.tolerance
+        return -left / tolerance if self.options.shaped else -np.asarray(left >= tolerance, dtype=float)
+
+    def go_on(self, kept: Mapping[str, Any]) -> None:
+        """Go on, from the next episode, where an environment was that has been kept."""
+        super().go_on(kept)
+        self.world.time_steps = kept["equilibria"]
+
+    def picture(self) -> np.ndarray:
+        """What is to be seen: robot and thing, with dots on it, which show how it turns."""
+        if self._pictures is None:
+            self._pictures = ThingPictures(self.robot, self.thing)
+        return self._pictures.draw(self.world, f"{self.words()}, after keyframe {self.taken_steps} of {self.steps}")
+
+    def _go(self, contractions: Vector) -> None:
+        self.moves += [(motion.time, motion.contractions) for motion in self.world.go(contractions)]
+
+    def _observation(self) -> dict[str, Vector]:
+        span = np.where(self._high > self._low, self._high - self._low, 1.0)
+        moved = (self.world.place - self._usual) / self._size
+        taken = np.clip(2.0 * (self.world.motion.contractions - self._low) / span - 1.0, -1.0, 1.0)
+        more = [self.world.turned / np.pi, self.taken_steps / self.steps]
+        seen = np.concatenate([taken, moved, more])
+        return {"observation": seen, "achieved_goal": self.achieved(), "desired_goal": self._goal.copy()}
+
+    def _info(self) -> dict[str, Any]:
+        left = float(self.distances(self.achieved(), self._goal))
+        away = float(np.linalg.norm(self.world.place - self.world.start))
+        return {
+            "distance": left,
+            "is_success": left < self.options.tolerance,
+            "turned": self.world.turned,
+            "moved": away,
+        }
+
+    @classmethod
+    def _for_thing(cls, robot: Robot | str, given: TaskOptions, options: ThingOptions, **more: Any) -> Self:
+        """One with a thing as the command line asks for it."""
+        given.refuse("markers", "pairs", "incremental", "actions")
+        made, thing = loaded(robot), given.thing
+        thing = thing if thing is not None or given.friction is None else _thing(made, None)
+        return cls(made, thing=_rubbing(thing, given.friction), options=options, contact=given.contact, **more)
+
+
+def _rubbing(thing: Obstacle | None, friction: float | None) -> Obstacle | None:
+    return thing if thing is None or friction is None else replace(thing, friction=friction)
+
+
+def _thing(robot: Robot, given: Obstacle | None) -> Obstacle:
+    """What is moved, with a friction of its own (InputError: nothing, or something that cannot be moved)."""
+    free = [each for each in robot.obstacles if each.mass is not None]
+    if given is None and not free:
+        raise InputError(
+            f"robot {robot.name!r} has nothing to move: give an [[obstacle]] a mass, or give a thing (--object)"
+        )
+    thing = given or free[0]
+    if thing.mass is None:
+        raise InputError(f'"{thing.name}" stands still: give it a mass')
+    if len(thing.at) != robot.body.mesh.dim:
+        raise InputError(f'"{thing.name}" has {len(thing.at)} coordinates, but the body has {robot.body.mesh.dim}')
+    if not is_clear(robot, thing):
+        raise InputError(f'"{thing.name}" begins in the body or touches it: put it elsewhere')
+    return replace(thing, friction=robot.friction_of(thing))
+
+
+def _tied(robot: Robot, parts: Sequence[str]) -> tuple[tuple[int, ...], ...]:
+    """Winches moved by one number of the action each (InputError: a part that no name has, or one that two have)."""
+    names = [winch.name for winch in robot.winches]
+    groups = []
+    for part in parts:
+        rows = tuple(index for index, name in enumerate(names) if part in name)
+        if not rows:
+            raise InputError(
+                f'no winch of robot {robot.name!r} has "{part}" in its name; there are: {", ".join(names)}'
+            )
+        groups.append(rows)
+    used = [row for group in groups for row in group]
+    if len(set(used)) < len(used):
+        raise InputError(f"a winch is tied to others once only; these parts share some: {', '.join(parts)}")
+    return tuple(sorted([*groups, *((row,) for row in range(len(names)) if row not in used)]))

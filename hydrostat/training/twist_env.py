@@ -1,0 +1,100 @@
+"""`TwistEnv`: a robot turns a free thing (gymnasium, goal-based)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.robot import Obstacle, Robot
+from hydrostat.training.goal_env import TaskOptions, loaded
+from hydrostat.training.thing_env import ThingEnv, ThingOptions
+from hydrostat.training.thing_world import ThingPhysics
+
+HOLD = 100.0
+"""Spring in place of a palm under a thing in space [N/m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TwistOptions(ThingOptions):
+    """How a thing is turned.
+
+    Attributes:
+        turn: least and largest angle that is asked for; negative the other way round [rad].
+        tolerance: what may be left of it where a turn is a success [rad].
+
+    Raises:
+        InputError: as for `ThingOptions`, or angles of two signs.
+    """
+
+    turn: tuple[float, float] = (0.5 * np.pi, 0.5 * np.pi)
+    tolerance: float = float(np.deg2rad(1.0))
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.turn[0] * self.turn[1] > 0:
+            raise InputError(f"turns that are asked for go one way: give two angles of one sign, not {self.turn}")
+
+
+class TwistEnv(ThingEnv):
+    """`ThingEnv` where goals are turns about an axis, in half turns; to turn further is no miss.
+
+    In space a spring keeps the thing about where it begins, unless `options` say otherwise. The turn about the axis is
+    the twist of its rotation, whatever way it swings besides.
+    """
+
+    options: TwistOptions
+    measure: ClassVar[tuple[str, float]] = ("degrees", 180.0 / np.pi)
+
+    def __init__(
+        self,
+        robot: Robot | str,
+        *,
+        thing: Obstacle | None = None,
+        options: TwistOptions | None = None,
+        axis: Sequence[float] = (0.0, 0.0, 1.0),
+        contact: bool = False,
+        render_mode: str | None = None,
+    ) -> None:
+        """A robot that turns a thing; arguments and errors as for `ThingEnv`."""
+        made = loaded(robot, contact)
+        options = options or TwistOptions(physics=_physics(made))
+        super().__init__(made, thing=thing, options=options, axis=axis, render_mode=render_mode)
+        self.unit = np.pi
+
+    @classmethod
+    def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
+        """Twist as the command line asks for it."""
+        made = loaded(robot)
+        options = TwistOptions(**given.given("steps", "shaped", "tied"), physics=_physics(made))
+        given.refuse("tolerance")
+        return cls._for_thing(made, given, options)
+
+    @property
+    def goal_size(self) -> int:
+        """An angle."""
+        return 1
+
+    def achieved(self) -> Vector:
+        """How far the thing has turned."""
+        return np.array([self.world.turned / np.pi])
+
+    def draw_goal(self, random: np.random.Generator) -> Vector:
+        """An angle that is asked for."""
+        return np.array([random.uniform(min(self.options.turn), max(self.options.turn)) / np.pi])
+
+    def distances(self, achieved: np.ndarray, desired: np.ndarray) -> np.ndarray:
+        """What is left of turns [rad]; nothing of those that went further."""
+        wanted = np.asarray(desired)[..., 0]
+        return np.pi * np.maximum(np.sign(wanted) * (wanted - np.asarray(achieved)[..., 0]), 0.0)
+
+    def words(self) -> str:
+        """How far it has turned."""
+        return f"turned by {np.rad2deg(self.world.turned):.0f} of {180 * self._goal[0]:.0f} degrees"
+
+
+def _physics(robot: Robot) -> ThingPhysics:
+    """A palm in space, none in the plane."""
+    return ThingPhysics(hold=HOLD if robot.body.mesh.dim == 3 else 0.0)
