@@ -22,6 +22,9 @@ TRIALS = ("figure-5.8", "figure-5.9", "figure-5.10", "figure-5.12", "table-noise
 POLICIES, GRADIENT = "table-policies", "table-gradient"
 """What other ways to a policy leave, on the same actions and outcomes; and the best of them alone, on more goals."""
 
+CERTIFIED = "certified, no policy"
+"""What inverse kinematics does with the equilibria that networks have learned from: their search, then exact steps."""
+
 SHARED = "figure-5.14-trial"
 """Trial and error beside others, of the pairs that it tried and of as many drawn evenly."""
 
@@ -121,7 +124,7 @@ def _policies(
     from hydrostat.plot import draw_costs, save_png
     from hydrostat.robot import replace_file
     from hydrostat.training.policies import PAIRS_ALONE, WAYS, Budget, drawn_pairs
-    from hydrostat.training.run_experiment import exact_distances, finger_pairs
+    from hydrostat.training.run_experiment import certified_distances, exact_distances, finger_pairs
     from hydrostat.training.trials import NetworkReach
     from hydrostat.training.verdict import interquartile
 
@@ -134,15 +137,20 @@ def _policies(
     print(f"\n{table}: ways to a policy of one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator")
     print(f"{'way':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>24}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
     rows: list[dict[str, object]] = []
+
+    def tell(name: str, pairs: int, used: int, exact: np.ndarray) -> None:
+        found, far = interquartile(np.nanmean(exact, axis=1)), float(np.nanquantile(exact, 0.99))
+        row = {"way": name, "pairs": pairs, "equilibria": used, "seeds": np.nanmean(exact, axis=1).tolist()}
+        rows.append({**row, "p99": far})
+        text = f"{name:24}{pairs:8}{used:12}{spanned(found, 3):>24}{100 * found.mean / width:8.3f}"
+        print(f"{text}{far:10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
+
+    tell(CERTIFIED, known, known, 10.0 * certified_distances(simulation, trials, networks, usual.goals))
     for name, way in list(WAYS.items())[: 1 if table == GRADIENT else None]:
         for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
             act = way(trials, every.first(many), effort)
             exact = 10.0 * exact_distances(simulation, trials, act, seeds, usual.goals)
-            found, used = interquartile(np.nanmean(exact, axis=1)), _used(name, many, known, usual)
-            row = {"way": name, "pairs": many, "equilibria": used, "seeds": np.nanmean(exact, axis=1).tolist()}
-            rows.append({**row, "p99": float(np.nanquantile(exact, 0.99))})
-            text = f"{name:24}{many:8}{used:12}{spanned(found, 3):>24}{100 * found.mean / width:8.3f}"
-            print(f"{text}{np.nanquantile(exact, 0.99):10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
+            tell(name, many, _used(name, many, known, usual), exact)
     replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}
     for row in rows:

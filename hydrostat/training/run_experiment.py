@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from hydrostat.learning import LearnedModel
+from hydrostat.learning import LearnedModel, certify
 from hydrostat.learning.draw import antagonists
 from hydrostat.simulation import Simulation
 from hydrostat.training.experiments import Experiment, Ran
@@ -69,21 +69,46 @@ def run_experiment(
 
 def exact_distances(simulation: Simulation, trials: NetworkReach, policy: Act, seeds: int, goals: int) -> np.ndarray:
     """Distances [cm] after the last action of episodes in the simulator, (seeds, goals); each pose begins from rest."""
+    begun, goal = (part.expand(seeds, -1, -1) for part in _exact_goals(simulation, trials, goals))
+    seen = begun
+    with torch.no_grad():
+        for _ in range(trials.horizon):
+            acts = policy(torch.nan_to_num(seen), torch.nan_to_num(goal))
+            seen = _places(simulation, trials.contractions(acts))
+    return trials.distances(seen, goal).numpy()
+
+
+def certified_distances(
+    simulation: Simulation, trials: NetworkReach, model: LearnedModel, goals: int, *, steps: int = 3
+) -> np.ndarray:
+    """Distances [cm] that the same goals are left with by the networks' search and exact steps from there, (1, goals).
+
+    What inverse kinematics does with the equilibria that the networks have learned from; it moves each winch alone. No
+    more steps are taken than needed for 0.01 mm.
+    """
+    names, dim = model.facts["markers"], model.facts["dim"]
+    _, goal = _exact_goals(simulation, trials, goals)
+    found = []
+    for row in goal[0].double().numpy():
+        target = dict(zip(names, map(tuple, (0.01 * row).reshape(-1, dim).tolist()), strict=True))
+        answer = certify(simulation, model, model.solve(target), steps=steps, enough=1e-5)
+        found.append(np.nan if answer.certified is None else 100.0 * answer.error)
+    return np.array(found)[None]
+
+
+def _exact_goals(simulation: Simulation, trials: NetworkReach, goals: int) -> tuple[torch.Tensor, torch.Tensor]:
+    """Where episodes begin and what they shall reach in the simulator [cm], (1, goals, size) each."""
     draw = torch.Generator().manual_seed(_GOALS)
     begun, _, _ = trials.begin(draw, (1, goals))
     wanted = trials.contractions(2.0 * torch.rand(1, goals, trials.actions, generator=draw) - 1.0)
+    return begun, _places(simulation, wanted)
 
-    def places(taken: torch.Tensor) -> torch.Tensor:
-        rows = taken.flatten(0, 1).double().numpy()
-        found = simulation.solve_many(rows, jacobians=False, threads=1).markers
-        return torch.tensor(100.0 * found.reshape(*taken.shape[:2], -1), dtype=torch.float32)
 
-    goal = places(wanted).expand(seeds, -1, -1)
-    seen = begun.expand(seeds, -1, -1)
-    with torch.no_grad():
-        for _ in range(trials.horizon):
-            seen = places(trials.contractions(policy(torch.nan_to_num(seen), torch.nan_to_num(goal))))
-    return trials.distances(seen, goal).numpy()
+def _places(simulation: Simulation, taken: torch.Tensor) -> torch.Tensor:
+    """Coordinates of the markers [cm] at contractions [m], (many, goals, winches), in the simulator."""
+    rows = taken.flatten(0, 1).double().numpy()
+    found = simulation.solve_many(rows, jacobians=False, threads=1).markers
+    return torch.tensor(100.0 * found.reshape(*taken.shape[:2], -1), dtype=torch.float32)
 
 
 _TESTS = 300

@@ -18,7 +18,7 @@ from hydrostat.simulation import Simulation  # noqa: E402
 from hydrostat.training import experiments as room  # noqa: E402
 from hydrostat.training.experiments import EXPERIMENTS, Ran, error, final, least, speed  # noqa: E402
 from hydrostat.training.hindsight_ddpg import Epochs  # noqa: E402
-from hydrostat.training.run_experiment import exact_distances, finger_pairs  # noqa: E402
+from hydrostat.training.run_experiment import certified_distances, exact_distances, finger_pairs  # noqa: E402
 from hydrostat.training.trials import NetworkReach  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("unchecked")
@@ -66,6 +66,14 @@ def test_the_simulator_judges_where_contractions_lead(model: LearnedModel, robot
     goals = [np.array(list(simulation.solve(row).markers.values())) for row in rows]
     wanted = [100 * np.linalg.norm(np.array(list(pose.markers.values())) - goal, axis=1).mean() for goal in goals]
     np.testing.assert_allclose(found, [wanted, wanted], rtol=1e-4)
+
+
+def test_certified_answers_reach_the_same_goals(model: LearnedModel, robot: Robot) -> None:
+    """Oracle: the goals are places that the robot has been in, so exact steps arrive; without them networks miss."""
+    simulation, trials = Simulation(robot), NetworkReach(model, groups=finger_pairs(model))
+    rough, sure = (certified_distances(simulation, trials, model, 3, steps=steps) for steps in (0, 3))
+    assert sure.shape == (1, 3)
+    assert 10.0 * sure.max() < 0.05 < 10.0 * rough.max()  # [mm]
 
 
 def test_measures_by_hand() -> None:
