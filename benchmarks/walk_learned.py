@@ -15,9 +15,11 @@ all. Cost is in time steps of the simulator (20 ms each); judging costs nothing.
 """
 
 import argparse
+import sys
 import time
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -38,18 +40,22 @@ Draws = list[dict[str, object]]
 
 
 class NotedWalk(WalkEnv):
-    """Walk, with a note of how each episode ended."""
+    """Walk, with a note of how each episode ended; printed if the episodes have a name."""
 
-    def __init__(self, options: WalkOptions) -> None:
+    def __init__(self, options: WalkOptions, name: str = "") -> None:
         """The puppy."""
         super().__init__(str(PUPPY), options=options)
         self.ended: list[dict[str, object]] = []
+        self.name = name
 
     def step(self, action: np.ndarray) -> tuple:
         """One step, and the note after the last."""
         told = super().step(action)
         if told[3]:
             self.ended.append(told[4])
+            if self.name:
+                end = "falls" if told[4]["fallen"] else f"{1e3 * told[4]['way']:.0f} mm"
+                print(f"{self.name}: {self.equilibria} time steps, {end}", file=sys.stderr, flush=True)
         return told
 
 
@@ -74,7 +80,7 @@ def found(draws: Draws, budget: int, seed: int) -> tuple[np.ndarray, int, str]:
 
 def search(draws: Draws, budget: int, seed: int) -> tuple[np.ndarray, int, str]:
     """Random steps that grow where one is better and shrink where not."""
-    env, random = NotedWalk(GAIT), np.random.default_rng(seed)
+    env, random = NotedWalk(GAIT, f"search {seed}"), np.random.default_rng(seed)
     best, reach = HAND.action(env.most), 0.3
     most = -np.inf
     while env.equilibria + env.steps * env.beat <= budget:
@@ -96,13 +102,14 @@ def learned(options: WalkOptions, method: TrainMethod) -> Callable[[Draws, int, 
     """By trial and error, in whole episodes."""
 
     def run(draws: Draws, budget: int, seed: int) -> tuple[np.ndarray, int, str]:
-        env, judged = NotedWalk(options), NotedWalk(options)
+        env, judged = NotedWalk(options, f"{method} {seed}"), NotedWalk(options)
+        short = WalkEnv(str(PUPPY), options=replace(options, steps=1))  # the curve on the way is not looked at
         actions = budget // env.beat
         asked = TrainOptions(
-            method=method, steps=actions, seed=seed, layers=(64, 64), updates=4, every=actions, together=1
+            method=method, steps=actions, seed=seed, layers=(64, 64), updates=2, every=actions, together=1
         )
         with TemporaryDirectory() as out:
-            model, curve = train(env, draws[:1], asked, Path(out), judge_in=judged)
+            model, curve = train(env, draws[:1], asked, Path(out), judge_in=short)
         found = ways(judged, lambda seen: model.predict(seen, deterministic=True)[0], draws)
         return found, curve[-1].equilibria, f"{curve[-1].steps} actions"
 

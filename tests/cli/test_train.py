@@ -71,12 +71,15 @@ def test_what_an_action_is_can_be_asked_for(run: Run, starfish: Path, tmp_path: 
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::UserWarning", "ignore::DeprecationWarning", "ignore::FutureWarning")
-def test_other_tasks_are_learned_by_their_names(run: Run, tmp_path: Path) -> None:
-    """An exact episode with friction is a goal, a start and an action."""
+def test_other_tasks_are_learned_by_their_names(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An exact episode with friction is a goal, a start and an action; who watches is led to one page."""
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
     pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
     words = ["--task", "reach-with-hysteresis", "--friction", 0.3, "--steps", 8, "--goals", 2, "--out", tmp_path]
-    code, out, _ = run("train", gallery_folder("letter_s"), *words)
+    code, out, _ = run("train", gallery_folder("letter_s"), *words, "--watch")
     assert code == 0
+    assert [address in out and address.startswith("http://127.0.0.1:") for address in opened] == [True]
     curve = json.loads((tmp_path / "curve.json").read_text())["curve"]
     assert [point["steps"] for point in curve] == [4, 8]
     assert curve[-1]["equilibria"] >= 24
