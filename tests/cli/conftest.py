@@ -12,6 +12,12 @@ from hydrostat.robot import gallery_folder
 Run = Callable[..., tuple[int, str, str]]
 
 
+@pytest.fixture(autouse=True)
+def _quiet_while_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No word of what takes long, which a busy machine would put among what is asked for; test_waiting.py has it."""
+    monkeypatch.setattr("hydrostat.cli.waiting.PATIENCE", 1e6)
+
+
 @pytest.fixture
 def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
     """Exit code, output and errors of `hydrostat` with some arguments."""

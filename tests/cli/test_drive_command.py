@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 Run = Callable[..., tuple[int, str, str]]
-PROGRAM = "from hydrostat.cli.main import main; main()"
+PROGRAM = "import hydrostat.cli.waiting as w; w.PATIENCE = 1e6; from hydrostat.cli.main import main; main()"
 
 
 @pytest.mark.slow
@@ -23,7 +23,7 @@ def test_keys_turn_winches_and_bars_are_shown(starfish: Path, port: list[str]) -
     words = [sys.executable, "-c", PROGRAM, "drive", str(starfish), *port]
     work = subprocess.Popen(words, stdin=theirs, stdout=theirs, stderr=theirs)
     os.close(theirs)
-    told, pressed = b"", False
+    told, pressed, asked, end = b"", False, False, time.monotonic() + 120.0
     while work.poll() is None:
         if select.select([ours], [], [], 0.05)[0]:
             try:
@@ -32,10 +32,11 @@ def test_keys_turn_winches_and_bars_are_shown(starfish: Path, port: list[str]) -
                 break
         if not pressed and b"tab: next" in told:
             os.write(ours, b"\tDDdd")
-            pressed, until = True, time.monotonic() + 0.8
-        if pressed and time.monotonic() > until:
+            pressed = True
+        there = re.search(rb"left  \[#+-+\] +7\.\d mm", told) or time.monotonic() > end
+        if pressed and there and not asked:
             os.write(ours, b"q")
-            until += 60.0
+            asked = True
     assert work.wait(60) == 0
     os.close(ours)
     text = told.decode()

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 Run = Callable[..., tuple[int, str, str]]
-PROGRAM = "from hydrostat.cli.main import main; main()"
+PROGRAM = "import hydrostat.cli.waiting as w; w.PATIENCE = 1e6; from hydrostat.cli.main import main; main()"
 
 
 def rows(out: Path) -> list[list[str]]:

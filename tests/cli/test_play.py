@@ -86,7 +86,7 @@ def test_on_a_terminal_one_line_is_updated(starfish: Path, wave: Path) -> None:
     assert told.count(b"\rsimulated: ") >= 3
 
 
-PROGRAM = "from hydrostat.cli.main import main; main()"
+PROGRAM = "import hydrostat.cli.waiting as w; w.PATIENCE = 1e6; from hydrostat.cli.main import main; main()"
 
 
 @pytest.mark.parametrize(

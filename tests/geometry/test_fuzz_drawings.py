@@ -39,7 +39,7 @@ def _good(name: str) -> bytes:
 
 def _fate(content: bytes, name: str) -> str:
     """What became of a file: the line it was refused with, empty if it gave an outline; never anything else."""
-    begin = time.perf_counter()
+    begin = time.process_time()
     try:
         found = read_outline(content, name=name, size=0.1)
         assert isinstance(found, Outline)
@@ -49,7 +49,7 @@ def _fate(content: bytes, name: str) -> str:
         assert line.startswith(f"{name}: ")
         assert "\n" not in line
         assert len(line) < 400
-    assert time.perf_counter() - begin < 10.0
+    assert time.process_time() - begin < 10.0
     return line
 
 

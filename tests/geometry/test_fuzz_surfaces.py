@@ -81,7 +81,7 @@ def _tried(read: Callable[[bytes], object], base: bytes, seed: int) -> int:
     for number in range(_EACH):
         random = np.random.default_rng([seed, number])
         content = _WAYS[number % len(_WAYS)](base, random)
-        start, message = time.perf_counter(), ""
+        start, message = time.process_time(), ""
         try:
             read(content)
             good += 1
@@ -89,7 +89,7 @@ def _tried(read: Callable[[bytes], object], base: bytes, seed: int) -> int:
             message = str(error)
         assert "\n" not in message
         assert len(message) < 400
-        assert time.perf_counter() - start < _MOST_SECONDS
+        assert time.process_time() - start < _MOST_SECONDS
     grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     assert grown < _MOST_MEGABYTES
     return good

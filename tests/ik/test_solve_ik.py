@@ -9,6 +9,7 @@ from robustness import example_folders
 from scipy.optimize import least_squares, minimize
 
 from hydrostat.errors import InputError
+from hydrostat.geometry.crossings import find_crossings
 from hydrostat.ik import InverseOptions, InverseReason, ReachedPose, solve_ik
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.marker_goal import MarkerGoal
@@ -212,7 +213,7 @@ def test_a_good_start_saves_solves() -> None:
 @pytest.mark.parametrize("folder", example_folders(), ids=lambda folder: folder.name)
 @pytest.mark.slow
 def test_all_poses_of_all_examples(folder, unchecked: None) -> None:
-    """They end at an optimum no worse than rest, at an equilibrium that can be solved for again."""
+    """They end at an optimum no worse than rest, at an equilibrium that can be solved for again and crosses nothing."""
     robot = load_robot(folder)
     simulation = Simulation(robot)
     places = {marker.name: np.array(marker.at) for marker in robot.markers}
@@ -223,6 +224,7 @@ def test_all_poses_of_all_examples(folder, unchecked: None) -> None:
         assert reached.optimality < 1e-4
         assert reached.rms_error <= rest * (1 + 1e-12)
         assert kept(simulation, reached)
+        assert not len(find_crossings(robot.body.mesh, reached.pose.nodes))
         again = simulation.solve(reached.pose.contractions, start=reached.pose)
         assert np.abs(again.nodes - reached.pose.nodes).max() < 1e-8 * size(simulation)
         assert np.abs(again.tensions - reached.pose.tensions).max() < 1e-6 * again.tensions.max(initial=1.0)

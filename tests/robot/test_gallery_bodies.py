@@ -12,7 +12,7 @@ from builders import gallery_robot
 
 import hydrostat as hs
 from hydrostat.geometry.crossings import find_crossings
-from hydrostat.robot import Mount, Robot, find_risks, gallery_folder, gallery_names
+from hydrostat.robot import Mount, Robot, find_risks, gallery_folder
 
 TOP = Path(__file__).parents[2]
 sys.path.append(str(TOP / "docs"))
@@ -102,14 +102,6 @@ def test_no_pose_touches(name: str) -> None:
         pose = felt.solve({winch: 1e-3 * length for winch, length in play.contractions.items()})
         assert hs.touches(felt, pose) == ()
         assert not len(find_crossings(felt.robot.body.mesh, pose.nodes))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", gallery_names())
-def test_no_reached_pose_passes_through_itself(name: str) -> None:
-    simulation = hs.Simulation(robot(name))
-    for pose in simulation.robot.poses.values():
-        assert not len(find_crossings(simulation.robot.body.mesh, hs.solve_ik(simulation, pose).pose.nodes))
 
 
 @pytest.mark.parametrize("name", gallery.SHEETS)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -26,6 +27,7 @@ OUTSIDE_ALL = [name for name, text in gallery_texts().items() if text["winch"][0
 OUTSIDE = ["caging_gripper", "cupping_hand", "fish_tail", "octopus_arm", "tongue", "trunk"]
 
 
+@cache
 def base_of(
     name: str, motor: Motor = MOTORS[0], bed: tuple[float, float, float] = BED
 ) -> tuple[BasePlate, tuple[WinchUnit, ...]]:
