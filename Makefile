@@ -5,6 +5,8 @@ BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
+# Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
+test quick: export PYTHONDONTWRITEBYTECODE =
 
 .PHONY: help demo studio test quick check lint lint-js fix bench pictures clean
 
