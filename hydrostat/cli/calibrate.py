@@ -36,7 +36,8 @@ def calibrate(
 
     One motor after the other lets its cable out, takes it up at low current until it feels a pull, and measures that
     place twice. The body must be free to move and hold nothing. What is found is saved after each winch, in motors.toml
-    beside robot.toml; nothing is written into motors. Ctrl-C stops the motors; what was found until then is kept.
+    beside robot.toml, of emulated motors in motors_emulated.toml; nothing is written into motors. Ctrl-C stops the
+    motors; what was found until then is kept.
 
     The first time motors 1, 2, ... are on the winches in their order; edit motors.toml where they are not.
 
@@ -55,8 +56,9 @@ def calibrate(
     if not loaded.winches:
         raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
     chosen = _chosen(spools, loaded)
-    new = not (folder / control.CALIBRATION).exists()
-    calibration = control.usual_calibration(loaded) if new else control.read_calibration(folder, loaded)
+    file = control.EMULATED_CALIBRATION if port == control.EMULATED else control.CALIBRATION
+    new = not (folder / file).exists()
+    calibration = control.usual_calibration(loaded) if new else control.read_calibration(folder, loaded, name=file)
     kind = port.partition(":")[0]
     with patiently(f"{kind}: finding out what each winch should feel ..."):
         model = control.winch_pulls(loaded)
@@ -71,11 +73,11 @@ def calibrate(
     with one_interrupt(f"{kind}: stopped", signals=(signal.SIGINT, signal.SIGTERM)):
         bus = control.open_bus(port, loaded, truth, tensions)
         try:
-            found, constants = _take_up(kind, bus, folder, calibration, model)
-            curves = _measure(bus, folder, loaded, chosen, truth if port == control.EMULATED else None)
+            found, constants = _take_up(kind, bus, folder / file, calibration, model)
+            curves = _measure(bus, folder / file, loaded, chosen, truth if port == control.EMULATED else None)
         finally:
             bus.close()
-    _tell(kind, folder, loaded, found, model, constants, curves)
+    _tell(kind, folder / file, loaded, found, model, constants, curves)
 
 
 def _chosen(spools: str, robot: "Robot") -> list[int]:
@@ -89,7 +91,7 @@ def _chosen(spools: str, robot: "Robot") -> list[int]:
 
 
 def _take_up(
-    kind: str, bus: "Bus", folder: Path, calibration: "Calibration", model: "Sequence[WinchPull]"
+    kind: str, bus: "Bus", file: Path, calibration: "Calibration", model: "Sequence[WinchPull]"
 ) -> "tuple[tuple[TakenUp, ...], Vector]":
     """What is found on each winch, saved as soon as it is, and the constants of the motors."""
     import numpy as np
@@ -102,7 +104,7 @@ def _take_up(
 
     def save(taken: "TakenUp") -> None:
         before, known[taken.motor.winch] = known[taken.motor.winch], taken.motor
-        control.write_calibration(folder, control.Calibration(tuple(known.values())))
+        control.write_calibration(file.parent, control.Calibration(tuple(known.values())), name=file.name)
         words = f"{1e3 * taken.slack:.1f} mm taken up, measured {1e3 * taken.apart:.2f} mm apart"
         if before.zero is not None:
             words += f"; {1e3 * abs(before.contraction(taken.motor.zero or 0.0)):.1f} mm from where it was last time"
@@ -114,14 +116,14 @@ def _take_up(
 
 
 def _measure(
-    bus: "Bus", folder: Path, robot: "Robot", chosen: "Sequence[int]", truth: "Calibration | None"
+    bus: "Bus", file: Path, robot: "Robot", chosen: "Sequence[int]", truth: "Calibration | None"
 ) -> "list[SpoolCurve]":
     """Curves of the chosen spools, each saved as soon as it is known; emulated ones have a truth for the ruler."""
     from hydrostat import control
 
     if not chosen:
         return []
-    calibration, curves = control.read_calibration(folder, robot), list["SpoolCurve"]()
+    calibration, curves = control.read_calibration(file.parent, robot, name=file.name), list["SpoolCurve"]()
     link = control.BusLink(bus, robot.winches, calibration)
     link.identify()
     for place in chosen:
@@ -141,7 +143,7 @@ def _measure(
         motors = [*calibration.motors]
         motors[place] = curves[-1].motor
         calibration = control.Calibration(tuple(motors))
-        control.write_calibration(folder, calibration)
+        control.write_calibration(file.parent, calibration, name=file.name)
         print(
             f"{bus.kind}: {motor.winch}: radius {1e3 * curves[-1].motor.radius:.2f} mm at its zero; at most "
             f"{1e3 * curves[-1].more:+.1f} mm beside what was thought; readings {1e3 * curves[-1].scatter:.2f} mm "
@@ -169,7 +171,7 @@ def _asked(name: str) -> float:
 
 def _tell(
     kind: str,
-    folder: Path,
+    file: Path,
     robot: "Robot",
     found: "Sequence[TakenUp]",
     model: "Sequence[WinchPull]",
@@ -177,7 +179,6 @@ def _tell(
     curves: "Sequence[SpoolCurve]",
 ) -> None:
     """Compare with the model, in words and on a page."""
-    from hydrostat import control
     from hydrostat.plot.calibration_page import reach, write_calibration_page
 
     notes = []
@@ -189,7 +190,7 @@ def _tell(
                 f"{taken.motor.winch} feels {felt:.0f} N/m where the simulation has {wanted:.0f} N/m: "
                 "look whether motor, cable and material are those of robot.toml"
             )
-    page = write_calibration_page(robot, found, model, constants, notes, folder / PAGE, curves)
+    page = write_calibration_page(robot, found, model, constants, notes, file.parent / PAGE, curves)
     for note in notes:
         print(f"{kind}: note: {note}")
-    print(f"{kind}: saved {folder / control.CALIBRATION}; open {page} to see what was felt")
+    print(f"{kind}: saved {file}; open {page} to see what was felt")

@@ -60,6 +60,7 @@ def print_poses(network: "Network", seconds: float) -> None:
 
     from hydrostat.design import craft_of, rest_error
     from hydrostat.geometry import find_crossings
+    from hydrostat.ik import left_free
     from hydrostat.robot import face_words
     from hydrostat.units import counted
 
@@ -73,6 +74,8 @@ def print_poses(network: "Network", seconds: float) -> None:
     Console(markup=False).print(table)
     for reached in network.reached:
         if words := str(find_crossings(robot.body.mesh, reached.pose.nodes)):
+            print(f"{reached.wanted.name}: {words}")
+        if words := left_free(reached):
             print(f"{reached.wanted.name}: {words}")
     print(
         f"rms error: {1e3 * rest_error(network):.2f} mm at rest -> {1e3 * network.rms_error:.2f} mm reached in the "

@@ -5,8 +5,10 @@ from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
 from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
 from hydrostat.control.calibration import (
     CALIBRATION,
+    EMULATED_CALIBRATION,
     Calibration,
     WinchMotor,
+    emulated_calibration,
     read_calibration,
     usual_calibration,
     write_calibration,
@@ -30,6 +32,7 @@ from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_ta
 __all__ = [
     "CALIBRATION",
     "EMULATED",
+    "EMULATED_CALIBRATION",
     "FASTEST",
     "SILENCE",
     "Ails",
@@ -64,6 +67,7 @@ __all__ = [
     "WinchPull",
     "arm_motors",
     "check_port",
+    "emulated_calibration",
     "fit_spool",
     "layered",
     "measure_spool",

@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.control.bus_link import BusLink
-from hydrostat.control.calibration import CALIBRATION, read_calibration, usual_calibration
+from hydrostat.control.calibration import emulated_calibration, read_calibration
 from hydrostat.control.guard import TensionGuard
 from hydrostat.control.motors import Motors
 from hydrostat.control.open_bus import EMULATED, open_bus
@@ -40,10 +40,8 @@ def arm_motors(
         InputError: no such port or calibration.
         HydrostatError: a motor is silent, or wrong.
     """
-    if port == EMULATED and not (folder / CALIBRATION).exists():
-        calibration = usual_calibration(robot).known()
-    else:
-        calibration = read_calibration(folder, robot)
+    found = emulated_calibration if port == EMULATED else read_calibration
+    calibration = found(folder, robot)
     bus = open_bus(port, robot, calibration, pulls)
     link = BusLink(bus, robot.winches, calibration, log=log)
     try:

@@ -14,6 +14,8 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot, replace_file
 
 CALIBRATION = "motors.toml"
+EMULATED_CALIBRATION = "motors_emulated.toml"
+"""What emulated motors were found to be: kept apart, or trying it out would replace what was measured on real ones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,15 +152,27 @@ def usual_calibration(robot: Robot) -> Calibration:
     return Calibration(tuple(WinchMotor(winch=each.name, number=n, radius=each.spool_radius) for n, each in winches))
 
 
-def read_calibration(folder: Path, robot: Robot) -> Calibration:
-    """The motors of a robot folder (InputError: no motors.toml, or a wrong one, with the line of what is wrong)."""
+def emulated_calibration(folder: Path | None, robot: Robot) -> Calibration:
+    """Motors that are not there: as they were calibrated, or as motors.toml has them; without either they stand at 0.
+
+    Raises:
+        InputError: a file that is wrong.
+    """
+    for name in (EMULATED_CALIBRATION, CALIBRATION):
+        if folder is not None and (folder / name).exists():
+            return read_calibration(folder, robot, name=name)
+    return usual_calibration(robot).known()
+
+
+def read_calibration(folder: Path, robot: Robot, *, name: str = CALIBRATION) -> Calibration:
+    """The motors of a robot folder (InputError: no such file, or a wrong one, with the line of what is wrong)."""
     import tomllib
 
-    file = folder / CALIBRATION
+    file = folder / name
     try:
         table = tomllib.loads(file.read_text("utf-8"))
     except FileNotFoundError:
-        raise InputError(f"{folder} has no {CALIBRATION}; `hydrostat calibrate` makes it") from None
+        raise InputError(f"{folder} has no {name}; `hydrostat calibrate` makes it") from None
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{file}: {error}") from None
     entries = table.get("motor")
@@ -170,8 +184,8 @@ def read_calibration(folder: Path, robot: Robot) -> Calibration:
     return Calibration(tuple(by_name[winch.name] for winch in robot.winches))
 
 
-def write_calibration(folder: Path, calibration: Calibration) -> Path:
-    """Write motors.toml beside robot.toml, whole or not at all; returns its path."""
+def write_calibration(folder: Path, calibration: Calibration, *, name: str = CALIBRATION) -> Path:
+    """Write the motors of a robot beside its robot.toml, whole or not at all; returns the path."""
     lines = ["# Which motor turns which winch. Made by hydrostat calibrate; zero and curve are of this one robot.\n"]
     for spool in calibration.motors:
         lines += ["\n[[motor]]\n", f'winch = "{spool.winch}"\n', f"number = {spool.number}\n"]
@@ -188,7 +202,7 @@ def write_calibration(folder: Path, calibration: Calibration) -> Path:
             lines.append(f"board = {spool.board}\n")
         if spool.counts is not None:
             lines.append(f"counts = {float(spool.counts)!r}  # of the encoder in a turn of the spool\n")
-    return replace_file(folder / CALIBRATION, "".join(lines).encode())
+    return replace_file(folder / name, "".join(lines).encode())
 
 
 _KEYS: dict[str, tuple[type, ...]] = {

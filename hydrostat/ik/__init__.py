@@ -1,5 +1,6 @@
 """Which contractions reach a pose."""
 
+from hydrostat.ik.left_free import left_free
 from hydrostat.ik.limits import Limits
 from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, begin_robot, new_robot
 from hydrostat.ik.objectives.centre_goal import CentreGoal
@@ -51,6 +52,7 @@ __all__ = [
     "begin_robot",
     "drawn_pose",
     "find_reach",
+    "left_free",
     "moves_at",
     "new_robot",
     "posture_at",

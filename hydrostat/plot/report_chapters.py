@@ -8,7 +8,7 @@ from hydrostat.design.craft import craft_of, sewing_minutes
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, TreeTrace
 from hydrostat.design.score_card import rest_error
 from hydrostat.drawing.svg import Html, tag
-from hydrostat.ik import ReachedPose, find_reach
+from hydrostat.ik import ReachedPose, find_reach, left_free
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
 from hydrostat.plot.reach_figure import draw_reach
@@ -72,7 +72,10 @@ def body_part(robot: Robot) -> Html:
 
 def target_chapter(robot: Robot, poses: Iterable[Pose]) -> Chapter:
     """What each pose asks of the markers."""
-    words = "Each pose names targets for markers: a cross is a target, and a marker without an arrow should stay."
+    words = (
+        "Each pose names targets for markers: a cross is a target; a marker with a cross and no arrow should stay, "
+        "and one that is not drawn may go anywhere."
+    )
     pictures = []
     for index, pose in enumerate(poses):
         figure = draw_target(robot.with_network((), ()), pose, title="", width=NARROW)
@@ -107,7 +110,7 @@ REACHED = (  # head and words of the chapter on the poses
 
 
 def reached_part(robot: Robot, reached: ReachedPose, index: int, *notes: Html) -> Html:
-    """A pose as the winches reach it, beside tables of markers, winches and cables, and notes below them."""
+    """A pose as the winches reach it, beside tables of markers, winches and cables; below them what is to be minded."""
     figure = draw_reached(robot, reached, title="", width=NARROW)
     note = f": {MILLIMETRES * reached.rms_error:.2f} mm rms; {reached.reason}"
     tables = {
@@ -117,7 +120,9 @@ def reached_part(robot: Robot, reached: ReachedPose, index: int, *notes: Html) -
     }
     numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
     shown = picture(figure, f"reached-{index}", reached.wanted.name, note)
-    return tag("div", shown, tag("div", *numbers, *notes), class_="pose")
+    minded = filter(None, (*reached.pose.notes, left_free(reached)))
+    told = [tag("div", tag("b", "Mind: "), words, class_="note") for words in minded]
+    return tag("div", shown, tag("div", *numbers, *told, *notes), class_="pose")
 
 
 def reach_chapters(network: Network) -> list[Chapter]:

@@ -26,7 +26,10 @@ def commented_text(robot: Robot, source: str) -> str:
         "[[winch]]": "# A winch takes in up to `travel` of its cables' length, and lets out up to `release`.",
         "[[cable]]": "# A cable runs from its winch, the first point, to its stopper, the last.",
         "[[marker]]": "# Markers are points whose way is followed. Add one wherever the robot should reach something.",
-        "[[pose]]": "# A pose says where markers should go. `hydrostat design` finds cables for it.",
+        "[[pose]]": (
+            "# A pose says where markers should go. `hydrostat design` finds cables for it.\n"
+            "# What it does not name may go anywhere: name markers that shall stay, too, where they are."
+        ),
     }
     lines, told = [], set()
     for line in robot_text(robot).splitlines():
@@ -34,7 +37,7 @@ def commented_text(robot: Robot, source: str) -> str:
             told.add(line)
             if line == "[[marker]]" and "[[winch]]" not in told:
                 lines += _NO_WINCH.splitlines()
-            lines.append(notes[line])
+            lines += notes[line].splitlines()
         lines.append(line)
     return head + "\n".join(lines) + "\n"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrostat.control import layered, read_calibration, usual_calibration
+from hydrostat.control import CALIBRATION, EMULATED_CALIBRATION, layered, read_calibration, usual_calibration
 from hydrostat.robot import load_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -27,7 +27,8 @@ def test_emulated_motors_are_calibrated_and_saved(run: Run, copy: Path) -> None:
     assert all(line.startswith("emulated: ") for line in lines)
     assert sum("measured" in line for line in lines) == 3
     assert not any("note:" in line for line in lines)
-    motors = read_calibration(copy, load_robot(copy)).motors
+    motors = read_calibration(copy, load_robot(copy), name=EMULATED_CALIBRATION).motors
+    assert not (copy / CALIBRATION).exists(), "what was measured on real motors is another file"
     assert [motor.zero for motor in motors] == pytest.approx([0.0] * 3, abs=5e-4 / 0.006)
     page = (copy / "calibration.html").read_text("utf-8")
     assert "Nothing stands out." in page

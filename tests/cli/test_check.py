@@ -99,7 +99,7 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(check: Check,
         save_robot(replace(robot, face=face), tmp_path / face)
         lines = check(tmp_path / face)
         (place,) = (number for number, line in enumerate(lines) if line.startswith("cables: "))
-        assert re.match(r"to build its network: \d+ holes, .* USD with 1 motor", lines[place + 1])
+        assert re.match(r"to build its network: \d+ holes, .* USD for 1 motor, power and cables", lines[place + 1])
         out = re.match(r"once filled: markers come up to ([\d.]+) mm out of the plane", lines[place + 2])
         assert out is not None
         found[lines[place].removeprefix("cables: ")] = float(out[1])

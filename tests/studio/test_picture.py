@@ -11,8 +11,8 @@ from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.geometry.anchors import locate
 from hydrostat.robot import Robot
 from hydrostat.studio.view.picture import Picture, opened, packet
-from hydrostat.studio.view.robot_things import robot_things, target_things, winch_bars
-from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Look, rest_shape
+from hydrostat.studio.view.robot_things import DETAIL, robot_things, target_things, winch_bars
+from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Look, Stroke, rest_shape
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -128,3 +128,20 @@ def test_winches_have_the_marks_of_the_kit() -> None:
     assert {bar.winch: bar.mark for bar in winch_bars(robot, rest_shape(robot), 20.0)} == marks
     many = [replace(robot.winches[0], name=f"winch_{number}") for number in range(16)]
     assert len(set(winch_colours(many).values())) == 16
+
+
+def test_eyes_are_shown_and_go_along_with_the_body() -> None:
+    """Oracle: a body that is moved as a whole."""
+    robot = gallery_robot("starfish")
+    eye = 0.01 * np.stack([np.cos(np.linspace(0, 6, 5000)), np.sin(np.linspace(0, 6, 5000))], axis=1)
+    robot = replace(robot, body=replace(robot.body, marks=(eye,)))
+    things = robot_things(robot)
+    picture = Picture(robot, things, 1)
+    head, _ = opened(picture.scene())
+    (drawn,) = [thing for thing in head["things"] if thing.get("stroke") == Stroke.DRAWN]
+    assert drawn["count"] <= 2 * DETAIL, "no drawing makes each frame heavy"
+    by = np.array([0.02, -0.01])
+    _, arrays = opened(picture.frame(robot.body.mesh.nodes + by, things, {}))
+    points = arrays["points"][drawn["first"] : drawn["first"] + drawn["count"], :2]
+    assert np.linalg.norm(points - by, axis=1) == pytest.approx(0.01, abs=1e-6)
+    assert np.allclose(points[[0, -1]], eye[[0, -1]] + by, atol=1e-6)

@@ -17,9 +17,9 @@ from hydrostat.control import (
     LinkState,
     TensionGuard,
     check_port,
+    emulated_calibration,
     open_bus,
     read_calibration,
-    usual_calibration,
 )
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
@@ -104,8 +104,8 @@ class Hardware:
         robot, folder = self._document.robot, self._document.folder
         if not robot.winches:
             raise InputError("this robot has no winches; press Design to find some")
-        if port == EMULATED and (folder is None or not (folder / CALIBRATION).exists()):
-            calibration = usual_calibration(robot).known()
+        if port == EMULATED:
+            calibration = emulated_calibration(folder, robot)
         elif folder is None:
             raise InputError(
                 f"save the robot first: {CALIBRATION} beside robot.toml says which motor turns which winch"

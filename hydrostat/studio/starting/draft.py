@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
 from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
 from hydrostat.robot import Material, find_material
@@ -54,6 +55,7 @@ class BodyDraft:
     nodes: int | None = None  # about so many; not used with an element size
     thickness: float | None = None  # of a flat body [m]
     inflate: float | None = None  # thickness to blow a drawing up to [m]
+    inner: Inner = Inner.HOLES  # what shapes within a drawing are
     reading: PhotoReading = PhotoReading()  # of a picture
 
     def __post_init__(self) -> None:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.rings import DRAWN_HINT
 from hydrostat.robot import Robot, SurfaceSketch, sketch_robot, sketch_surface
 from hydrostat.robot.sketch_space import inflated
 from hydrostat.studio.jobs import Report
@@ -36,6 +37,8 @@ def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
         raise InputError(f"{draft.file}: needs more than {MOST_MEMORY >> 30} GB of memory; simplify it") from None
     except RecursionError:
         raise InputError(f"{draft.file}: is nested too deep; export it again") from None
+    except InputError as error:
+        raise InputError(_here(str(error))) from None
 
 
 def _sketch(report: Report, draft: BodyDraft) -> Sketch:
@@ -49,8 +52,8 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         if draft.is_picture and not draft.reading.plain:
             read_drawing(content, name=file, size=size)  # a file that is no picture is told as such
             file, content = f"{PurePath(file).stem}.png", cut_out(content, draft.reading)
-        drawing = read_drawing(content, name=file, size=size)
-        lines = drawing.notes
+        drawing = read_drawing(content, name=file, size=size, inner=draft.inner)
+        lines = tuple(map(_here, drawing.notes))
         if draft.is_picture:
             behind = backdrop(draft.content, content, name=file, size=size)
         if draft.inflate is None:
@@ -74,6 +77,11 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
     return replace(made, robot=with_first_pose(sketch.robot))
 
 
+def _here(words: str) -> str:
+    """What is told of a drawing, with what a person presses here."""
+    return words.replace(f"say {DRAWN_HINT}", 'choose "Drawn on it" for shapes within')
+
+
 def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:
     report.progress("meshing", 0, 3)
     return sketch_robot(
@@ -85,6 +93,7 @@ def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:
         thickness=draft.thickness,
         nodes=draft.nodes,
         material=draft.material,
+        inner=draft.inner,
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.drawing.palette import INK, MUTED, winch_colours
+from hydrostat.drawing.palette import DARK, INK, MUTED, winch_colours
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Cable, Mount, Point, Robot, obstacle_lines
 from hydrostat.simulation import as_posed
@@ -16,6 +16,7 @@ from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, S
 MARKER = "#2b2833"
 PIN = "#5f5a68"
 FORETOLD = "#d9730d"
+DETAIL = 1500  # so many points of what is drawn on a body are sent with each frame at most, or near that
 
 
 def robot_things(
@@ -27,7 +28,7 @@ def robot_things(
     chosen: Collection[str] = (),
     vias: bool = False,
 ) -> list[Thing]:
-    """What a robot has, in the order obstacles, pins, cables, winches, markers; chosen keys are selected.
+    """What a robot has, in the order obstacles, drawn lines, pins, cables, winches, markers; chosen keys are selected.
 
     Keys are "pin:0", "cable:0", "via:0:2" (cable and point), "winch:left" and "marker:tip". Tensions of the cables [N]
     are drawn on a scale up to the largest, obstacles that move where they are carried to [m]. With `vias` each point of
@@ -38,6 +39,7 @@ def robot_things(
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, colour=MUTED, loose=-1)
         for line in obstacle_lines(as_posed(robot, carried))
     ]
+    things += _drawn(robot)
     held = pinned_points(robot)
     if len(held):
         things.append(Cloud(name="pins", points=held, colour=PIN))
@@ -69,6 +71,18 @@ def robot_things(
         dot = Dot(key=key, at=marker.at, look=Look.MARKER, colour=MARKER, label=marker.name, chosen=key in chosen)
         things.append(dot)
     return things
+
+
+def _drawn(robot: Robot) -> list[Thing]:
+    """Eyes, a mouth: lines that are drawn on the body, with fewer points where they have very many."""
+    marks = robot.body.marks
+    step = max(1, sum(map(len, marks)) // DETAIL)
+    return [
+        Strand(
+            points=tuple(map(tuple, [*line[:-1:step].tolist(), line[-1].tolist()])), stroke=Stroke.DRAWN, colour=DARK
+        )
+        for line in marks
+    ]
 
 
 def target_things(

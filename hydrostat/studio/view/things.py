@@ -66,6 +66,7 @@ class Stroke(StrEnum):
     MISS = "miss"
     RIM = "rim"
     PATH = "path"
+    DRAWN = "drawn"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,6 +8,7 @@ import pytest
 from PIL import Image, ImageDraw, ImageFilter
 
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.files.outline_file import read_outline
 from hydrostat.robot import Robot
 from hydrostat.studio.session import Session
@@ -119,3 +120,17 @@ def test_a_photograph_that_was_corrected_by_hand_becomes_the_robot() -> None:
     robot: Robot = sketch_of(corrected).robot
     assert np.ptp(robot.body.mesh.nodes, axis=0) == pytest.approx([0.1, 0.06], rel=1e-3)
     session.close()
+
+
+def test_shapes_within_a_drawing_are_holes_or_drawn_on_it() -> None:
+    """Oracle: the outline of the body; words tell what to press, nothing of a command line."""
+    page = b'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">%s</svg>'
+    eye = new_draft("eye.svg", page % b'<rect width="100" height="60"/><circle cx="20" cy="20" r="6"/>')
+    pierced = sketch_of(eye)
+    assert pierced.robot.body.outline is not None
+    assert len(pierced.robot.body.outline.holes) == 1
+    assert any('choose "Drawn on it"' in line and "--" not in line for line in pierced.lines)
+    drawn = sketch_of(replace(eye, inner=Inner.DRAWN))
+    assert drawn.robot.body.outline is not None
+    assert len(drawn.robot.body.outline.holes) == 0
+    assert len(drawn.robot.body.marks) == 1

@@ -7,6 +7,7 @@ from typing import Any
 from nicegui import ui
 
 from hydrostat.errors import HydrostatError
+from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.robot import MATERIALS
 from hydrostat.studio.face.dialogs import may_leave
 from hydrostat.studio.face.messages import sent_number
@@ -185,6 +186,10 @@ class _Fields:
             self._size = _Length("Longest side", lambda value: self._ask(size=value), "size")
             self._kind = ui.toggle({"flat": "Flat", "round": "Blown up"}).props(spread).classes("w-full")
             self._thick = _Length("Thickness", self._thicken, "thickness")
+            with ui.element("div").classes("w-full") as self._within:
+                ui.label("Shapes within the outline").classes("start-small")
+                self._inner = ui.toggle({Inner.HOLES: "Holes", Inner.DRAWN: "Drawn on it"}).props(spread)
+                self._inner.classes("w-full").props('data-testid="inner"').tooltip("An eye is drawn on the body.")
             self._fine = ui.toggle(list(LEVELS)).props(spread).classes("w-full")
             self._element = _Length(
                 "Element size", lambda value: self._ask(element_size=value, nodes=None), "element-size"
@@ -197,6 +202,7 @@ class _Fields:
             self._make.props('unelevated no-caps size=md data-testid="make-robot"')
         self._name.on_value_change(lambda event: self._ask(name=str(event.value or "")))
         self._kind.on_value_change(lambda event: self._choose(str(event.value)))
+        self._inner.on("update:model-value", lambda: self._ask(inner=Inner(str(self._inner.value))))
         self._fine.on("update:model-value", lambda: self._refine(str(self._fine.value)))
         self._material.on_value_change(lambda event: self._ask(material=str(event.value)))
 
@@ -207,6 +213,8 @@ class _Fields:
         self._kind.set_visibility(draft.is_drawing)
         self._kind.set_value("flat" if flat else "round")
         self._thick.set_visibility(draft.is_drawing)
+        self._within.set_visibility(draft.is_drawing)
+        self._inner.set_value(draft.inner)
         self._material.set_value(draft.material)
         self._words.set_text(material_words(MATERIALS[draft.material]))
         self._enable()

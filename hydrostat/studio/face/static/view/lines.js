@@ -19,6 +19,7 @@ function strips(view, line) {
   if (line.stroke === "sheath") return [[0, 10, mix(line.colour, palette.light, 0.68)]];
   if (line.stroke === "miss") return [[5, 1.8, colour, [5, 4]]];
   if (line.stroke === "rim") return [[3, 2.2, colour]];
+  if (line.stroke === "drawn") return [[0, 2, line.colour]];
   if (line.stroke === "path") return [[3, 2, colour, line.chosen ? null : [7, 4]]];
   const look = cableLook(view, line);
   const layers = [[2, look.width + 2.6, palette.light], [4, look.width, look.colour]];
