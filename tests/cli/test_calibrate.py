@@ -2,12 +2,22 @@
 
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hydrostat.control import CALIBRATION, EMULATED_CALIBRATION, layered, read_calibration, usual_calibration
+from hydrostat.control import (
+    CALIBRATION,
+    EMULATED_CALIBRATION,
+    Calibration,
+    emulated_calibration,
+    layered,
+    read_calibration,
+    usual_calibration,
+    write_calibration,
+)
 from hydrostat.robot import load_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -61,3 +71,18 @@ def test_ports_that_are_none_leave_nothing(run: Run, copy: Path, port: str, told
     assert told in err
     assert err.count("\n") == 1
     assert sorted(copy.iterdir()) == before
+
+
+def test_emulated_motors_keep_a_file_of_their_own(copy: Path) -> None:
+    """Oracle: zeros that are written, one for motors that were measured, one for those that are not there."""
+    robot = load_robot(copy)
+    usual = usual_calibration(robot)
+
+    def at(zero: float) -> Calibration:
+        return Calibration(tuple(replace(motor, zero=zero) for motor in usual.motors))
+
+    assert emulated_calibration(None, robot) == emulated_calibration(copy, robot) == at(0.0)
+    write_calibration(copy, at(1.0))
+    assert emulated_calibration(copy, robot) == at(1.0), "as real ones, until they are calibrated themselves"
+    write_calibration(copy, at(2.0), name=EMULATED_CALIBRATION)
+    assert (read_calibration(copy, robot), emulated_calibration(copy, robot)) == (at(1.0), at(2.0))

@@ -189,7 +189,7 @@ class _Fields:
             with ui.element("div").classes("w-full") as self._within:
                 ui.label("Shapes within the outline").classes("start-small")
                 self._inner = ui.toggle({Inner.HOLES: "Holes", Inner.DRAWN: "Drawn on it"}).props(spread)
-                self._inner.classes("w-full").props('data-testid="inner"').tooltip("An eye is drawn on the body.")
+                self._inner.classes("w-full").props('data-testid="inner"')
             self._fine = ui.toggle(list(LEVELS)).props(spread).classes("w-full")
             self._element = _Length(
                 "Element size", lambda value: self._ask(element_size=value, nodes=None), "element-size"
