@@ -3,6 +3,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# Benchmarks that need programs which the tests do not: other simulators, PyTorch and stable-baselines3.
+NEED_MORE := peers floor hysteresis walk_learned
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 # Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
@@ -17,7 +19,7 @@ help:
 	@echo "make quick     each test with its first case, without the slow ones: a minute or two"
 	@echo "make check     lint, types, import layers, tests"
 	@echo "make fix       format and repair what ruff can repair"
-	@echo "make bench     timings and studies; prints tables (peers.py and floor.py, which need more, run by hand)"
+	@echo "make bench     timings and studies; prints tables ($(NEED_MORE), which need more, run by hand)"
 	@echo "make pictures  draw the pictures of the README again"
 
 demo: $(VENV)/demo.installed
@@ -51,7 +53,7 @@ fix: $(VENV)/check.installed
 	$(BIN)/ruff format .
 
 bench: $(VENV)/test.installed
-	for file in $(filter-out benchmarks/peers.py benchmarks/floor.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
+	for file in $(filter-out $(NEED_MORE:%=benchmarks/%.py),$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
 
 pictures: $(VENV)/demo.installed
 	$(BIN)/python docs/pictures.py

@@ -98,6 +98,8 @@ def train(
         raise InputError(f"--method {method}: there are: {', '.join(methods)}")
     if exact and model is None:
         raise InputError("--exact is for networks, with --model; without, every episode is exact")
+    if at and not thing:
+        raise InputError("--at is for an --object; a thing of the robot's own is where robot.toml has it")
     made, loaded = training.task_of(task).env, read_robot(robot)
     asked = training.TaskOptions(
         markers=marker or (),

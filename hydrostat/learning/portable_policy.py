@@ -30,7 +30,8 @@ class PortablePolicy:
         """The action for an observation, numbers from -1 to 1.
 
         Raises:
-            InputError: something is not seen, or has another number of coordinates than it was learned with.
+            InputError: something is not seen, or has another number of coordinates than it was learned with; or its
+                network, which may be a stranger's, answers with no number.
         """
         parts = []
         for name, count in self.facts["sees"]:
@@ -38,7 +39,10 @@ class PortablePolicy:
             if part.shape != (count,) or not np.isfinite(part).all():
                 raise InputError(f"the policy must see {count} finite numbers of {name}")
             parts.append(part)
-        return np.tanh(self.network.values(np.concatenate(parts))[0])
+        action = np.tanh(self.network.values(np.concatenate(parts))[0])
+        if not np.isfinite(action).all():
+            raise InputError("the policy answers with no number: it was never learned; use another")
+        return action
 
     def save(self, path: Path) -> Path:
         """Write it whole, or not at all (InputError: it cannot be written)."""

@@ -2,9 +2,11 @@
 
 import html
 import io
+import sys
 import webbrowser
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from threading import Condition, Thread
+from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
@@ -35,8 +37,8 @@ class LivePage:
     def address(self) -> str:
         """Where it is; from now on it can be opened there."""
         if self._server is None:
-            self._server = ThreadingHTTPServer(("127.0.0.1", 0), _handler(self))
-            self._server.daemon_threads = True
+            self._ended = False
+            self._server = _Server(("127.0.0.1", 0), _handler(self))
             Thread(target=self._server.serve_forever, daemon=True).start()
         return f"http://127.0.0.1:{self._server.server_port}/"
 
@@ -81,6 +83,16 @@ class LivePage:
             return self._file
 
 
+class _Server(ThreadingHTTPServer):
+    """Says nothing of a browser that has gone while it waited; that is no fault of the run."""
+
+    daemon_threads = True
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
+
+
 def _handler(live: LivePage) -> type[BaseHTTPRequestHandler]:
     """What answers requests to a page."""
 
@@ -93,7 +105,7 @@ def _handler(live: LivePage) -> type[BaseHTTPRequestHandler]:
                 self._send(200, live.page(), "text/html; charset=utf-8")
             elif asked.path == "/picture":
                 after = parse_qs(asked.query).get("after", ["0"])[0]
-                found = live.newer(int(after) if after.isascii() and after.isdigit() else 0)
+                found = live.newer(int(after) if after.isascii() and after.isdigit() and len(after) < 16 else 0)
                 number, file = found or (0, b"")
                 self._send(200 if found else 204, file, "image/png", number)
             else:

@@ -177,14 +177,13 @@ class Jobs:
         """Have the work done when its turn comes; in a thread of its own."""
         slots, error = self.slots, "stopped"
         if slots is None or slots.wait(self._given_up, self._in_line):
-            with self._lock:
-                if self._worker is None and not self._given_up():
-                    self._worker = self._ready()
-                worker = self._worker
-            if worker is not None:
-                error = self._work(worker, (function, arguments), on_part, on_done)
-            if slots is not None:
-                slots.give()
+            try:
+                error = self._turn((function, arguments), on_part, on_done)
+            except OSError as failed:
+                error = f"this machine begins no process for it ({failed}); try again in a moment"
+            finally:
+                if slots is not None:
+                    slots.give()
         with self._lock:
             self._worker = None
         self._note(running=False, error=error)
@@ -197,6 +196,19 @@ class Jobs:
     def _in_line(self, before: int) -> None:
         """Tell that work of other rooms comes first."""
         self._note(stage=f"waiting for other rooms, {before} before this one" if before else "waiting for other rooms")
+
+    def _turn(
+        self,
+        work: tuple[Callable[..., Any], tuple[Any, ...]],
+        on_part: Callable[[Any], None],
+        on_done: Callable[[Any], None],
+    ) -> str:
+        """Do the work, unless it was given up meanwhile; why it failed, or "" (OSError: no process can be begun)."""
+        with self._lock:
+            if self._worker is None and not self._given_up():
+                self._worker = self._ready()
+            worker = self._worker
+        return "stopped" if worker is None else self._work(worker, work, on_part, on_done)
 
     def _work(
         self,

@@ -63,16 +63,14 @@ class GoalEnv(gymnasium.Env, ABC):
 
     Attributes:
         cost: what `equilibria` counts, in a word or two.
-        measure: in which distances are told, and how many of these their unit is.
-        measure: in which distances are told, and how many of it their unit is.
+        measure: the word for what distances are told in, and how many of it are in their unit.
         portable: whether a policy needs to see nothing but the goal.
         robot: that does it.
-        unit: of places in observations [m].
+        unit: of what observations count in: a size of the body [m], half a turn [rad].
         steps: actions in an episode (T).
-        tolerance: largest distance that is a success [m].
+        tolerance: largest distance that is a success, in the unit of the task, [m] or [rad].
         taken_steps: actions of this episode until now.
         uncounted: of `equilibria`, those that judged a policy: no cost of learning it.
-        cost: what `equilibria` counts, in a word or two.
         moves: of this episode until now: times [s] with contractions [m], as motors would be told them.
     """
 

@@ -20,7 +20,7 @@ def policy_of(trained: Any, env: GoalEnv, *, task: str, error: float) -> Portabl
         trained: what was learned.
         env: in which it was.
         task: name of the task.
-        error: mean distance that it leaves on unseen goals [m].
+        error: mean distance that it leaves on unseen goals, in the unit of the task.
     """
     seen = env.observation_space.spaces  # type: ignore[attr-defined]
     sees = [[name, int(np.prod(space.shape))] for name, space in seen.items()]

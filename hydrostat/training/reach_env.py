@@ -123,7 +123,7 @@ class ReachEnv(GoalEnv):
         self.world.begin()
         given = dict(options or {})
         while "goal" not in given:
-            given = {**given, **(self.drawn(self.np_random) or {})}
+            given = {**(self.drawn(self.np_random) or {}), **given}
         goal = np.asarray(given["goal"], dtype=float).ravel()
         if goal.shape != (len(self.seen),):
             raise InputError(f"a goal has {len(self.seen)} coordinates, not {goal.size}")

@@ -84,12 +84,15 @@ def certified_distances(
     """Distances [cm] that the same goals are left with by the networks' search and exact steps from there, (1, goals).
 
     What inverse kinematics does with the equilibria that the networks have learned from; it moves each winch alone. No
-    more steps are taken than needed for 0.01 mm.
+    more steps are taken than needed for 0.01 mm. NaN where a goal, or the answer to it, is no equilibrium.
     """
     names, dim = model.facts["markers"], model.facts["dim"]
     _, goal = _exact_goals(simulation, trials, goals)
     found = []
     for row in goal[0].double().numpy():
+        if not np.isfinite(row).all():
+            found.append(np.nan)
+            continue
         target = dict(zip(names, map(tuple, (0.01 * row).reshape(-1, dim).tolist()), strict=True))
         answer = certify(simulation, model, model.solve(target), steps=steps, enough=1e-5)
         found.append(np.nan if answer.certified is None else 100.0 * answer.error)

@@ -66,7 +66,7 @@ class ThingEnv(GoalEnv):
     where the thing is. Observations hold the contractions (from -1 to 1), where the middle of the thing is, counted
     from its usual place in sizes of the body, how far it has turned in half turns, and the share of the keyframes that
     are done. Cost is counted in time steps of the exact simulator that were asked for, `ThingPhysics.beats` for each
-    keyframe.
+    keyframe and as many to open the hand.
 
     Attributes:
         options: of the task.

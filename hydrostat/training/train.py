@@ -71,14 +71,14 @@ class TrainOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class CurvePoint:
-    """How good a policy was.
+    """How good a policy was; distances are in the unit of the task, [m], or [rad] to twist.
 
     Attributes:
         steps: actions by then.
-        equilibria: of the exact simulator by then, drawn goals included.
-        mean: distance of the markers from goals that were not learned from [m].
-        median: [m].
-        worst: the largest [m].
+        equilibria: of the exact simulator by then, drawn goals included; time steps in tasks that count these.
+        mean: distance left from goals that were not learned from.
+        median: of these distances.
+        worst: the largest.
         success: share of the goals within the tolerance.
     """
 
@@ -103,7 +103,7 @@ def held_out_goals(env: GoalEnv, count: int, seed: int) -> list[dict[str, Any]]:
 
 
 def judge(env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goals: Sequence[Mapping[str, Any]]) -> Vector:
-    """Distance at the end of an episode for each goal [m]; equilibria are counted nowhere."""
+    """Distance at the end of an episode for each goal, in the unit of the task; equilibria are counted nowhere."""
     before, left = env.equilibria, []
     for goal in goals:
         observation, info = env.reset(options=goal)

@@ -44,7 +44,8 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
         (["--task", "twist"], "has nothing to move: give an [[obstacle]] a mass, or give a thing (--object)"),
         (["--task", "push", "--object", "egg:3mm"], 'there is no thing "egg:3mm"'),
         (["--task", "push", "--object", "sphere:9mm", "--at", "3"], "--at 3: the body has 2 axes"),
-        (["--model", "none.model"], "none.model: cannot be read"),
+        (["--task", "push", "--at", "3,4"], "--at is for an --object"),
+        (["--model", "none.model"], "none.model: there is no such file; name a file that hydrostat learn wrote"),
     ],
 )
 def test_what_is_wrong_is_told(run: Run, starfish: Path, tmp_path: Path, words: list, told: str) -> None:

@@ -32,6 +32,17 @@ def test_actions_are_sums_squashed(tmp_path: Path) -> None:
         kept.act({"goal": np.array([0.5])})
 
 
+def test_numbers_that_overflow_are_no_action() -> None:
+    """A sound file may hold any numbers: of some the layers make inf - inf."""
+    wide = np.array([[3e38, 3e38], [3e38, 3e38]])
+    network = Perceptrons.of_layers(
+        [(wide[:, :1], np.zeros(2)), *9 * [(wide, np.zeros(2))], (wide - 6e38 * np.eye(2), np.zeros(2))]
+    )
+    forged = PortablePolicy(facts={"sees": [["goal", 1]], "actions": 2}, network=network)
+    with pytest.raises(InputError, match="the policy answers with no number"):
+        forged.act({"goal": np.array([1.0])})
+
+
 @pytest.mark.parametrize(
     "change",
     [

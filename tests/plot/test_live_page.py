@@ -2,6 +2,9 @@
 
 import http.client
 import io
+import socket
+import struct
+import threading
 from collections.abc import Iterator
 from copy import deepcopy
 from threading import Timer
@@ -62,7 +65,38 @@ def test_only_this_machine_by_its_own_name_is_answered(page: LivePage) -> None:
         assert ask(page, "/picture?after=0", host)[0] == 403
     assert ask(page, "/../secret")[0] == 404
     assert ask(page, "/", method="POST")[0] == 501
-    assert ask(page, "/picture?after=nothing")[0] == 200
+    for number in ("nothing", 5000 * "9"):
+        assert ask(page, f"/picture?after={number}")[0] == 200
+
+
+def test_a_browser_that_has_gone_is_no_news(page: LivePage, capfd: pytest.CaptureFixture[str]) -> None:
+    """Oracle: what is written on the terminal; each that went while it waited left a traceback there."""
+    where = page.address.removeprefix("http://").rstrip("/")
+    gone = http.client.HTTPConnection(where)
+    gone.request("GET", "/picture?after=0")
+    gone.sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # it ends at once
+    gone.close()
+    threads = [each for each in threading.enumerate() if "process_request_thread" in each.name]
+    page.show(np.zeros((2, 2, 3), np.uint8))
+    assert ask(page, "/picture?after=0")[0] == 200
+    for each in threads:
+        each.join(60.0)
+    assert capfd.readouterr().err == ""
+
+
+def test_a_page_that_was_ended_can_be_opened_again(page: LivePage) -> None:
+    """Oracle: who asks for news waits for them; it was answered at once that there are none."""
+    page.show(np.zeros((2, 2, 3), np.uint8))
+    assert page.address
+    page.close()
+    assert page.address
+    found: list[tuple[int, bytes] | None] = []
+    asks = threading.Thread(target=lambda: found.append(page.newer(1)))
+    asks.start()
+    asks.join(0.2)
+    page.show(np.ones((2, 2, 3), np.uint8))
+    asks.join(60.0)
+    assert [each and each[0] for each in found] == [2]
 
 
 def test_the_first_picture_opens_the_browser_and_a_copy_is_another_page(monkeypatch: pytest.MonkeyPatch) -> None:

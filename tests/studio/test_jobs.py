@@ -17,7 +17,7 @@ import pytest
 
 from hydrostat.errors import InputError
 from hydrostat.studio.bell import Bell, Topic
-from hydrostat.studio.jobs import Jobs, JobState
+from hydrostat.studio.jobs import Jobs, JobState, Slots
 
 PATIENCE = 60.0
 
@@ -79,6 +79,17 @@ def test_parts_come_in_order_then_the_result(heard: Heard) -> None:
     assert heard.parts == [1, 2, 3]
     assert heard.results == [6]
     assert (state.error, state.stage, state.done, state.total) == ("", "Adding", 3, 3)
+
+
+def test_a_slot_is_given_back_where_no_process_can_be_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse() -> None:
+        raise BlockingIOError("too many processes")
+
+    slots = Slots(1)
+    heard = Heard(Jobs(Bell(), slots))
+    monkeypatch.setattr("hydrostat.studio.jobs._Worker.started", refuse)
+    assert "begins no process for it (too many processes)" in heard.begin(works.add, 1).end().error
+    assert slots.wait(lambda: True, print)
 
 
 def test_nothing_is_running_at_first(jobs: Jobs) -> None:

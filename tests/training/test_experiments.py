@@ -16,6 +16,7 @@ from hydrostat.learning.learned_model import LearnedModel  # noqa: E402
 from hydrostat.robot import Robot  # noqa: E402
 from hydrostat.simulation import Simulation  # noqa: E402
 from hydrostat.training import experiments as room  # noqa: E402
+from hydrostat.training import run_experiment as runs  # noqa: E402
 from hydrostat.training.experiments import EXPERIMENTS, Ran, error, final, least, speed  # noqa: E402
 from hydrostat.training.hindsight_ddpg import Epochs  # noqa: E402
 from hydrostat.training.run_experiment import certified_distances, exact_distances, finger_pairs  # noqa: E402
@@ -74,6 +75,17 @@ def test_certified_answers_reach_the_same_goals(model: LearnedModel, robot: Robo
     rough, sure = (certified_distances(simulation, trials, model, 3, steps=steps) for steps in (0, 3))
     assert sure.shape == (1, 3)
     assert 10.0 * sure.max() < 0.05 < 10.0 * rough.max()  # [mm]
+
+
+def test_a_goal_that_is_no_equilibrium_is_lost_and_the_others_count(
+    model: LearnedModel, robot: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simulation, trials = Simulation(robot), NetworkReach(model, groups=finger_pairs(model))
+    begun, goal = runs._exact_goals(simulation, trials, 2)
+    goal[0, 0] = torch.nan
+    monkeypatch.setattr(runs, "_exact_goals", lambda *_: (begun, goal))
+    found = certified_distances(simulation, trials, model, 2, steps=0)
+    assert np.isnan(found).tolist() == [[True, False]]
 
 
 def test_measures_by_hand() -> None:

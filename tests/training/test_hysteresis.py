@@ -66,6 +66,12 @@ def test_the_way_counts_and_all_of_it_is_counted(robot: Robot) -> None:
     assert np.abs(ends[0] - ends[1]).max() > 2e-3
 
 
+def test_a_start_that_is_given_stays_where_only_the_goal_is_drawn(robot: Robot) -> None:
+    env, start = HysteresisEnv(robot), 0.8 * robot.winches[0].travel
+    env.reset(seed=0, options={"start": [start]})
+    assert env.moves[0][1] == pytest.approx([start])
+
+
 def test_without_friction_it_is_reach(robot: Robot) -> None:
     goal = {"goal": ReachEnv(robot).rest + 0.01}
     left = [
