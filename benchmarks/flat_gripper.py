@@ -23,10 +23,11 @@ def flat_gripper(cells: int = 8, disc: Obstacle = DISC) -> Robot:
     turns the disc. A finger is a strip of so many cells by two.
     """
     strip, nodes, elements, pins, cables = _strip(cells), [], [], [], []
+    room = (disc.radius or 0.0) + ROOM + 0.5 * BREADTH
     for number, name in enumerate(("right", "top", "left", "bottom")):
         out = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]][number], dtype=float)
         along = np.array([out[1], -out[0]])  # from where it is held to its tip: the disc turns the other way round
-        corner = (DISC.radius + ROOM + 0.5 * BREADTH) * out + (BEYOND - LENGTH) * along
+        corner = room * out + (BEYOND - LENGTH) * along
         placed = corner + strip.nodes[:, :1] * along - strip.nodes[:, 1:] * out
         elements.append(strip.elements[:, ::-1] + len(strip.nodes) * number)
         nodes.append(placed)

@@ -80,6 +80,8 @@ def playing(keys: np.ndarray) -> Act:
 
 def judged(name: str, env: TwistEnv, act: Act, draws: Sequence[dict[str, Any]], cost: int) -> None:
     """Print a row of a table."""
+    if not draws:
+        return
     began = time.process_time()
     rows = np.array([cycle(env, act, draw) for draw in draws])
     turned, moved = rows.T
@@ -95,16 +97,18 @@ def judged(name: str, env: TwistEnv, act: Act, draws: Sequence[dict[str, Any]], 
     )
 
 
-def searched(env: TwistEnv, keys: np.ndarray, budget: int, seed: int = 0) -> tuple[np.ndarray, int]:
-    """Keyframes [mm] by the cross-entropy method on draws of its own, and the time steps that they cost."""
+def searched(
+    env: TwistEnv, keys: np.ndarray, budget: int, *, many: int, each: int, seed: int = 0
+) -> tuple[np.ndarray, int]:
+    """Keyframes [mm] by the cross-entropy method, so many at a time on so many draws each, and what they cost."""
     random, before = np.random.default_rng([seed, 5]), env.equilibria
     middle, spread = keys.astype(float), np.full(keys.shape, SPREAD)
     while True:
-        begun, draws = env.equilibria, held_out_goals(env, 2, int(random.integers(1_000_000)))
-        tried = np.clip(middle + spread * random.normal(size=(10, *keys.shape)), 0.0, 1e3 * TRAVEL)
+        begun, draws = env.equilibria, held_out_goals(env, each, int(random.integers(1_000_000)))
+        tried = np.clip(middle + spread * random.normal(size=(many, *keys.shape)), 0.0, 1e3 * TRAVEL)
         tried[0] = middle
-        turned = [np.mean([cycle(env, playing(each), draw)[0] for draw in draws]) for each in tried]
-        best = tried[np.argsort(turned)[::-1][:3]]
+        turned = [np.mean([cycle(env, playing(one), draw)[0] for draw in draws]) for one in tried]
+        best = tried[np.argsort(turned)[::-1][: max(2, many // 3)]]
         middle, spread = best.mean(axis=0), 0.5 * spread + 0.5 * np.maximum(best.std(axis=0), 0.5)
         cost = env.equilibria - before
         print(
@@ -133,8 +137,9 @@ def main() -> None:
     """Print a table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--body", choices=KEYS, default="flat")
-    parser.add_argument("--draws", type=int, default=60, help="that none has seen")
+    parser.add_argument("--draws", type=int, default=60, help="that none has seen; 0: nothing is judged")
     parser.add_argument("--search", type=int, default=4000, help="time steps; 0: none")
+    parser.add_argument("--many", type=int, nargs=2, default=(10, 2), help="tries at a time, draws of each")
     parser.add_argument("--learn", type=int, default=0, help="actions; 0: none")
     parser.add_argument("--keys", type=float, nargs="+", help="of the policy and the search [mm], a and b in turn")
     parser.add_argument("--out", type=Path, default=Path("build/twist"))
@@ -150,7 +155,7 @@ def main() -> None:
     judged("keyframes as given" if given.keys else "keyframes by hand", env, playing(keys), draws, 0)
     cost = 0
     if given.search:
-        keys, cost = searched(env, keys, given.search)
+        keys, cost = searched(env, keys, given.search, many=given.many[0], each=given.many[1])
         judged("keyframes that were searched", env, playing(keys), draws, cost)
     if given.learn:
         act, more = learned(given.body, keys, given.learn, given.out)
