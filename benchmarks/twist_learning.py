@@ -123,8 +123,8 @@ def learned(body: str, keys: np.ndarray, actions: int, out: Path) -> tuple[Act, 
     """A policy that adds to keyframes, and the time steps that it cost."""
     env, judge_in = made(body, AddedTo), made(body, AddedTo)
     AddedTo.keys = keys
-    few = held_out_goals(judge_in, 4, 1)
-    options = TrainOptions(steps=actions, every=max(1, actions // 4), layers=(64, 64), rate=1e-3)
+    few = held_out_goals(judge_in, 2, 1)
+    options = TrainOptions(steps=actions, every=max(1, actions // 2), layers=(64, 64), rate=1e-3)
     model, curve = train(env, few, options, out, judge_in=judge_in, tell=lambda point: print(f"  {point}", flush=True))
 
     def act(seen: dict[str, np.ndarray], number: int) -> np.ndarray:
