@@ -140,6 +140,14 @@ def test_each_episode_has_a_thing_of_its_own(robot: Robot) -> None:
     assert env.world.thing != first
     env.reset(seed=5)
     assert env.world.thing == first
+    other = TwistEnv(robot, options=env.options)
+    env.step(np.array([0.0, 0.0]))
+    other.go_on(env.kept())
+    assert other.kept() == env.kept()
+    assert (other.equilibria, other.uncounted) == (1, 0)
+    for each in (env, other):
+        each.reset()
+    assert other.world.thing == env.world.thing != first
 
 
 def test_a_gripper_turns_its_disc() -> None:
