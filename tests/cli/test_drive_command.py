@@ -37,7 +37,7 @@ def test_keys_turn_winches_and_bars_are_shown(starfish: Path, port: list[str]) -
         if pressed and there and not asked:
             os.write(ours, b"q")
             asked = True
-    assert work.wait(60) == 0
+    assert work.wait(300) == 0
     os.close(ours)
     text = told.decode()
     last = re.findall(r"ended; the motors hold at right (-?[0-9.]+) mm, left ([0-9.]+) mm", text)

@@ -121,7 +121,7 @@ def test_a_command_that_is_interrupted_says_so(begun: Callable[[], object], tmp_
     assert "moving" in work.stderr.readline()
     time.sleep(0.1)
     work.send_signal(signal.SIGINT)
-    printed, beside = work.communicate(timeout=60)
+    printed, beside = work.communicate(timeout=300)
     assert work.returncode == 130
     assert beside == "hydrostat: stopped; what had been written is whole\n"
     assert "Wrote" not in printed

@@ -59,7 +59,7 @@ def test_a_person_presses_enter_and_sees_the_pose(starfish: Path, tmp_path: Path
     assert work.stdout is not None
     os.set_blocking(work.stdout.fileno(), False)
     hand = json.dumps({"landmarks": [[0.1 * n, 0.01 * n * n, 0.0] for n in range(21)]}).encode()
-    told, entered, end = b"", 0, time.monotonic() + 60.0
+    told, entered, end = b"", 0, time.monotonic() + 300.0
     while work.poll() is None and time.monotonic() < end:
         sender.sendto(hand, ("127.0.0.1", 9377))
         told += work.stdout.read() or b""
@@ -70,7 +70,7 @@ def test_a_person_presses_enter_and_sees_the_pose(starfish: Path, tmp_path: Path
         time.sleep(0.02)
     told += work.stdout.read() or b""
     sender.close()
-    assert work.wait(10) == 0
+    assert work.wait(300) == 0
     work.stdin.close()
     work.stdout.close()
     assert b"2 poses are too few to learn of" in told

@@ -99,7 +99,7 @@ def test_on_a_terminal_one_line_is_updated(starfish: Path, wave: Path) -> None:
         except OSError:  # the other end is closed
             break
     os.close(ours)
-    assert work.wait(60) == 0
+    assert work.wait(300) == 0
     words = [line.strip() for line in re.split(r"[\r\n]+", told.decode()) if line.strip()]
     assert all(line.startswith("simulated: ") for line in words)
     assert words[-1].startswith("simulated: played")
@@ -126,7 +126,7 @@ def test_a_signal_stops_the_motors(starfish: Path, wave: Path, number: int, code
     assert "round 1:" in lines[1]
     time.sleep(0.3)
     work.send_signal(number)
-    printed, beside = work.communicate(timeout=60)
+    printed, beside = work.communicate(timeout=300)
     assert (work.returncode, beside) == (code, "")
     last = printed.splitlines()[-1]
     assert re.fullmatch(r"simulated: stopped at \d\.\d\d s; the motors hold at right 0\.0 mm, left .*", last)

@@ -1,4 +1,7 @@
-"""A program that turns motors on a serial line until something happens to it; `test_processes` starts it."""
+"""A program that turns motors on a serial line until something happens to it; `test_processes` starts it.
+
+Its last argument says how many times slower than the clock its time passes, as that of the servos does then.
+"""
 
 import itertools
 import signal
@@ -8,18 +11,35 @@ from typing import cast
 
 import numpy as np
 import serial
-from emulation import NAMES, RADIUS
 
-from hydrostat.cli.waiting import one_interrupt
-from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, Port, WinchMotor, play
-from hydrostat.errors import HydrostatError
-from hydrostat.robot import Winch
-from hydrostat.simulation import Profile
+SLOW = float(sys.argv[-1])
+_monotonic, _gettime, _sleep = time.monotonic, time.clock_gettime, time.sleep
+time.monotonic = lambda: _monotonic() / SLOW
+time.clock_gettime = lambda which: _gettime(which) / SLOW
+time.sleep = lambda seconds: _sleep(seconds * SLOW)
+
+from emulation import NAMES, RADIUS  # noqa: E402
+
+from hydrostat.cli.waiting import one_interrupt  # noqa: E402
+from hydrostat.control import (  # noqa: E402
+    BusLink,
+    Calibration,
+    DynamixelBus,
+    FeetechBus,
+    Motors,
+    Player,
+    Port,
+    WinchMotor,
+    play,
+)
+from hydrostat.errors import HydrostatError  # noqa: E402
+from hydrostat.robot import Winch  # noqa: E402
+from hydrostat.simulation import Profile  # noqa: E402
 
 
 def main(path: str, kind: str, event: str) -> None:
     """Play one slow pull, and say how it ended."""
-    line = cast(Port, serial.Serial(path, 57600, timeout=0.02, write_timeout=0.1))
+    line = cast(Port, serial.Serial(path, 57600, timeout=0.02 * SLOW, write_timeout=0.1 * SLOW))
     bus = (FeetechBus if kind == "feetech" else DynamixelBus)(line, [1, 2, 3], answer=0.1)
     winches = [Winch(name=name, at=(0.0, 0.0), spool_radius=RADIUS, travel=0.04, release=0.002) for name in NAMES]
     spools = [WinchMotor(winch=name, number=n, zero=1.0, radius=RADIUS, current=0.3) for n, name in enumerate(NAMES, 1)]
@@ -51,6 +71,6 @@ def main(path: str, kind: str, event: str) -> None:
 
 if __name__ == "__main__":
     try:
-        main(*sys.argv[1:])
+        main(*sys.argv[1:4])
     except HydrostatError as error:
         sys.exit(str(error))

@@ -90,7 +90,7 @@ def test_a_film_is_made_in_another_process(starfish: Robot) -> None:
     document.bell.listen(lambda topic: ended.set() if not jobs.running else None)
     recorder = Recorder(document, jobs)
     recorder.start(FilmKind.GLB)
-    assert ended.wait(60)
+    assert ended.wait(300)
     assert jobs.state is not None
     assert jobs.state.error == ""
     assert recorder.latest is not None

@@ -53,7 +53,7 @@ def running(*arguments: str, state: Path, cache: Path) -> Iterator[str]:
             yield line.split("at ", 1)[1].split()[0]
         finally:
             process.terminate()
-            process.wait(timeout=20)
+            process.wait(timeout=300)
 
 
 @pytest.fixture(scope="session")
