@@ -11,8 +11,9 @@ the robot without friction. Ways:
                 model's Jacobian at the present contractions towards what is still missing
     policy      learned by trial with hindsight (SAC) in the robot with friction, from as many actions as --learn says
 
-Columns: actions of an episode; interquartile mean of what is left at its end in mm, the 90 % quantile, share within
-5 mm, equilibria of the robot with friction that were used to learn, CPU time. A row of policies is the mean over seeds.
+Columns: actions of an episode; interquartile mean of what is left at its end in mm, over goals, or of policies over
+the means of seeds; the mean, which alone compares both; the 90 % quantile, share within 5 mm, equilibria of the robot
+with friction that each policy used to learn, CPU time.
 """
 
 import argparse
