@@ -10,6 +10,7 @@ from hydrostat.ik.objectives.marker_goal import MarkerGoal
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Term, moves_at, posture_at
 from hydrostat.ik.objectives.point_goal import PointGoal
 from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
+from hydrostat.ik.outlook import Outlook
 from hydrostat.ik.reach import FoundReach, find_reach
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.problem import InverseOptions
@@ -38,6 +39,7 @@ __all__ = [
     "Moves",
     "NewRobotWish",
     "Objective",
+    "Outlook",
     "PathKind",
     "PointGoal",
     "Posture",

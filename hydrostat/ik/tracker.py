@@ -11,7 +11,8 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Limits, bounds
-from hydrostat.ik.objectives.objective import Objective
+from hydrostat.ik.objectives.objective import Objective, Term
+from hydrostat.ik.outlook import Outlook
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, StepRules, ends, reached_pose, try_step
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
@@ -96,7 +97,9 @@ class Tracker:
         self._simulation, self._objectives = simulation, tuple(objectives)
         self._limits, self._options = limits or Limits(), options or InverseOptions()
         self._radius, self._accuracy = self._options.largest_step, accuracy
-        self._state = None
+        self._state: InverseState | None = None
+        self._targets: Mapping[str, Point] = {}  # of the last update
+        self._terms: Sequence[Term] = ()
         self.pose = start or simulation.rest
 
     def update(
@@ -130,8 +133,33 @@ class Tracker:
             reason = InverseReason.TOO_TIGHT
         found = Descent(state=state, reason=reason, iterations=1, weight=weight)
         reached = reached_pose(search, found, target)
-        self.pose = reached.pose
+        self.pose, self._targets = reached.pose, {} if target is None else dict(target.targets)
+        self._terms = search.problem.terms
         return reached
+
+    def outlook(self, *, seconds: float) -> Outlook:
+        """What contractions do about the pose of the last update, to first order.
+
+        It answers targets that have just moved at once, while the next update is still to be done.
+
+        Args:
+            seconds: what a limit on the rate allows in so much time.
+
+        Raises:
+            InputError: there was no update with targets yet.
+        """
+        if self._state is None or not self._targets:
+            raise InputError("an outlook needs an update with targets before it")
+        problem = self._problem(seconds, self._terms)
+        return Outlook(
+            model=problem.linear(self._state),
+            targets=self._targets,
+            worth=problem.worth,
+            size=problem.size,
+            effort=self._options.effort,
+            radius=self._radius,
+            spread=problem.bounds.spread,
+        )
 
     def _foretold(self, search: InverseSearch, state: InverseState, target: Pose | None) -> InverseState | None:
         """Where the model leads; None if it was asked for this before, or that is not better."""
@@ -166,15 +194,15 @@ class Tracker:
         return state, InverseReason.STUCK if found else InverseReason.NO_EQUILIBRIUM
 
     def _search(self, target: Pose | None, seconds: float, objectives: Sequence[Objective]) -> InverseSearch:
+        terms = [wish.on(self._simulation) for wish in wishes(target, [*self._objectives, *objectives])]
+        return InverseSearch(self._problem(seconds, terms), accuracy=self._accuracy, origin=self.pose)
+
+    def _problem(self, seconds: float, terms: Sequence[Term]) -> InverseProblem:
+        """Terms within what can be reached from the pose in time [s]."""
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
         allowed = bounds(self._simulation, limits)
         allowed = allowed.near(allowed.channel(self.pose.contractions))
-        terms = [wish.on(self._simulation) for wish in wishes(target, [*self._objectives, *objectives])]
-        return InverseSearch(
-            InverseProblem(self._simulation, terms, allowed, self._options, ready=True),
-            accuracy=self._accuracy,
-            origin=self.pose,
-        )
+        return InverseProblem(self._simulation, terms, allowed, self._options, ready=True)
 
 
 def _reached(problem: InverseProblem, state: InverseState) -> bool:

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -16,14 +16,14 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import winch_tensions
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import InverseReason, Limits, Tracker
+from hydrostat.ik import InverseReason, Limits, Outlook, Tracker
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
 
 YIELDS = 5
 """So much nicer than whoever tells the motors is who solves poses, where cores are few (Unix)."""
 LONGEST = 0.1
-"""Time since the update before counts as so long at most [s]: nobody catches up in a leap."""
+"""Time since the update before counts as so long at most [s]: nobody catches up in a leap. An outlook looks as far."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -36,6 +36,8 @@ class PoseOnWay:
         pulls: of the cables of each winch together [N].
         markers: their coordinates, one after the other [m].
         error: largest distance of a marker from its target [m].
+        outlook: what contractions do about it, to first order, where markers have targets.
+        done: whether there is nothing more to do for its job.
     """
 
     job: int
@@ -43,6 +45,8 @@ class PoseOnWay:
     pulls: Vector
     markers: Vector
     error: float = 0.0
+    outlook: Outlook | None = None
+    done: bool = True
 
 
 class WinchPoses:
@@ -85,9 +89,9 @@ class FingertipPoses:
                 self._tracker = Tracker(self._simulation, limits=self._limits, start=start)
         self._done = number
         reached = self._tracker.update(targets, seconds=passed)
-        error = max(reached.errors.values())
-        found = _found(number, self._simulation.robot, reached.pose, error)
-        return found, reached.reason is InverseReason.ITERATION_LIMIT
+        more = reached.reason is InverseReason.ITERATION_LIMIT
+        told = {"error": max(reached.errors.values()), "outlook": self._tracker.outlook(seconds=LONGEST), "done": not more}
+        return replace(_found(number, self._simulation.robot, reached.pose), **told), more
 
 
 class PoseProcess:
@@ -181,11 +185,10 @@ def _serve(pipe: Connection, make: Callable, arguments: tuple) -> None:
             pipe.send(str(error) or type(error).__name__)
 
 
-def _found(job: int, robot: Robot, pose: SolvedPose, error: float = 0.0) -> PoseOnWay:
+def _found(job: int, robot: Robot, pose: SolvedPose) -> PoseOnWay:
     return PoseOnWay(
         job=job,
         contractions=pose.contractions,
         pulls=winch_tensions(robot, pose.tensions),
         markers=np.concatenate([np.zeros(0), *(np.asarray(place) for place in pose.markers.values())]),
-        error=error,
     )

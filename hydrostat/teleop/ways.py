@@ -9,6 +9,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import FASTEST, KnownPulls
 from hydrostat.errors import InputError
+from hydrostat.ik import Outlook
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.teleop.pose_process import FingertipPoses, PoseOnWay, PoseProcess, WinchPoses
@@ -100,8 +101,9 @@ class WinchWay(Way):
 class FingertipWay(Way):
     """Markers are what is moved: `Tracker` finds contractions, step by step, each of them a pose in equilibrium.
 
-    With a learned model its inverse network answers at once. What the simulator finds better from there, step by step,
-    is added to its answers from then on.
+    Targets do not wait for the step that is being solved: they are answered at once to first order about the newest
+    pose, within the limits, and the poses that follow mend the answer. With a learned model its inverse network answers;
+    what the simulator finds better from there, step by step, is added to its answers from then on.
     """
 
     def __init__(
@@ -122,6 +124,8 @@ class FingertipWay(Way):
         self._markers = np.concatenate([np.asarray(start.markers[name]) for name in self._names])
         self._more, self._jobs, self._hold = np.zeros(len(contractions)), 0, 0
         self._asked: Vector | None = None
+        self._targets: dict[str, tuple[float, ...]] = {}
+        self._outlook: Outlook | None = None
         self._answers: dict[int, Vector] = {}  # of the networks, by job
         self._lock = threading.Lock()
         if model is not None:
@@ -137,7 +141,9 @@ class FingertipWay(Way):
         targets = {name: tuple(row) for name, row in zip(self._names, rows, strict=True)}
         answer = None if self._model is None else self._model.solve(targets, search=False).contractions
         with self._lock:
-            self._jobs, self._asked, begin = self._jobs + 1, values.copy(), None
+            self._jobs, self._asked, self._targets, begin = self._jobs + 1, values.copy(), targets, None
+            if answer is None and self._outlook is not None:
+                self.contractions = self._outlook.towards(targets)
             if answer is not None:
                 self._answers[self._jobs], begin = answer, answer + self._more
                 self.contractions = begin
@@ -159,9 +165,12 @@ class FingertipWay(Way):
         self.known.put(found.contractions, found.pulls)
         self._markers = found.markers
         with self._lock:
+            self._outlook = found.outlook
             if found.job <= self._hold:  # of before motors held
                 return
             self.contractions = found.contractions
+            if self._model is None and found.outlook is not None and not (found.done and found.job == self._jobs):
+                self.contractions = found.outlook.towards(self._targets)
             if found.job in self._answers:
                 self._more = found.contractions - self._answers[found.job]
                 self.contractions = self._answers[self._jobs] + self._more

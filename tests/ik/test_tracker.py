@@ -1,5 +1,6 @@
 """Targets that move. Oracles: the equilibrium of the streamed contractions, the limits, solve_ik at the end."""
 
+import pickle
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -194,3 +195,20 @@ def test_where_a_model_leads_limits_hold() -> None:
 def test_a_model_of_another_robot_is_refused() -> None:
     with pytest.raises(InputError, match="another robot"):
         Tracker(Simulation(strip_robot()), model=Known(HIDDEN, robot="another"))
+
+
+def test_an_outlook_tells_the_step_that_the_next_update_takes() -> None:
+    """Oracle: that update, which begins at the same pose and finds the equilibrium at the end of the step."""
+    simulation = Simulation(box_robot())
+    limits = Limits(rate=0.05)
+    tracker, targets = Tracker(simulation, limits=limits), path(simulation, [0.012, 0.004], 12)
+    with pytest.raises(InputError, match="needs an update"):
+        tracker.outlook(seconds=INTERVAL)
+    for before, after in pairwise(targets):
+        tracker.update(before, seconds=INTERVAL)
+        outlook = pickle.loads(pickle.dumps(tracker.outlook(seconds=INTERVAL)))
+        told, here = outlook.towards(after), tracker.pose.contractions
+        assert np.abs(told - here).max() <= 0.05 * INTERVAL * (1 + 1e-9)
+        assert tracker.update(after, seconds=INTERVAL).pose.contractions == pytest.approx(told, abs=1e-9)
+    with pytest.raises(InputError, match="of the markers of the last update: "):
+        outlook.towards({"nose": (0.0, 0.0, 0.0)})

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import threading
 import time
 from collections.abc import Sequence
 from math import inf
@@ -139,6 +140,29 @@ def test_fingertips_come_to_their_targets(simulation: hs.Simulation) -> None:
     for name, place in hidden.markers.items():
         assert np.linalg.norm(found.markers[name] - place) < 2e-4
     assert "mm from its targets" in way.words
+
+
+def test_a_new_target_does_not_wait_for_the_pose_that_is_solved(simulation: hs.Simulation) -> None:
+    """Oracle: the simulation at what is answered while nothing at all is solved."""
+    rest, motors = simulation.rest.markers, motors_of(simulation)
+    way, names = FingertipWay(simulation, motors.places, rate=0.06), list(simulation.rest.markers)
+    begin = np.concatenate([np.asarray(rest[name]) for name in names])
+    goal = np.concatenate([np.asarray(simulation.solve({"left": 0.005}).markers[name]) for name in names])
+
+    def left(contractions: np.ndarray) -> float:
+        markers = simulation.solve(contractions).markers
+        return float(np.linalg.norm(np.concatenate([np.asarray(markers[name]) for name in names]) - goal))
+
+    way.news = threading.Event()
+    way.ask(begin)
+    assert way.news.wait(20.0)
+    os.kill(way._poses._process.pid, signal.SIGSTOP)
+    way.ask(goal)
+    answer = way.contractions
+    os.kill(way._poses._process.pid, signal.SIGCONT)
+    way.close()
+    assert left(answer) < 0.3 * left(motors.places)
+    assert np.abs(answer).max() <= 0.06 * 0.1 + 1e-9
 
 
 def test_what_fails_behind_is_told(simulation: hs.Simulation) -> None:

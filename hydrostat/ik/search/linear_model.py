@@ -1,5 +1,6 @@
 """`LinearModel`: what contractions do near a state, where cables may be slack."""
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -118,6 +119,12 @@ class LinearModel:
         after = aim - matrix @ step
         full[active] = scale * step
         return full, 0.5 * float(aim @ aim - after @ after)
+
+    def aimed(self, residual: Float[np.ndarray, " rows"]) -> "LinearModel":
+        """The same model of another residual there: one of other goals."""
+        other = copy(self)
+        other.residual = residual
+        return other
 
     def gradient(self, residual: Vector | None = None) -> Vector:
         """Slope of half the squares of the residual, or of another one, along each channel [m]."""

@@ -124,8 +124,8 @@ class InverseProblem:
         self.simulation, self.terms, self.bounds, self.options = simulation, tuple(terms), bounds, options
         size = robot.body.mesh.size
         self.reached = options.tolerance * size  # error [m] at which a goal counts as reached
-        self._worth = np.full(len(robot.cables), size / _full_tension(simulation))
-        self._size = size
+        self.size = size  # of the body [m]
+        self.worth = np.full(len(robot.cables), size / _full_tension(simulation))  # of a tension, at weight 1 [m/N]
         self._ready = ready
 
     def with_term(self, term: Term) -> "InverseProblem":
@@ -187,38 +187,12 @@ class InverseProblem:
 
     def step(self, state: InverseState, weight: float, radius: float, curvature: np.ndarray | None = None) -> ModelStep:
         """Where to go from a state: contractions of the channels [m], and what that promises."""
-        model = self._model(state)
-        step, promise = model.best(weight * self._worth, radius, curvature)
+        model = self.linear(state)
+        step, promise = model.best(weight * self.worth, radius, curvature)
         return ModelStep(model.applied(step), promise, model)
 
-    def slope(self, state: InverseState, weight: float) -> float:
-        """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
-        return self._model(state).slope(weight * self._worth)
-
-    def redundant(self, state: InverseState) -> bool:
-        """Whether some change of the contractions moves nothing that counts."""
-        model = self._model(state)
-        moves = (model.matrix * model.range)[:, model.active]
-        if not moves.size:
-            return False
-        values = np.linalg.svd(moves, compute_uv=False)
-        return moves.shape[0] < moves.shape[1] or bool(values[-1] < _IDLE * values[0])
-
-    def slopes(self, state: InverseState) -> Slopes:
-        """D residual / d contractions of the channels; slack ones as if they had just become taut."""
-        return self._model(state).matrix
-
-    def objective(self, state: InverseState, weight: float) -> float:
-        """Half the squares of residual and effort [m^2]."""
-        effort = weight * self._worth * state.posture.tensions
-        return 0.5 * float(state.residual @ state.residual + effort @ effort)
-
-    def weight(self, state: InverseState) -> float:
-        """Weight of the effort: a share of the error, for then it fades as fast as the search converges."""
-        error = float(np.sqrt(state.residual @ state.residual)) / self._size
-        return max(min(self.options.effort, _SHARE * error), _LEAST_WEIGHT)
-
-    def _model(self, state: InverseState) -> LinearModel:
+    def linear(self, state: InverseState) -> LinearModel:
+        """What contractions do near a state, to first order."""
         assert state.result.stiffness is not None
         places = channels(self.simulation.cables, state.posture, state.values, self.bounds)
         moves = slopes(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
@@ -228,6 +202,32 @@ class InverseProblem:
             matrix[:, loose] -= self._direct(state.posture)[:, loose]
         tensions = moves.tensions @ self.bounds.spread
         return LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
+
+    def slope(self, state: InverseState, weight: float) -> float:
+        """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
+        return self.linear(state).slope(weight * self.worth)
+
+    def redundant(self, state: InverseState) -> bool:
+        """Whether some change of the contractions moves nothing that counts."""
+        model = self.linear(state)
+        moves = (model.matrix * model.range)[:, model.active]
+        if not moves.size:
+            return False
+        values = np.linalg.svd(moves, compute_uv=False)
+        return moves.shape[0] < moves.shape[1] or bool(values[-1] < _IDLE * values[0])
+
+    def slopes(self, state: InverseState) -> Slopes:
+        """D residual / d contractions of the channels; slack ones as if they had just become taut."""
+        return self.linear(state).matrix
+
+    def objective(self, state: InverseState, weight: float) -> float:
+        """Half the squares of residual and effort [m^2]."""
+        effort = weight * self.worth * state.posture.tensions
+        return 0.5 * float(state.residual @ state.residual + effort @ effort)
+
+    def weight(self, state: InverseState) -> float:
+        """Weight of the effort: a share of the error, for then it fades as fast as the search converges."""
+        return effort_weight(state.residual, self.size, self.options.effort)
 
     def _rows(self, posture: Posture, moves: Moves) -> Slopes:
         rows = [np.zeros((0, len(self.bounds.channels))), *(term.slopes(posture, moves) for term in self.terms)]
@@ -247,6 +247,12 @@ class InverseProblem:
             return result.nodes
         gradient = self.simulation.forces(result.nodes, contractions)
         return result.nodes - result.stiffness.solve(gradient).reshape(result.nodes.shape)
+
+
+def effort_weight(residual: Rows, size: float, most: float) -> float:
+    """Weight of the effort where so much is left [m], of a body of a size [m]: at most `most`."""
+    error = float(np.sqrt(residual @ residual)) / size
+    return max(min(most, _SHARE * error), _LEAST_WEIGHT)
 
 
 _EDGE = 1e-9  # a channel this near to taut, in shares of its range, is at the edge of it
