@@ -8,6 +8,9 @@ a step, so that a new pose is asked for all the time. At moments of its choice t
 from then until a goal in a servo has gone by more than 0.5 mm of cable from where it was. Ways: a ridge map from
 sensors to contractions; one to fingertips, which `Tracker` follows; the same with a learned model, whose networks
 answer first. No glove and no motor of metal is here.
+
+On a computer that others use a core may stand still for tens of milliseconds whatever runs there. A process on each
+core that only sleeps tells when: moves in which a core stood still for more than 5 ms are told apart.
 """
 
 import argparse
@@ -24,6 +27,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import heartbeat
 import machine
 import numpy as np
 
@@ -61,12 +65,12 @@ class Told:
     """What the other end has seen.
 
     Attributes:
-        delays: from moves to goals [s].
+        moves: when the hand moved, and when a goal followed [s].
         missed: moves that no goal followed.
         stops: how often motors were stopped, as this computer was too busy.
     """
 
-    delays: list[float]
+    moves: list[tuple[float, float]]
     missed: int
     stops: int = 0
 
@@ -148,7 +152,7 @@ def other_end(pipe, low: np.ndarray, high: np.ndarray, poses: np.ndarray, baud: 
         moved = time.monotonic()
         while (now := time.monotonic()) - moved < 0.3:
             if radius * np.abs(chain.goals() - usual_goals).max() > GONE:
-                told.delays.append(now - moved)
+                told.moves.append((moved, now))
                 break
             time.sleep(5e-4)
         else:
@@ -226,8 +230,9 @@ def measure(robot: Robot, way: Way, known: HandMap, moves: int, baud: int) -> To
                 drive(motors, way, source, tell=hear)
             except KeyboardInterrupt:
                 pass
-            except HydrostatError:  # this machine did not let it run for longer than a watchdog waits
+            except HydrostatError as error:  # this machine did not let it run for longer than a watchdog waits
                 stops += 1
+                print(f"stopped: {error}", file=sys.stderr, flush=True)
                 again(link.arm)
     finally:
         close()
@@ -268,9 +273,16 @@ def main() -> None:
             way = FingertipWay(simulation, rest, model=model, rate=0.06)
         with suppress(AttributeError, OSError):
             os.setpriority(os.PRIO_PROCESS, way._poses._process.pid, -15)
+            if given.first:  # before other programs, after the one that tells motors
+                os.sched_setscheduler(way._poses._process.pid, os.SCHED_RR, os.sched_param(1))
+        hearts = heartbeat.Hearts(first=given.first)
         told = measure(robot, way, known, given.moves, given.baud)
-        shown = " | ".join(f"{1e3 * value:.1f}" for value in np.percentile(told.delays, [50, 90, 99]))
-        print(f"| {name} | {given.moves} | {told.missed} | {told.stops} | {shown} |", flush=True)
+        stood = hearts.stop()
+        ran = [move for move in told.moves if not heartbeat.overlap(stood, *move)]
+        for words, moves in ("all", told.moves), ("cores ran", ran):
+            delays = [1e3 * (seen - moved) for moved, seen in moves]
+            shown = " | ".join(f"{value:.1f}" for value in np.percentile(delays or [np.nan], [50, 90, 99]))
+            print(f"| {name} | {words}: {len(moves)} | {told.missed} | {told.stops} | {shown} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,8 @@ def drive(
         str,
         typer.Option(
             metavar="KIND",
-            help="keys, gamepad, midi:NAME@KNOB, osc:PORT, glove:/dev/ttyUSB0, glove:emulated or camera:PORT.",
+            help="keys, gamepad, midi:NAME@KNOB, osc:PORT, glove:/dev/ttyUSB0, glove:emulated, camera:FILE.task "
+            "or camera:PORT.",
         ),
     ] = "keys",
     port: Annotated[
@@ -45,6 +46,9 @@ def drive(
     known: Annotated[
         Path | None, typer.Option("--map", metavar="FILE", help="What hydrostat mimic has learned of a hand.")
     ] = None,
+    smoothing: Annotated[
+        float, typer.Option(metavar="HZ", help="A hand that rests is smoothed above this frequency; 0: not at all.")
+    ] = 1.5,
     seconds: Annotated[float, typer.Option(metavar="S", help="End after so long; 0: when you end it.")] = 0.0,
 ) -> None:
     """Turn winches by hand: keys, gamepad, MIDI knobs, OSC, a glove, a hand before a camera.
@@ -65,6 +69,7 @@ def drive(
         raise InputError("--model: finds contractions for fingertips; give --tips too")
     if not seconds >= 0:
         raise InputError(f"--seconds {seconds:g}: must not be negative")
+    smooth = teleop.Smoothing(least=smoothing) if smoothing else None
     loaded = read_robot(robot)
     networks, loaded = (None, loaded) if model is None else read_model(model, loaded)
     learned = None if known is None else teleop.HandMap.open(known)
@@ -73,7 +78,8 @@ def drive(
     asked: DriveSource | None = None
     motors: Motors | None = None
     try:
-        asked = teleop.open_source(source, way.channels, learned, teleop.Wearer(teleop.winch_channels(loaded)))
+        wearer = teleop.Wearer(teleop.winch_channels(loaded))
+        asked = teleop.open_source(source, way.channels, learned, wearer, smoothing=smooth)
         motors = _motors(folder_of(robot), loaded, port, way)
         shown = _Shown(kind, motors)
         _run(shown, f"{'fingertips' if tips else 'winches'} of {loaded.name} by {source}", way, asked, seconds)

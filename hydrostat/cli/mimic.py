@@ -25,7 +25,7 @@ TICK = 1 / 60  # motors are told again after so long [s]
 
 def mimic(
     robot: RobotFolder,
-    glove: Annotated[str, typer.Option(metavar="PORT", help="Of a glove; camera:PORT; or emulated.")],
+    glove: Annotated[str, typer.Option(metavar="PORT", help="Of a glove; camera:FILE.task; camera:PORT; or emulated.")],
     out: OutFolder,
     poses: Annotated[int, typer.Option(metavar="N", help="How many poses, with those that are there already.")] = 60,
     worn: Annotated[bool, typer.Option("--worn", help="The robot itself wears the glove.")] = False,

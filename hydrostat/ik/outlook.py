@@ -19,14 +19,15 @@ from hydrostat.robot import Point
 class Outlook:
     """What changes of the contractions do about a pose, to first order; small enough to be sent to another process.
 
-    It answers in a fraction of a millisecond, knows slack and taut cables, and keeps within limits and the radius that
-    the tracker trusts. Its answer is no solved pose: the next update of the tracker begins at the old one, and mends it.
+    It answers in half a millisecond, knows slack and taut cables, and keeps within limits and the radius that the
+    tracker trusts. Its answer is no solved pose: the next update of the tracker begins at the old one, and mends it.
 
     Attributes:
         model: linear, at the pose.
         targets: of the markers that it was made for [m]; they are the first rows of its residual.
-        worth: residual that a tension of each cable is worth at weight 1 [m/N]; `size` of the body [m] and `effort` give
-            the weight, as in a search.
+        worth: residual that a tension of each cable is worth at weight 1 [m/N].
+        size: of the body [m].
+        effort: largest weight, as in `InverseOptions`.
         radius: largest step, as a share of each range.
         spread: 1 where a winch follows a channel.
     """

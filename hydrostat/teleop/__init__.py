@@ -1,6 +1,7 @@
 """From a person to a robot: keys, knobs, gloves and cameras, and what is learned of a hand (R68 to R70)."""
 
 from hydrostat.control import EMULATED
+from hydrostat.teleop.camera_hand import CameraHand
 from hydrostat.teleop.cyber_glove import CyberGlove, EmulatedGlove, EmulatedPerson
 from hydrostat.teleop.drive import DriveLoop, drive
 from hydrostat.teleop.gamepad import Gamepad
@@ -12,6 +13,7 @@ from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold
 from hydrostat.teleop.mapped_hand import MappedHand
 from hydrostat.teleop.midi_knobs import MidiKnobs
 from hydrostat.teleop.mimicry import Mimicry, write_mcap
+from hydrostat.teleop.one_euro import OneEuro, Smoothing
 from hydrostat.teleop.open_source import Wearer, open_hand, open_source
 from hydrostat.teleop.osc import Osc
 from hydrostat.teleop.ridge import Ridge, fit_ridge
@@ -20,6 +22,7 @@ from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, marker_channels, 
 
 __all__ = [
     "EMULATED",
+    "CameraHand",
     "CyberGlove",
     "DriveChannels",
     "DriveLoop",
@@ -39,8 +42,10 @@ __all__ = [
     "MappedHand",
     "MidiKnobs",
     "Mimicry",
+    "OneEuro",
     "Osc",
     "Ridge",
+    "Smoothing",
     "Way",
     "Wearer",
     "WinchWay",

@@ -3,15 +3,19 @@
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from math import inf
 
 from hydrostat.errors import HydrostatError
 from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.hand_source import HandReading, HandSource
+from hydrostat.teleop.one_euro import OneEuro, Smoothing
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 SILENCE = 0.25
 """A hand that is not heard for so long is not there [s]."""
+USUAL_SMOOTHING = Smoothing()
+"""Of what a hand tells: each of its readings is one byte, and trembles."""
 PATIENCE = 5.0
 """Errors of the source in a row end the drive after so long [s]."""
 
@@ -22,12 +26,19 @@ class MappedHand(DriveSource):
     silence = SILENCE
 
     def __init__(
-        self, channels: DriveChannels, hand: HandSource, known: HandMap, *, clock: Callable[[], float] = time.monotonic
+        self,
+        channels: DriveChannels,
+        hand: HandSource,
+        known: HandMap,
+        *,
+        smoothing: Smoothing | None = USUAL_SMOOTHING,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Read a hand from now on (InputError: the map is of another hand or robot)."""
+        """Read a hand from now on, smoothed if that is not None (InputError: the map is of another hand or robot)."""
         known.check(hand.names, channels.names)
         self._hand, self._map, self._clock = hand, known, clock
         self._reading: HandReading | None = None
+        self._smooth = None if smoothing is None else OneEuro(smoothing)
         self._error, self._well = "", clock()
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="hand", daemon=True)
@@ -51,7 +62,10 @@ class MappedHand(DriveSource):
     def _run(self) -> None:
         while not self._over.is_set():
             try:
-                self._reading = self._hand.read()
+                reading = self._hand.read()
+                if self._smooth is not None:
+                    reading = replace(reading, values=self._smooth(reading.values, reading.stamp))
+                self._reading = reading
                 self._error, self._well = "", self._clock()
             except Exception as error:  # noqa: BLE001 - of whatever kind: nobody is heard, and why is told
                 self._error = str(error) or type(error).__name__

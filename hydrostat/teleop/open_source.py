@@ -2,23 +2,31 @@
 
 import time
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from hydrostat.control import EMULATED, open_line
 from hydrostat.errors import InputError
+from hydrostat.teleop.camera_hand import MODEL, CameraHand
 from hydrostat.teleop.cyber_glove import BAUD, CyberGlove, EmulatedPerson
 from hydrostat.teleop.gamepad import Gamepad
 from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.hand_source import HandReading, HandSource
 from hydrostat.teleop.keys import Keys
 from hydrostat.teleop.landmarks import HandLandmarks
-from hydrostat.teleop.mapped_hand import MappedHand
+from hydrostat.teleop.mapped_hand import USUAL_SMOOTHING, MappedHand
 from hydrostat.teleop.midi_knobs import USUAL, MidiKnobs
+from hydrostat.teleop.one_euro import Smoothing
 from hydrostat.teleop.osc import HERE, PORT, Osc
 from hydrostat.teleop.source import DriveChannels, DriveSource
 
 
 def open_source(
-    text: str, channels: DriveChannels, known: HandMap | None = None, person: "Wearer | None" = None
+    text: str,
+    channels: DriveChannels,
+    known: HandMap | None = None,
+    person: "Wearer | None" = None,
+    *,
+    smoothing: Smoothing | None = USUAL_SMOOTHING,
 ) -> DriveSource:
     """What drives a robot.
 
@@ -27,6 +35,7 @@ def open_source(
         channels: what it may turn.
         known: the map of a hand; gloves and cameras need one.
         person: who wears an emulated glove.
+        smoothing: of what a hand tells; None for none.
 
     Raises:
         InputError: no such kind, or a wrong place.
@@ -39,21 +48,27 @@ def open_source(
         return SOURCES[kind](place, channels)
     if known is None:
         raise InputError(f"--source {text}: needs --map FILE; `hydrostat mimic` makes it")
-    return MappedHand(channels, open_hand(place if kind == "glove" else text, person), known)
+    return MappedHand(channels, open_hand(place if kind == "glove" else text, person), known, smoothing=smoothing)
 
 
 def open_hand(text: str, person: "Wearer | None" = None) -> HandSource:
     """A glove or a camera.
 
     Args:
-        text: serial port of a glove, camera:PORT for landmarks, or emulated.
+        text: serial port of a glove; camera:FILE.task, with @1 for another camera than the first; camera:PORT for
+            landmarks of another program; or emulated.
         person: who wears an emulated glove.
 
     Raises:
-        InputError: a wrong port.
-        HydrostatError: it cannot be opened.
+        InputError: a wrong port, or no such file.
+        HydrostatError: it cannot be opened, or its package is not there.
     """
     kind, _, place = text.partition(":")
+    if kind == "camera" and not place.isdecimal():
+        path, at, number = place.rpartition("@") if "@" in place else (place, "", "")
+        if not path.endswith(".task"):
+            raise InputError(f"{text}: a camera needs MediaPipe's model file, camera:{MODEL}, or a port, camera:9001")
+        return CameraHand(Path(path), _number(number, text) if at else 0)
     if kind == "camera":
         return HandLandmarks(_number(place, text))
     if text == EMULATED and person is not None:
@@ -120,4 +135,13 @@ SOURCES: Mapping[str, Callable[[str, DriveChannels], DriveSource]] = {
     "osc": _osc,
 }
 """What makes a source of a place and of channels."""
-SHOWN = ("keys", "gamepad:0", "midi:NAME@1", f"osc:{PORT}", "glove:/dev/ttyUSB0", "glove:emulated", "camera:9001")
+SHOWN = (
+    "keys",
+    "gamepad:0",
+    "midi:NAME@1",
+    f"osc:{PORT}",
+    "glove:/dev/ttyUSB0",
+    "glove:emulated",
+    f"camera:{MODEL}",
+    "camera:9001",
+)

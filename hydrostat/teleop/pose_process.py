@@ -90,7 +90,11 @@ class FingertipPoses:
         self._done = number
         reached = self._tracker.update(targets, seconds=passed)
         more = reached.reason is InverseReason.ITERATION_LIMIT
-        told = {"error": max(reached.errors.values()), "outlook": self._tracker.outlook(seconds=LONGEST), "done": not more}
+        told = {
+            "error": max(reached.errors.values()),
+            "outlook": self._tracker.outlook(seconds=LONGEST),
+            "done": not more,
+        }
         return replace(_found(number, self._simulation.robot, reached.pose), **told), more
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import FASTEST, KnownPulls
 from hydrostat.errors import InputError
-from hydrostat.ik import Outlook
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.teleop.pose_process import FingertipPoses, PoseOnWay, PoseProcess, WinchPoses
@@ -102,8 +101,8 @@ class FingertipWay(Way):
     """Markers are what is moved: `Tracker` finds contractions, step by step, each of them a pose in equilibrium.
 
     Targets do not wait for the step that is being solved: they are answered at once to first order about the newest
-    pose, within the limits, and the poses that follow mend the answer. With a learned model its inverse network answers;
-    what the simulator finds better from there, step by step, is added to its answers from then on.
+    pose, within the limits, and the poses that follow mend the answer. With a learned model its inverse network
+    answers; what the simulator finds better from there, step by step, is added to its answers from then on.
     """
 
     def __init__(
@@ -125,7 +124,8 @@ class FingertipWay(Way):
         self._more, self._jobs, self._hold = np.zeros(len(contractions)), 0, 0
         self._asked: Vector | None = None
         self._targets: dict[str, tuple[float, ...]] = {}
-        self._outlook: Outlook | None = None
+        self._found: PoseOnWay | None = None  # the newest
+        self._settled = True  # whether the contractions are those of the newest targets and pose
         self._answers: dict[int, Vector] = {}  # of the networks, by job
         self._lock = threading.Lock()
         if model is not None:
@@ -136,24 +136,17 @@ class FingertipWay(Way):
         """Move them."""
         if self._asked is not None and np.array_equal(values, self._asked):
             self._poses.check()
-            return
-        rows = values.reshape(-1, self._dim).tolist()
-        targets = {name: tuple(row) for name, row in zip(self._names, rows, strict=True)}
-        answer = None if self._model is None else self._model.solve(targets, search=False).contractions
+        else:
+            self._begin(values)
         with self._lock:
-            self._jobs, self._asked, self._targets, begin = self._jobs + 1, values.copy(), targets, None
-            if answer is None and self._outlook is not None:
-                self.contractions = self._outlook.towards(targets)
-            if answer is not None:
-                self._answers[self._jobs], begin = answer, answer + self._more
-                self.contractions = begin
-        self._poses.give((self._jobs, targets, begin))
+            if not self._settled:
+                self._settle()
 
     def held(self, places: Vector) -> Vector:
         """Where the markers are, by simulation, when they hold [m]."""
         with self._lock:
             self._jobs, self._asked, self.contractions = self._jobs + 1, None, places.copy()
-            self._hold = self._jobs
+            self._hold, self._settled = self._jobs, True
         self._poses.give((self._jobs, {}, None))
         return self._markers
 
@@ -161,19 +154,37 @@ class FingertipWay(Way):
         """End its process."""
         self._poses.close()
 
+    def _begin(self, values: Vector) -> None:
+        """Let new targets be worked on."""
+        rows = values.reshape(-1, self._dim).tolist()
+        targets = {name: tuple(row) for name, row in zip(self._names, rows, strict=True)}
+        answer = None if self._model is None else self._model.solve(targets, search=False).contractions
+        with self._lock:
+            self._jobs, self._asked, self._targets, begin = self._jobs + 1, values.copy(), targets, None
+            self._settled = False
+            if answer is not None:
+                self._answers[self._jobs], begin = answer, answer + self._more
+        self._poses.give((self._jobs, targets, begin))
+
+    def _settle(self) -> None:
+        """Contractions for the newest targets, by the newest pose; done by whoever tells the motors."""
+        self._settled, found = True, self._found
+        if self._jobs in self._answers:
+            self.contractions = self._answers[self._jobs] + self._more
+        elif found is not None and found.outlook is not None:
+            there = found.done and found.job == self._jobs
+            self.contractions = found.contractions if there else found.outlook.towards(self._targets)
+
     def _hear(self, found: PoseOnWay) -> None:
         self.known.put(found.contractions, found.pulls)
         self._markers = found.markers
         with self._lock:
-            self._outlook = found.outlook
+            self._found = found
             if found.job <= self._hold:  # of before motors held
                 return
-            self.contractions = found.contractions
-            if self._model is None and found.outlook is not None and not (found.done and found.job == self._jobs):
-                self.contractions = found.outlook.towards(self._targets)
+            self._settled = False
             if found.job in self._answers:
                 self._more = found.contractions - self._answers[found.job]
-                self.contractions = self._answers[self._jobs] + self._more
                 self._answers = {job: answer for job, answer in self._answers.items() if job >= found.job}
         self.words = f"{1e3 * found.error:.1f} mm from its targets"
         if self.news is not None:

@@ -69,10 +69,11 @@ def test_motors_hold_when_nobody_is_heard_and_go_on_after(simulation: hs.Simulat
     name, far = ("left x", -0.05) if tips else ("left", 0.03)
     source = Script([DriveWish(stamp=0.0, places={name: far})])
     source.silence = 0.25
-    driven, now = DriveLoop(motors, way, source), 0.0
+    driven, now, way.news = DriveLoop(motors, way, source), 0.0, threading.Event()
+    driven.step(now)
+    assert not tips or way.news.wait(30.0)  # the first pose
     for _ in range(10):
         now += 0.02
-        time.sleep(0.02 if tips else 0.0)
         driven.step(now)
     began = motors.places.copy()
     assert not driven.silent
@@ -91,7 +92,6 @@ def test_motors_hold_when_nobody_is_heard_and_go_on_after(simulation: hs.Simulat
     source.wishes = [DriveWish(stamp=now, places={name: far})]
     for _ in range(10):
         now += 0.02
-        time.sleep(0.02 if tips else 0.0)
         driven.step(now)
     assert np.abs(motors.places - held).max() > 1e-3
     way.close()
