@@ -272,9 +272,7 @@ def main() -> None:
         else:
             way = FingertipWay(simulation, rest, model=model, rate=0.06)
         with suppress(AttributeError, OSError):
-            os.setpriority(os.PRIO_PROCESS, way._poses._process.pid, -15)
-            if given.first:  # before other programs, after the one that tells motors
-                os.sched_setscheduler(way._poses._process.pid, os.SCHED_RR, os.sched_param(1))
+            os.setpriority(os.PRIO_PROCESS, way._poses._process.pid, -20 if given.first else -15)
         hearts = heartbeat.Hearts(first=given.first)
         told = measure(robot, way, known, given.moves, given.baud)
         stood = hearts.stop()

@@ -25,7 +25,8 @@ def beat(core: int, pipe, first: bool) -> None:
         if now - before > BEAT + STOOD:
             stood.append((before, now))
         before = now
-    pipe.send(stood)
+    with suppress(OSError):
+        pipe.send(stood)
 
 
 class Hearts:

@@ -105,8 +105,10 @@ class Motors:
         command[self.names.index(name)] = contraction
         self.command = self._within(command)
 
-    def drive(self, now: float) -> bool:
+    def drive(self, now: float, *, look: bool = True) -> bool:
         """Send the command, read where the motors are by a clock [s] that never goes back; tell whether any moved.
+
+        Reading all motors of a line takes milliseconds: who has news for them may look again a little later.
 
         Raises:
             HydrostatError: of the link, or there was no `drive` for too long; the motors hold, and must be asked anew.
@@ -118,7 +120,8 @@ class Motors:
                 silence = f"told nothing for {gap:.1f} s, longer than {self.patience:g} s"
                 raise HydrostatError(f"the motors were {silence}, and hold; begin again")
             self.link.send(self.command, now, speed=self.fastest)
-            self.places = self._read(now)
+            if look:
+                self.places = self._read(now)
             self._driven = now
         except BaseException:
             self.hold()

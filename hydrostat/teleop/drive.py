@@ -12,7 +12,9 @@ from hydrostat.teleop.source import DriveSource, DriveWish
 from hydrostat.teleop.ways import Way
 
 TICK = 1 / 60
-"""Motors are told and read at least once in this time [s]."""
+"""Motors are told at least once in this time, and read about as often [s]."""
+SHARE = 0.35
+"""Of the time that telling and reading takes on a line: telling alone takes about so much."""
 SWITCHING = 5e-4
 """Threads of Python give way to one another after so long [s], in place of 5 ms: the one that solves poses is busy."""
 
@@ -23,17 +25,25 @@ class DriveLoop:
     Attributes:
         silent: whether nobody is heard just now; motors hold.
         wish: the newest.
+        pause: to be made before the next step [s]: goals that nobody waited for an answer to must have left the line,
+            or a stop would come after all of them.
     """
 
-    def __init__(self, motors: Motors, way: Way, source: DriveSource) -> None:
-        """Begin where the motors are."""
-        self.motors, self.way, self.source = motors, way, source
-        self.silent, self.wish = False, DriveWish(stamp=-np.inf)
+    def __init__(
+        self, motors: Motors, way: Way, source: DriveSource, *, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        """Begin where the motors are; the clock only runs forward [s]."""
+        self.motors, self.way, self.source, self._clock = motors, way, source, clock
+        self.silent, self.wish, self.pause = False, DriveWish(stamp=-np.inf), 0.0
         self._values, self._held = way.held(motors.places), True
+        self._looked, self._exchange = -np.inf, 0.0  # when motors were last read, and how long that took [s]
         self._numbers = {name: index for index, name in enumerate(way.channels.names)}
 
     def step(self, now: float) -> bool:
         """Hear, and tell the motors, by a clock [s]; tell whether the person goes on.
+
+        What is heard sooner than a tick after motors were read is told without reading them again, which takes as long
+        as their answers do on the line.
 
         Raises:
             HydrostatError: of the source, of the motors, or of what solves poses; the motors hold.
@@ -46,7 +56,11 @@ class DriveLoop:
         else:
             self._follow(wish)
         self.motors.ask(self.way.contractions)
-        self.motors.drive(now)
+        look, begin = not now - self._looked < TICK, self._clock()
+        self.motors.drive(now, look=look)
+        if look:
+            self._looked, self._exchange = now, self._clock() - begin
+        self.pause = 0.0 if look else SHARE * self._exchange
         self.way.see(self.motors.places)
         return not wish.over
 
@@ -89,9 +103,10 @@ def drive(
     sys.setswitchinterval(SWITCHING)
     source.news = way.news = news
     try:
-        driven, end = DriveLoop(motors, way, source), clock() + seconds
+        driven, end = DriveLoop(motors, way, source, clock=clock), clock() + seconds
         while driven.step(clock()) and clock() < end:
             tell(driven)
+            time.sleep(driven.pause)
             news.wait(TICK)
             news.clear()
     finally:

@@ -1,5 +1,6 @@
 """The firmware in closed loop. Oracles: motors by their own equations (`winch_bench.c`), limits it was built with."""
 
+import numpy as np
 import pytest
 from firmware_bench import Board
 
@@ -28,6 +29,31 @@ def test_two_winches_reach_their_goals_against_springs(chip: str) -> None:
         assert winch.most < goal + 25
     assert 0.25 < board.winches[0].current < 0.6  # what the spring pulls, 0.4 A, give or take friction
     assert int(said[4]) == pytest.approx(1000 * abs(board.winches[0].current), abs=150)
+
+
+def test_currents_have_the_sign_of_the_pull() -> None:
+    """Oracle: currents of the motors' own equations, as a spring is wound, held, and let out by a motor that brakes it.
+
+    The board measures no sign: it tells that of the volts across the coil.
+    """
+    board, seen, braked = Board(), [], 0
+    board.ask(FULL)
+    board.winches[0].stiffness, board.winches[0].slack = 8e-4, 100.0
+    for goal, seconds in ((1000, 0.9), (1000, 0.3), (150, 1.2), (0, 0.3), (90, 0.1), (0, 0.2)):
+        board.ask(f"G {goal} 1200 0 1")
+        for _ in range(round(seconds / 0.02)):
+            told = int(board.ask("R").split()[4]) / 1000
+            true, speed = board.winches[0].current, board.winches[0].speed
+            seen.append((told, true))
+            braked += speed < -500 and true > 0.1 and told > 0
+            board.run(0.007)
+    told, true = np.array(seen).T
+    sure = np.abs(true) > 0.15
+    assert sure.sum() > 60
+    assert (true < -0.15).sum() > 5
+    assert (np.sign(told) == np.sign(true))[sure].mean() > 0.97
+    assert np.median(np.abs(told - true)) < 0.05
+    assert braked > 5
 
 
 def test_silence_stops_motors() -> None:

@@ -97,6 +97,28 @@ def test_motors_hold_when_nobody_is_heard_and_go_on_after(simulation: hs.Simulat
     way.close()
 
 
+def test_a_flood_of_wishes_leaves_the_line_its_time(simulation: hs.Simulation) -> None:
+    """Oracle: a line on which reading takes 10 ms; goals that come sooner are told without, but not without end."""
+    motors, now, read = motors_of(simulation), [0.0], []
+    inner = motors.link.read
+
+    def slow(when: float) -> np.ndarray:
+        read.append(when)
+        now[0] += 0.01
+        return inner(when)
+
+    motors.link.read = slow
+    source = Script([DriveWish(stamp=inf, steps={"left": 1e-4})])
+    way = WinchWay(simulation, motors.places, solves=False)
+    driven, told = DriveLoop(motors, way, source, clock=lambda: now[0]), 0
+    while now[0] < 1.0:
+        driven.step(now[0])
+        told += 1
+        now[0] += driven.pause + 1e-4  # the next wish is there at once
+    assert 2 * len(read) < told < 4.1 * len(read)
+    assert driven.motors.places.max() > 1e-3
+
+
 def test_hold_and_then_only_what_is_touched_moves(simulation: hs.Simulation) -> None:
     motors = motors_of(simulation)
     going, hold = DriveWish(stamp=0.0, places={"left": 0.03}), DriveWish(stamp=0.0, hold=True)

@@ -55,6 +55,9 @@ typedef struct {
     float aim, wish, pace, gain, most, sum; /* goal, place on the way, its speed, its gain, the greatest [1/tick], integral */
     int32_t before;                   /* place a tick ago */
     uint16_t bound, milliamps;
+    int16_t power;      /* of 255, of the last tick */
+    int8_t pace_seen;   /* counts in the last tick */
+    uint8_t pays;       /* whether the current pays cable out: its driver tells only how much */
     uint8_t hot, stuck; /* ticks of too much current, of full power without motion */
 } Motor;
 
@@ -178,6 +181,7 @@ static int32_t place(uint8_t i) {
 /* Power of a bridge from -255 to 255; none is a brake: the motor's coil is shorted. */
 static void drive(uint8_t i, int16_t power) {
     const Bridge *bridge = &bridges[i];
+    motors[i].power = power;
     if (power == 0) {
         *bridge->control &= ~(1 << bridge->bit); /* PWM would leave a needle of one part in 256 */
         return;
@@ -200,6 +204,7 @@ static void stand(void) {
         motor->pace = motor->gain = motor->sum = 0;
         motor->before = motor->wish;
         motor->hot = motor->stuck = 0;
+        motor->pace_seen = 0;
     }
 }
 
@@ -230,6 +235,7 @@ static void follow(uint8_t i) {
     int32_t now = place(i);
     float error = motor->wish - now, speed = now - motor->before;
     motor->before = now;
+    motor->pace_seen = fmaxf(-127, fminf(127, speed));
     motor->sum = fmaxf(-GAIN_BOUND, fminf(GAIN_BOUND, motor->sum + GAIN_I * error));
     float needed = motor->pace + motor->gain * SPIN_UP_MS * RATE / 1000;
     float power = GAIN_P * error + motor->sum + GAIN_D * (motor->pace - speed) + 255.0f * RATE / FREE_SPEED * needed;
@@ -252,7 +258,11 @@ static void measure(void) {
     static uint8_t turn;
     if (!DCS)
         return;
-    motors[turn].milliamps = (uint32_t)ADC * 5000 / 1024 * 10 / SENSE; /* volts of the driver to milliamperes */
+    Motor *motor = &motors[turn];
+    motor->milliamps = (uint32_t)ADC * 5000 / 1024 * 10 / SENSE; /* volts of the driver to milliamperes */
+    /* Which way: that of the volts across its coil, power less what its turning induces. A motor that brakes a cable
+       on the way out still pulls at it. */
+    motor->pays = motor->power * (FREE_SPEED / 255.0f) < (float)RATE * motor->pace_seen;
     turn = turn + 1 < DCS ? turn + 1 : 0;
     ADMUX = 1 << REFS0 | (FIRST_CURRENT + turn);
     ADCSRA |= 1 << ADSC;
@@ -378,7 +388,7 @@ static void tell(uint8_t number) {
     say_number(state >= CURRENT ? culprit + 1 : 0);
     for (uint8_t i = 0; i < COUNT; i++) {
         say_number(place(i));
-        say_number(motors[i].milliamps);
+        say_number(motors[i].pays ? -(int32_t)motors[i].milliamps : motors[i].milliamps);
     }
     end_line();
 }
