@@ -84,11 +84,11 @@ def drive(
         shown = _Shown(kind, motors)
         _run(shown, f"{'fingertips' if tips else 'winches'} of {loaded.name} by {source}", way, asked, seconds)
     finally:
+        if motors is not None:  # before all that may take its time
+            motors.link.close()
         if asked is not None:
             asked.close()
         way.close()
-        if motors is not None:
-            motors.link.close()
 
 
 def _run(shown: "_Shown", what: str, way: "Way", source: "DriveSource", seconds: float) -> None:

@@ -1,5 +1,6 @@
 """`Calibration`: which motor turns which winch, and what its angle says of the cable; kept as motors.toml."""
 
+import json
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -188,7 +189,7 @@ def write_calibration(folder: Path, calibration: Calibration, *, name: str = CAL
     """Write the motors of a robot beside its robot.toml, whole or not at all; returns the path."""
     lines = ["# Which motor turns which winch. Made by hydrostat calibrate; zero and curve are of this one robot.\n"]
     for spool in calibration.motors:
-        lines += ["\n[[motor]]\n", f'winch = "{spool.winch}"\n', f"number = {spool.number}\n"]
+        lines += ["\n[[motor]]\n", f"winch = {json.dumps(spool.winch)}\n", f"number = {spool.number}\n"]
         if spool.zero is not None:
             lines.append(f"zero = {float(spool.zero)!r}  # angle with nothing taken in [rad]\n")
         lines += [f"turns = {spool.turns}\n", f'radius = "{units.format_quantity(spool.radius, units.LENGTH)}"\n']

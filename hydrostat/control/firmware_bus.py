@@ -19,9 +19,9 @@ ANEW = "it was switched off or reset, and its motors count anew; calibrate them 
 class FirmwareBus(Bus):
     """Motors of one board, numbered from 1 in the order of its settings.
 
-    The board measures how much a motor draws; which way it pulls follows from power and speed, as `winches.c` has it. How
-    much torque that is nobody knows, since gears rub as hard as soft cables pull. What the board refuses is told with the
-    next reading, as a fault of all its motors.
+    The board measures how much a motor draws; which way it pulls follows from power and speed, as `winches.c` has it.
+    How much torque that is nobody knows, since gears rub as hard as soft cables pull. What the board refuses is told
+    with the next reading, as a fault of all its motors.
     """
 
     kind: ClassVar[str] = "firmware"

@@ -52,6 +52,7 @@ class DriveLoop:
         self.silent = now - wish.stamp > self.source.silence
         if self.silent or wish.hold or wish.over:
             if not self._held:
+                self.motors.drive(now)  # where they are just now, not a tick ago
                 self._values, self._held = self.way.held(self.motors.places), True
         else:
             self._follow(wish)

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 
+import numpy as np
+
 from hydrostat.errors import HydrostatError
 from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.hand_source import HandReading, HandSource
@@ -63,6 +65,8 @@ class MappedHand(DriveSource):
         while not self._over.is_set():
             try:
                 reading = self._hand.read()
+                if not np.isfinite(reading.values).all():
+                    raise HydrostatError("what the hand tells is no number")
                 if self._smooth is not None:
                     reading = replace(reading, values=self._smooth(reading.values, reading.stamp))
                 self._reading = reading

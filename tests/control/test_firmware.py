@@ -151,6 +151,17 @@ def test_lines_that_are_not_good_are_refused_in_words() -> None:
     assert max(winch.most for winch in board.winches) < 1.5
 
 
+def test_bounds_that_are_refused_change_none() -> None:
+    """Of two bounds the second is too great: the first motor keeps the one that it had, and stops by it."""
+    board = Board()
+    board.ask("A 300 1500")
+    assert board.ask("A 1500 1501") == "no current"
+    board.winches[0].block = 1
+    board.winches[0].wire = 6.0
+    board.ask("G 500 500 0 1")
+    assert board.keep(1.0).startswith("ok current 1 ")
+
+
 def test_limits_of_place_and_speed_hold_whatever_is_asked() -> None:
     """From one end to the other, asked for ten times the speed; then power is off."""
     board = Board()

@@ -21,6 +21,7 @@ from hydrostat.teleop import (
     Gamepad,
     HandLandmarks,
     HandMap,
+    HandReading,
     Keys,
     MappedHand,
     MidiKnobs,
@@ -302,6 +303,23 @@ def test_landmarks_become_bends_wherever_the_hand_is() -> None:
     turn = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
     assert bends(5.0 + 0.3 * landmarks(0.7) @ turn) == pytest.approx(bends(landmarks(0.7)), abs=1e-7)
     assert np.isfinite(bends(np.zeros((COUNT, 3)))).all()
+
+
+def test_what_is_no_number_is_silence_and_ends_nothing() -> None:
+    """Landmarks in any unit have finite bends; a hand that tells none is not heard, and is again when it tells some."""
+    assert bends(1e200 * landmarks(0.7)) == pytest.approx(bends(landmarks(0.7)), abs=1e-7)
+    told = [np.full(SENSORS, np.nan)]
+
+    class Hand(CyberGlove):
+        def read(self) -> HandReading:
+            time.sleep(1e-3)
+            return HandReading(told[0], time.monotonic())
+
+    source = MappedHand(WINCHES, Hand(EmulatedGlove(np.zeros(SENSORS))), straight())
+    assert until(source.read, lambda wish: "is no number" in wish.words).places == {}
+    told[0] = np.full(SENSORS, 0.5)
+    assert np.isfinite(list(until(source.read, lambda wish: wish.places).places.values())).all()
+    source.close()
 
 
 def test_landmarks_over_udp() -> None:

@@ -371,11 +371,11 @@ static void arm(uint8_t number, char *text) {
     int32_t told[COUNT];
     if (!numbers(text, told, COUNT))
         return no(number, "currents");
-    for (uint8_t i = 0; i < COUNT; i++) {
+    for (uint8_t i = 0; i < COUNT; i++)
         if (told[i] <= 0 || told[i] > limits[i].current)
             return no(number, "current");
+    for (uint8_t i = 0; i < COUNT; i++)
         motors[i].bound = told[i];
-    }
     stand();
     state = ARMED;
     answer(number, "ok");

@@ -21,7 +21,7 @@ from hydrostat.control import (
     open_bus,
     read_calibration,
 )
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
@@ -83,12 +83,12 @@ class Hardware:
 
     @property
     def currents(self) -> dict[str, float]:
-        """What each motor draws [A], by the name of its winch; empty without motors."""
+        """What each motor draws [A], positive as it takes cable in, by its winch; empty without motors."""
         robot, link = self._robot, self._link
-        reading = None if link is None else link.reading
-        if robot is None or reading is None:
+        drawn = None if link is None else link.currents
+        if robot is None or drawn is None:
             return {}
-        return dict(zip(self._names(robot), reading.currents.tolist(), strict=True))
+        return dict(zip(self._names(robot), drawn.tolist(), strict=True))
 
     def connect(self, port: str) -> None:
         """Find the motors of the open robot on a port; takes a second or more, and turns none but for the proof.
@@ -123,7 +123,10 @@ class Hardware:
             raise
         names = tuple(self._names(robot))
         link.guard = TensionGuard(self._expected, np.array([fact.constant for fact in facts]), names)
-        with self._lock:
+        with self._lock:  # another window may have connected, or the studio closed, meanwhile
+            if self._over.is_set() or self._link is not None or self._robot is not robot:
+                link.close()
+                raise HydrostatError(f"{port}: other motors were connected, or let go, meanwhile; connect again")
             self._link, self.port = link, port
         self._say(f"{port}: {len(facts)} motors answered" + ("" if link.state is LinkState.CALIBRATED else _CALIBRATE))
 

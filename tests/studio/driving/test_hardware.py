@@ -141,6 +141,41 @@ def test_a_line_that_is_gone_is_told(session: Session) -> None:
     assert "the line to the motors is gone" in hardware.words
 
 
+def test_two_windows_that_connect_at_once_leave_no_port_open(session: Session) -> None:
+    """Oracle: ports that are counted; the second finds the motors of the first, and lets its own go."""
+    hardware, inner = session.hardware, session.hardware._opener
+    opened, closed, both = [], [], threading.Barrier(2, timeout=30)
+
+    def opener(*given) -> Bus:
+        bus = inner(*given)
+        close = bus.close
+        bus.close = lambda: (closed.append(bus), close())  # type: ignore[method-assign]
+        opened.append(bus)
+        both.wait()
+        return bus
+
+    hardware._opener, wrong = opener, []
+
+    def connect() -> None:
+        try:
+            hardware.connect("emulated")
+        except HydrostatError as error:
+            wrong.append(str(error))
+
+    windows = [threading.Thread(target=connect) for _ in range(2)]
+    for window in windows:
+        window.start()
+    for window in windows:
+        window.join()
+    assert len(opened) == 2
+    assert len(closed) == 1
+    assert "meanwhile; connect again" in wrong[0]
+    hardware.arm()
+    assert hardware.armed
+    hardware.close()
+    assert set(map(id, closed)) == set(map(id, opened))
+
+
 def test_guests_have_none() -> None:
     guest = Session(guest=True)
     with pytest.raises(InputError, match="not for guests"):

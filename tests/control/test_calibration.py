@@ -1,0 +1,21 @@
+"""motors.toml. Oracle: what is written is read again."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from builders import strip_robot
+
+from hydrostat.control import Calibration, read_calibration, usual_calibration
+from hydrostat.control.calibration import write_calibration
+
+
+@pytest.mark.parametrize("name", ["left", 'the "left" one', "back\\slash", "größer"])
+def test_names_of_winches_are_kept_whatever_is_in_them(name: str, tmp_path: Path) -> None:
+    robot = strip_robot(columns=4, rows=1)
+    winches = tuple(replace(winch, name=name) for winch in robot.winches[:1])
+    cables = tuple(replace(cable, winch=name) for cable in robot.cables[:1])
+    robot = replace(robot, winches=winches, cables=cables)
+    kept = Calibration(tuple(replace(motor, zero=0.25) for motor in usual_calibration(robot).motors))
+    write_calibration(tmp_path, kept)
+    assert read_calibration(tmp_path, robot) == kept
