@@ -45,6 +45,7 @@ from hydrostat.teleop import (
     HandMap,
     MappedHand,
     Mimicry,
+    Smoothing,
     Way,
     WinchWay,
     drive,
@@ -66,11 +67,13 @@ class Told:
 
     Attributes:
         moves: when the hand moved, and when a goal followed [s].
+        rests: how far a goal went before each move, while the hand rested [m].
         missed: moves that no goal followed.
         stops: how often motors were stopped, as this computer was too busy.
     """
 
     moves: list[tuple[float, float]]
+    rests: list[float]
     missed: int
     stops: int = 0
 
@@ -141,13 +144,14 @@ def other_end(pipe, low: np.ndarray, high: np.ndarray, poses: np.ndarray, baud: 
     glove.start()
     pipe.send((line.path, glove.path))
     pipe.recv()
-    random, told = np.random.default_rng(3), Told([], 0)
+    random, told = np.random.default_rng(3), Told([], [], 0)
     for pose in poses[1:]:
         before, until = deque[np.ndarray](maxlen=20), time.monotonic() + random.uniform(*PAUSE)
         while time.monotonic() < until:
             before.append(chain.goals())
             time.sleep(5e-3)
         usual_goals = np.median(before, axis=0)
+        told.rests.append(radius * float(np.abs(before - usual_goals).max()))
         person.mimic(pose)
         moved = time.monotonic()
         while (now := time.monotonic()) - moved < 0.3:
@@ -195,9 +199,9 @@ def again(ask: Callable[[], object]) -> None:
                 raise
 
 
-def measure(robot: Robot, way: Way, known: HandMap, moves: int, baud: int) -> Told:
+def measure(robot: Robot, way: Way, known: HandMap, given: argparse.Namespace) -> Told:
     """Drive, and let the other end measure."""
-    winches, random = winch_channels(robot), np.random.default_rng(2)
+    winches, random, moves, baud = winch_channels(robot), np.random.default_rng(2), given.moves, given.baud
     flexors = np.array(["flexor" in name for name in winches.names])
     poses = random.uniform(0, 0.35, (moves + 1, len(flexors))) * winches.high * flexors
     ours, theirs = mp.get_context("spawn").Pipe()
@@ -213,7 +217,8 @@ def measure(robot: Robot, way: Way, known: HandMap, moves: int, baud: int) -> To
     link = BusLink(bus, robot.winches, calibration)
     again(link.identify)
     again(link.arm)
-    source = MappedHand(way.channels, CyberGlove(open_line(glove, BAUD)), known)
+    smoothing = Smoothing(least=given.smoothing) if given.smoothing else None
+    source = MappedHand(way.channels, CyberGlove(open_line(glove, BAUD)), known, smoothing=smoothing)
     found: list[Told] = []
 
     def hear(_: object) -> None:
@@ -252,10 +257,13 @@ def main() -> None:
     parser.add_argument("--baud", type=int, default=1_000_000)
     parser.add_argument("--way", type=int, choices=(0, 1, 2), help="only this one")
     parser.add_argument("--first", action="store_true", help="go before all other programs (Linux, root)")
+    parser.add_argument("--smoothing", type=float, default=1.5, metavar="HZ", help="of the hand; 0: none")
     given = parser.parse_args()
     robot = hs.load_robot("gallery:cupping_hand")
     print(f"{machine.machine()}; load {os.getloadavg()[0]:.1f}; {given.baud} baud to the servos", flush=True)
-    print("| way | moves | missed | stops | p50, ms | p90, ms | p99, ms |\n|---|---|---|---|---|---|---|", flush=True)
+    print(
+        "| way | moves | missed | stops | at rest, mm | p50, ms | p90, ms | p99, ms |\n" + 8 * "|---" + "|", flush=True
+    )
     ways = ["ridge to winches", "ridge to fingertips, Tracker"] + ["the same, a learned model first"] * (
         given.model is not None
     )
@@ -274,13 +282,14 @@ def main() -> None:
         with suppress(AttributeError, OSError):
             os.setpriority(os.PRIO_PROCESS, way._poses._process.pid, -20 if given.first else -15)
         hearts = heartbeat.Hearts(first=given.first)
-        told = measure(robot, way, known, given.moves, given.baud)
+        told = measure(robot, way, known, given)
         stood = hearts.stop()
         ran = [move for move in told.moves if not heartbeat.overlap(stood, *move)]
+        rest = f"{1e3 * np.median(told.rests):.2f}"
         for words, moves in ("all", told.moves), ("cores ran", ran):
             delays = [1e3 * (seen - moved) for moved, seen in moves]
             shown = " | ".join(f"{value:.1f}" for value in np.percentile(delays or [np.nan], [50, 90, 99]))
-            print(f"| {name} | {words}: {len(moves)} | {told.missed} | {told.stops} | {shown} |", flush=True)
+            print(f"| {name} | {words}: {len(moves)} | {told.missed} | {told.stops} | {rest} | {shown} |", flush=True)
 
 
 if __name__ == "__main__":

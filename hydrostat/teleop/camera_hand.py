@@ -33,9 +33,9 @@ class CameraHand(HandSource):
                 f"camera:{model}: there is no such file; it is MediaPipe's {MODEL}, which you bring yourself"
             )
         try:
-            import cv2
-            import mediapipe
-            from mediapipe.tasks.python import BaseOptions, vision
+            import cv2  # pyright: ignore[reportMissingImports] (an extra)
+            import mediapipe  # pyright: ignore[reportMissingImports]
+            from mediapipe.tasks.python import BaseOptions, vision  # pyright: ignore[reportMissingImports]
         except (ImportError, OSError) as error:
             words = f'a camera needs mediapipe ({error}): pip install "hydrostat[camera]"'
             raise HydrostatError(words) from None

@@ -242,7 +242,7 @@ def test_motors_armed_before_anything_is_shown_stay_where_they_are(session: Sess
     assert link is not None
     hardware.arm()
     hardware._goal = np.full(len(hardware.places), 0.006)
-    assert until(lambda: (hardware.beat(), min(hardware.places.values()) > 0.0055)[1])
+    assert until(lambda: (hardware.beat(), min(hardware.places.values()) > 0.0055)[1]), hardware.words
     hardware.hold()
     hardware._goal = np.zeros(len(hardware.places))  # as it is when motors are connected
     hardware.arm()
