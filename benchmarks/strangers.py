@@ -61,6 +61,11 @@ def styles() -> bytes:
     return (SVG % f'<style>{rules}</style><circle cx="50" cy="50" r="40"/>').encode()
 
 
+def sheet(rules: str) -> bytes:
+    """A style sheet before a disc."""
+    return (SVG % f'<style>{rules}</style><circle cx="50" cy="50" r="40"/>').encode()
+
+
 def stl(triangles: np.ndarray) -> bytes:
     """Triangles as binary STL."""
     records = np.zeros(len(triangles), dtype=[("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")])
@@ -161,6 +166,10 @@ FILES: dict[str, Callable[[], bytes] | None] = {
     "box_29k.vtk": lambda: box(31),
     "bulge.dxf": lambda: dxf("bulge"),
     "splines_w.dxf": lambda: dxf("splines"),
+    "css_open.svg": lambda: sheet("a{" * 40_000),
+    "css_spaces.svg": lambda: sheet("a" + " " * 99_000),
+    "css_comments.svg": lambda: sheet("/*" * 49_000),
+    "viewbox_none.svg": lambda: sheet("").replace(b"0 0 100 100", b"0 0 0 0"),
     **dict.fromkeys(("giant.stl", "giant.obj", "giant.vtk", "giant.png", "giant.svg")),
 }
 """What makes each; None: a sparse giant."""

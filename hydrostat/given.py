@@ -21,5 +21,5 @@ def check_kind(given: object, kind: type | tuple[type, ...], wanted: str) -> Non
 def path_of(given: object, wanted: str) -> Path:
     """A path that was given as a text or a path (InputError: as for `check_kind`)."""
     if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
-        raise InputError(f"{wanted}, not from {given!r:.60}")
+        raise InputError(f"{wanted}, not {given!r:.60}")
     return Path(given)

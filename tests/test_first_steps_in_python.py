@@ -91,7 +91,11 @@ def test_what_is_to_be_minded_is_told(simulation: hs.Simulation, pose: hs.Solved
 def test_representations_are_short(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
     assert "left 12 mm" in repr(pose)
     shown = [repr(pose), repr(simulation.robot), repr(simulation.still(pose))]
-    shown.append(repr(hs.solve_ik(simulation, simulation.robot.poses["wave"])))
+    reached = hs.solve_ik(simulation, simulation.robot.poses["wave"])
+    shown += [repr(reached), repr(simulation), repr(hs.Tracker(simulation)), repr(simulation.solve_many([{}, {}]))]
+    shown.append(repr(hs.path_dependence(simulation, {"left": 0.01}, count=2)))
+    shown.append(repr(hs.follow_branch(simulation, pose, {"left": 0.013})))
+    shown.append(repr(hs.solve_ik_trajectory(simulation, [pose])))
     assert max(map(len, shown)) < 400
     assert all("array" not in words and "\n" not in words for words in shown)
 
@@ -122,6 +126,24 @@ MILLIMETRES = {
     "zone": (lambda _: hs.Zone(at=(0, 30), radius=0.01), "in metres, at most 20.*30 mm is 0.03"),
     "radius of a zone": (lambda _: hs.Zone(at=(0.0, 0.03), radius=30.0), "in metres, at most 20, not 30"),
     "young": (lambda _: hs.Material(young=30, poisson=0.3, density=40), "not 30 Pa; 30 kPa is 30e3"),
+    "accuracy": (lambda s: s.solve({}, accuracy=0.1), "too rough for a body of 0.279 m; it is in metres"),
+    "range of a winch": (
+        lambda s: hs.solve_ik(s, {"left": (0.0, 0.0)}, limits=hs.Limits(contraction={"left": (0, 20)})),
+        "the contraction of winch .left., 20 m, is far more than the body",
+    ),
+    "profile": (
+        lambda s: next(s.play(hs.Profile(times=np.arange(3.0), values=np.diag([0.0, 12.0, 0.0])), 1.0, 0.1)),
+        "the contraction of winch .left., 12 m, is far more than the body",
+    ),
+    "travel": (
+        lambda _: hs.Winch(name="a", at=(0.0, 0.0), travel=60),
+        "travel must be at most 20 m, not 60; in metres",
+    ),
+    "size of a drawing": (lambda _: hs.new_robot("a.svg", size=200), "size must be at most 20 m, not 200; in metres"),
+    "design": (
+        lambda s: hs.design_cables(s.robot, [hs.Pose(name="far", targets={"left": (100.0, 60.0)})]),
+        "the target of left is 116.4 m away from a body of 0.279 m; targets are in metres",
+    ),
 }
 
 
@@ -150,6 +172,46 @@ ASTRAY = {
     ),
     "no path": (lambda _: hs.load_robot(None), "not from None"),
     "a batch": (lambda s: s.solve(np.zeros((3, 10))), r"not an array of \(3, 10\); solve_many takes a row"),
+    "no robot": (lambda _: hs.Simulation("gallery:starfish"), "is of a Robot, such as load_robot gives, not 'gallery"),
+    "nodes to start from": (lambda s: s.solve({}, start=s.rest.nodes), "start must be a solved pose, .*not ndarray"),
+    "a time with a unit": (lambda s: s.solve({}, seconds="1 s"), "seconds must be above 0, not '1 s'"),
+    "one number": (lambda s: s.solve(0.01), "a number for each of right, left, feet, not 0.01"),
+    "a branch from nothing": (lambda s: hs.follow_branch(s, None, {}), "must be a solved pose"),
+    "touches of nothing": (lambda s: hs.touches(s, None), "must be a solved pose"),
+    "ways": (lambda s: hs.path_dependence(s, {}, count="two"), "count must be a whole number"),
+    "drag": (lambda _: hs.StepOptions(drag="much"), "drag must be a number"),
+    "a profile of nothing": (lambda _: hs.Profile(times=None, values=None), "a profile needs times and a row for each"),
+    "options": (lambda s: hs.solve_ik(s, {"left": (0.0, 0.0)}, options=3), "must be InverseOptions"),
+    "a search without physics": (lambda _: hs.solve_ik(None, {}), r"by a Simulation\(robot\), not None"),
+    "a tracker without physics": (lambda _: hs.Tracker(None), r"by a Simulation\(robot\), not None"),
+    "limits of a tracker": (lambda s: hs.Tracker(s, limits=3), r"limits must be Limits\(...\)"),
+    "a model of a tracker": (lambda s: hs.Tracker(s, model="a.model"), "one that load_model gives, not 'a.model'"),
+    "steps of a tracker": (lambda s: hs.Tracker(s).update({"left": (0.0, 0.0)}, seconds="1"), "above 0, not '1'"),
+    "no material": (lambda _: hs.find_material(None), "found by its name"),
+    "points of a cable": (lambda _: hs.Cable(winch="a", points=None), "points must hold at least 2 points"),
+    "a winch without a name": (lambda _: hs.Winch(name=3, at=(0.0, 0.0)), "name must be a text, not 3"),
+    "friction": (lambda _: hs.Contact(friction="a"), "friction must be a number"),
+    "winches": (lambda s: replace(s.robot, winches=3), "winches must be several"),
+    "a pose": (lambda s: replace(s.robot, poses={"wave": 3}), "poses must be Pose records, not 3"),
+    "gravity": (lambda s: replace(s.robot, gravity=9.81), "gravity must be"),
+    "where to save": (lambda s: hs.save_robot(s.robot, None), "kept in a folder, not None"),
+    "what to save": (lambda _: hs.save_robot(None, "x"), "of a Robot, such as load_robot gives, not None"),
+    "where to build": (lambda s: hs.export_kit(s.robot, None), "a kit is written into a folder, not None"),
+    "options of a kit": (lambda s: hs.build_kit(s.robot, options=3), "options must be KitOptions"),
+    "cloth": (lambda _: hs.PatternOptions(seam_allowance="8 mm"), "seam_allowance must be a number in mm"),
+    "another's pose": (
+        lambda s: hs.draw_pose(gallery_robot("pig"), s.rest),
+        r"must be a pose of this robot with finite nodes",
+    ),
+    "a picture of nothing": (lambda _: hs.draw_rest(None), "drawn of a Robot"),
+    "a wish": (lambda s: hs.design_cables(s.robot, s.robot.poses.values(), slack=0.01), 'asked for "slack"; it is for'),
+    "a file of constraints": (
+        lambda s: hs.design_cables(s.robot, s.robot.poses.values(), constraints="limits.toml"),
+        r"constraints must be Constraints\(...\), not 'limits.toml'",
+    ),
+    "no file": (lambda _: hs.new_robot(None), "begins from the path of a file"),
+    "a size with a unit": (lambda _: hs.new_robot("a.svg", size="200 mm"), "size must be a number in m, not '200 mm'"),
+    "many nodes": (lambda _: hs.new_robot("a.svg", nodes="many"), "nodes must be a whole number, not 'many'"),
 }
 
 
@@ -182,3 +244,12 @@ def test_what_progress_raises_ends_the_search(simulation: hs.Simulation) -> None
 
     with pytest.raises(KeyboardInterrupt):
         hs.solve_ik(simulation, {"left": (0.5, 0.5)}, progress=enough)
+
+
+def test_places_may_be_arrays(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+    """As markers of a pose are; a tracker compares the targets of one update with those of the last."""
+    reached = hs.solve_ik(simulation, {"left": pose.markers["left"]}, start=pose)
+    assert reached.errors["left"] < 1e-6
+    assert reached.target is not None
+    assert reached.target == hs.Pose(name="target", targets={"left": tuple(pose.markers["left"].tolist())})
+    assert simulation.solve([0.0, 0.012, 0.0]).contractions.tolist() == pose.contractions.tolist()

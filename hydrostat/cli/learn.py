@@ -18,7 +18,8 @@ def learn(
         int | None, typer.Option(metavar="N", help="Networks; their disagreement is the model's doubt.")
     ] = None,
     steps: Annotated[
-        int | None, typer.Option(metavar="N", help="Of training; more take longer and err a little less.")
+        int | None,
+        typer.Option(metavar="N", help="Of training the forward networks; more take longer and err a little less."),
     ] = None,
     seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
     start: Annotated[

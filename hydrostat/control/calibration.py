@@ -12,6 +12,7 @@ import numpy as np
 from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.robot import Robot, replace_file
 
 CALIBRATION = "motors.toml"
@@ -170,16 +171,24 @@ def read_calibration(folder: Path, robot: Robot, *, name: str = CALIBRATION) -> 
     import tomllib
 
     file = folder / name
+    if not file.exists():
+        raise InputError(f"{folder} has no {name}; `hydrostat calibrate` makes it")
     try:
-        table = tomllib.loads(file.read_text("utf-8"))
-    except FileNotFoundError:
-        raise InputError(f"{folder} has no {name}; `hydrostat calibrate` makes it") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        table = tomllib.loads(read_stranger(file, most=_MOST).decode())
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: not UTF-8 text; save the file again as UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{file}: {error}") from None
+    except RecursionError:
+        raise InputError(f"{file}: brackets are nested too deep") from None
     entries = table.get("motor")
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
         raise InputError(f"{file}: needs a [[motor]] for each winch")
-    by_name = {spool.winch: spool for spool in (_spool(entry, file) for entry in entries)}
+    motors = [_spool(entry, file) for entry in entries]
+    by_name = {spool.winch: spool for spool in motors}
+    for winch in by_name:
+        if sum(spool.winch == winch for spool in motors) > 1:
+            raise InputError(f'{file}: winch "{winch}" has more than one [[motor]]; keep one')
     found = Calibration(tuple(by_name.values()))
     found.check(robot)
     return Calibration(tuple(by_name[winch.name] for winch in robot.winches))
@@ -205,6 +214,9 @@ def write_calibration(folder: Path, calibration: Calibration, *, name: str = CAL
             lines.append(f"counts = {float(spool.counts)!r}  # of the encoder in a turn of the spool\n")
     return replace_file(folder / name, "".join(lines).encode())
 
+
+_MOST = 1_000_000
+"""No motors.toml has more bytes."""
 
 _KEYS: dict[str, tuple[type, ...]] = {
     "winch": (str,),

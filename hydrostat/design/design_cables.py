@@ -18,6 +18,7 @@ from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.given import check_kind
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import BodyPhysics
 
@@ -58,6 +59,11 @@ def design_cables(
     """
     if isinstance(poses, Pose) or not isinstance(poses, Iterable):
         raise InputError(f"poses must be several, such as [pose] or robot.poses.values(), not {type(poses).__name__}")
+    for name in asked:
+        if name not in Asked.__annotations__:
+            known = ", ".join(Asked.__annotations__)
+            raise InputError(f'a design is not asked for "{name}"; it is for {known}; all else is in Constraints(...)')
+    check_kind(asked.get("constraints"), (Constraints, type(None)), "constraints must be Constraints(...)")
     given = {name: value for name, value in asked.items() if value is not None}
     given["method"] = member(DesignMethod, given.get("method", DesignRequest.method), what="method")
     return find_network(robot, DesignRequest(poses=tuple(poses), **given), progress=progress, watch=watch)  # type: ignore[arg-type]

@@ -15,6 +15,7 @@ from hydrostat.design.polyline import Route
 from hydrostat.design.request import DesignRequest
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Robot
+from hydrostat.units import counted
 
 
 def rms_error(reached: Sequence[ReachedPose]) -> float:
@@ -31,6 +32,10 @@ class TreeTrace:
     candidates: tuple[Int[np.ndarray, " candidates"], ...]
     trees: tuple[Route, ...]  # routes that were grown from them [m] (Fig 3.9c)
     score: float  # the thesis's score of the network, between 0 and 1 (R43)
+
+    @property
+    def certificate(self) -> None:
+        """Trees have none; only routes do."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,6 +111,11 @@ class Network:
     seconds: float
     complete: bool = True
     filled: FilledReach | None = None
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        built = f"{1e3 * self.rms_error:.3g} mm in the model, {1e3 * self.built:.3g} mm expected once built"
+        return f"<Network for {counted(len(self.reached), 'pose')}, rms error {built}: {self.robot!r}>"
 
     @property
     def constraints(self) -> Constraints:

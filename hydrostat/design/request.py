@@ -11,6 +11,7 @@ from hydrostat.design.constraints import Constraints, Range
 from hydrostat.design.muscles.activation import FibreKind
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import InputError
+from hydrostat.ik.objectives.objective import place
 from hydrostat.robot import Pose, Robot
 
 AUTO = "auto"  # as many winches as are needed
@@ -225,11 +226,12 @@ class DesignRequest:
         """
         markers, dim = [marker.name for marker in robot.markers], robot.body.mesh.dim
         for pose in self.poses:
-            for name, place in pose.targets.items():
-                if len(place) != dim:
+            for name, point in pose.targets.items():
+                if len(point) != dim:
                     raise InputError(
-                        f'pose "{pose.name}": the target of {name} has {len(place)} coordinates, the body {dim}'
+                        f'pose "{pose.name}": the target of {name} has {len(point)} coordinates, the body {dim}'
                     )
+                place(f'pose "{pose.name}": the target of {name}', point, robot.body.mesh)  # in metres
                 if name not in markers:
                     known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
                     raise InputError(f'pose "{pose.name}": the robot has no marker "{name}"; {known}')

@@ -23,6 +23,7 @@ from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
+from hydrostat.given import check_kind, path_of
 from hydrostat.robot import Face, Robot, face_words, sewn_robot
 from hydrostat.units import counted
 
@@ -38,8 +39,9 @@ def export_kit(
         UnbuildableError: the robot cannot be built well (unless `force`).
         InputError: a body that the method cannot make, an unknown motor, or a folder that cannot be written.
     """
+    place = path_of(folder, "a kit is written into a folder")
     kit = build_kit(robot, options=options, progress=progress)
-    kit.write(folder)
+    kit.write(place)
     return kit
 
 
@@ -50,6 +52,8 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
         UnbuildableError: the robot cannot be built well (unless `force`).
         InputError: a body that the method cannot make, or an unknown motor.
     """
+    check_kind(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
+    check_kind(options, (KitOptions, type(None)), "options must be KitOptions(...)")
     options, tell = options or KitOptions(), _Stages(progress)
     choose_motor(options.motor, ())  # a name that is wrong is told before the work
     if options.step:

@@ -8,6 +8,7 @@ from typing import Any
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.robot import Body
+from hydrostat.robot.checks import check_number
 
 STUFFINGS = ("polyester fibre",)  # materials that are stuffed into cloth: a body of them is plush, in space too
 _SHORTEST = 50.0  # a piece of the gusset that is still worth sewing [mm]
@@ -45,6 +46,8 @@ def _check_sizes(options: Any, *, above_zero: tuple[str, ...]) -> None:
     """Refuse numbers that are negative or not finite, and 0 for those of some names (InputError: one is)."""
     for item in fields(options):
         value, least = getattr(options, item.name), item.name in above_zero
+        if isinstance(item.default, float):
+            check_number(item.name, value, "" if item.name == "spare_wraps" else "mm")
         if isinstance(value, float | int) and not (math.isfinite(value) and (value > 0 if least else value >= 0)):
             unit = "" if item.name == "spare_wraps" else " mm"
             raise InputError(
@@ -197,6 +200,8 @@ class KitOptions:
         if self.method is not None:
             make_member(self, "method", Method)
         make_member(self, "paper", Paper)
+        if self.tension is not None:
+            check_number("tension", self.tension, "N")
         if self.tension is not None and not (math.isfinite(self.tension) and self.tension > 0):
             raise InputError(f"tension must be above 0 N, not {self.tension:g} N")
 

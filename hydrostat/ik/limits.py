@@ -13,6 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.ik.objectives.objective import above_zero, by_name, describe, numbers
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
+from hydrostat.simulation.solved_pose import contraction_values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,6 +133,8 @@ def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vec
             raise InputError(
                 f'contraction of winch "{name}" must lie between two rising numbers [m], not {describe(limits)}'
             )
+        for end in ends:
+            contraction_values(robot, {name: float(end)})  # in metres
         ranges[name] = (ends[0], ends[1])
     values = np.array(list(ranges.values()), dtype=float).reshape(-1, 2)
     return values[:, 0], values[:, 1]

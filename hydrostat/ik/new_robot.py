@@ -10,11 +10,14 @@ from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.given import check_kind, path_of
 from hydrostat.ik.first_pose import with_first_pose
 from hydrostat.robot import Robot, SurfaceSketch, gallery_folder, load_robot, sketch_mesh, sketch_robot, sketch_surface
+from hydrostat.robot.checks import check_number
 from hydrostat.robot.gallery import GALLERY, is_of_gallery
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
+LONGEST = 20.0  # nothing of a robot is longer [m]
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
 
@@ -32,6 +35,14 @@ class NewRobotWish:
     inner: Inner | str | None = None  # whether shapes in a drawn body are holes, or drawn on it
 
     def __post_init__(self) -> None:
+        for key in ("size", "element_size", "thickness", "inflate"):
+            value = getattr(self, key)
+            if value is not None:
+                check_number(key, value, "m")
+                if value > LONGEST:
+                    raise InputError(f"{key} must be at most {LONGEST:g} m, not {value:g}; in metres: 200 mm is 0.2")
+        check_kind(self.nodes, (int, type(None)), "nodes must be a whole number")
+        check_kind(self.material, (str, type(None)), "material must be a name of the table")
         if self.nodes is not None and self.element_size is not None:
             raise InputError("nodes and element_size: give one of them")
 
@@ -98,7 +109,7 @@ def begin_robot(
 
     if is_of_gallery(source):
         return BegunRobot(_of_gallery(source, wish))
-    path = Path(source)
+    path = path_of(source, 'a robot begins from the path of a file, or "gallery:NAME"')
     kinds = {OUTLINE_SUFFIXES: _of_drawing, SURFACE_SUFFIXES: _of_surface, MESH_SUFFIXES: _of_mesh}
     for suffixes, make in kinds.items():
         if path.suffix.lower() in suffixes:

@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.given import check_kind
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.effort import keeps_taut
 from hydrostat.ik.objectives.marker_goal import MarkerGoal, named_targets
@@ -20,10 +21,10 @@ from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_p
 from hydrostat.ik.search.others_stay import others_stayed
 from hydrostat.ik.search.patience import Patience, Tell
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
-from hydrostat.robot import Point, Pose
+from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose, check_still, friction_band, smooth_robot
 
-Targets = Pose | Mapping[str, Point]  # where markers should go [m]: a pose, or points by name
+Targets = Pose | Mapping[str, Sequence[float] | Vector]  # where markers should go [m]: a pose, or points by name
 
 
 def solve_ik(
@@ -63,6 +64,8 @@ def solve_ik(
             cables, or other physics that remember the way.
         NotConvergedError: no equilibrium where the search begins.
     """
+    check_kind(simulation, Simulation, "a pose is found by a Simulation(robot)")
+    check_kind(options, (InverseOptions, type(None)), "options must be InverseOptions(...)")
     target, patience = as_pose(targets), Patience.of(seconds, progress)
     check_still(simulation.robot, "inverse kinematics")
     if (robot := smooth_robot(simulation.robot)) is not simulation.robot:

@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.given import check_kind
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective, Term
 from hydrostat.ik.outlook import Outlook
@@ -88,9 +89,15 @@ class Tracker:
         better within the limits, the update leads there instead of a step; the next goes on by steps.
 
         Raises:
-            InputError: a model of another robot.
+            InputError: no simulation, limits, start, accuracy or model, or a start or a model of another robot.
         """
+        check_kind(simulation, Simulation, "a pose is found by a Simulation(robot)")
+        check_kind(limits, (Limits, type(None)), "limits must be Limits(...), such as Limits(rate=0.05)")
+        simulation.check_start(start)
+        simulation.solver.roughly(accuracy, simulation.robot.body.mesh.size)
         if model is not None:
+            if not hasattr(model, "check"):
+                raise InputError(f"model must be one that load_model gives, not {model!r:.60}")
             model.check(simulation.robot)
         self._model = model
         self._asked: Mapping[str, Point] | None = None  # the targets that the model was asked for last
@@ -116,8 +123,8 @@ class Tracker:
             InputError: as for `solve_ik`, or seconds not above 0.
             NotConvergedError: no equilibrium where it begins.
         """
-        if not seconds > 0:
-            raise InputError(f"seconds since the last update must be above 0, not {seconds:g}")
+        if isinstance(seconds, bool) or not isinstance(seconds, int | float | np.number) or not seconds > 0:
+            raise InputError(f"seconds since the last update must be above 0, not {seconds!r:.60}")
         target = as_pose(targets)
         search = self._search(target, seconds, objectives)
         state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
@@ -160,6 +167,10 @@ class Tracker:
             radius=self._radius,
             spread=problem.bounds.spread,
         )
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        return f"<Tracker at {self.pose!r}>"
 
     def _foretold(self, search: InverseSearch, state: InverseState, target: Pose | None) -> InverseState | None:
         """Where the model leads; None if it was asked for this before, or that is not better."""

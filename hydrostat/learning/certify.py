@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from hydrostat.errors import InputError
+from hydrostat.given import check_kind
 from hydrostat.ik import InverseOptions, InverseReason, Limits, Targets, Tracker, solve_ik
 from hydrostat.ik.objectives.marker_goal import named_targets
 from hydrostat.learning.learned_model import LearnedModel
@@ -31,6 +33,11 @@ def certify(
     Raises:
         InputError: a model of another robot.
     """
+    check_kind(simulation, Simulation, "an answer is certified by a Simulation(robot)")
+    check_kind(model, LearnedModel, "the model must be one that load_model gives")
+    check_kind(answer, LearnedPose, "the answer must be what model.solve gives")
+    if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:
+        raise InputError(f"steps must be a whole number of 0 or more, not {steps!r:.60}")
     model.check(simulation.robot)
     pose = answer.pose or simulation.solve(answer.contractions, strict=False)
     pose, _ = exact_steps(simulation, pose, answer.target, steps, enough=enough)

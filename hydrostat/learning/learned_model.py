@@ -46,6 +46,11 @@ class LearnedModel:
     known: Float[np.ndarray, "samples winches"]
     reached: Float[np.ndarray, "samples coordinates"]
 
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        known = f"{len(self.facts['winches'])} winches, {len(self.facts['markers'])} markers"
+        return f"<LearnedModel of {self.facts['robot']!r}: {known}, {1e3 * self.facts['error']:.3g} mm on average>"
+
     def check(self, robot: Robot) -> None:
         """Check that this was learned of a robot.
 

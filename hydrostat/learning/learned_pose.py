@@ -52,6 +52,11 @@ class LearnedPose:
     reason: Reason | InverseReason | None = None
     pose: SolvedPose | None = None
 
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        sort = "expected" if self.certified is None else "certified"
+        return f"<LearnedPose for {self.target.name!r} by {self.tier}: {1e3 * self.error:.3g} mm {sort} on average>"
+
     @property
     def error(self) -> float:
         """Mean distance of the markers from their targets [m]: certified where it is, else expected."""

@@ -61,7 +61,7 @@ class PortableFile:
         Raises:
             InputError: there is none, it was changed since it was written, or it is none that this version can use.
         """
-        path = path_of(path, f"a {self.word} is read from its file")
+        path = path_of(path, f"a {self.word} is read from its file, by a path")
         try:
             content = read_stranger(path, most=MOST)
         except InputError as error:

@@ -93,7 +93,7 @@ def read_manifest(path: str | Path) -> dict[str, Any]:
     Raises:
         InputError: there is none, or it is not one of ours.
     """
-    file = path_of(path, "samples are read from their folder") / MANIFEST
+    file = path_of(path, "samples are read from their folder, by a path") / MANIFEST
     try:
         text = read_stranger(file, most=_MOST_TEXT)
     except InputError as error:

@@ -51,6 +51,10 @@ class Samples:
     def __len__(self) -> int:
         return len(self.contractions)
 
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        return f"<Samples of {self.facts['robot']!r}: {len(self)} found, {self.lost} lost>"
+
     @property
     def limits(self) -> tuple[Vector, Vector]:
         """Least and largest contraction of each winch [m]."""

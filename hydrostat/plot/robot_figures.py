@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing.palette import ERROR, LIGHT, winch_colours
 from hydrostat.geometry.outline import Outline, Ring
+from hydrostat.given import check_kind
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody
@@ -28,7 +29,9 @@ from hydrostat.plot.targets import (
 )
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Obstacle, Pose, Robot
+from hydrostat.robot.checks import check_positive
 from hydrostat.simulation import SolvedPose, as_posed
+from hydrostat.simulation.solved_pose import check_pose
 from hydrostat.units import counted
 
 
@@ -37,6 +40,7 @@ def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -
 
     The title is the robot's name if left out, nothing if empty; width in inches.
     """
+    _check(robot, width)
     body = robot.body
     count = f"{len(body.mesh.nodes)} nodes, {len(body.mesh.elements)} elements"
     head = shorten(robot.name) if title is None else title
@@ -77,6 +81,7 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
 
     The title counts winches and cables if left out, nothing if empty; width in inches.
     """
+    _check(robot, width)
     count = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
     head = shorten(robot.name) if title is None else title
     sheet, panes, bodies = _at_rest(robot, head, count, width)
@@ -85,6 +90,12 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
     draw_numbers(sheet, drawn.runs, [colours[cable.winch] for cable in robot.cables], labels)
     name_winches(labels, robot, drawn.winches)
     return sheet.figure
+
+
+def _check(robot: Robot, width: float) -> None:
+    """Refuse what cannot be drawn (InputError)."""
+    check_kind(robot, Robot, "a picture is drawn of a Robot, such as load_robot gives")
+    check_positive("width", width, "inches")
 
 
 def _at_rest(
@@ -150,6 +161,8 @@ def draw_pose(
     The title is the robot's name if left out, nothing if empty; the note below tells, if left out, whether it rests
     under its contractions; width in inches.
     """
+    _check(robot, width)
+    check_pose(pose, robot.body.mesh.nodes.shape, len(robot.winches), what="the pose")
     head = shorten(robot.name) if title is None else title
     line = _rests(pose) if note is None else note
     sheet, panes, labels = _in_pose(robot, pose, head, line, width, targets={})
@@ -173,6 +186,9 @@ def draw_reached(
     The title is the pose's name if left out, nothing if empty; the outline is the shape that a flat body should take,
     dashed; width in inches.
     """
+    _check(robot, width)
+    check_kind(reached, ReachedPose, "what is reached must be what solve_ik gives")
+    check_pose(reached.pose, robot.body.mesh.nodes.shape, len(robot.winches), what="the pose")
     named = "Reached" if reached.target is None else f"Reached: {shorten(reached.target.name)}"
     head = named if title is None else title
     goals = {} if reached.target is None else target_places(reached.target)

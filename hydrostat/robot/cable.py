@@ -10,7 +10,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.robot.checks import LONGEST_NAME, Point, check_name, check_not_negative, check_point, check_positive
+from hydrostat.given import check_kind
+from hydrostat.robot.checks import (
+    LONGEST_NAME,
+    Point,
+    check_name,
+    check_not_negative,
+    check_number,
+    check_point,
+    check_positive,
+)
 
 LARGEST_FRICTION = 2.0  # no coefficient of friction is larger: one half turn would then hold 500 times the tension
 
@@ -49,6 +58,9 @@ class Cable:
     def __post_init__(self) -> None:
         if self.name:
             check_name(self.name)
+        check_kind(self.winch, str, "winch must be the name of a winch")
+        check_kind(self.points, (tuple, list, np.ndarray), "points must hold at least 2 points [m]")
+        check_kind(self.sheathed, (tuple, list), "sheathed must hold pairs of point indices")
         count = len(self.points)
         if count < 2:
             raise InputError(f"points must hold at least 2 points, not {count}")
@@ -63,6 +75,7 @@ class Cable:
         check_not_negative("slack", self.slack, "m")
         if self.spool_radius is not None:
             check_positive("spool_radius", self.spool_radius, "m")
+        check_number("friction", self.friction, "")
         if not 0 <= self.friction <= LARGEST_FRICTION:
             raise InputError(f"friction must be at least 0 and at most {LARGEST_FRICTION:g}, not {self.friction:g}")
         for start, end in self.sheathed:

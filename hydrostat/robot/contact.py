@@ -17,7 +17,7 @@ from hydrostat.geometry.distance_field import (
     sphere_field,
 )
 from hydrostat.geometry.shell import shell_field
-from hydrostat.robot.checks import Point, check_name, check_point, check_positive
+from hydrostat.robot.checks import Point, check_name, check_number, check_point, check_positive
 from hydrostat.robot.closed_mesh import ClosedMesh
 
 DISTANCE = 0.005
@@ -47,6 +47,7 @@ class Contact:
 
 def check_friction(friction: float) -> None:
     """Check a coefficient of friction (InputError: it is not from 0 to 3)."""
+    check_number("friction", friction, "")
     if not 0 <= friction <= _MOST_FRICTION:
         raise InputError(f"friction must be from 0 to {_MOST_FRICTION:g}, not {friction:g}: rubber has about 1")
 

@@ -11,6 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
+from hydrostat.given import check_kind
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.checks import Point
@@ -66,6 +67,7 @@ class Robot:
     obstacles: tuple[Obstacle, ...] = ()
 
     def __post_init__(self) -> None:
+        self._check_kinds()
         if not self.name:
             raise InputError("name must not be empty")
         try:
@@ -172,6 +174,23 @@ class Robot:
     def _repr_html_(self) -> str:
         """The robot at rest, for a notebook."""
         return notebook_html(repr(self), picture_of("rest", self))
+
+    def _check_kinds(self) -> None:
+        """Refuse parts of another kind, before they are asked for anything."""
+        check_kind(self.body, Body, "body must be a Body, as that of another robot")
+        for what, kind in _PARTS.items():
+            check_kind(getattr(self, what), (tuple, list), f"{what} must be several, such as () for none")
+            for part in getattr(self, what):
+                check_kind(part, kind, f"{what} must be {kind.__name__} records")
+        check_kind(self.poses, Mapping, "poses must be given by name")
+        for pose in self.poses.values():
+            check_kind(pose, Pose, "poses must be Pose records")
+        check_kind(self.contact, (Contact, type(None)), "contact must be a Contact()")
+        check_kind(
+            self.gravity,
+            (tuple, list, np.ndarray, str, type(None)),
+            "gravity must be m/s^2 along each axis",
+        )
 
     def _check_dimensions(self) -> None:
         dim = self.body.mesh.dim
@@ -321,3 +340,6 @@ def _named(kind: str, kinds: str, parts: Iterable[_Part], name: str) -> _Part:
 
 def _choices(kind: str, names: list[str]) -> str:
     return f"its {kind} are: {', '.join(names)}" if names else f"it has no {kind}"
+
+
+_PARTS = {"pins": Pin, "winches": Winch, "cables": Cable, "markers": Marker, "obstacles": Obstacle}

@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
+from hydrostat.given import check_kind
 from hydrostat.robot.checks import Point, check_not_negative, check_point, check_positive
 
 
@@ -41,10 +42,18 @@ class Winch:
     mount: Mount = Mount.BODY
 
     def __post_init__(self) -> None:
+        check_kind(self.name, str, "name must be a text")
         if not self.name:
             raise InputError("name must not be empty")
         check_point("at", self.at)
         check_positive("spool_radius", self.spool_radius, "m")
         check_positive("travel", self.travel, "m")
         check_not_negative("release", self.release, "m")
+        for field, value in (("travel", self.travel), ("release", self.release), ("spool_radius", self.spool_radius)):
+            if value > _MOST:
+                raise InputError(f"{field} must be at most {_MOST:g} m, not {value:g}; in metres: 60 mm is 0.06")
         make_member(self, "mount", Mount)
+
+
+_MOST = 20.0
+"""No winch takes in more [m]."""

@@ -8,6 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
+from hydrostat.given import check_kind
 from hydrostat.mechanics import (
     Assembly,
     ContactEnergy,
@@ -54,8 +55,9 @@ class BodyPhysics:
         """Physics of the body of `robot`; its network does not matter; `in_time` obstacles move along their paths.
 
         Raises:
-            InputError: a part of the mesh that no pin holds.
+            InputError: no robot, or a part of the mesh that no pin holds.
         """
+        check_kind(robot, Robot, "a simulation is of a Robot, such as load_robot gives")
         body = robot.body
         self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles
         self.material, self.thickness = body.material, body.thickness

@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.simulation.solved_pose import SolvedPose
+from hydrostat.units import counted
 
 
 class BranchReason(StrEnum):
@@ -80,6 +81,10 @@ class Branch:
     points: tuple[BranchPoint, ...]
     critical: tuple[CriticalPoint, ...]
     reason: BranchReason
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        return f"<Branch of {counted(len(self.points), 'pose')}: {self.reason}>"
 
     @property
     def arrived(self) -> bool:

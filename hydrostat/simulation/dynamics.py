@@ -9,6 +9,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors
+from hydrostat.given import check_kind
 from hydrostat.mechanics import (
     Assembly,
     Energy,
@@ -22,6 +23,7 @@ from hydrostat.mechanics.inertia import InertiaEnergy
 from hydrostat.mechanics.time_scheme import SCHEMES
 from hydrostat.mechanics.viscous import Memory, Metrics
 from hydrostat.robot import Robot
+from hydrostat.robot.checks import check_not_negative, check_number
 from hydrostat.simulation.balanced import balanced
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.motion import Motion
@@ -51,8 +53,8 @@ class StepOptions:
     def __post_init__(self) -> None:
         if self.scheme not in SCHEMES:
             raise InputError(f'there is no scheme "{self.scheme}"; there are: {", ".join(SCHEMES)}')
-        if not (np.isfinite(self.drag) and self.drag >= 0):
-            raise InputError(f"drag must be finite and not negative, not {self.drag:g}")
+        check_not_negative("drag", self.drag, "1/s")
+        check_kind(self.halvings, int, "halvings must be a whole number of 0 or more")
         if self.halvings < 0:
             raise InputError(f"halvings must be 0 or more, not {self.halvings}")
 
@@ -157,6 +159,8 @@ class Dynamics:
         Raises:
             InputError: a duration or a time step that is not above 0.
         """
+        check_number("duration", seconds, "s")
+        check_number("time step", dt, "s")
         if not (seconds > 0 and dt > 0):
             raise InputError(f"duration and time step must be above 0 s, not {seconds:g} and {dt:g}")
         motion, begin, steps = start, start.time, max(1, ceil(seconds / dt - 1e-9))

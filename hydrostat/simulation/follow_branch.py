@@ -12,7 +12,7 @@ from hydrostat.mechanics import NewtonResult, Reason
 from hydrostat.simulation.bordered import Bordered, PathPoint, Tangent
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.simulation import Contractions, Simulation
-from hydrostat.simulation.solved_pose import SolvedPose
+from hydrostat.simulation.solved_pose import SolvedPose, check_pose
 from hydrostat.simulation.still import check_still
 
 
@@ -90,8 +90,7 @@ def follow_branch(
         )
     check_still(simulation.robot, "a branch of equilibria")
     rest = simulation.robot.body.mesh.nodes
-    if start.nodes.shape != rest.shape or start.contractions.shape != goal.shape:
-        raise InputError(f"start must be a pose of this robot, {rest.shape} nodes, not {start.nodes.shape}")
+    check_pose(start, rest.shape, len(goal))
     return _Follower(simulation, start, goal, around_folds, options or BranchOptions()).run()
 
 

@@ -82,6 +82,10 @@ class ManyPoses:
     def __len__(self) -> int:
         return len(self.reasons)
 
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        return f"<ManyPoses: {self.converged.sum()} of {len(self)} converged; markers {self.markers.shape}>"
+
 
 def pose_row(
     pose: SolvedPose,

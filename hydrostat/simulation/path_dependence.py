@@ -11,6 +11,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.given import check_kind
 from hydrostat.simulation.approaches import Approach, approaches_to, follow_approach
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose, largest_distance
@@ -51,6 +52,10 @@ class PathDependence:
     node_spread: float
     near: float
     friction: bool
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        return f"<PathDependence: {counted(len(self.poses), 'pose')} after {counted(self.starts, 'start')}>"
 
     @property
     def unique(self) -> bool:
@@ -118,6 +123,7 @@ def path_dependence(
         InputError: contractions that do not fit the robot, or no ways.
     """
     goal = simulation.contractions(contractions)
+    check_kind(count, int, "count must be a whole number of at least 1")
     if count < 1:
         raise InputError(f"count must be at least 1, not {count}; 16 are enough for most robots")
     if not tolerance > 0:

@@ -39,6 +39,14 @@ class Profile:
     gentle: bool = False
 
     def __post_init__(self) -> None:
+        try:
+            times, values = np.array(self.times, dtype=float), np.array(self.values, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError("a profile needs times [s], and contractions [m] as a row for each of them") from None
+        if times.ndim != 1 or values.ndim != 2:
+            raise InputError(f"a profile needs times and a row for each, not arrays of {times.shape}, {values.shape}")
+        object.__setattr__(self, "times", times)
+        object.__setattr__(self, "values", values)
         if len(self.times) == 0 or len(self.values) != len(self.times):
             raise InputError(f"a profile needs contractions for each time: {len(self.values)} for {len(self.times)}")
         if not (np.isfinite(self.times).all() and np.isfinite(self.values).all()):
@@ -69,7 +77,9 @@ def check_profile(profile: object, robot: Robot) -> None:
             f"a motion is played by a Profile, such as Profile.ramp(simulation.contractions({{...}}), seconds), "
             f"not by {profile!r:.60}"
         )
-    contraction_values(robot, profile.values[0])
+    values = profile.values
+    contraction_values(robot, values[0])
+    contraction_values(robot, values[np.abs(values).argmax(axis=0), np.arange(values.shape[1])])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

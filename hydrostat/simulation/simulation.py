@@ -11,6 +11,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.given import check_kind
 from hydrostat.mechanics import Assembly, Energy, FrictionCableEnergy, NewtonOptions, NewtonResult, Stiffness
 from hydrostat.robot import Robot
 from hydrostat.simulation.adjoint import Sensitivity, cotangents, sensitivity
@@ -110,9 +111,9 @@ class Simulation:
             NotConvergedError: the solver stopped early; its text says why, and what stands in the way.
         """
         goal = self.contractions(contractions)
-        self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
         self.check_start(start)
-        history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy)
+        self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
+        history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy, self.robot.body.mesh.size)
         if self.assembly.has_history:
             result, history = self.path.within(seconds).solve(goal, start)
         else:
@@ -148,12 +149,11 @@ class Simulation:
         Raises:
             InputError: as for `solve`; or no number of threads.
         """
-        if not isinstance(contractions, Iterable):
-            raise InputError(f"contractions must be a row for each pose, not {contractions!r}")
+        check_kind(contractions, Iterable, "contractions must be a row for each pose")
         given = [self.contractions(each) for each in contractions]
+        self.check_start(start)
         self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
         goals = np.array(given).reshape(len(given), len(self.robot.winches))
-        self.check_start(start)
         _ = self.solver.within(seconds), self.rest_stiffness  # checked and made before threads ask for them
         pays = self.assembly.pattern.analysis.tree.seconds >= LONG_ENOUGH
         slopes = self.marker_jacobian if jacobians else None
@@ -321,6 +321,9 @@ class Simulation:
         """
         check_profile(profile, self.robot)
         return self.dynamics.play(profile, seconds, dt, start or self.still(), options or StepOptions())
+
+    def __repr__(self) -> str:
+        return f"<Simulation of {self.robot!r}>"
 
     @cached_property
     def dynamics(self) -> Dynamics:

@@ -1,6 +1,6 @@
 """`SolvedPose`: a robot in quasi-static equilibrium under given contractions."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -14,12 +14,13 @@ from hydrostat.mechanics import NewtonResult
 from hydrostat.robot import Robot
 from hydrostat.robot.notebook import notebook_html, picture_of
 from hydrostat.simulation.strain import node_strains, node_stresses
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Contractions = Mapping[str, float] | Vector
-"""Cable taken in [m]: by the name of a winch (others 0), or an array in winch order."""
+Contractions = Mapping[str, float] | Sequence[float] | Vector
+"""Cable taken in [m]: by the name of a winch (others 0), or numbers in winch order."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -193,8 +194,11 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
             f"contractions must be one number for each of {len(winches)} winches, not an array of {values.shape}; "
             "solve_many takes a row for each pose"
         )
+    names = ", ".join(winch.name for winch in winches)
+    if values.ndim == 0:
+        raise InputError(f"contractions must be given by winch, or a number for each of {names}, not {given!r:.60}")
     if values.shape != (len(winches),):
-        raise InputError(f"{values.size} contractions given for {len(winches)} winches")
+        raise InputError(f"{values.size} contractions given for {counted(len(winches), 'winch')}: {names}")
     if not np.isfinite(values).all():
         raise InputError("a contraction is not a finite number")
     _check_metres(robot, values)

@@ -74,18 +74,22 @@ class StaticSolver:
         """
         if seconds is None:
             return self
-        if not seconds > 0:
-            raise InputError(f"seconds must be above 0, not {seconds:g}")
+        if isinstance(seconds, bool) or not isinstance(seconds, int | float | np.number) or not seconds > 0:
+            raise InputError(f"seconds must be above 0, not {seconds!r:.60}")
         return replace(self, options=replace(self.options, deadline=time.monotonic() + seconds))
 
-    def roughly(self, accuracy: float | None) -> "StaticSolver":
-        """The same that stops where nodes are so near to equilibrium [m]; itself if that is None.
+    def roughly(self, accuracy: float | None, size: float = np.inf) -> "StaticSolver":
+        """The same that stops where nodes of a body so large are so near to equilibrium [m]; itself if that is None.
 
         Raises:
-            InputError: an accuracy that is not above 0.
+            InputError: an accuracy that is not above 0, or so rough that it is hardly in metres.
         """
         if accuracy is not None and not (isinstance(accuracy, int | float | np.number) and accuracy > 0):
             raise InputError(f"accuracy must be above 0 m, not {accuracy!r}")
+        if accuracy is not None and accuracy > _ROUGHEST * size:
+            raise InputError(
+                f"accuracy, {accuracy:g} m, is too rough for a body of {size:.3g} m; it is in metres: 0.01 mm is 1e-5"
+            )
         return self if accuracy is None else replace(self, options=replace(self.options, accuracy=accuracy))
 
     def allowed(self, nodes: Nodes, controls: Vector) -> float:
@@ -199,3 +203,7 @@ _MOST_STEPS = 100
 
 _SMALLEST_STEP = 2.0**-7
 """No load step is smaller than this share of a command."""
+
+
+_ROUGHEST = 0.1
+"""So far from equilibrium, in sizes of the body, no pose is of use."""

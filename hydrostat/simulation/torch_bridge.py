@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.given import check_kind
 from hydrostat.robot import Cable, Mount, Robot, Winch
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -69,7 +70,11 @@ def solve_torch(
         InputError: values that the robot refuses, or a wrong shape.
         NotConvergedError: as for `Simulation.solve`; in `backward` as for `Simulation.jacobian`.
     """
+    check_kind(simulation, Simulation, "an equilibrium is found by a Simulation(robot)")
     robot = simulation.robot
+    check_kind(contractions, Tensor, "contractions must be a tensor [m], such as torch.tensor([0.01, 0.0])")
+    for what, value in (("slack", slack), ("young", young), ("poisson", poisson)):
+        check_kind(value, (Tensor, type(None)), f"{what} must be a tensor, such as torch.tensor(0.3)")
     joint = None
     if routes is not None:
         _check_routes(robot, routes)
@@ -120,6 +125,8 @@ def _plain(tensor: Tensor) -> Tensor:
 
 def _check_routes(robot: Robot, routes: Sequence[Tensor]) -> None:
     wanted = [(len(cable.points), robot.body.mesh.dim) for cable in robot.cables]
+    for route in routes:
+        check_kind(route, Tensor, "routes must be tensors of points [m], one for each cable")
     given = [tuple(route.shape) for route in routes]
     if given != wanted:
         raise InputError(f"routes must hold the points of each cable, of shapes {wanted}, not {given}")

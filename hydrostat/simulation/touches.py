@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from hydrostat.arrays import Vector
 from hydrostat.mechanics.energy import Pressed, Stencils
 from hydrostat.simulation.simulation import Simulation
-from hydrostat.simulation.solved_pose import SolvedPose
+from hydrostat.simulation.solved_pose import SolvedPose, check_pose
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,7 +42,11 @@ def touches(simulation: Simulation, pose: SolvedPose) -> tuple[Touch, ...]:
     Args:
         simulation: of the robot.
         pose: an equilibrium of it.
+
+    Raises:
+        InputError: no pose of this robot.
     """
+    check_pose(pose, simulation.robot.body.mesh.nodes.shape, len(simulation.robot.winches), what="the pose")
     where = pose.unknowns
     assembly = simulation.path.resumed(pose) if simulation.assembly.has_history else simulation.assembly
     names = dict(zip(simulation.body.obstacles, (each.name for each in simulation.robot.obstacles), strict=True))

@@ -124,9 +124,7 @@ class ReachEnv(GoalEnv):
         given = dict(options or {})
         while "goal" not in given:
             given = {**(self.drawn(self.np_random) or {}), **given}
-        goal = np.asarray(given["goal"], dtype=float).ravel()
-        if goal.shape != (len(self.seen),):
-            raise InputError(f"a goal has {len(self.seen)} coordinates, not {goal.size}")
+        goal = _numbers(given["goal"], len(self.seen), "a goal", "coordinates [m]")
         self._goal, self.taken_steps = self.rest.copy(), 0
         self._goal[self.seen] = goal
         self.world.back()
@@ -137,8 +135,8 @@ class ReachEnv(GoalEnv):
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
         """Take in cable by an action; an episode is cut off after its steps."""
+        action = _numbers(action, int(np.prod(self.action_space.shape or (0,))), "an action", "numbers from -1 to 1")
         self.taken_steps += 1
-        action = np.asarray(action, dtype=float)
         if self.options.incremental:
             change = 0.1 * (self._high - self._low) * self._spread(np.clip(action, -1.0, 1.0))
             taken = np.clip(self._taken + change, self._low, self._high)
@@ -286,3 +284,14 @@ def _groups(robot: Robot, pairs: Sequence[Sequence[str]]) -> tuple[tuple[int, ..
         raise InputError("a winch belongs to one pair only")
     paired = [tuple(names.index(name) for name in pair) for pair in pairs]
     return tuple(sorted([*paired, *((index,) for index in range(len(names)) if index not in used)]))
+
+
+def _numbers(given: object, count: int, what: str, which: str) -> Vector:
+    """So many finite numbers (InputError: anything else)."""
+    try:
+        found = np.asarray(given, dtype=float).ravel()
+    except (TypeError, ValueError):
+        found = np.zeros(0)
+    if len(found) != count or not np.isfinite(found).all():
+        raise InputError(f"{what} has {count} {which}, not {given!r:.60}")
+    return found

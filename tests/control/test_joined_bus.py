@@ -159,6 +159,21 @@ def test_boards_in_another_order_are_named(robot: Robot, motors: Calibration, bo
         parts.identify()
 
 
+def test_damaged_motors_are_told(robot: Robot, tmp_path: Path) -> None:
+    """Of two entries for a winch the last one was taken without a word."""
+    file = write_calibration(tmp_path, usual_calibration(robot))
+    whole, winch = file.read_bytes(), robot.winches[0].name
+    for content, words in (
+        (2 * whole, f'winch "{winch}" has more than one'),
+        (b"\xff" + whole, "not UTF-8 text"),
+        (b"a = " + 9000 * b"[", "nested too deep|Invalid|Unclosed"),
+        (whole.rpartition(b"=")[0], "motors.toml: "),
+    ):
+        file.write_bytes(content)
+        with pytest.raises(InputError, match=words):
+            read_calibration(tmp_path, robot)
+
+
 def test_motors_are_spread_and_kept(robot: Robot, motors: Calibration, tmp_path: Path) -> None:
     """By hand: two on the first Uno, one on the second; what fits stays as it is."""
     assert [(each.board, each.number) for each in motors.motors] == [(1, 1), (1, 2), (2, 1)]

@@ -305,11 +305,27 @@ def test_no_changed_file_is_believed(robot: Robot, tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("unchecked")
+def test_what_cannot_be_certified_is_told(simulation: hs.Simulation, model: LearnedModel) -> None:
+    answer = model.solve({"tip": (0.1, 0.0)})
+    assert len(repr(model)) + len(repr(answer)) < 300
+    for given, words in (
+        ((None, model, answer), r"by a Simulation\(robot\), not None"),
+        ((simulation, None, answer), "one that load_model gives, not None"),
+        ((simulation, model, None), "what model.solve gives, not None"),
+    ):
+        with pytest.raises(InputError, match=words):
+            certify(*given)  # type: ignore[arg-type]
+    for steps in (-1, "a"):
+        with pytest.raises(InputError, match="steps must be a whole number of 0 or more"):
+            certify(simulation, model, answer, steps=steps)  # type: ignore[arg-type]
+
+
+@pytest.mark.usefixtures("unchecked")
 def test_what_is_no_file_is_no_model() -> None:
     """A device without an end was read until the memory was full."""
     with pytest.raises(InputError, match="/dev/zero: is not a file; name a file that hydrostat learn wrote"):
         load_model("/dev/zero")
-    with pytest.raises(InputError, match="a model is read from its file, not from None"):
+    with pytest.raises(InputError, match="a model is read from its file, by a path, not None"):
         load_model(None)  # type: ignore[arg-type]
 
 

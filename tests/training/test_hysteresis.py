@@ -124,5 +124,18 @@ def test_what_a_task_does_not_have_is_told(robot: Robot) -> None:
     assert (made.steps, made.options.incremental, made.portable) == (7, True, False)
     with pytest.raises(InputError, match="a start has 1 contractions"):
         made.reset(options={"goal": made.rest, "start": [0.0, 0.1]})
-    with pytest.raises(InputError, match="a goal has 8 coordinates, not 3"):
+    with pytest.raises(InputError, match=r"a goal has 8 coordinates \[m\], not"):
         made.reset(options={"goal": [0.0, 0.1, 0.2]})
+
+
+@pytest.mark.usefixtures("unchecked")
+def test_actions_and_goals_that_are_none_are_told(robot: Robot) -> None:
+    """A goal that is no number made every reward NaN."""
+    env = ReachEnv(robot)
+    with pytest.raises(InputError, match="a goal has 8 coordinates"):
+        env.reset(options={"goal": np.full(8, np.nan)})
+    env.reset(seed=0)
+    for action in (None, [0.0, 0.0, 0.0, 0.0], [np.nan], "a"):
+        with pytest.raises(InputError, match="an action has 1 numbers from -1 to 1, not"):
+            env.step(action)  # type: ignore[arg-type]
+    assert env.taken_steps == 0

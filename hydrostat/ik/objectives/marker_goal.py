@@ -79,7 +79,7 @@ def named_targets(given: object) -> Mapping[str, Point]:
     found = by_name("targets", given, '{"tip": (0.1, 0.02)}')
     if not found:
         raise InputError("targets must name at least one marker")
-    return found
+    return {name: tuple(point.tolist()) if isinstance(point, np.ndarray) else point for name, point in found.items()}
 
 
 class MarkerTerm(Term):

@@ -15,6 +15,7 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Curve, Outline
 from hydrostat.geometry.shell import Nearest, Shell, outline_shell
 from hydrostat.geometry.surface import Surface
+from hydrostat.given import path_of
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term, describe, not_negative
 from hydrostat.robot import Robot, Source
 from hydrostat.simulation import Simulation
@@ -194,7 +195,7 @@ def drawn_pose(robot: Robot, drawing: Path | str) -> Outline:
         InputError: the body was not drawn, or the file cannot be read.
         OutlineError: no pose can be made of the drawing, or it has another page.
     """
-    body, file = robot.body, Path(drawing)
+    body, file = robot.body, path_of(drawing, "a pose is read from the path of a drawing")
     if body.source is not Source.OUTLINE:
         raise InputError(f"{file.name}: a pose can be drawn over a drawing only, the body is of a {body.source} file")
     content = read_stranger(file)

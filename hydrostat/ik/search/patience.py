@@ -22,6 +22,8 @@ class Patience:
     @classmethod
     def of(cls, seconds: float | None, tell: Tell | None) -> Self:
         """Patience for so many seconds from now, without end if that is None (InputError: not above 0)."""
+        if tell is not None and not callable(tell):
+            raise InputError(f"progress must be a function that is called with a step and an error, not {tell!r:.60}")
         if seconds is None:
             return cls(tell=tell)
         if isinstance(seconds, bool) or not isinstance(seconds, int | float) or not seconds > 0:

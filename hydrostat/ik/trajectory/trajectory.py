@@ -14,6 +14,7 @@ from hydrostat.ik.trajectory.course import Pace, Samples
 from hydrostat.ik.trajectory.poses import Snap
 from hydrostat.robot import Pose
 from hydrostat.simulation import Profile, SolvedPose
+from hydrostat.units import counted
 
 
 class PathKind(StrEnum):
@@ -98,6 +99,11 @@ class Trajectory:
     winches: tuple[str, ...]
     cables: tuple[str, ...] = field(repr=False)
     tension: Vector = field(repr=False)
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        parts = f"{counted(len(self.poses), 'pose')}, {counted(len(self.snaps), 'snap')}"
+        return f"<Trajectory of {self.times[-1]:.3g} s, {self.path}: {parts}>"
 
     @property
     def seconds(self) -> float:
