@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.folders import RobotFolder
-from hydrostat.cli.waiting import read_robot
+from hydrostat.cli.waiting import patiently, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import counted
 
@@ -52,15 +52,29 @@ def check(
 
 def _print_judgement(robot: "Robot") -> None:
     """What is to be said before a robot is built, as the studio says it: whatever its poses ask of motors."""
-    from hydrostat.design import Constraints, Weight, judgement_of
+    from hydrostat.design import Constraints, Finding, Weight, judgement_of
     from hydrostat.robot.in_words import in_words
 
-    found = judgement_of(robot, constraints=Constraints())
+    found = [Finding(text=text, weight=Weight.REFUSED, places=()) for text in print_sewing(robot.body)]
+    found += judgement_of(robot, constraints=Constraints())
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Weight.REFUSED, Weight.MIND))
     wrong = f"{counted(refused, 'thing')} cannot be built" if refused else "Nothing is wrong"
     print(f"{wrong}, {risky} risky." if risky else f"{wrong}.")
+
+
+def print_sewing(body: "Body") -> tuple[str, ...]:
+    """Print what sewing the skin of a stuffed body in space takes; returns why it cannot be sewn, if so."""
+    from hydrostat.fabrication import KitOptions, Method, find_sewing
+
+    if body.mesh.dim != 3 or KitOptions().method_for(body) is not Method.PLUSH:
+        return ()
+    with patiently("laying its skin flat, patch by patch ..."):
+        sewing = find_sewing(body)
+    if not sewing.problems:
+        print(f"to sew its skin: {sewing}")
+    return sewing.problems
 
 
 FINDINGS = {"refused": "cannot be built", "limit": "not as a design would", "mind": "risky"}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.bounded import bounded
+from hydrostat.cli.check import FINDINGS, print_sewing
 from hydrostat.cli.options import asked, positive
 from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError
@@ -253,6 +254,8 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) ->
         lines.append(f"{'coarse, to be quick at first' if mild else 'risky'}: {in_words(risk)}")
     for line in lines:
         print(line)
+    for reason in print_sewing(made.body):
+        print(f"{FINDINGS['refused']}: {reason}")
     scaled = made.body.size is not None
     origin = (
         "from the middle of the drawing" if flat else "of the scaled body" if scaled else "as in the file of the body"

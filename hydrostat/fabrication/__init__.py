@@ -15,6 +15,7 @@ from hydrostat.fabrication.kit_options import (
 )
 from hydrostat.fabrication.moulds.mould import Mould, make_mould
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
+from hydrostat.fabrication.patches.sewable import Sewing, find_sewing
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
 from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart, Shape
@@ -44,12 +45,14 @@ __all__ = [
     "PatternOptions",
     "PatternPart",
     "Printed",
+    "Sewing",
     "Shape",
     "UnbuildableError",
     "build_kit",
     "export_kit",
     "find_demand",
     "find_refusals",
+    "find_sewing",
     "make_mould",
     "pattern_dxf",
     "pattern_svg",

@@ -19,9 +19,9 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
 
     They tell of units that do not fit, holes that cannot be cut, sheaths too near the skin, and lines that break.
     Without a demand the motor is the weakest of the table and no line breaks: what is said then holds whatever the
-    poses ask. The demand is that of the robot as it is drawn, or as its cables are sewn in pairs. Moulds, patches of
-    bodies in space, pieces too large for the printer and the checks of finished files are judged only as the kit is
-    made. Raises InputError: an unknown motor, a demand of another robot.
+    poses ask. The demand is that of the robot as it is drawn, or as its cables are sewn in pairs. `find_sewing` judges
+    the skin of bodies in space. Moulds, pieces too large for the printer and the checks of finished files are judged
+    only as the kit is made. Raises InputError: an unknown motor, a demand of another robot.
     """
     options = options or KitOptions()
     sewn = sewn_robot(robot) if options.method_for(robot.body) is Method.PLUSH else robot

@@ -41,7 +41,7 @@ length_unit = "m"
 
 [body]
 mesh = "solid.vtu"
-material = "polyester fibre"
+material = { young = "30 kPa", poisson = 0.3, density = "40 kg/m^3" }
 
 [[pin]]
 box = [[-0.001, -1, -1], [0.001, 1, 1]]
@@ -82,7 +82,7 @@ def test_body_in_space(check: Check, tmp_path: Path) -> None:
         (tmp_path / "solid.vtu").write_bytes(write_vtu(mesh, mesh.nodes, {}))
         (tmp_path / "robot.toml").write_text(SOLID)
         lines = check(tmp_path)
-        assert lines[1] == "polyester fibre: 7.68 g, 192 cm^3"
+        assert lines[1] == "material by its numbers: 7.68 g, 192 cm^3"
         across = cells[1] / np.sqrt(2) ** (1 / 3)
         assert lines[2].startswith(f"40 to 120 mm across, that is {across:.1f} to {3 * across:.0f} elements; ")
         assert lines[2].endswith("smallest angle between faces 45 degrees")

@@ -88,10 +88,12 @@ def test_a_ready_mesh(run: Run, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_drawing_is_blown_up(run: Run, tmp_path: Path) -> None:
-    """As thick in the middle as asked for."""
+    """As thick in the middle as asked for; whether it can be sewn is told at once."""
     (tmp_path / "a.svg").write_bytes(DRAWING)
     arguments = ("--size", "120 mm", "--inflate", "40 mm", "--nodes", 300)
-    assert run("new", tmp_path / "pillow", "--from", tmp_path / "a.svg", *arguments)[0] == 0
+    code, out, _ = run("new", tmp_path / "pillow", "--from", tmp_path / "a.svg", *arguments)
+    assert code == 0
+    assert any(line.startswith("to sew its skin: ") for line in out)
     assert _sides(tmp_path / "pillow") == pytest.approx([0.12, 0.06, 0.04], rel=0.06)
     assert len(hs.load_robot(tmp_path / "pillow").body.mesh.nodes) == pytest.approx(300, rel=0.1)
     _only(tmp_path / "pillow", "robot.toml", "a.ply", "rest.png")

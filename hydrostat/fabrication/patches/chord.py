@@ -48,8 +48,19 @@ class Chord:
         return over & (at > self.low - 1e-6) & (at < self.high + 1e-6)
 
 
+NARROWEST = 8.0  # A neck of a patch narrower than that [mm] cannot be sewn and turned. Assumed.
+
+
+def is_narrow(outline: BaseGeometry) -> bool:
+    """Tell whether an outline [mm] has such a neck, or is no wider anywhere."""
+    inner = outline.buffer(-NARROWEST / 2)
+    return inner.is_empty or isinstance(inner, shapely.MultiPolygon)
+
+
 def best_chord(patch: Patch, limit: float) -> Chord | None:
     """Choose the chord near the worst place after which the patch should lie flattest; None if there is none.
+
+    Where there are chords that leave no piece too narrow to be sewn, one of them.
 
     Judged by the scale with which the pieces would flatten if angles were kept: the solution of a Poisson equation with
     the curvature of the skin, zero along rim and chord (Ben-Chen, Gotsman, Bunin 2008), without flattening them all.
@@ -57,7 +68,7 @@ def best_chord(patch: Patch, limit: float) -> Chord | None:
     middle, size = _worst_place(patch, limit), float(np.sqrt(patch.disc.areas.sum()))
     outline, judge = patch.outline.buffer(0), _Judge(patch.disc)
 
-    def best(angles: Iterable[float], shifts: Iterable[float]) -> tuple[float, float, float, Chord] | None:
+    def best(angles: Iterable[float], shifts: Iterable[float]) -> tuple[bool, float, float, float, Chord] | None:
         found = []
         for angle in angles:
             along = np.array([np.cos(angle), np.sin(angle)])
@@ -65,16 +76,17 @@ def best_chord(patch: Patch, limit: float) -> Chord | None:
                 chord = _chord(outline, middle + shift * size * np.array([-along[1], along[0]]), along)
                 if chord is not None:
                     score = judge.score(patch, chord) * (1 + _LENGTH * (chord.high - chord.low) / size)
-                    found.append((round(score, 9), angle, shift, chord))
-        return min(found, key=lambda one: one[:3], default=None)
+                    narrow = any(is_narrow(piece) for piece in _pieces(outline, chord))
+                    found.append((narrow, round(score, 9), angle, shift, chord))
+        return min(found, key=lambda one: one[:4], default=None)
 
     rough = best((np.pi / _DIRECTIONS * np.arange(_DIRECTIONS)).tolist(), _SHIFTS)
     if rough is None:
         return None
-    _, angle, shift, _ = rough
+    narrow, _, angle, shift, chord = rough
     step = np.pi / _DIRECTIONS / 3
     fine = best((angle - step, angle, angle + step), [shift + part for part in _FINER])
-    return fine[3] if fine else rough[3]
+    return fine[-1] if fine and fine[0] <= narrow else chord
 
 
 def cut_chord(mesh: SkinMesh, patch: Patch, number: int, chord: Chord) -> SkinMesh:
@@ -131,10 +143,16 @@ def _chord(outline: BaseGeometry, through: np.ndarray, along: np.ndarray) -> Cho
         return None
     low, high = sorted(((np.array(part.coords)[[0, -1]] - through) @ along).tolist())
     place, direction = through.tolist(), along.tolist()
-    pieces = shapely.get_parts(split(outline, _longer(part)))
-    if len(pieces) < 2 or min(piece.area for piece in pieces) < _LEAST * outline.area:
-        return None
-    return Chord(through=(place[0], place[1]), along=(direction[0], direction[1]), low=low, high=high)
+    chord = Chord(through=(place[0], place[1]), along=(direction[0], direction[1]), low=low, high=high)
+    pieces = _pieces(outline, chord)
+    return None if len(pieces) < 2 or min(piece.area for piece in pieces) < _LEAST * outline.area else chord
+
+
+def _pieces(outline: BaseGeometry, chord: Chord) -> list[BaseGeometry]:
+    """What a chord leaves of an outline."""
+    through, along = np.array(chord.through), np.array(chord.along)
+    ends = shapely.LineString([through + chord.low * along, through + chord.high * along])
+    return shapely.get_parts(split(outline, _longer(ends))).tolist()
 
 
 def _longer(line: shapely.LineString) -> shapely.LineString:

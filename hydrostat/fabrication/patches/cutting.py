@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from jaxtyping import Float, Int
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
 
-from hydrostat.fabrication.patches.chord import best_chord, cut_chord
+from hydrostat.fabrication.patches.chord import NARROWEST, best_chord, cut_chord, is_narrow
+from hydrostat.fabrication.patches.even import HELD, evened
 from hydrostat.fabrication.patches.flatten import distortion, flatten
 from hydrostat.fabrication.patches.patch import Patch, disc_of
 from hydrostat.fabrication.patches.seams import Seam, find_seams
@@ -98,28 +98,53 @@ class Cutting:
 
 
 def cut_skin(mesh: SkinMesh) -> Cutting:
-    """Cut front and back where cloth would give too much, or a seam's sides differ, while patches are few enough."""
+    """Cut front and back where cloth would give too much, or a seam's sides differ, while patches are few enough.
+
+    Where to cut is seen on patches of least mean distortion: once evened out they have no worst place.
+    """
     mesh = front_and_back(mesh)
     back = [False, True]
-    patches = [flatten(disc_of(mesh, number)) for number in (0, 1)]
+    plain = [flatten(disc_of(mesh, number)) for number in (0, 1)]
+    patches = [_laid(patch) for patch in plain]
     given_up: set[int] = set()
-    while len(patches) < MOST_PATCHES:
+    while True:
         wanting = {number: _excess(patch) for number, patch in enumerate(patches) if number not in given_up}
         worst = max(wanting, key=lambda number: wanting[number], default=-1)
         if worst < 0 or wanting[worst] <= 0:
+            patches = _eased(mesh, patches)
             worst = _uneasy(mesh, patches)
-            if worst < 0 or worst in given_up:
-                break
-        chord = best_chord(patches[worst], min(MOST_GIVE, distortion(patches[worst]).give(0.9)))
+        if worst < 0 or worst in given_up or len(patches) == MOST_PATCHES:
+            break
+        chord = best_chord(plain[worst], min(MOST_GIVE, distortion(plain[worst]).give(0.9)))
         if chord is None:
             given_up.add(worst)
             continue
-        mesh = cut_chord(mesh, patches[worst], worst, chord)
+        mesh = cut_chord(mesh, plain[worst], worst, chord)
         back.append(back[worst])
-        patches[worst] = flatten(disc_of(mesh, worst))
-        patches.append(flatten(disc_of(mesh, len(patches))))
-        patches = [_on(mesh, number, patch) for number, patch in enumerate(patches)]
-    return Cutting(mesh=mesh, patches=tuple(patches), back=tuple(back))
+        before, plain = plain, [_on(mesh, number, patch) for number, patch in enumerate([*plain, plain[worst]])]
+        kept = [*zip(before, patches, strict=True)]
+        patches = [next((own for old, own in kept if old is patch), None) or _laid(patch) for patch in plain]
+    return Cutting(mesh=mesh, patches=tuple(_eased(mesh, patches)), back=tuple(back))
+
+
+def _laid(patch: Patch) -> Patch:
+    """A patch as it is where that will do, else evened out where that gives less."""
+    if _excess(patch) <= 0:
+        return patch
+    even = evened(patch)
+    gives = [distortion(one).give(0.95) if one.outline.is_valid else np.inf for one in (patch, even)]
+    return even if gives[1] < gives[0] else patch
+
+
+def _eased(mesh: SkinMesh, patches: list[Patch]) -> list[Patch]:
+    """The patches, rims held where seams could not be sewn, as far as the cloth of none gives too much for it."""
+    eased, tried = list(patches), set()
+    while (worst := _uneasy(mesh, eased)) >= 0 and worst not in tried:
+        tried.add(worst)
+        held = evened(eased[worst], ease=HELD)
+        if _excess(held) <= _excess(eased[worst]):
+            eased[worst] = held
+    return eased
 
 
 def _uneasy(mesh: SkinMesh, patches: list[Patch]) -> int:
@@ -141,15 +166,13 @@ def _excess(patch: Patch) -> float:
 
 
 def _on(mesh: SkinMesh, number: int, patch: Patch) -> Patch:
-    """The patch on the final mesh: a later cut beside it may have put vertices on its rim."""
+    """The patch on a mesh that was cut: it may be a piece of itself, or have new vertices on its rim."""
     disc = disc_of(mesh, number)
     return patch if len(disc.vertices) == len(patch.disc.vertices) else flatten(disc)
 
 
 GIVES_LITTLE = 0.06
 """What any cloth gives: above that a pattern asks for one that stretches. Assumed, measured on none."""
-
-NARROWEST = 8.0  # A neck of a patch narrower than that [mm] cannot be sewn and turned. Assumed.
 
 
 def patch_problems(
@@ -166,7 +189,7 @@ def patch_problems(
             )
         if not patch.outline.is_valid:
             problems.append(f"patch {name} laps over itself when it lies flat: cast this body in a mould")
-        elif isinstance(neck := patch.outline.buffer(-NARROWEST / 2), shapely.MultiPolygon) or neck.is_empty:
+        elif is_narrow(patch.outline):
             problems.append(
                 f"patch {name} is narrower than {NARROWEST:g} mm somewhere: it cannot be sewn and turned; cast this "
                 "body in a mould, or make it larger"

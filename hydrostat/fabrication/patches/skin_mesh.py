@@ -13,6 +13,8 @@ from hydrostat.robot import Body
 
 _SIDES = ((0, 1), (1, 2), (2, 0))
 
+_MOST, _ENOUGH = 6000, 5000  # a surface of more triangles than the first is made coarser, to the second
+
 _SHARE = 0.03  # longest edge, as a share of the diagonal of the body: fine enough for smooth seams
 
 
@@ -111,13 +113,26 @@ def skin_of_surface(surface: Surface) -> SkinMesh:
         raise InputError(
             "a hole goes through the body: it cannot be cut into patches that lie flat; cast it in a mould"
         )
-    return _fine(mesh, _SHARE * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))))
+    return _fine(_coarse(mesh), _SHARE * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))))
 
 
 def _boundary(body: Body) -> Surface:
     """The outer triangles of a mesh of tetrahedra."""
     used, triangles = np.unique(body.mesh.boundary, return_inverse=True)
     return Surface(body.mesh.nodes[used], triangles.reshape(-1, 3))
+
+
+def _coarse(mesh: SkinMesh) -> SkinMesh:
+    """The surface with fewer triangles if it has very many; quadric errors tell which (Garland, Heckbert 1997)."""
+    import igl
+
+    if len(mesh.triangles) <= _MOST:
+        return mesh
+    found = igl.qslim(np.asfortranarray(mesh.vertices), np.asfortranarray(mesh.triangles), _ENOUGH)
+    triangles = np.asarray(found[1]).astype(np.int64)
+    fewer = SkinMesh(vertices=np.array(found[0]), triangles=triangles, patch=np.zeros(len(triangles), dtype=np.int64))
+    closed = len(fewer.vertices) - len(fewer.edges[0]) + len(fewer.triangles) == 2
+    return fewer if closed and 3 * len(triangles) == 2 * len(fewer.edges[0]) else mesh
 
 
 def _fine(mesh: SkinMesh, longest: float) -> SkinMesh:

@@ -2,14 +2,20 @@
 
 import numpy as np
 import pytest
+import shapely
 from patch_bodies import ellipsoid_body, skin_of_ball
+from shapely.geometry.base import BaseGeometry
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.patches.chord import is_narrow
 from hydrostat.fabrication.patches.cutting import MOST_GIVE, Cutting, cut_skin, front_and_back, thin_direction
-from hydrostat.fabrication.patches.flatten import distortion
+from hydrostat.fabrication.patches.flatten import distortion, flatten
 from hydrostat.fabrication.patches.patch import disc_of
 from hydrostat.fabrication.patches.seams import Seam, find_seams
-from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh
+from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh, skin_of_surface
+from hydrostat.geometry.inflate import inflate
+from hydrostat.geometry.outline import Outline
+from hydrostat.geometry.surface import Surface
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -145,3 +151,45 @@ def test_short_seams_are_not_refused_for_what_nobody_sees() -> None:
     assert mismatch(5.0, 5.4) == 0.0
     assert mismatch(11.5, 10.0) == pytest.approx(0.1)
     assert mismatch(100.0, 106.5) == pytest.approx(0.06)
+
+
+def test_necks_are_seen() -> None:
+    """Two squares of 20 mm, joined by a strip 10 mm or 6 mm wide."""
+
+    def dumbbell(neck: float) -> BaseGeometry:
+        squares = [shapely.box(0, 0, 20, 20), shapely.box(30, 0, 50, 20)]
+        return shapely.union_all([*squares, shapely.box(20, 10 - neck / 2, 30, 10 + neck / 2)])
+
+    assert not is_narrow(dumbbell(10.0))
+    assert is_narrow(dumbbell(6.0))
+    assert is_narrow(shapely.box(0, 0, 40, 6))
+
+
+def test_very_fine_surfaces_are_cut_as_coarser_ones() -> None:
+    """A ball of 32768 triangles: far fewer are as good to a thousandth, closed, and the same each time."""
+    fine = skin_of_ball()
+    for _ in range(2):
+        fine, _ = fine.divided(np.ones(len(fine.edges[0]), dtype=bool), np.full(len(fine.edges[0]), 0.5))
+    surface = Surface(1e-3 * fine.vertices, fine.triangles)
+    first, again = skin_of_surface(surface), skin_of_surface(surface)
+    assert len(first.triangles) < len(fine.triangles) / 3
+    assert first.areas.sum() == pytest.approx(fine.areas.sum(), rel=1e-3)
+    assert euler(first.triangles) == 2
+    assert (first.vertices == again.vertices).all()
+
+
+@pytest.mark.slow
+def test_a_tail_that_turns_up_is_sewn_in_a_front_and_a_back() -> None:
+    """Laid flat with least mean distortion such a panel gives too much; evened out it does not."""
+    turn = np.linspace(np.pi, 2 * np.pi + 0.8, 40)
+    tail = shapely.LineString(np.column_stack([0.07 + 0.03 * np.cos(turn), 0.03 * np.sin(turn) - 0.02]))
+    cat = shapely.Point(0, 0).buffer(0.05).union(tail.buffer(0.013))
+    cat = cat.buffer(0.006).buffer(-0.012).buffer(0.006).simplify(1e-4)
+    mesh = skin_of_surface(inflate(Outline(shapely.get_coordinates(cat)[:-1]), 0.055, spacing=0.004))
+    halves = front_and_back(mesh)
+    assert distortion(flatten(disc_of(halves, 0))).give(0.95) > MOST_GIVE
+    cutting = cut_skin(mesh)
+    assert cutting.names == ("front", "back")
+    assert max(distortion(patch).give(0.95) for patch in cutting.patches) <= MOST_GIVE
+    (seam,) = find_seams(cutting.mesh, cutting.patches, UP)
+    assert seam.mismatch < 0.01

@@ -8,6 +8,7 @@ from patch_bodies import cushion, ellipsoid_body
 from hydrostat.errors import InputError
 from hydrostat.fabrication.checks.pattern_checks import patch_checks
 from hydrostat.fabrication.kit_options import PatternOptions
+from hydrostat.fabrication.patches.sewable import find_sewing
 from hydrostat.fabrication.patches.space_pattern import SpacePattern, space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.shape import PatternPart
@@ -116,7 +117,9 @@ def test_a_body_too_small_to_sew_is_refused():
     tiny = cushion(ellipsoid_body((0.012, 0.004, 0.004)), [(0, 0, 0), (0.004, 0, 0)])
     with pytest.raises(InputError, match="narrower than 8 mm"):
         space_pattern(tiny, PatternOptions())
-    assert space_pattern(tiny, PatternOptions(force=True)).problems
+    problems = space_pattern(tiny, PatternOptions(force=True)).problems
+    assert problems
+    assert find_sewing(tiny.body).problems == problems
 
 
 @pytest.mark.slow
