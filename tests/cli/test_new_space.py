@@ -93,7 +93,7 @@ def test_a_drawing_is_blown_up(run: Run, tmp_path: Path) -> None:
     arguments = ("--size", "120 mm", "--inflate", "40 mm", "--nodes", 300)
     code, out, _ = run("new", tmp_path / "pillow", "--from", tmp_path / "a.svg", *arguments)
     assert code == 0
-    assert any(line.startswith("to sew its skin: ") for line in out)
+    assert "\nto sew its skin: 2 patches, cloth that gives " in out
     assert _sides(tmp_path / "pillow") == pytest.approx([0.12, 0.06, 0.04], rel=0.06)
     assert len(hs.load_robot(tmp_path / "pillow").body.mesh.nodes) == pytest.approx(300, rel=0.1)
     _only(tmp_path / "pillow", "robot.toml", "a.ply", "rest.png")
