@@ -28,7 +28,9 @@ def standing(robot: Robot, friction: float | None) -> Robot:
         if not np.allclose(np.array(plane.normal) / np.linalg.norm(plane.normal or ()), up):
             raise InputError(f'robot {robot.name!r} walks on level ground: obstacle "{plane.name}" is not level')
     low = float(robot.body.mesh.nodes[:, -1].min())
-    planes = own or [Obstacle(name="ground", shape="plane", at=tuple(float(low - _GAP) * up), normal=tuple(up))]
+    planes = own or [
+        Obstacle(name="ground", shape="plane", at=tuple(((low - _GAP) * up).tolist()), normal=tuple(up.tolist()))
+    ]
     coefficient = friction if friction is not None else planes[0].friction
     coefficient = FRICTION if coefficient is None else coefficient
     if not 0 <= coefficient < np.inf:
