@@ -90,11 +90,14 @@ def solve_ik(
     problem = InverseProblem(simulation, terms, allowed, options or InverseOptions(), ready=ready)
     search = InverseSearch(problem, origin=start, patience=patience)
     begun = search.begin(start)
-    seek = descend
+    seek, aside = descend, None
     if problem.options.unique and problem.redundant(begun):
         seek = least_effort
-        begun = begun if start is None or given.rate is not None else search.begin(None)
+        if start is not None and given.rate is None:
+            begun, aside = search.begin(None), begun
     found = _best(search, seek(search, begun), seek)
+    if aside is not None and found.reason not in _ENDS:  # no answer is worse than where it was to begin
+        found = _better(search, found, descend(search, aside), share=_PLAINLY)
     search, found = others_stayed(search, found, target, start)
     reached = reached_pose(search, found, target)
     if not simulation.assembly.has_history:
@@ -138,15 +141,14 @@ def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objecti
 
 def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, InverseState], Descent]) -> Descent:
     """The best of several beginnings; the first that reaches its goal."""
-    if found.reason in (InverseReason.REACHED, InverseReason.TIME_LIMIT) or not found.state.errors:
+    if found.reason in _ENDS or not found.state.errors:
         return found
     spent = found.iterations
     best = [found.state]
     for begun in islice(restarts(search, lambda: best[-1]), search.problem.options.restarts):
         other = seek(search, begun)
         spent += other.iterations
-        new, old = (search.problem.objective(one.state, found.weight) for one in (other, found))
-        if (other.allowed and not found.allowed) or (other.allowed >= found.allowed and new < old):
+        if _better(search, found, other) is other:
             found = other
             best.append(other.state)
         if found.reason is InverseReason.REACHED:
@@ -154,6 +156,21 @@ def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, 
         if search.patience.over:
             return replace(found, reason=InverseReason.TIME_LIMIT).after(spent)
     return found.after(spent)
+
+
+_ENDS = (InverseReason.REACHED, InverseReason.TIME_LIMIT)
+"""After these no other beginning is tried."""
+
+
+def _better(search: InverseSearch, found: Descent, other: Descent, *, share: float = 1.0) -> Descent:
+    """The other, if it keeps to the limits where what was found does not, or leaves less than a share of it."""
+    new, old = (search.problem.objective(one.state, found.weight) for one in (other, found))
+    less = other.allowed >= found.allowed and new < share * old
+    return other if less or (other.allowed and not found.allowed) else found
+
+
+_PLAINLY = 0.98
+"""The answer does not depend on where it begins, unless squares are less than this share from there."""
 
 
 SEED = 0

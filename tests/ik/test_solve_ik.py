@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import box_robot, strip_robot
+from builders import box_robot, gallery_robot, strip_robot
 from robustness import example_folders
 from scipy.optimize import least_squares, minimize
 
@@ -199,6 +199,17 @@ def test_a_start_is_taken_up_within_the_bounds(begin: list[float]) -> None:
     assert reached.rms_error < 1e-6 * size(simulation)
     none = solve_ik(simulation, goals, start=start, options=InverseOptions(iterations=0, restarts=0))
     assert none.pose.contractions == pytest.approx(np.clip(begin, 0.0, 0.06))
+
+
+def test_an_answer_is_no_worse_than_its_start() -> None:
+    """Two cables of one winch differ in slack, so that approaching with least effort ends 25 mm away, whoever begins."""
+    robot = gallery_robot("starfish")
+    simulation = Simulation(robot)
+    top = next(marker for marker in robot.markers if marker.name == "top")
+    target = {"top": (top.at[0] - 24.5e-3, top.at[1] - 8.2e-3)}
+    start = simulation.solve({"left": 0.02})
+    begun = float(np.linalg.norm(start.markers["top"] - np.array(target["top"])))
+    assert solve_ik(simulation, target, start=start).errors["top"] < begun < 0.012
 
 
 def test_a_good_start_saves_solves() -> None:
