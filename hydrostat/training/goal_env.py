@@ -165,3 +165,18 @@ def loaded(robot: Robot | str, contact: bool = False) -> Robot:
     """A robot, itself or from its folder; one that feels itself if asked for and robot.toml says nothing of it."""
     made = robot if isinstance(robot, Robot) else load_robot(robot)
     return replace(made, contact=Contact()) if contact and made.contact is None else made
+
+
+def finite_numbers(given: object, count: int, what: str, which: str) -> Vector:
+    """So many finite numbers (InputError: anything else)."""
+    try:
+        found = np.asarray(given, dtype=float).ravel()
+    except (TypeError, ValueError):
+        found = np.zeros(0)
+    if len(found) != count or not np.isfinite(found).all():
+        raise InputError(f"{what} has {count} {which}, not {given!r:.60}")
+    return found
+
+
+AN_ACTION = ("an action", "numbers from -1 to 1")
+"""What `finite_numbers` says of an action."""

@@ -11,7 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Pose, Robot
-from hydrostat.training.goal_env import GoalEnv, TaskOptions, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
 BEYOND = 1.02
@@ -124,7 +124,7 @@ class ReachEnv(GoalEnv):
         given = dict(options or {})
         while "goal" not in given:
             given = {**(self.drawn(self.np_random) or {}), **given}
-        goal = _numbers(given["goal"], len(self.seen), "a goal", "coordinates [m]")
+        goal = finite_numbers(given["goal"], len(self.seen), "a goal", "coordinates [m]")
         self._goal, self.taken_steps = self.rest.copy(), 0
         self._goal[self.seen] = goal
         self.world.back()
@@ -135,7 +135,7 @@ class ReachEnv(GoalEnv):
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
         """Take in cable by an action; an episode is cut off after its steps."""
-        action = _numbers(action, int(np.prod(self.action_space.shape or (0,))), "an action", "numbers from -1 to 1")
+        action = finite_numbers(action, int(np.prod(self.action_space.shape or (0,))), *AN_ACTION)
         self.taken_steps += 1
         if self.options.incremental:
             change = 0.1 * (self._high - self._low) * self._spread(np.clip(action, -1.0, 1.0))
@@ -284,14 +284,3 @@ def _groups(robot: Robot, pairs: Sequence[Sequence[str]]) -> tuple[tuple[int, ..
         raise InputError("a winch belongs to one pair only")
     paired = [tuple(names.index(name) for name in pair) for pair in pairs]
     return tuple(sorted([*paired, *((index,) for index in range(len(names)) if index not in used)]))
-
-
-def _numbers(given: object, count: int, what: str, which: str) -> Vector:
-    """So many finite numbers (InputError: anything else)."""
-    try:
-        found = np.asarray(given, dtype=float).ravel()
-    except (TypeError, ValueError):
-        found = np.zeros(0)
-    if len(found) != count or not np.isfinite(found).all():
-        raise InputError(f"{what} has {count} {which}, not {given!r:.60}")
-    return found

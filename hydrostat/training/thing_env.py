@@ -11,7 +11,7 @@ from gymnasium import spaces
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
-from hydrostat.training.goal_env import GoalEnv, TaskOptions, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
 from hydrostat.training.thing_pictures import ThingPictures
 from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld, as_drawn, is_clear
 
@@ -65,8 +65,9 @@ class ThingEnv(GoalEnv):
     Each episode has a thing of its own: friction, radius and start are drawn, and the policy does not see them, but for
     where the thing is. Observations hold the contractions (from -1 to 1), where the middle of the thing is, counted
     from its usual place in sizes of the body, how far it has turned in half turns, and the share of the keyframes that
-    are done. Cost is counted in time steps of the exact simulator that were asked for, `ThingPhysics.beats` for each
-    keyframe and as many to open the hand.
+    are done. Where the simulator finds no time step, nothing counts as achieved in that episode. Cost is counted in
+    time steps of the exact simulator that were asked for, `ThingPhysics.beats` for each keyframe and as many to open
+    the hand.
 
     Attributes:
         options: of the task.
@@ -115,7 +116,7 @@ class ThingEnv(GoalEnv):
         self._high = np.array([min(winch.travel, travel) for winch in self.robot.winches], dtype=float)
         self._dim, self._size = self.robot.body.mesh.dim, self.robot.body.mesh.size
         self._usual = self.thing.frame()[0]
-        self._goal = np.zeros(self.goal_size)
+        self._goal, self._stuck, self._begun = np.zeros(self.goal_size), False, np.zeros(self.goal_size)
         self.action_space = spaces.Box(-1.0, 1.0, (len(self._groups),), np.float32)
         goal = spaces.Box(-100.0, 100.0, (self.goal_size,), np.float64)
         seen = spaces.Box(-100.0, 100.0, (len(self.robot.winches) + self._dim + 2,), np.float64)
@@ -170,19 +171,19 @@ class ThingEnv(GoalEnv):
         given = dict(options or {})
         while "goal" not in given:
             given = {**(self.drawn(self.np_random) or {}), **given}
-        goal, start = np.asarray(given["goal"], dtype=float).ravel(), tuple(given.get("start", ()))
-        if goal.shape != (self.goal_size,):
-            raise InputError(f"a goal has {self.goal_size} numbers, not {goal.size}")
+        goal, start = finite_numbers(given["goal"], self.goal_size, "a goal", "numbers"), tuple(given.get("start", ()))
         if len(start) not in (0, self._dim):
             raise InputError(f"a start has {self._dim} coordinates, not {len(start)}")
         self._goal, self.taken_steps = goal, 0
         self.world.begin(ThingState(float(given.get("friction", 1.0)), float(given.get("radius", 1.0)), start))
         self.moves = [(0.0, self.world.motion.contractions)]
+        self._stuck, self._begun = False, self.achieved()
         self.show()
         return self._observation(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
         """Go to a keyframe; after the last one the hand opens, to no contraction."""
+        action = finite_numbers(action, len(self._groups), *AN_ACTION)
         self.taken_steps += 1
         self._go(self.contractions(action))
         over = self.taken_steps >= self.steps
@@ -219,7 +220,13 @@ class ThingEnv(GoalEnv):
         return self._pictures.draw(self.world, f"{self.words()}, after keyframe {self.taken_steps} of {self.steps}")
 
     def _go(self, contractions: Vector) -> None:
-        self.moves += [(motion.time, motion.contractions) for motion in self.world.go(contractions)]
+        motions = self.world.go(contractions)
+        self._stuck |= len(motions) < self.options.physics.beats
+        self.moves += [(motion.time, motion.contractions) for motion in motions]
+
+    def _counted(self) -> Vector:
+        """What is achieved; where a time step was not found in this episode, no more than at its beginning."""
+        return self._begun.copy() if self._stuck else self.achieved()
 
     def _observation(self) -> dict[str, Vector]:
         span = np.where(self._high > self._low, self._high - self._low, 1.0)
@@ -227,10 +234,10 @@ class ThingEnv(GoalEnv):
         taken = np.clip(2.0 * (self.world.motion.contractions - self._low) / span - 1.0, -1.0, 1.0)
         more = [self.world.turned / np.pi, self.taken_steps / self.steps]
         seen = np.concatenate([taken, moved, more])
-        return {"observation": seen, "achieved_goal": self.achieved(), "desired_goal": self._goal.copy()}
+        return {"observation": seen, "achieved_goal": self._counted(), "desired_goal": self._goal.copy()}
 
     def _info(self) -> dict[str, Any]:
-        left = float(self.distances(self.achieved(), self._goal))
+        left = float(self.distances(self._counted(), self._goal))
         away = float(np.linalg.norm(self.world.place - self.world.start))
         return {
             "distance": left,

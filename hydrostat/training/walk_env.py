@@ -14,7 +14,7 @@ from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.robot import ObstacleShape, Robot
 from hydrostat.simulation import Motion, Simulation, StepOptions
 from hydrostat.training.gait import Gait, GaitClock
-from hydrostat.training.goal_env import GoalEnv, TaskOptions, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
 from hydrostat.training.ground import standing, tilt, with_friction
 
 STEP = 0.02
@@ -143,9 +143,7 @@ class WalkEnv(GoalEnv):
         """Stand at the beginning, with a new way and friction; or with "goal" [m] and "friction" of `options`."""
         super().reset(seed=seed)
         given = {**self.drawn(self.np_random), **(options or {})}
-        wanted = np.ravel(np.asarray(given["goal"], dtype=float))
-        if wanted.shape != (1,):
-            raise InputError(f"a goal is one way [m], not {wanted.size} numbers")
+        wanted = finite_numbers(given["goal"], 1, "a goal", "way [m]")
         self._wanted, self._fallen, self.taken_steps = float(wanted[0]), False, 0
         self._simulation = Simulation(with_friction(self.robot, float(given["friction"])))
         self._given = float(given["friction"])
@@ -157,8 +155,9 @@ class WalkEnv(GoalEnv):
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
         """Go on by the time steps of an action; an episode is cut off after its actions."""
+        action = finite_numbers(action, int(np.prod(self.action_space.shape or (0,))), *AN_ACTION)
         self.taken_steps += 1
-        for contractions in self._asked(np.clip(np.asarray(action, dtype=float), -1.0, 1.0)):
+        for contractions in self._asked(np.clip(action, -1.0, 1.0)):
             if self._fallen:
                 break
             self._advance(contractions)

@@ -202,7 +202,7 @@ def test_a_start_is_taken_up_within_the_bounds(begin: list[float]) -> None:
 
 
 def test_an_answer_is_no_worse_than_its_start() -> None:
-    """Two cables of one winch differ in slack, so that approaching with least effort ends 25 mm away, whoever begins."""
+    """Two cables of one winch differ in slack, so that approaching with least effort ends 25 mm away."""
     robot = gallery_robot("starfish")
     simulation = Simulation(robot)
     top = next(marker for marker in robot.markers if marker.name == "top")

@@ -119,6 +119,22 @@ def test_a_strip_pushes_the_ball_away_and_time_steps_are_counted(robot: Robot) -
     assert (env.equilibria, env.uncounted) == (24, 12)
 
 
+def test_a_hand_that_does_not_open_has_achieved_nothing(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    env = PushEnv(robot, options=PushOptions(steps=1, physics=QUICK, travel=2e-3))
+    begun, _ = env.reset(seed=0)
+    monkeypatch.setattr(env.world, "go", lambda contractions: [])
+    monkeypatch.setattr(type(env), "achieved", lambda env: np.ones(2))
+    seen, reward, _, over, info = env.step(np.zeros(2))
+    assert over
+    assert seen["achieved_goal"] == pytest.approx(begun["achieved_goal"])
+    assert reward == pytest.approx(-info["distance"] / env.tolerance)
+    for wrong in (np.array([np.nan, 0.0]), np.zeros(3), "up"):
+        with pytest.raises(InputError, match="an action has 2 numbers from -1 to 1, not"):
+            env.step(wrong)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="a goal has 2 numbers, not"):
+        env.reset(options={"goal": (np.nan, 0.0)})
+
+
 def test_each_episode_has_a_thing_of_its_own(robot: Robot) -> None:
     env = TwistEnv(robot, options=TwistOptions(physics=QUICK, friction=0.3, radius=0.05, start=5e-3))
     drawn = held_out_goals(env, 20, 3)

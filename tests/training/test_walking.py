@@ -242,5 +242,5 @@ def test_what_does_not_fit_the_task_is_told() -> None:
         WalkEnv(replace(slab(), obstacles=(slope,)))
     made = WalkEnv.for_task(slab(), TaskOptions(actions="contractions", incremental=True, steps=3, friction=0.7))
     assert (made.steps, made.options.incremental, made.friction, made.portable) == (3, True, 0.7, False)
-    with pytest.raises(InputError, match="a goal is one way"):
+    with pytest.raises(InputError, match=r"a goal has 1 way \[m\], not"):
         made.reset(options={"goal": [0.1, 0.2]})
