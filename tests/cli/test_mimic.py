@@ -82,7 +82,7 @@ def test_a_person_presses_enter_and_sees_the_pose(starfish: Path, tmp_path: Path
     ("options", "told"),
     [
         (("--glove", "emulated", "--poses", 2), "--poses 2: errors are known from 4 on"),
-        (("--glove", "camera:x"), "must end with a number"),
+        (("--glove", "camera:x"), "a camera needs MediaPipe's model file"),
         (("--glove", "emulated", "--port", "nonsense"), "--port nonsense: write emulated"),
     ],
 )

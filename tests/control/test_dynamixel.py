@@ -68,7 +68,9 @@ def served() -> Iterator[tuple[str, EmulatedChain]]:
     os.close(ours)
 
 
-def test_their_client_works_with_our_servos(served: tuple[str, EmulatedChain]) -> None:
+def test_their_client_works_with_our_servos(served: tuple[str, EmulatedChain], monkeypatch: pytest.MonkeyPatch) -> None:
+    """It waits for so many milliseconds, twice, by the clock of the day: more than its 16 on a busy computer."""
+    monkeypatch.setattr(sdk.port_handler, "LATENCY_TIMER", 500)
     name, chain = served
     port, handler = sdk.PortHandler(name), sdk.PacketHandler(2.0)
     assert port.openPort()

@@ -221,7 +221,7 @@ def test_a_folder_of_something_else_is_refused(plan: SamplePlan, once: Path, tmp
     (tmp_path / "letter.txt").write_text("dear")
     with pytest.raises(InputError, match=r"holds other things, such as letter.txt"):
         sample_robot(plan, tmp_path)
-    with pytest.raises(InputError, match=r"there is no samples.json"):
+    with pytest.raises(InputError, match=r"samples.json: there is no such file"):
         read_samples(tmp_path)
 
 

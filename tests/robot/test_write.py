@@ -148,6 +148,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Robot:
 
 
 LENGTH = st.floats(1e-30, 1e6)
+TRAVEL = st.floats(1e-30, 20.0)
 PLACE = st.floats(-1e6, 1e6)
 GRAVITY = st.tuples(*[st.floats(-1000, 1000)] * 2) | st.sampled_from([(0.0, -9.80665), (9.80665, 0.0), (0.0, 0.0)])
 WORDS = st.text("aZ9_-. éß世हाথ", min_size=1, max_size=60).map(lambda text: "n" + text[1:])
@@ -167,9 +168,9 @@ def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
     winch = Winch(
         name=draw(WORDS),
         at=start,
-        spool_radius=draw(LENGTH),
-        travel=draw(LENGTH),
-        release=draw(LENGTH | st.just(0.0)),
+        spool_radius=draw(TRAVEL),
+        travel=draw(TRAVEL),
+        release=draw(TRAVEL | st.just(0.0)),
         mount=draw(st.sampled_from(Mount)),
     )
     cable = Cable(
