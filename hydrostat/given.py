@@ -11,7 +11,7 @@ def check_kind(given: object, kind: type | tuple[type, ...], wanted: str) -> Non
 
     Args:
         given: what was given.
-        kind: that it must be of; numbers are no truth values.
+        kind: that it must be of.
         wanted: the sentence before ", not ...", such as "a kit is made of a Robot".
     """
     if not isinstance(given, kind):
