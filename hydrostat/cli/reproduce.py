@@ -96,6 +96,8 @@ def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", ou
                 print(f"\n{_head(row)}\n{_WORDS}")
             print(_line(row), flush=True)
             rows.append(row)
+    if study.seeds > 1:
+        print("\n".join(_over_seeds(rows)))
     for name in asked:
         _write(name, rows, {robot.name: robot for robot in loaded}, out)
 
@@ -150,6 +152,23 @@ def _line(row: "StudyRow") -> str:
     numbers = "".join(f"{1e3 * row.errors[name]:9.3f}" for name in ("median", "p90", "p99", "max"))
     text = f"{row.samples:7}{row.seed:5}  {row.method:22}{1e3 * mean:8.3f}{100 * mean / row.size:8.3f}{numbers}"
     return f"{text}{row.lost:6}{row.sampling:9.0f}{row.learning:9.1f}"
+
+
+def _over_seeds(rows: "Sequence[StudyRow]") -> list[str]:
+    """The mean errors of ways that begin at random: mean over seeds, least and largest, in one table for all robots."""
+    groups: dict[tuple[str, str, int, str], list[StudyRow]] = {}
+    for row in rows:
+        groups.setdefault((row.robot, row.draw, row.samples, row.method), []).append(row)
+    table = ["", f"{'mean error over seeds':54}{'mean':>8}{'%':>8}{'least':>8}{'largest':>8}  seeds  [mm]"]
+    for (robot, draw, samples, method), some in groups.items():
+        if len(some) > 1:
+            means = [1e3 * row.errors["mean"] for row in some]
+            mean, name = sum(means) / len(means), f"{robot}, {draw}, {samples:>6} samples"
+            share = 0.1 * mean / some[0].size
+            table.append(
+                f"{name:36}  {method:16}{mean:8.3f}{share:8.3f}{min(means):8.3f}{max(means):8.3f}{len(some):7}"
+            )
+    return table
 
 
 def _write(name: str, rows: "Sequence[StudyRow]", robots: "dict[str, Robot]", out: Path) -> None:
