@@ -66,9 +66,9 @@ def _print_judgement(robot: "Robot") -> None:
 
 def print_sewing(body: "Body") -> tuple[str, ...]:
     """Print what sewing the skin of a stuffed body in space takes; returns why it cannot be sewn, if so."""
-    from hydrostat.fabrication import KitOptions, Method, find_sewing
+    from hydrostat.fabrication import KitOptions, find_sewing
 
-    if body.mesh.dim != 3 or KitOptions().method_for(body) is not Method.PLUSH:
+    if not KitOptions().sews_skin(body):
         return ()
     with patiently("laying its skin flat, patch by patch ..."):
         sewing = find_sewing(body)

@@ -209,3 +209,7 @@ class KitOptions:
         """Method by which a body is made."""
         stuffed = body.mesh.dim == 2 or body.material.name in STUFFINGS
         return self.method or (Method.PLUSH if stuffed else Method.FOAM)
+
+    def sews_skin(self, body: Body) -> bool:
+        """Whether its kit sews a skin that has to be cut and laid flat: that of a body in space, stuffed."""
+        return body.mesh.dim == 3 and self.method_for(body) is Method.PLUSH

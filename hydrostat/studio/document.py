@@ -10,6 +10,7 @@ from hydrostat.learning import LearnedModel
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.jobs import Slots
 from hydrostat.studio.judge import Judge
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
@@ -35,9 +36,10 @@ class Document:
     It can be changed from any thread: each change replaces one frozen `Work` by another.
     """
 
-    def __init__(self, bell: Bell) -> None:
+    def __init__(self, bell: Bell, slots: Slots | None = None) -> None:
+        """No robot is open; what is looked into beside all else waits for slots that other sessions share."""
         self.bell = bell  # rung after each change
-        self.judge = Judge(bell)  # says what is wrong with the robots that are shown
+        self.judge = Judge(bell, slots)  # says what is wrong with the robots that are shown
         self.folder: Path | None = None  # where the robot is saved; None: nowhere yet
         self.model: LearnedModel | None = None  # of the robot as it was opened; None: none was given
         self.text = ""  # of the robot.toml that it was opened from; "": none

@@ -9,8 +9,10 @@ from hydrostat.fabrication import KitOptions
 from hydrostat.fabrication.demand import Demand
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.jobs import Slots
 from hydrostat.studio.records.wished_constraints import wished_constraints
 from hydrostat.studio.records.wishes import Wishes
+from hydrostat.studio.skins import SewnSkin, Skins
 
 QUIET = 0.2  # a robot is judged when it is shown unchanged for so long [s]
 KEPT = 80  # so many robots are remembered, the candidates of some designs among them
@@ -40,10 +42,12 @@ class Judge:
     """Judges robots as they rest, and remembers what was said; a finding can be chosen, to be marked and read.
 
     Where a design has solved the poses of a robot their loads count; else only what holds whatever they ask. A kit that
-    was refused adds its reasons.
+    was refused adds its reasons, and so does a skin that cannot be sewn, which is found beside.
     """
 
-    def __init__(self, bell: Bell) -> None:
+    def __init__(self, bell: Bell, slots: Slots | None = None) -> None:
+        """Ring when something is to be said; long work waits for slots that other sessions share."""
+        self.skins = Skins(bell, slots)  # of bodies that are sewn
         self.options = KitOptions()  # of the kit that the next judgement is for
         self.chosen: Finding | None = None  # that is shown with its words
         self._bell = bell
@@ -54,11 +58,21 @@ class Judge:
     def of(self, robot: Robot, wishes: Wishes) -> tuple[Finding, ...] | None:
         """What is said of a robot; None until it has been judged."""
         case = self._case(robot, wishes)
-        return None if case is None else case.said
+        if case is None:
+            return None
+        skin = self.skin(robot)
+        told = {finding.text for finding in case.said}
+        more = () if skin is None else (finding for finding in skin.findings if finding.text not in told)
+        return (*more, *case.said)
+
+    def skin(self, robot: Robot) -> SewnSkin | None:
+        """The skin of a robot that is sewn in space, once it was looked at; None for others."""
+        return self.skins.of(robot.body, self.options)
 
     def look(self, robot: Robot, wishes: Wishes, now: float, *, held: bool = False) -> None:
         """Judge a robot that is shown once it has rested, unless it is held or was judged [s]."""
         if self._case(robot, wishes) is not None:
+            self.skins.look(robot.body, self.options)
             return
         seen = self._seen
         if seen is None or seen[0] is not robot or seen[1] != wishes or seen[2] != self.options:
@@ -67,6 +81,7 @@ class Judge:
             options, known = self.options, self._of(robot)
             case = _Case(robot, wishes, options, known, _said(robot, wishes, options, known))
             self._cases = (case, *self._cases)[:KEPT]
+            self.skins.look(robot.body, options)
             self._bell.ring(Topic.JOB, Topic.THINGS)
 
     def learn(self, robot: Robot, *, demand: Demand | None = None, refused: tuple[str, ...] = ()) -> None:

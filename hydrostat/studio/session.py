@@ -12,6 +12,7 @@ from hydrostat.closed_set import member
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import load_model
 from hydrostat.robot import Contact
+from hydrostat.robot.in_words import in_words
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
 from hydrostat.studio.document import Document
@@ -22,6 +23,7 @@ from hydrostat.studio.exporting.download import Download
 from hydrostat.studio.exporting.exporter import Exporter
 from hydrostat.studio.jobs import Jobs, Slots
 from hydrostat.studio.posing.poser import Poser
+from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter
 from hydrostat.studio.view.colouring import Colouring, Scale, node_values, scale
@@ -63,7 +65,7 @@ class Session:
         """
         self.guest = guest  # whether folders of this machine are not this person's
         self.bell = Bell()  # rings when something has changed
-        self.document = Document(self.bell)  # the robot, with undo
+        self.document = Document(self.bell, slots)  # the robot, with undo
         self.jobs = Jobs(self.bell, slots)  # long work
         self.starter = Starter(self.document, self.jobs, state)
         self.editor = Editor(self.document, self.jobs)
@@ -87,6 +89,7 @@ class Session:
         self._holder: str | None = None
         self._stamp = self.answered = 0.0  # stamps of the last drag, and of that which the present shape answers
         self._complaint = self._unkept = ""
+        self._unsewn: SewnSkin | None = None
         self._show = Show()
         self._lock = RLock()
 
@@ -271,6 +274,7 @@ class Session:
         self._tell_unkept()
         if not self.document.is_open:
             return False
+        self._tell_unsewn()
         asked, more, complaint = self._stamp, False, ""
         try:
             more = self.current.step(now)
@@ -307,6 +311,7 @@ class Session:
         self.driver.leave()
         self.driver.motors.link.close()
         self.jobs.close()
+        self.document.judge.skins.close()
         self.starter.autosave.close()
 
     def _tell_unkept(self) -> None:
@@ -315,6 +320,15 @@ class Session:
         if problem and problem != self._unkept:
             self.tell(problem, Tone.BAD)
         self._unkept = problem
+
+    def _tell_unsewn(self) -> None:
+        """Tell that a skin cannot be sewn, once, where no list says so."""
+        skin = self.document.judge.skin(self.document.robot)
+        if skin is None or skin is self._unsewn or not skin.findings:
+            return
+        self._unsewn = skin
+        if self.stage in (StageName.POSE, StageName.DRIVE):
+            self.tell(f"its skin cannot be sewn: {in_words(skin.findings[0].text)}", Tone.BAD)
 
     def _let_go(self) -> None:
         if self._holder is not None:

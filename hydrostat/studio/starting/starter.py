@@ -12,6 +12,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import Work
+from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.starting.autosave import Autosave
 from hydrostat.studio.starting.draft import BodyDraft, new_draft
@@ -118,6 +119,7 @@ class Starter(Stage):
             draft = replace(self.draft, **changes)
             if self.sketch is not None and self.is_current and not self.meshing and set(changes) <= _LIGHT:
                 self.draft, self.sketch = draft, _with_light(self.sketch, draft)
+                self._look_at_skin()
                 self._document.bell.ring(Topic.JOB)
             elif draft != self.draft or self.problem:
                 self._take(draft)
@@ -242,11 +244,21 @@ class Starter(Stage):
             if self.draft is not None and not again and not self._halted:
                 self.problem = error
             self._working, self._halted = None, False
+            self._look_at_skin()
             if again and self.draft is not None:
                 self._begin(self.draft)
             elif self._eager:
                 self.get_ready()
         self._document.bell.ring(Topic.JOB)
+
+    @property
+    def skin(self) -> SewnSkin | None:
+        """Whether the body that was sketched can be sewn; None where that is no question, or no sketch is there."""
+        return None if self.sketch is None else self._document.judge.skin(self.sketch.robot)
+
+    def _look_at_skin(self) -> None:
+        if self.sketch is not None and self.is_current:
+            self._document.judge.skins.look(self.sketch.robot.body, self._document.judge.options)
 
     def _hear(self, topic: Topic) -> None:
         """Remember the folder of the robot."""

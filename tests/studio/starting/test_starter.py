@@ -50,6 +50,7 @@ def desk() -> Iterator[Desk]:
     made = Desk()
     yield made
     made.jobs.close()
+    made.document.judge.skins.close()
 
 
 def test_each_gallery_robot_has_a_small_picture_and_words() -> None:
@@ -195,7 +196,12 @@ def test_a_dirty_surface_comes_with_its_repair(desk: Desk) -> None:
     assert not sketch.clean
     assert any("flipped" in line or "turned" in line for line in sketch.lines), sketch.lines
     assert "<svg" in sketch.repair
+    assert desk.starter.skin is None, "foam has no skin"
+    desk.starter.revise(material="polyester fibre")
+    skin = desk.starter.skin
+    assert skin is not None, "it is being laid flat"
     desk.starter.make()
+    assert desk.document.judge.skin(desk.document.robot) is skin
     assert desk.document.robot.body.mesh.dim == 3
     assert desk.document.robot.poses, "a pose that the first cable makes"
 

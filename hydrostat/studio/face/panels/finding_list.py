@@ -9,6 +9,7 @@ from hydrostat.robot import Robot
 from hydrostat.robot.in_words import in_words
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, pressable
+from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.view.finding_things import TONES
 
 GOOD = "#00795f"
@@ -30,12 +31,19 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
         robot = shown() if document.is_open else None
         return None if robot is None else judge.of(robot, document.work.wishes)
 
+    def sewn() -> SewnSkin | None:
+        robot = shown() if document.is_open else None
+        return None if robot is None else judge.skin(robot)
+
     def build() -> None:
         found = said()
         if found is None:
             ui.label("Looking it over").classes("studio-hint")
             return
-        if not found:
+        skin = sewn()
+        if skin is not None and (words := skin.words):
+            ui.label(words[0].upper() + words[1:]).classes("studio-hint").props('data-testid="skin-words"')
+        if not found and not (skin is not None and skin.awaited):
             with ui.element("div").classes("studio-row"):
                 ui.icon("check_circle", size="18px").style(f"color: {GOOD}")
                 ui.label("Nothing is wrong.").style("font-size: 13px")
@@ -46,7 +54,7 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
             for finding in alike:
                 _line(page, finding, chosen=finding == judge.chosen)
 
-    page.on_new((Topic.JOB, Topic.ROBOT, Topic.THINGS), lambda: (said(), judge.chosen), room, build)
+    page.on_new((Topic.JOB, Topic.ROBOT, Topic.THINGS), lambda: (said(), sewn(), judge.chosen), room, build)
 
 
 def _line(page: WindowPage, finding: Finding, *, chosen: bool) -> None:

@@ -9,16 +9,25 @@ from nicegui import ui
 from hydrostat.errors import HydrostatError
 from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.robot import MATERIALS
+from hydrostat.robot.in_words import in_words
 from hydrostat.studio.face.dialogs import may_leave
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.draft import SMOOTHINGS, THRESHOLDS, BodyDraft, PhotoReading, material_words, young_words
 from hydrostat.studio.starting.photo import overlay
 from hydrostat.studio.starting.sketch import Sketch
 
 LEVELS = ("Coarse", "Medium", "Fine")
-ICONS = {"found": "search", "done": "build", "removed": "content_cut", "volume": "straighten", "largest": "straighten"}
+ICONS = {
+    "found": "search",
+    "done": "build",
+    "removed": "content_cut",
+    "volume": "straighten",
+    "largest": "straighten",
+    "cannot": "block",
+}
 FINENESS = {True: (120, 250, 600), False: (400, 900, 2500)}  # nodes of a coarse, a medium and a fine body, flat or not
 
 
@@ -33,7 +42,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
         with ui.column().classes("w-full gap-4"):
             show_state = _state(page)
             show_photo = _photo(page)
-            show_pictures = _pictures()
+            show_pictures, show_skin = _pictures(), _skin()
         with ui.element("div").classes("start-card"):
             fields = _Fields(page)
 
@@ -43,6 +52,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
         show_state()
         show_photo()
         show_pictures(starter.sketch)
+        show_skin(starter.skin)
         if draft is not None:
             fields.show(draft, starter.sketch)
 
@@ -164,6 +174,29 @@ def _pictures() -> Callable[[Sketch | None], None]:
         with lines:
             for line in sketch.lines:
                 _line(line)
+
+    return refresh
+
+
+def _skin() -> Callable[[SewnSkin | None], None]:
+    """Whether the skin of a body in space can be sewn."""
+    with ui.element("div").classes("start-card") as card:
+        ui.label("Sewing its skin").classes("start-head")
+        lines = ui.column().classes("gap-1 w-full").props('data-testid="sewing"')
+    shown: SewnSkin | None = None
+
+    def refresh(skin: SewnSkin | None) -> None:
+        nonlocal shown
+        card.set_visibility(skin is not None)
+        if skin is None or skin is shown:
+            return
+        shown = skin
+        lines.clear()
+        with lines:
+            if skin.words:
+                _line(skin.words[0].upper() + skin.words[1:])
+            for finding in skin.findings:
+                _line(f"cannot be built: {in_words(finding.text)}")
 
     return refresh
 
