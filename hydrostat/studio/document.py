@@ -44,6 +44,7 @@ class Document:
         self.model: LearnedModel | None = None  # of the robot as it was opened; None: none was given
         self.text = ""  # of the robot.toml that it was opened from; "": none
         self.stamp = ""  # of that folder when it was opened or saved last (`folder_stamp`)
+        self.designs = b""  # networks found for the robot, to be kept for a crash; their room knows what is in them
         self.serial = 0  # counts the changes, undoing included; the same number means the same work
         self._lock = RLock()
         self._past: list[Change] = []
@@ -102,16 +103,24 @@ class Document:
         return self._future[-1].label if self._future else ""
 
     def open(
-        self, work: Work, *, folder: Path | None = None, saved: bool = True, stamp: str | None = None, text: str = ""
+        self,
+        work: Work,
+        *,
+        folder: Path | None = None,
+        saved: bool = True,
+        stamp: str | None = None,
+        text: str = "",
+        designs: bytes = b"",
     ) -> None:
         """Begin with a robot; what was open before is left as it was.
 
         It is saved in the folder, all of it or not; None: nowhere yet. The stamp is that of the folder when the work
-        was read from it, if that was not just now; the text that of its robot.toml.
+        was read from it, if that was not just now; the text that of its robot.toml; the designs are networks that were
+        found for it before a crash.
         """
         with self._lock:
             self._past, self._future = [Change("open", work)], []
-            self._body = self.model = None
+            self._body, self.model, self.designs = None, None, designs
             self.folder, self._saved, self.text = folder, work if saved else None, text
             self.stamp = "" if folder is None else folder_stamp(folder) if stamp is None else stamp
             self.serial += 1

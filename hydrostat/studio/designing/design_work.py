@@ -52,6 +52,7 @@ class Candidate:
     error: float  # root of the mean squared marker error over all poses [m]
     built: float  # the same, expected of a robot as it is built [m]
     craft: Craft  # what it takes to sew and to motorise it
+    demand: Demand  # what its poses ask of motors and cables
     complete: bool  # whether the search came to its end
 
     @property

@@ -14,6 +14,7 @@ from hydrostat.drawing.palette import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.designing.cards_file import cards_content, read_cards
 from hydrostat.studio.designing.design_work import (
     Candidate,
     DesignsFound,
@@ -63,6 +64,8 @@ class Designer(Stage):
         self.running = False  # whether a design goes on
         self._ease: Ease | None = None
         self._sketch: BodySketch | None = None
+        self._kept = b""
+        document.bell.listen(self._hear)
 
     @property
     def seconds(self) -> float:
@@ -172,6 +175,7 @@ class Designer(Stage):
     def clear(self) -> None:
         """Forget all candidates."""
         self._all, self.outcome = (), ""
+        self._keep()
         self.show(None)
 
     def enter(self) -> None:
@@ -252,6 +256,26 @@ class Designer(Stage):
             return run.best
         return robot
 
+    def _keep(self) -> None:
+        """Leave the networks of this body with the document, which keeps them for a crash."""
+        self._kept = self._document.designs = cards_content(self.candidates)
+
+    def _hear(self, topic: Topic) -> None:
+        """Take over networks that a studio had found which crashed."""
+        content = self._document.designs
+        if topic is not Topic.ROBOT or content is self._kept or not content:
+            return
+        self._kept = content
+        try:
+            found = read_cards(content, self._document.robot)
+        except InputError as error:
+            self.outcome = str(error)
+            return
+        self._all, self._numbered = tuple(found), max(len(found), self._numbered)
+        for candidate in found:
+            self._document.judge.learn(candidate.robot, demand=candidate.demand)
+        self.outcome = f"{counted(len(found), 'network')} found before the studio ended" if found else ""
+
     def _reach(self) -> Reach | None:
         """What is shown of a pose; None: the body at rest."""
         candidate = self.candidate
@@ -304,11 +328,13 @@ class Designer(Stage):
                     error=solution.error,
                     built=solution.built,
                     craft=solution.craft,
+                    demand=solution.demand,
                     complete=found.complete,
                 )
             )
             self._document.judge.learn(made[-1].robot, demand=solution.demand)
         self._all = (*made, *self._all)[:MOST]
+        self._keep()
         best = made[0]
         seconds = time.monotonic() - run.began
         early = "" if found.complete else "stopped early, the best so far: "

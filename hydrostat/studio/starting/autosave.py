@@ -17,11 +17,13 @@ from threading import Lock, Thread
 from typing import IO
 
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import open_work, save_work, text_of
 
 LOCK = "lock"
+DESIGNS, LARGEST = "designs.json", 20_000_000  # networks that were found; the file may have this many bytes
 
 
 class HeldFolder:
@@ -93,16 +95,17 @@ class Left:
 class Autosave:
     """Keeps the work of a document in a folder of its own while it is not saved.
 
-    A studio has a folder ID/ with a lock, and in it ID/N/ with meta.json and work/, N counting. A new one is written
-    beside the last under another name and renamed when it is whole, then the last is removed: at any moment one whole
-    copy is there.
+    Networks that Design has found are kept too, of saved work as well, as no file has them; what can be undone is not.
+    A studio has a folder ID/ with a lock, and in it ID/N/ with meta.json, work/ and perhaps designs.json, N counting. A
+    new one is written beside the last under another name and renamed when it is whole, then the last is removed: at any
+    moment one whole copy is there.
     """
 
     def __init__(self, document: Document, folder: Path | None) -> None:
         """Keep what is changed in the folder that all studios of this person share; None: nothing is kept."""
         self._document, self._folder = document, folder
         self._held: HeldFolder | None = None
-        self._seen = self._kept = (0, True)
+        self._seen = self._kept = (0, True, b"")
         self._changed = self._asked = 0.0
         self.problem = ""  # why the work cannot be kept, a line; "" if it can
         self._count = 0
@@ -120,15 +123,19 @@ class Autosave:
             return
         if self.problem and now - self._asked < AGAIN:
             return
-        if state[1] or self.problem or now - self._changed >= PATIENCE or now - self._asked >= LONGEST:
+        nothing = state[1] and not state[2]
+        if nothing or self.problem or now - self._changed >= PATIENCE or now - self._asked >= LONGEST:
             self._asked = now
             self._writer = Thread(target=self._keep, name="autosave", daemon=True)
             self._writer.start()
 
     def close(self) -> None:
         """End with the studio: what is saved is kept no longer, what is not is there next time."""
-        self._keep()
+        if not self._document.saved:
+            self._keep()
         with self._lock:
+            if self._document.saved:
+                self._remove()
             if self._held is not None:
                 self._held.let_go()
                 self._held = None
@@ -142,8 +149,10 @@ class Autosave:
 
     def restore(self, left: Left) -> None:
         """Open what was left; it is kept on as work of this studio (InputError: it cannot be read any more)."""
-        work = open_work(left.folder / "work")
-        self._document.open(work, folder=left.origin, saved=False, stamp=left.stamp, text=text_of(left.folder / "work"))
+        home, designs = left.folder / "work", left.folder / DESIGNS
+        work = open_work(home)
+        found = read_stranger(designs, name=DESIGNS, most=LARGEST) if designs.is_file() else b""
+        self._document.open(work, folder=left.origin, saved=False, stamp=left.stamp, text=text_of(home), designs=found)
         if self._keep():
             self.forget(left)
 
@@ -151,8 +160,8 @@ class Autosave:
         """Remove what was left."""
         rmtree(left.folder.parent, ignore_errors=True)
 
-    def _state(self) -> tuple[int, bool]:
-        return (self._document.serial, self._document.saved)
+    def _state(self) -> tuple[int, bool, bytes]:
+        return (self._document.serial, self._document.saved, self._document.designs)
 
     def _keep(self) -> bool:
         """Write the work as it is now, or remove what was kept if it is saved; whether that could be done."""
@@ -163,10 +172,10 @@ class Autosave:
             if state == self._kept:
                 return True
             try:
-                if state[1]:
+                if state[1] and not state[2]:
                     self._remove()
                 else:
-                    self._write(self._folder, self._document.work)
+                    self._write(self._folder, self._document.work, state[2])
             except (OSError, HydrostatError) as error:
                 if not self.problem:
                     logging.getLogger("hydrostat").exception("the work cannot be kept for restoring")
@@ -175,7 +184,7 @@ class Autosave:
             self._kept, self.problem = state, ""
         return True
 
-    def _write(self, folder: Path, work: Work) -> None:
+    def _write(self, folder: Path, work: Work, designs: bytes) -> None:
         if self._held is None:
             self._held = HeldFolder(folder)
         self._count += 1
@@ -190,6 +199,8 @@ class Autosave:
             "stamp": stamp,
             "process": os.getpid(),
         }
+        if designs:
+            (part / DESIGNS).write_bytes(designs)
         (part / "meta.json").write_text(json.dumps(meta), encoding="utf-8")
         part.rename(whole)
         for path in home.iterdir():  # the one before, and what could not be written whole

@@ -8,6 +8,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.design import DesignRequest, craft_of
+from hydrostat.fabrication.demand import demand_of
 from hydrostat.robot import Pose, Robot
 from hydrostat.studio.designing.charts import BOTTOM, FRONT_HEIGHT, LEFT, Chart, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate
@@ -102,7 +103,15 @@ def candidate(number: int, robot: Robot, *, minutes: float, built: float) -> Can
     """A network that takes so long to sew and is so far off once built [mm]."""
     craft = replace(craft_of(robot, []), minutes=minutes)
     return Candidate(
-        number=number, source=robot, robot=robot, reaches=(), error=0.0, built=1e-3 * built, craft=craft, complete=True
+        number=number,
+        source=robot,
+        robot=robot,
+        reaches=(),
+        error=0.0,
+        built=1e-3 * built,
+        craft=craft,
+        demand=demand_of(robot, []),
+        complete=True,
     )
 
 
