@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import RobotFolder, folder_of
+from hydrostat.cli.folders import OwnRobotFolder, folder_of
 from hydrostat.cli.waiting import one_interrupt, patiently, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import counted
@@ -23,7 +23,7 @@ SOFT, HARD = 0.5, 2.0  # cables that feel so much softer or stiffer than the mod
 
 
 def calibrate(
-    robot: RobotFolder,
+    robot: OwnRobotFolder,
     port: Annotated[
         str, typer.Option(metavar="KIND:PORT", help="Motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
     ],

@@ -1,4 +1,4 @@
-"""Folders that commands read from and write to: `RobotFolder`, `OutFolder`, `folder_of`, `result_folder`."""
+"""Folders that commands read and write: `RobotFolder`, `OwnRobotFolder`, `OutFolder`, `folder_of`, `result_folder`."""
 
 import os
 import re
@@ -12,7 +12,32 @@ import typer
 
 from hydrostat.errors import InputError
 
-RobotFolder = Annotated[Path, typer.Argument(metavar="ROBOT", help="Folder of a robot, or its robot.toml.")]
+
+def found_folder(robot: Path) -> Path:
+    """The folder that is meant, also of a robot of the gallery (InputError: it has none of this name)."""
+    if not str(robot).startswith("gallery:"):
+        return robot
+    from hydrostat.robot.gallery import GALLERY, gallery_folder
+
+    return gallery_folder(str(robot).removeprefix(GALLERY))
+
+
+def _own(robot: Path) -> Path:
+    """The folder that is meant, to be written to (InputError: it is that of the gallery)."""
+    if (folder := found_folder(robot)) != robot:
+        name = folder.name
+        copy = f"hydrostat new my_{name} --from {robot}"
+        raise InputError(f"{robot}: the gallery stays as it is; make a copy by {copy}, and name that")
+    return robot
+
+
+_HELP = "Folder of a robot, its robot.toml"
+RobotFolder = Annotated[
+    Path, typer.Argument(metavar="ROBOT", help=f"{_HELP}, or gallery:NAME.", callback=found_folder)
+]  # to read from
+OwnRobotFolder = Annotated[
+    Path, typer.Argument(metavar="ROBOT", help=f"{_HELP.replace(',', ', or')}.", callback=_own)
+]  # to write to
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the results; made if need be.")]
 
 

@@ -129,9 +129,9 @@ def _numbers(text: str) -> list[int]:
 def _robot(name: str) -> "Robot":
     """A robot of the gallery or of a folder, which feels itself."""
     from hydrostat.robot import Contact, load_robot
-    from hydrostat.robot.gallery import gallery_folder
+    from hydrostat.robot.gallery import GALLERY, gallery_folder
 
-    robot = load_robot(Path(name) if Path(name).is_dir() else gallery_folder(name))
+    robot = load_robot(Path(name) if Path(name).is_dir() else gallery_folder(name.removeprefix(GALLERY)))
     return robot if robot.contact is not None else replace(robot, contact=Contact())
 
 

@@ -53,7 +53,8 @@ def sample(
     """Sample a robot for learning: contractions, markers, exact slopes, tensions.
 
     Writes samples.json, which says what was sampled, and a .npy file for each few samples. The same command goes on
-    where it ended; the bytes do not depend on how many work. Python reads them by hydrostat.learning.read_samples.
+    where it ended, and with a larger --count to that; the bytes do not depend on how many work. Python reads them by
+    hydrostat.learning.read_samples.
 
     Example: hydrostat sample examples/starfish --count 200 --contact --out build/samples
     """

@@ -5,13 +5,13 @@ from typing import Annotated
 
 import typer
 
-from hydrostat.cli.folders import RobotFolder
+from hydrostat.cli.folders import OwnRobotFolder
 from hydrostat.cli.waiting import patiently, read_robot
 from hydrostat.errors import InputError
 
 
 def scale(
-    robot: RobotFolder,
+    robot: OwnRobotFolder,
     factor: Annotated[str, typer.Argument(metavar="FACTOR", help="How many times as large, such as 1.5.")],
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Folder for the scaled robot; else it is changed.")

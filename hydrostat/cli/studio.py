@@ -5,12 +5,14 @@ from typing import Annotated
 
 import typer
 
+from hydrostat.cli.folders import found_folder
 from hydrostat.errors import InputError
 
 
 def studio(
     robot: Annotated[
-        Path | None, typer.Argument(metavar="[ROBOT]", help="Folder of a robot; the gallery is shown if left out.")
+        Path | None,
+        typer.Argument(metavar="[ROBOT]", help="Folder of a robot, or gallery:NAME; the gallery is shown if left out."),
     ] = None,
     port: Annotated[int, typer.Option(metavar="PORT", help="To listen at; a free one if left out.")] = 0,
     host: Annotated[
@@ -29,7 +31,9 @@ def studio(
     """Open the studio in the browser: pose a robot by hand, watch it design itself, drive it, export it.
 
     Example: hydrostat studio examples/starfish
+
     Example: hydrostat studio examples/cupping_hand --model build/hand.model
+
     Example: hydrostat studio examples/starfish --rooms --host 192.168.1.20
     """
     try:
@@ -48,6 +52,7 @@ def studio(
         if robot is not None:
             from hydrostat.robot import load_robot
 
+            robot = found_folder(robot)
             load_robot(robot)  # what is wrong with it is told now, not to each who comes
         served = Rooms(state=state_folder(), first=robot)
     else:

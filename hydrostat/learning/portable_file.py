@@ -47,6 +47,8 @@ class PortableFile:
         kept = {name: np.ascontiguousarray(value, self.kinds[name][0]) for name, value in arrays.items()}
         table = [[name, value.dtype.str, list(value.shape)] for name, value in kept.items()]
         header = json.dumps({"facts": dict(facts), "arrays": table}).encode()
+        if len(header) > MOST_HEADER:
+            raise InputError(f"{path}: names and facts of the {self.word} take more than {MOST_HEADER} bytes")
         parts = [self.magic, len(header).to_bytes(8, "little"), header, *(one.tobytes() for one in kept.values())]
         content = b"".join(parts)
         return replace_file(Path(path), content + hashlib.sha256(content).digest())
@@ -83,6 +85,8 @@ class PortableFile:
         """Facts, and arrays by name; sizes are checked before bytes are taken (ValueError: what is wrong)."""
         begin = len(self.magic) + 8
         length = int.from_bytes(body[len(self.magic) : begin], "little")
+        if length > MOST_HEADER:
+            raise ValueError(f"its header has {length} bytes, and no header needs more than {MOST_HEADER}")
         if length > len(body) - begin:
             raise ValueError("its header is cut off")
         header = json.loads(body[begin : begin + length])
@@ -115,3 +119,6 @@ _DIGEST = hashlib.sha256().digest_size
 
 MOST = 500_000_000
 """No such file is larger [bytes]."""
+
+MOST_HEADER = 2_000_000
+"""No header is longer [bytes]: it has names and options, some kilobytes of them."""

@@ -2,7 +2,9 @@
 
 import json
 import os
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from io import BytesIO
 from pathlib import Path
@@ -15,6 +17,7 @@ from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.given import path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import sample_type
+from hydrostat.robot.unfinished import clear_unfinished, unfinished
 
 FORMAT = 1
 """Version of what lies in a folder of samples."""
@@ -37,15 +40,15 @@ class SampleFolder:
 
     @classmethod
     def begin(cls, path: Path, plan: SamplePlan) -> "SampleFolder":
-        """The folder of a plan: a new one, or one with the same plan, to go on with.
+        """The folder of a plan: a new one, or one with the same plan to go on with, perhaps of fewer samples till now.
 
         Raises:
-            InputError: it holds samples of another plan, or cannot be written.
+            InputError: it holds samples of another plan, or more of them; or it cannot be written.
         """
         folder, facts = cls(path, plan), {"format": FORMAT, "version": version("hydrostat"), **plan.facts()}
         try:
             path.mkdir(parents=True, exist_ok=True)
-            present = (path / MANIFEST).is_file()
+            present, known = (path / MANIFEST).is_file(), {}
             strangers = [] if present else [other.name for other in path.iterdir() if not other.name.startswith(".")]
         except OSError as error:
             raise InputError(f"{path}: cannot be made a folder of samples ({error.strerror})") from None
@@ -53,14 +56,8 @@ class SampleFolder:
             raise InputError(f"{path}: holds other things, such as {min(strangers)}; name an empty folder")
         if present:
             known = read_manifest(path)
-            differing = [key for key, value in facts.items() if known.get(key) != value]
-            if differing:
-                key = differing[0]
-                raise InputError(
-                    f"{path}: holds samples of another plan: {key} is {known.get(key)!r}, asked for {facts[key]!r}; "
-                    f"ask for the same, or name another folder"
-                )
-        else:
+            _check_known(path, known, facts)
+        if not present or known["count"] != plan.count:
             _write_whole(path / MANIFEST, (json.dumps(facts, indent=2) + "\n").encode())
         return folder
 
@@ -69,11 +66,19 @@ class SampleFolder:
         return self.path / f"samples-{shard:06d}.npy"
 
     def missing(self, part: tuple[int, int]) -> list[int]:
-        """Shards of part i of n, counted from 0, that are not there yet; leftovers of killed runs are cleared."""
-        for left in self.path.glob(".*.part-*"):
-            if not _alive(left):
-                left.unlink(missing_ok=True)
-        return [shard for shard in range(part[0], self.plan.shards, part[1]) if not self.file(shard).is_file()]
+        """Shards of part i of n, counted from 0, that are not there yet; leftovers of killed runs are cleared.
+
+        A file of another size is not there: the last one was shorter while fewer samples were asked for.
+        """
+        clear_unfinished(self.path)
+        return [shard for shard in range(part[0], self.plan.shards, part[1]) if not self._is_whole(shard)]
+
+    def _is_whole(self, shard: int) -> bool:
+        try:
+            size = self.file(shard).stat().st_size
+        except OSError:
+            return False
+        return size == _size_of(len(self.plan.numbers(shard)), sample_type(self.plan))
 
     def write(self, shard: int, rows: np.ndarray) -> None:
         """Write the samples of a shard, whole or not at all.
@@ -82,9 +87,36 @@ class SampleFolder:
             InputError: they cannot be written, as when the disk is full.
         """
         assert rows.dtype == sample_type(self.plan)
-        content = BytesIO()
-        np.save(content, rows, allow_pickle=False)
-        _write_whole(self.file(shard), content.getvalue())
+        _write_whole(self.file(shard), _content(rows))
+
+
+@cache
+def _size_of(count: int, columns: np.dtype) -> int:
+    """Bytes of a file with so many samples."""
+    return len(_content(np.zeros(count, columns)))
+
+
+def _content(rows: np.ndarray) -> bytes:
+    content = BytesIO()
+    np.save(content, rows, allow_pickle=False)
+    return content.getvalue()
+
+
+def _check_known(path: Path, known: dict[str, Any], facts: dict[str, Any]) -> None:
+    """InputError: what a folder holds is not what is asked for, nor fewer samples of the same."""
+    differing = [key for key, value in facts.items() if known.get(key) != value and key != "count"]
+    if differing:
+        key = differing[0]
+        raise InputError(
+            f"{path}: holds samples of another plan: {key} is {known.get(key)!r}, asked for {facts[key]!r}; "
+            f"ask for the same, or name another folder"
+        )
+    there, asked = known.get("count"), facts["count"]
+    if type(there) is not int or there > asked:
+        raise InputError(
+            f"{path}: is for {there} samples already, more than the {asked} asked for, and none are taken away; "
+            f"ask for {there} or more, or learn from the first by hydrostat learn --count {asked}"
+        )
 
 
 def read_manifest(path: str | Path) -> dict[str, Any]:
@@ -109,7 +141,7 @@ def read_manifest(path: str | Path) -> dict[str, Any]:
 
 def _write_whole(path: Path, content: bytes) -> None:
     """Write a file whole, to the disk, or not at all; processes that write the same do not get in each other's way."""
-    part = path.with_name(f".{path.name}.part-{os.getpid()}")
+    part = unfinished(path)
     try:
         with part.open("wb") as stream:
             stream.write(content)
@@ -119,18 +151,8 @@ def _write_whole(path: Path, content: bytes) -> None:
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror}); what was written before is whole") from None
     finally:
-        part.unlink(missing_ok=True)
-
-
-def _alive(part: Path) -> bool:
-    """Whether the process that writes a part may still be at work; one on another machine may be for an hour."""
-    try:
-        os.kill(int(part.name.rpartition("-")[2]), 0)
-    except ProcessLookupError:
-        return False
-    except (ValueError, OSError):
-        return True
-    return True
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
 
 
 _MOST_TEXT = 10_000_000

@@ -25,7 +25,7 @@ def sample_robot(
     backend: str = "loky",
     tell: Tell | None = None,
 ) -> SampleFolder:
-    """Sample a robot into a folder, or go on where an earlier run ended.
+    """Sample a robot into a folder, or go on where an earlier run ended, perhaps one that was asked for fewer.
 
     The bytes depend on the plan alone: not on how many work, on which machine of one kind, nor in which order. A worker
     that dies is made good for as long as others get something done.
@@ -39,7 +39,7 @@ def sample_robot(
         tell: is told "samples", how many there are, and how many there shall be.
 
     Raises:
-        InputError: a folder of another plan, or one that cannot be written; a wrong part or backend.
+        InputError: a folder of another plan or of more samples, or one that cannot be written; a wrong part or backend.
         HydrostatError: the workers died, and nothing was done since.
     """
     index, parts = part

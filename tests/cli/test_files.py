@@ -104,3 +104,16 @@ def test_at_a_terminal_it_asks_what_an_eye_is(
     outline = load_robot(tmp_path / "moby").body.outline
     assert outline is not None
     assert len(outline.rings) == 1 + holes
+
+
+def test_robots_of_the_gallery_are_read_by_their_names_and_not_written(run: Run, tmp_path: Path) -> None:
+    code, out, err = run("sample", "gallery:letter_e", "--count", 2, "--jobs", 1, "--out", tmp_path / "samples")
+    assert (code, err) == (0, "samples: 2 of 2\n")
+    assert "2 of 2 samples" in out
+    code, _, err = run("train", "gallery:nobody", "--out", tmp_path / "policy")
+    assert code == 2
+    assert 'the gallery has no robot "nobody"; it has: bear, ' in err
+    for command in (("scale", "gallery:starfish", 2), ("calibrate", "gallery:starfish", "--port", "emulated")):
+        code, _, err = run(*command)
+        assert code == 2
+        assert "hydrostat new my_starfish --from gallery:starfish" in err

@@ -344,6 +344,7 @@ FORGERIES = {
     "a list": lambda header: [header],
     "no JSON": lambda header: b"\xff\xfe{",
     "deep": lambda header: b"[" * 100_000,
+    "long": lambda header: json.dumps(header | {"more": "x" * 3_000_000}).encode(),
     "no winches": lambda header: header["facts"].update(winches=[]),
     "a winch that is a number": lambda header: header["facts"].update(winches=[1, 2]),
     "more markers": lambda header: header["facts"].update(markers=["a", "b"]),

@@ -18,7 +18,9 @@ from builders import gallery_robot, strip_robot
 import hydrostat as hs
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import Draw, SamplePlan, export_samples, plan_samples, read_samples, sample_robot, sample_shard
+from hydrostat.learning.sample_folder import SampleFolder
 from hydrostat.learning.sample_shard import REASONS
+from hydrostat.robot.unfinished import unfinished
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -154,7 +156,8 @@ def test_going_on_makes_only_what_is_missing(plan: SamplePlan, once: Path, tmp_p
     sample_robot(plan, tmp_path)
     kept = (tmp_path / "samples-000001.npy").stat().st_mtime_ns
     (tmp_path / "samples-000003.npy").unlink()
-    (tmp_path / ".samples-000003.npy.part-999999999").write_bytes(b"half")  # of a run that was killed
+    left = unfinished(tmp_path / "samples-000003.npy")  # of a run that was killed
+    left.with_name(left.name.replace(f"-{os.getpid()}-", "-999999999-")).write_bytes(b"half")
     sample_robot(plan, tmp_path)
     assert contents(tmp_path) == contents(once)
     assert (tmp_path / "samples-000001.npy").stat().st_mtime_ns == kept
@@ -176,6 +179,24 @@ def test_a_killed_run_leaves_whole_files_and_goes_on(plan: SamplePlan, once: Pat
     assert len(list(out.glob("samples-*.npy"))) == 2
     sample_robot(plan, out)
     assert contents(out) == contents(once)
+
+
+def test_a_folder_grows_to_a_larger_count_and_to_no_smaller_one(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
+    """The oracle is a run that was asked for all at once; a kill before the short last file is made anew is tried."""
+    sample_robot(replace(plan, count=12), tmp_path)
+    first = (tmp_path / "samples-000000.npy").stat().st_mtime_ns
+    SampleFolder.begin(tmp_path, plan)  # a run that was killed just then
+    assert len(read_samples(tmp_path)) == 12
+    sample_robot(plan, tmp_path, part=(1, 2))  # a job of an array, whose files the short one is not among
+    assert len(read_samples(tmp_path)) == 12 + 5
+    sample_robot(plan, tmp_path)
+    assert contents(tmp_path) == contents(once)
+    assert (tmp_path / "samples-000000.npy").stat().st_mtime_ns == first
+    with pytest.raises(InputError, match=r"is for 22 samples already, more than the 12 .* hydrostat learn --count 12$"):
+        sample_robot(replace(plan, count=12), tmp_path)
+    with pytest.raises(InputError, match="another plan: seed is 3, asked for 4"):
+        sample_robot(replace(plan, count=40, seed=4), tmp_path)
+    assert contents(tmp_path) == contents(once)
 
 
 def test_workers_that_die_are_made_good(

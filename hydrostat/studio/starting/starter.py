@@ -7,7 +7,8 @@ from threading import RLock
 from typing import Any
 
 from hydrostat.errors import InputError
-from hydrostat.robot import find_material, load_robot
+from hydrostat.robot import find_material, gallery_folder, load_robot
+from hydrostat.robot.gallery import GALLERY, is_of_gallery
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -69,9 +70,12 @@ class Starter(Stage):
         self._document.open(Work(robot=load_robot(folder)), text=text_of(folder))
 
     def open_folder(self, text: str) -> None:
-        """Open the robot in a folder (InputError: there is none, or it is wrong)."""
+        """Open the robot in a folder, or a copy of gallery:NAME (InputError: there is none, or it is wrong)."""
         if not text.strip():
             raise InputError("name the folder of a robot")
+        if is_of_gallery(text.strip()):
+            self.open_gallery(gallery_folder(text.strip().removeprefix(GALLERY)))
+            return
         try:
             folder = Path(text.strip()).expanduser()
             work = open_work(folder)

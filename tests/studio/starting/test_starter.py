@@ -170,6 +170,15 @@ def test_a_drawing_becomes_a_robot(desk: Desk) -> None:
     assert desk.starter.draft is None
 
 
+def test_the_gallery_is_opened_by_name_as_a_copy(desk: Desk) -> None:
+    """Oracle: the gallery; Save would ask for a folder."""
+    desk.starter.open_folder(" gallery:letter_e ")
+    assert desk.document.robot == load_robot("gallery:letter_e")
+    assert desk.document.folder is None
+    with pytest.raises(InputError, match='the gallery has no robot "nobody"'):
+        desk.starter.open_folder("gallery:nobody")
+
+
 @pytest.mark.slow
 def test_other_numbers_in_a_row_end_with_the_last(desk: Desk) -> None:
     """Oracle: the last size asked for, while the first mesh is still made."""
