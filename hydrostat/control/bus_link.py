@@ -40,7 +40,7 @@ class LinkState(StrEnum):
     CALIBRATED = "calibrated: all zeros are known"
     ARMED = "armed: motors turn as they are told"
     HOLD = "hold: motors stand, and must be armed anew"
-    STOPPED = "stopped by hand"
+    STOPPED = "stopped"
     FAULT = "fault"
 
 
@@ -311,7 +311,8 @@ class BusLink(Link):
             self._tell_state()
 
     def _tell_state(self) -> None:
-        self._say(f"{self.state}{f': {self.why}' if self.why and self.state is not LinkState.ARMED else ''}")
+        told = self.state in (LinkState.ARMED, LinkState.CLOSED) or self.why == self.state
+        self._say(f"{self.state}{f': {self.why}' if self.why and not told else ''}")
 
     def _say(self, words: str) -> None:
         with suppress(Exception):

@@ -97,7 +97,9 @@ def check_port(text: str) -> None:
 
 def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:
     """Servos that stand where nothing is taken in, each with the load of its cables."""
-    servos = [EmulatedServo(n, angle=each.zero or 0.0, model=1240) for n, each in enumerate(calibration.motors, 1)]
+    servos = [
+        EmulatedServo(n, angle=each.zero or 0.0, model=_LIKE_A_KIT) for n, each in enumerate(calibration.motors, 1)
+    ]
     chain, known, torques = LiveChain(servos), -1.0, np.zeros(len(servos))
 
     def load(index: int) -> Callable[[float], float]:
@@ -113,6 +115,10 @@ def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) ->
     for index, servo in enumerate(servos):
         servo.load, servo.constant = load(index), MODELS[servo.model].torque / MODELS[servo.model].stall
     return EmulatedBus(chain, [servo.number for servo in servos])
+
+
+_LIKE_A_KIT = 1200
+"""Emulated servos are XL330-M288, those of the servos that a kit may have."""
 
 
 def open_line(name: str, baud: int) -> Port:

@@ -62,11 +62,11 @@ def test_it_plays_on_emulated_motors(starfish: Path, wave: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     lines = done.stdout.splitlines()
     assert all(line.startswith("emulated: ") for line in lines)
-    assert any(line.endswith("left: motor 2, XC330-M288, firmware 52, stops by itself") for line in lines)
+    assert any(line.endswith("left: motor 2, XL330-M288, firmware 52, stops by itself") for line in lines)
     played = next(line for line in lines if "played" in line)
     places = [float(word) for word in re.findall(r"(-?[0-9.]+) mm", played)]
     assert places == pytest.approx([0.0, 3.0, 0.0], abs=0.4)
-    assert any(line.endswith("closed: stopped") for line in lines)
+    assert [line.rpartition(" s: ")[2] for line in lines[-3:-1]] == ["stopped", "closed"], "and by nobody's hand"
 
 
 @pytest.mark.parametrize(

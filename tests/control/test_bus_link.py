@@ -213,6 +213,6 @@ def test_the_log_tells_each_state_once() -> None:
     assert [word.split(":")[0] for word in words if word.split(":")[0] not in NAMES] == [
         "calibrated",
         "armed",
-        "stopped by hand",
+        "stopped",
         "closed",
     ]
