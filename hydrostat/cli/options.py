@@ -8,6 +8,7 @@ import typer
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
+    from hydrostat.arrays import Vector
     from hydrostat.ik import Limits
     from hydrostat.robot import Robot
     from hydrostat.units import Dimension

@@ -2,7 +2,7 @@
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
@@ -12,7 +12,7 @@ from hydrostat.errors import HydrostatError, InputError
 
 if TYPE_CHECKING:
     from hydrostat.robot import Obstacle, Robot
-    from hydrostat.training import CurvePoint
+    from hydrostat.training import CurvePoint, ReachEnv
 
 
 def train(
@@ -145,7 +145,8 @@ def train(
     write_profile(out / "moves.csv", judged.robot, moves)
     print(f"Wrote {out / 'moves.csv'}, what it does for the first of them; motors play it by hydrostat play")
     if networks is not None and env.portable:
-        print(f"Wrote {save_model(training.portable_policy(trained, env, networks), out / 'policy.model')}")
+        learned = training.portable_policy(trained, cast("ReachEnv", env), networks)
+        print(f"Wrote {save_model(learned, out / 'policy.model')}")
 
 
 def _thing(robot: "Robot", text: str, at: str | None, mass: str, friction: float | None) -> "Obstacle":

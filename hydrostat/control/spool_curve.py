@@ -85,7 +85,7 @@ def measure_spool(
     Raises:
         HydrostatError: of the link; a body so stiff that the motor takes too little in; or readings that are no curve.
     """
-    turned, readings = list[float](), list[float]()
+    turned, readings, taken = list[float](), list[float](), 0.0
     try:
         for goal in np.linspace(0.0, most, STOPS).tolist():
             there = _go(link, place, goal, clock, wait)

@@ -60,7 +60,7 @@ def _model(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> LearnedModel
     return LearnedModel(facts=facts, forward=forward, inverse=inverse, **{name: arrays[name] for name in shapes})
 
 
-_KINDS = dict.fromkeys(("low", "high", "middle", "unit"), ("<f8", 1))
+_KINDS: dict[str, tuple[str, int]] = dict.fromkeys(("low", "high", "middle", "unit"), ("<f8", 1))
 _KINDS |= dict.fromkeys(("known", "reached", "forward.numbers", "inverse.numbers"), ("<f4", 2))
 _KINDS |= dict.fromkeys(("forward.sizes", "inverse.sizes"), ("<i8", 1))
 """Type and number of axes of each array; networks are learned in float32."""

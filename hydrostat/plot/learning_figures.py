@@ -82,7 +82,7 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
     """
     height = 3.4
     figure = new_figure(width, height)
-    lower, tall = 0.8 / height, (height - 0.95) / height
+    handles, names, lower, tall = [], [], 0.8 / height, (height - 0.95) / height
     for number, (words, curves) in enumerate(panes.items()):
         axes = figure.add_axes((0.09 + 0.5 * number, lower, 0.39, tall))
         plain_axes(axes)

@@ -75,9 +75,8 @@ class HandMap:
         try:
             if table["format"] != FORMAT:
                 raise ValueError(f"its format is {table['format']!r}, not {FORMAT!r}")
-            ridge = Ridge(
-                *(np.array(table[key], float) for key in ("centre", "level_m", "weights_m")), table["penalty"]
-            )
+            centre, level, weights = (np.array(table[key], float) for key in ("centre", "level_m", "weights_m"))
+            ridge = Ridge(centre, level, weights, table["penalty"])
             sensors, outputs = tuple(map(str, table["sensors"])), tuple(map(str, table["outputs"]))
             shapes = ridge.centre.shape, ridge.level.shape, ridge.weights.shape
             if shapes != ((len(sensors),), (len(outputs),), (len(sensors), len(outputs))):

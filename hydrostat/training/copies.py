@@ -45,7 +45,7 @@ class Copies:
         if over:
             told["terminal_observation"] = seen
             seen, _ = env.reset()
-        return seen, reward, over, told
+        return seen, float(reward), over, told
 
     @staticmethod
     def _kept(env: GoalEnv) -> dict[str, Any]:

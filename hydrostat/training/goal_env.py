@@ -64,7 +64,6 @@ class GoalEnv(gymnasium.Env, ABC):
     Attributes:
         cost: what `equilibria` counts, in a word or two.
         measure: the word for what distances are told in, and how many of it are in their unit.
-        portable: whether a policy needs to see nothing but the goal.
         robot: that does it.
         unit: of what observations count in: a size of the body [m], half a turn [rad].
         steps: actions in an episode (T).
@@ -77,7 +76,6 @@ class GoalEnv(gymnasium.Env, ABC):
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["human", "rgb_array"], "render_fps": 4}  # type: ignore[misc]
     cost: ClassVar[str] = "equilibria"
     measure: ClassVar[tuple[str, float]] = ("mm", 1e3)
-    portable: bool = False
     robot: Robot
     unit: float
     steps: int
@@ -96,6 +94,11 @@ class GoalEnv(gymnasium.Env, ABC):
     @abstractmethod
     def equilibria(self) -> int:
         """How many solves of the exact simulator have been asked for, those that judged included (see `cost`)."""
+
+    @property
+    def portable(self) -> bool:
+        """Whether a policy needs to see nothing but the goal."""
+        return False
 
     @abstractmethod
     def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:

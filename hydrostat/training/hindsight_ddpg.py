@@ -334,7 +334,7 @@ class HindsightDdpg:
         """Targets go a little towards the networks."""
         with torch.no_grad():
             for slow, fast in zip(self._followers, (self.policy.numbers, self._critic), strict=True):
-                torch._foreach_lerp_(slow, fast, 1.0 - self.options.polyak)
+                torch._foreach_lerp_(slow, fast, 1.0 - self.options.polyak)  # pyright: ignore[reportPrivateImportUsage]
 
     def _keep_best(self, distance: np.ndarray) -> None:
         """Actors of seeds that are better than they were."""

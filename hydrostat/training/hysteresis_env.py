@@ -28,8 +28,6 @@ class HysteresisEnv(ReachEnv):
         given: the robot as robot.toml has it. Networks of it may be learned in: then the model is wrong.
     """
 
-    portable = False
-
     def __init__(
         self,
         robot: Robot | str,
@@ -58,6 +56,11 @@ class HysteresisEnv(ReachEnv):
         super().__init__(
             rubs, world=world or ExactWorld(rubs, from_rest=False), options=options, render_mode=render_mode
         )
+
+    @property
+    def portable(self) -> bool:
+        """Never: the same contractions lead elsewhere from another pose."""
+        return False
 
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:

@@ -182,7 +182,7 @@ class ReachEnv(GoalEnv):
         return cls(robot, options=reach_options(given), contact=given.contact)
 
     @property
-    def portable(self) -> bool:  # type: ignore[override]
+    def portable(self) -> bool:
         """Whether a policy sees nothing but the goal: one action, all markers, each winch alone."""
         options, names = self.options, [marker.name for marker in self.robot.markers]
         moved_alone = not (options.incremental or options.pairs)

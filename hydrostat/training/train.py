@@ -106,7 +106,7 @@ def judge(env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goals: S
     """Distance at the end of an episode for each goal, in the unit of the task; equilibria are counted nowhere."""
     before, left = env.equilibria, []
     for goal in goals:
-        observation, info = env.reset(options=goal)
+        observation, info = env.reset(options=dict(goal))
         over = False
         while not over:
             observation, _, _, over, info = env.step(act(observation))

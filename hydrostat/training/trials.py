@@ -192,7 +192,7 @@ def robotics_task(name: str, horizon: int) -> Any:
     """
     try:
         import gymnasium
-        import gymnasium_robotics
+        import gymnasium_robotics  # pyright: ignore[reportMissingImports]
     except ModuleNotFoundError as error:
         raise HydrostatError(f"{name} needs {error.name}; install it: {_ROBOTICS}") from None
     gymnasium.register_envs(gymnasium_robotics)

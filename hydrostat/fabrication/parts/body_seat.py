@@ -119,7 +119,7 @@ class _SeatPlan:
 
     def _cup(self, options: PartOptions) -> Construction:
         """Flange and cup, with room for the cables and holes for the thread that holds the body; its floor at z = 0."""
-        around = Polygon(self.cavity.buffer(_WALL).simplify(0.1).exterior)
+        around = Polygon(self.cavity.buffer(_WALL).simplify(0.1).exterior)  # type: ignore[attr-defined]
         made = Prism(_ring(self.flange), _FLOOR) + Prism(_ring(around), _FLOOR + self.depth)
         made = made - Prism(_ring(self.cavity), self.depth + 1).moved(z=_FLOOR)
         for spot, turn in self._ties():
@@ -248,6 +248,7 @@ def _outline(body: Manifold, top: float, options: PartOptions) -> Polygon | None
 def _flange(cavity: Polygon, lines: Sequence[Line], options: PartOptions) -> Polygon:
     """A rectangle round the cup whose corners, with the posts there, leave room for all cables."""
     ways = [LineString(line[:, :2]).buffer(options.tube / 2 + 1.0) for line in lines]
+    flange = cavity
     for more in range(0, 60, 2):
         flange = box(*cavity.buffer(_WALL + _MARGIN + more, join_style="mitre").bounds)
         posts = _corners(flange.buffer(-_INSET, join_style="mitre"))

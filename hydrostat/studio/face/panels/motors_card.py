@@ -42,7 +42,7 @@ def motors_card(page: WindowPage) -> None:
                 "emulated, dynamixel:PORT, feetech:PORT or firmware:PORT; @BAUD after it sets another rate, "
                 "a comma parts the ports of several boards"
             )
-            connect = ui.button("Connect", on_click=lambda: page.act_slowly(hardware.connect, port.value.strip()))
+            connect = ui.button("Connect", on_click=lambda: page.act_slowly(hardware.connect, str(port.value).strip()))
             connect.props("flat dense no-caps").mark("motors-connect")
         with ui.element("div").classes("studio-row").style("gap: 8px") as after:
             arm = ui.button("Arm", icon="power", on_click=page.doing_slowly(hardware.arm))
