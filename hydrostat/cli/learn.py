@@ -39,9 +39,11 @@ def learn(
     Example: hydrostat learn build/samples --out build/starfish.model
     """
     from hydrostat.learning import LearnOptions, correct_model, learn_model, load_model, read_samples, save_model
+    from hydrostat.robot.unfinished import clear_unfinished
 
     if out.is_dir() or not out.parent.is_dir():
         raise InputError(f"--out {out}: {'is a folder' if out.is_dir() else 'its folder is not there'}; name a file")
+    clear_unfinished(out.parent)
     chosen = {"members": members, "steps": steps}
     options = LearnOptions(seed=seed, threads=threads, **{name: n for name, n in chosen.items() if n is not None})
     samples = read_samples(data)

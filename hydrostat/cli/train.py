@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from hydrostat.cli.folders import RobotFolder
+from hydrostat.cli.folders import RobotFolder, require_folder
 from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
@@ -93,6 +93,7 @@ def train(
     from hydrostat.simulation import write_profile
     from hydrostat.units import LENGTH, parse_quantity
 
+    require_folder(out)
     methods = [str(each) for each in training.TrainMethod]
     if method not in methods:
         raise InputError(f"--method {method}: there are: {', '.join(methods)}")

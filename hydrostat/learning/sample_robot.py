@@ -1,9 +1,11 @@
 """`sample_robot`: poses of a robot for learning, by one process, many, or many machines."""
 
 import os
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import cast
+from threading import Thread
+from typing import Any, cast
 
 import numpy as np
 
@@ -87,7 +89,8 @@ def _by_joblib(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampl
     from joblib import Parallel, delayed, parallel_config
 
     with parallel_config(backend="loky", n_jobs=jobs, inner_max_num_threads=1):
-        work = Parallel(return_as="generator_unordered", batch_size=1)  # pyright: ignore[reportArgumentType]
+        options: dict[str, Any] = {"batch_size": 1, "initializer": end_with, "initargs": (os.getpid(),)}
+        work = Parallel(return_as="generator_unordered", **options)
         yield from cast(Iterator[Sampled], work(delayed(_numbered)(plan, shard) for shard in shards))
 
 
@@ -121,6 +124,18 @@ def _by_ray(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampled]
 
 def _numbered(plan: SamplePlan, shard: int) -> Sampled:
     return shard, sample_shard(plan, shard)
+
+
+def end_with(parent: int) -> None:
+    """End this process soon after its parent was killed: workers of joblib would wait for more work for ever."""
+    if os.name == "posix":  # elsewhere the number of a parent stays when it has gone
+        Thread(target=_watch, args=(parent,), name="end with the parent", daemon=True).start()
+
+
+def _watch(parent: int) -> None:
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    os._exit(1)
 
 
 _BY = {"loky": _by_joblib, "ray": _by_ray}

@@ -282,25 +282,39 @@ def _curve(options: TrainOptions, out: Path) -> list[CurvePoint]:
     """The curve until a checkpoint (InputError: there is none, or one that was made in another way)."""
     if not (out / "curve.json").exists():
         raise InputError(f"{out}: there is no checkpoint to go on from; begin anew, without --resume")
-    kept = json.loads((out / "curve.json").read_text())
+    with _read_whole(out / "curve.json"):
+        kept = json.loads((out / "curve.json").read_text())
+        curve = [CurvePoint(**each) for each in kept["curve"]]
+        made = dict(kept["options"])
     for name, value in json.loads(json.dumps(asdict(options))).items():
-        was = kept["options"].get(name)
+        was = made.get(name)
         if was != value and name not in ("steps", "every"):
             raise InputError(f"{out}: this was begun with {name} = {was}, not {value}; go on with the same")
-    return [CurvePoint(**each) for each in kept["curve"]]
+    return curve
+
+
+@contextmanager
+def _read_whole(path: Path) -> Iterator[None]:
+    """Tell that what is read within is damaged, whatever the loaders of others say of it (InputError: it is)."""
+    try:
+        yield
+    except Exception:  # noqa: BLE001 pickles and archives that were cut short raise what they like
+        raise InputError(f"{path}: is missing or damaged; begin anew, without --resume") from None
 
 
 def _resumed(copies: Any, options: TrainOptions, folder: Path) -> Any:
-    """The model of a checkpoint of one's own, with everything as it was then."""
+    """The model of a checkpoint of one's own, with everything as it was then (InputError: it is damaged)."""
     import torch
     from stable_baselines3.common.vec_env import VecMonitor
 
     torch.set_num_threads(1)
-    model = _algorithm(options.method).load(folder / "model.zip", env=VecMonitor(copies), device="cpu")
-    model.load_replay_buffer(folder / "experience.pkl", truncate_last_traj=False)
-    state = pickle.loads((folder / "state.pkl").read_bytes())
-    np.random.set_state(state["numpy"])  # noqa: NPY002
-    torch.set_rng_state(state["torch"])
-    model.action_space.np_random.bit_generator.state = state["actions"]
+    made = _algorithm(options.method)
+    with _read_whole(folder):
+        model = made.load(folder / "model.zip", env=VecMonitor(copies), device="cpu")
+        model.load_replay_buffer(folder / "experience.pkl", truncate_last_traj=False)
+        state = pickle.loads((folder / "state.pkl").read_bytes())
+        np.random.set_state(state["numpy"])  # noqa: NPY002
+        torch.set_rng_state(state["torch"])
+        model.action_space.np_random.bit_generator.state = state["actions"]
     copies.go_on(state["copies"])
     return model

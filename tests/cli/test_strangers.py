@@ -251,6 +251,21 @@ def test_what_killed_runs_left_is_cleared_by_the_next(tmp_path: Path) -> None:
     clear_unfinished(tmp_path / "nowhere")
 
 
+@pytest.mark.parametrize("command", ["learn nothing --out here/m.model", "train robot --method guess --out here"])
+def test_what_killed_learning_left_is_cleared_too(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    """Also by a command that is then refused."""
+    pytest.importorskip("gymnasium", reason="gymnasium is not installed")
+    monkeypatch.chdir(tmp_path)
+    own = unfinished(tmp_path / "here" / "m.model")
+    own.parent.mkdir()
+    left = own.with_name(own.name.replace(f"-{os.getpid()}-", f"-{dead_process()}-"))
+    left.write_text("half")
+    assert run(*command.split())[0] == 2
+    assert not left.exists()
+
+
 def test_two_writers_of_one_folder(tmp_path: Path) -> None:
     """Each is whole, and the later stays; neither stumbles over what the other has under way."""
     out = tmp_path / "out"

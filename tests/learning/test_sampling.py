@@ -7,6 +7,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -179,6 +180,43 @@ def test_a_killed_run_leaves_whole_files_and_goes_on(plan: SamplePlan, once: Pat
     assert len(list(out.glob("samples-*.npy"))) == 2
     sample_robot(plan, out)
     assert contents(out) == contents(once)
+
+
+@pytest.mark.slow  # processes begin
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="children are found in /proc")
+def test_a_killed_run_leaves_no_workers_behind(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
+    program = (
+        "import glob, os, signal, sys, pickle\n"
+        "from pathlib import Path\n"
+        "from hydrostat.learning import sample_robot\n"
+        "def kill(stage, done, total):\n"
+        "    for file in glob.glob('/proc/self/task/*/children'):\n"
+        "        print(open(file).read(), end=' ')\n"
+        "    sys.stdout.flush()\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+        "plan = pickle.load(open(sys.argv[1], 'rb'))\n"
+        "sample_robot(plan, Path(sys.argv[2]), jobs=2, tell=kill)\n"
+    )
+    (tmp_path / "plan").write_bytes(pickle.dumps(plan))
+    with (tmp_path / "told").open("wb") as told:
+        command = [sys.executable, "-c", program, tmp_path / "plan", tmp_path / "out"]
+        assert subprocess.run(command, check=False, stdout=told).returncode == -signal.SIGKILL
+    workers = [Path("/proc") / number / "stat" for number in (tmp_path / "told").read_text().split()]
+    assert len(workers) >= 2
+    end = time.monotonic() + 60
+    while any(map(_works, workers)):
+        assert time.monotonic() < end
+        time.sleep(0.2)
+    sample_robot(plan, tmp_path / "out")
+    assert contents(tmp_path / "out") == contents(once)
+
+
+def _works(stat: Path) -> bool:
+    """Whether a process is there, and no corpse that nobody has buried."""
+    try:
+        return stat.read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
 
 
 def test_a_folder_grows_to_a_larger_count_and_to_no_smaller_one(plan: SamplePlan, once: Path, tmp_path: Path) -> None:

@@ -1,6 +1,8 @@
 """Environments in which robots reach. Oracles: the simulator, sums by hand, the checkers of those who use them."""
 
+import json
 from copy import deepcopy
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,7 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed"
 
 from hydrostat.arrays import Vector  # noqa: E402
 from hydrostat.training import (  # noqa: E402
+    CurvePoint,
     ExactWorld,
     MixedWorld,
     ReachEnv,
@@ -261,6 +264,16 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
     (tmp_path / "curve.json").write_text('{"options": {"method": "ddpg-her"}, "curve": []}')
     with pytest.raises(InputError, match="begun with method = ddpg-her, not sac-her"):
+        train(straight(), goals, TrainOptions(), tmp_path, resume=True)
+    (tmp_path / "curve.json").write_text("{")
+    with pytest.raises(InputError, match=r"curve.json: is missing or damaged; begin anew, without --resume"):
+        train(straight(), goals, TrainOptions(), tmp_path, resume=True)
+    point = CurvePoint(steps=4, equilibria=8, mean=0.0, median=0.0, worst=0.0, success=0.0)
+    whole = json.dumps({"options": asdict(TrainOptions()), "curve": [asdict(point)]})
+    (tmp_path / "curve.json").write_text(whole)
+    (tmp_path / "checkpoint-4").mkdir()
+    (tmp_path / "checkpoint-4" / "model.zip").write_bytes(b"PK half of it")
+    with pytest.raises(InputError, match=r"checkpoint-4: is missing or damaged; begin anew"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
 
 
