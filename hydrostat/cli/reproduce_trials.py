@@ -197,7 +197,7 @@ def _line(judged: "Judged", width: float) -> str:
         spanned(seeds, 2),
     ]
     lost = int(np.isnan(exact).sum())
-    text = f"{judged.name:18}{int(ran.epochs.actions[-1]):8}" + "".join(f"{number:>19}" for number in numbers)
+    text = f"{judged.name:18}{int(ran.epochs.actions[-1]):8}" + "".join(f"{number:>21}" for number in numbers)
     return f"{text}{100 * seeds.mean / width:8.2f}{lost:6}"
 
 
@@ -225,6 +225,6 @@ _LARGE = 100
 """Layers of so many units are large."""
 
 _WORDS = (
-    f"{'way':18}{'actions':>8}{'success at the end':>19}{'tolerance [mm]':>19}{'1st action [mm]':>19}"
-    f"{'last action [mm]':>19}{'simulator [mm]':>19}{'% size':>8}{'lost':>6}"
+    f"{'way':18}{'actions':>8}{'success at the end':>21}{'tolerance [mm]':>21}{'1st action [mm]':>21}"
+    f"{'last action [mm]':>21}{'simulator [mm]':>21}{'% size':>8}{'lost':>6}"
 )
