@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import OwnRobotFolder, folder_of
+from hydrostat.cli.folders import OwnRobotFolder, folder_of, require_writable
 from hydrostat.cli.waiting import one_interrupt, patiently, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import counted
@@ -52,6 +52,7 @@ def calibrate(
 
     control.check_port(port)
     folder = folder_of(robot)
+    require_writable(folder, str(robot))  # before anything turns
     loaded = read_robot(robot)
     if not loaded.winches:
         raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")

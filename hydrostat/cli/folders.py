@@ -50,7 +50,7 @@ def require_folder(out: Path) -> None:
     """Before long work begins: the results can go there, and what killed runs left unfinished there is cleared.
 
     Raises:
-        InputError: something that is no folder is in the way.
+        InputError: something that is no folder is in the way, or nothing can be written there.
     """
     from hydrostat.robot.unfinished import clear_unfinished
 
@@ -59,6 +59,16 @@ def require_folder(out: Path) -> None:
     for folder in (out, *out.parents):
         if folder.exists() and not folder.is_dir():
             raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file; name a folder")
+    require_writable(out, f"--out {out}")
+
+
+def require_writable(folder: Path, what: str) -> None:
+    """Before long work begins: this process may write into a folder, or make it (InputError: it may not)."""
+    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(
+            f"{what}: nothing can be written into {there.absolute()}; name another folder, or mind its rights"
+        )
 
 
 @contextmanager

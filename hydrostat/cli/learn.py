@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from hydrostat.cli.folders import require_writable
 from hydrostat.cli.sample import told
 from hydrostat.cli.waiting import one_interrupt
 from hydrostat.errors import InputError
@@ -43,6 +44,7 @@ def learn(
 
     if out.is_dir() or not out.parent.is_dir():
         raise InputError(f"--out {out}: {'is a folder' if out.is_dir() else 'its folder is not there'}; name a file")
+    require_writable(out.parent, f"--out {out}")
     clear_unfinished(out.parent)
     chosen = {"members": members, "steps": steps}
     options = LearnOptions(seed=seed, threads=threads, **{name: n for name, n in chosen.items() if n is not None})

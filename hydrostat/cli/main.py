@@ -1,6 +1,7 @@
 """The `hydrostat` command."""
 
 import gc
+import logging
 import os
 import sys
 from collections.abc import Callable
@@ -104,6 +105,7 @@ def main() -> None:
     """Run a command. Exit codes: 0 done, 1 ran and did not succeed, 2 the input is wrong, 130 stopped by Ctrl-C."""
     heed_interrupts()
     gc.set_threshold(50_000, *gc.get_threshold()[1:])  # looking for garbage is a tenth of a short command
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as that a home cannot be written to
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
     try:
         _run()

@@ -13,6 +13,7 @@ import tracemalloc
 import warnings
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 import strangers
@@ -264,6 +265,34 @@ def test_what_killed_learning_left_is_cleared_too(
     left.write_text("half")
     assert run(*command.split())[0] == 2
     assert not left.exists()
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "design gallery:starfish --winches 1 --cables 1 --out out",
+        "learn data --out m.model",
+        "fabricate gallery:starfish --out out/kit",
+        "calibrate robot --port emulated",
+    ],
+)
+def test_where_nothing_can_be_written_is_told_before_the_work(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    """After the work it was told, by design with a hidden name, by calibrate after motors had turned."""
+    (tmp_path / "robot").mkdir()
+    monkeypatch.chdir(tmp_path)
+    may = os.access
+
+    def access(path: Path | str, mode: int, **more: Any) -> bool:
+        here = Path(path).absolute().is_relative_to(tmp_path)
+        return not (here and mode & os.W_OK) and may(path, mode, **more)
+
+    monkeypatch.setattr(os, "access", access)
+    place = tmp_path / "robot" if "robot" in command else tmp_path
+    code, out, err = run(*command.split())
+    assert (code, out) == (2, "")
+    assert f"nothing can be written into {place}; name another folder, or mind its rights\n" in err
 
 
 def test_two_writers_of_one_folder(tmp_path: Path) -> None:
