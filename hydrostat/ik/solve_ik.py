@@ -93,10 +93,10 @@ def solve_ik(
     seek, aside = descend, None
     if problem.options.unique and problem.redundant(begun):
         seek = least_effort
-        if start is not None and given.rate is None:
-            begun, aside = search.begin(None), begun
+        if given.rate is None and (start is not None or problem.options.restarts):
+            begun, aside = begun if start is None else search.begin(None), begun
     found = _best(search, seek(search, begun), seek)
-    if aside is not None and found.reason not in _ENDS:  # no answer is worse than where it was to begin
+    if aside is not None and found.reason not in _ENDS:  # none is worse than where it began, or than a plain descent
         found = _better(search, found, descend(search, aside), share=_PLAINLY)
     search, found = others_stayed(search, found, target, start)
     reached = reached_pose(search, found, target)
