@@ -5,6 +5,7 @@ import os
 import signal
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -113,14 +114,17 @@ class PoseProcess:
         self._process.start()
         theirs.close()
         self._hear, self._error, self._over = hear, "", False
+        self._newest, self._given = deque[Any](maxlen=1), threading.Event()
         try:
             wrong = self._pipe.recv()
         except EOFError:
             wrong = 'its process has ended; a script that drives begins with if __name__ == "__main__":'
         if wrong:
             raise HydrostatError(f"no pose can be found: {wrong}")
-        self._thread = threading.Thread(target=self._listen, name="poses on the way", daemon=True)
-        self._thread.start()
+        targets = self._listen, self._tell
+        self._threads = [threading.Thread(target=each, name="poses on the way", daemon=True) for each in targets]
+        for thread in self._threads:
+            thread.start()
 
     def check(self) -> None:
         """Raise what went wrong there."""
@@ -128,26 +132,34 @@ class PoseProcess:
             raise HydrostatError(f"no pose is found any more: {self._error}")
 
     def give(self, job: Any) -> None:
-        """Work on this, and on no older one."""
+        """Work on this, and on no older one; it waits for nothing, however long a pose takes there."""
         self.check()
-        if self._over:
-            return
-        try:
-            self._pipe.send(job)
-        except OSError:
-            self._error = self._error or "its process has ended"
-            self.check()
+        if not self._over:
+            self._newest.append(job)
+            self._given.set()
 
     def close(self) -> None:
         """End it. It may be called twice."""
         if not self._over:
             self._over = True
-            with suppress(OSError):
-                self._pipe.send(None)
+            self._newest.append(None)
+            self._given.set()
             self._process.join(2.0)
             self._process.kill()
-            self._thread.join(2.0)
+            for thread in self._threads:
+                thread.join(2.0)
             self._pipe.close()
+
+    def _tell(self) -> None:
+        """Send the newest job: this may wait until a pose is done there."""
+        with suppress(OSError):  # told by who listens
+            while True:
+                self._given.wait()
+                self._given.clear()
+                while self._newest:
+                    self._pipe.send(job := self._newest.popleft())
+                    if job is None:
+                        return
 
     def _listen(self) -> None:
         try:

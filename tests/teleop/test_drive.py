@@ -14,7 +14,7 @@ import hydrostat as hs
 from hydrostat.control import KnownPulls, Motors, SimulatedLink
 from hydrostat.errors import HydrostatError
 from hydrostat.teleop import DriveLoop, DriveSource, DriveWish, FingertipWay, WinchWay, drive
-from hydrostat.teleop.pose_process import FingertipPoses, PoseProcess
+from hydrostat.teleop.pose_process import FingertipPoses, PoseOnWay, PoseProcess, WinchPoses
 
 
 class Script(DriveSource):
@@ -185,6 +185,26 @@ def test_a_new_target_does_not_wait_for_the_pose_that_is_solved(simulation: hs.S
     way.close()
     assert left(answer) < 0.3 * left(motors.places)
     assert np.abs(answer).max() <= 0.06 * 0.1 + 1e-9
+
+
+def test_who_gives_jobs_never_waits(simulation: hs.Simulation) -> None:
+    """Oracle: a process that stands still takes far more jobs than its pipe holds; of these the newest is answered."""
+    heard, one = [], threading.Event()
+
+    def hear(found: PoseOnWay) -> None:
+        heard.append(found.contractions)
+        one.set()
+
+    process = PoseProcess(WinchPoses, (simulation.robot,), hear)
+    os.kill(process._process.pid, signal.SIGSTOP)
+    for number in range(5000):
+        process.give(np.full(len(simulation.robot.winches), 1e-6 * number))
+    os.kill(process._process.pid, signal.SIGCONT)
+    while not heard or heard[-1][0] < 4.999e-3 - 1e-9:
+        assert one.wait(30.0)
+        one.clear()
+    process.close()
+    assert len(heard) < 100
 
 
 def test_what_fails_behind_is_told(simulation: hs.Simulation) -> None:

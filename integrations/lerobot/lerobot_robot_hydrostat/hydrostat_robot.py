@@ -16,8 +16,8 @@ from hydrostat.robot import load_robot
 from hydrostat.simulation import Simulation
 from hydrostat.teleop import WinchWay
 
-PATIENCE = 0.5
-"""Motors stand when no action was sent for so long [s]; the next one goes on."""
+PATIENCE = 0.2
+"""Motors stand when no action was sent for so long [s], as a link that is told nothing; the next action goes on."""
 
 
 @RobotConfig.register_subclass("hydrostat")
