@@ -7,7 +7,8 @@ Glove and servos are a program of their own, at the other end of two pseudo-term
 a step, so that a new pose is asked for all the time. At moments of its choice the hand takes another pose. The delay is
 from then until a goal in a servo has gone by more than 0.5 mm of cable from where it was. Ways: a ridge map from
 sensors to contractions; one to fingertips, which `Tracker` follows; the same with a learned model, whose networks
-answer first. No glove and no motor of metal is here.
+answer first. Poses are solved as `hydrostat drive` has it, by a process that is nicer than the others. The link has its
+deadline; it has no guard by tensions, as these servos bear no load. No glove and no motor of metal is here.
 
 On a computer that others use a core may stand still for tens of milliseconds whatever runs there. A process on each
 core that only sleeps tells when: moves in which a core stood still for more than 5 ms are told apart.
@@ -217,6 +218,7 @@ def measure(robot: Robot, way: Way, known: HandMap, given: argparse.Namespace) -
     link = BusLink(bus, robot.winches, calibration)
     again(link.identify)
     again(link.arm)
+    link.watch()
     smoothing = Smoothing(least=given.smoothing) if given.smoothing else None
     source = MappedHand(way.channels, CyberGlove(open_line(glove, BAUD)), known, smoothing=smoothing)
     found: list[Told] = []
@@ -279,8 +281,6 @@ def main() -> None:
             way: Way = WinchWay(simulation, rest)
         else:
             way = FingertipWay(simulation, rest, model=model, rate=0.06)
-        with suppress(AttributeError, OSError):
-            os.setpriority(os.PRIO_PROCESS, way._poses._process.pid, -20 if given.first else -15)
         hearts = heartbeat.Hearts(first=given.first)
         told = measure(robot, way, known, given)
         stood = hearts.stop()

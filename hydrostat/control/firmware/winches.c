@@ -1,4 +1,4 @@
-/* Winches of a soft robot on an Arduino Uno or Mega. How it talks: docs/firmware.md.
+/* Winches of a soft robot on an Arduino Uno or Mega. How it talks: docs/decisions/0037-firmware.md.
 
    Time is counted in ticks of 4 ms, places in counts of an encoder, or in microseconds of a servo's pulse.
    Four things stop a motor here: silence for DEADLINE_MS, too much current, no motion under full power, and the
