@@ -7,6 +7,7 @@ from importlib.metadata import version
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.learning.known_contact import told_contact
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel
 from hydrostat.learning.lesson import lesson_of
@@ -67,7 +68,7 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
 
 def kept_facts(samples: Samples) -> dict[str, object]:
     """What a model tells of the robot that it was learned of."""
-    return {name: samples.facts[name] for name in _KEPT}
+    return {**{name: samples.facts[name] for name in _KEPT}, **told_contact(samples.facts)}
 
 
 def silent(stage: str, done: int, total: int) -> None:
@@ -83,5 +84,5 @@ def _moved(markers: np.ndarray) -> np.ndarray:
 KNOWN = 2000
 """So many samples a model keeps, to begin a search from."""
 
-_KEPT = ("robot", "physics", "contact", "draws", "winches", "markers", "cables", "dim", "node_count", "size")
-"""Facts of the samples that a model tells."""
+_KEPT = ("robot", "physics", "draws", "winches", "markers", "cables", "dim", "node_count", "size")
+"""Facts of the samples that a model tells, beside their contact."""

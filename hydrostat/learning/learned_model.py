@@ -11,6 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik import Targets
 from hydrostat.ik.objectives.marker_goal import named_targets
+from hydrostat.learning.known_contact import check_contact, told_contact
 from hydrostat.learning.learned_pose import LearnedPose, Tier
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.learning.sample_plan import physics_hash
@@ -55,16 +56,14 @@ class LearnedModel:
         """Check that this was learned of a robot.
 
         Raises:
-            InputError: it was learned of another, or the one feels contact and the other does not.
+            InputError: it was learned of another, or with another contact.
         """
         if self.facts["physics"] != physics_hash(robot):
             raise InputError(
                 f"the model was learned of another robot than {robot.name!r} ({self.facts['robot']!r}, or what it was "
                 f"before it was changed): sample and learn again"
             )
-        if self.facts["contact"] != (robot.contact is not None):
-            have, lack = ("the model", "the robot") if self.facts["contact"] else ("the robot", "the model")
-            raise InputError(f"{have} knows contact and {lack} does not: give both or none [contact]")
+        check_contact(told_contact(self.facts), robot)
 
     def expect(self, contractions: Vector) -> tuple[Vector, Vector]:
         """What is expected at contractions [m]: coordinates of the markers [m], then tensions [N]; and their spread."""

@@ -38,6 +38,9 @@ def _check_facts(facts: Mapping[str, Any]) -> None:
             raise ValueError(f"its {name} are no names")
     if facts["dim"] not in {2, 3} or not all(isfinite(facts[one]) and facts[one] >= 0 for one in ("error", "size")):
         raise ValueError("its numbers are out of their ranges")
+    told = [facts.get(one) for one in ("contact_distance", "contact_friction")]
+    if not all(one is None or isfinite(one) for one in told):
+        raise ValueError("its contact has no numbers")
 
 
 def _model(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> LearnedModel:

@@ -11,6 +11,7 @@ from scipy.stats.qmc import Sobol
 
 from hydrostat.errors import InputError
 from hydrostat.learning.draw import Draw, Rows, antagonists, contractions, dimensions
+from hydrostat.learning.known_contact import contact_facts
 from hydrostat.robot import Contact, Robot, robot_hash
 from hydrostat.simulation import Simulation
 
@@ -96,8 +97,7 @@ class SamplePlan:
         return {
             "robot": robot.name,
             "physics": physics_hash(robot),
-            "contact": robot.contact is not None,
-            "contact_distance": None if robot.contact is None else robot.contact_distance,
+            **contact_facts(robot),
             "count": self.count,
             "seed": self.seed,
             "draws": [str(draw) for draw in self.draws],

@@ -34,6 +34,7 @@ from hydrostat.learning import (
 )
 from hydrostat.learning.certify import exact_steps
 from hydrostat.learning.compare import WAYS, targets_of
+from hydrostat.learning.learn_model import kept_facts
 from hydrostat.learning.lesson import linear_map
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.mechanics import Reason
@@ -276,6 +277,45 @@ def test_a_file_gives_the_model_back(robot: Robot, tmp_path: Path) -> None:
     target = {"tip": (0.1, 0.02)}
     assert again.solve(target).commands == model.solve(target).commands
     assert again.solve(target, search=False).errors == model.solve(target, search=False).errors
+
+
+def test_a_model_of_another_contact_is_refused(robot: Robot, tmp_path: Path) -> None:
+    """The two contacts differ in a number alone; the hash of physics knows neither."""
+    felt = replace(robot, contact=hs.Contact())
+    model = load_model(save_model(plain(felt), tmp_path / "strip.model"))
+    model.check(felt)
+    usual = 1e3 * felt.contact_distance
+    for contact, words in (
+        (hs.Contact(distance=0.01), "contact from 10 mm with friction 0"),
+        (hs.Contact(friction=2.0), f"contact from {usual:.4g} mm with friction 2"),
+    ):
+        other = replace(robot, contact=contact)
+        with pytest.raises(
+            InputError, match=f"knows contact from {usual:.4g} mm with friction 0, the robot has {words}"
+        ):
+            model.check(other)
+        plain(other).check(other)
+    with pytest.raises(InputError, match="the model knows contact and the robot does not"):
+        model.check(robot)
+    bare = {name: fact for name, fact in model.facts.items() if name not in ("contact_distance", "contact_friction")}
+    earlier = replace(model, facts=bare)
+    earlier.check(felt)
+    with pytest.raises(InputError, match="the robot has contact from 10 mm"):
+        earlier.check(replace(robot, contact=hs.Contact(distance=0.01)))
+    for wrong in ("far", float("inf"), []):
+        file = save_model(replace(model, facts=bare | {"contact_distance": wrong}), tmp_path / "wrong.model")
+        with pytest.raises(InputError, match=r"wrong\.model"):
+            load_model(file)
+
+
+def test_samples_and_models_tell_their_contact(robot: Robot, tmp_path: Path) -> None:
+    felt = replace(robot, contact=hs.Contact(distance=0.002))
+    samples = read_samples(sample_robot(plan_samples(felt, 1), tmp_path).path)
+    told = {name: kept_facts(samples)[name] for name in ("contact", "contact_distance", "contact_friction")}
+    assert told == {"contact": True, "contact_distance": 0.002, "contact_friction": 0.0}
+    other = replace(robot, contact=hs.Contact(distance=0.002, friction=2.0))
+    with pytest.raises(InputError, match=r"contact_friction is 0\.0, asked for 2\.0"):
+        sample_robot(plan_samples(other, 1), tmp_path)
 
 
 def test_no_changed_file_is_believed(robot: Robot, tmp_path: Path) -> None:

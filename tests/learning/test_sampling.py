@@ -90,6 +90,16 @@ def test_samples_of_an_earlier_version_are_read_but_not_gone_on_with(plan: Sampl
         sample_robot(replace(plan, count=5), old)
 
 
+def test_samples_that_do_not_tell_their_friction_had_none(tmp_path: Path) -> None:
+    """As an earlier version wrote them, which told no friction."""
+    robot = replace(strip_robot(columns=8, rows=2), contact=hs.Contact())
+    folder = sample_robot(plan_samples(robot, 2, shard=2), tmp_path).path
+    manifest = json.loads((folder / "samples.json").read_text())
+    del manifest["contact_friction"]
+    (folder / "samples.json").write_text(json.dumps(manifest))
+    assert len(read_samples(sample_robot(plan_samples(robot, 3, shard=2), folder).path)) == 3
+
+
 def test_bytes_do_not_depend_on_who_works(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
     for part in range(3):
         sample_robot(plan, tmp_path / "parts", part=(2 - part, 3))
