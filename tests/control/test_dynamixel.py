@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hydrostat.control import Ails, DynamixelBus, EmulatedChain, EmulatedServo
-from hydrostat.control.dynamixel_bus import TORQUE, WATCH, WATCHDOG
-from hydrostat.control.dynamixel_packets import PING, READ, STATUS, Packet, PacketReader, crc, pack
+from hydrostat.control.dynamixel_bus import STATE_BYTES, TORQUE, WATCH, WATCHDOG
+from hydrostat.control.dynamixel_packets import HEADER, PING, READ, STATUS, Packet, PacketReader, crc, pack
 from hydrostat.errors import HydrostatError
 
 sdk = pytest.importorskip("dynamixel_sdk", reason="dynamixel-sdk is not installed")
@@ -177,3 +177,76 @@ def test_watchdogs_are_proved_on_a_slow_line() -> None:
 
     chain.towards = chain.back = slowly
     assert [fact.watchdog for fact in bus.identify()] == [number != 3 for number in range(1, 9)]
+
+
+def dead_after(packets: int) -> tuple[bool, float, float]:
+    """Whether a host lives to the end of identify; how long motors turn after its end [s]; how far they were [rad]."""
+    servos = [EmulatedServo(1, angle=1.0, ails=Ails(deaf_watchdog=True)), EmulatedServo(2, angle=1.0)]
+    chain, died, left, farthest, moved = EmulatedChain(servos), False, packets, 1.0, 0.0
+
+    def towards(data: bytes) -> bytes:
+        nonlocal left
+        left -= 1
+        if left < 0:
+            raise KeyboardInterrupt
+        return data
+
+    def look() -> None:
+        nonlocal farthest, moved
+        farthest = max(farthest, *(servo.angle for servo in servos))
+        moved = chain.now if any(servo.speed for servo in servos) else moved
+
+    chain.towards, chain.watch = towards, look
+    try:
+        DynamixelBus(chain, [1, 2], clock=chain.clock, wait=chain.wait).identify()
+    except KeyboardInterrupt:
+        died = True
+    end = chain.now
+    chain.wait(0.6)
+    return not died, moved - end, farthest - 1.0
+
+
+def test_a_host_that_dies_while_it_tries_watchdogs_leaves_motors_standing() -> None:
+    """After any of its packets: all stand 250 ms later, a cable on 8 mm moved by less than 1 mm."""
+    lives, packets, farthest = False, 0, 0.0
+    while not lives:
+        lives, turned, farthest = dead_after(packets)
+        assert turned < 0.25, f"dead after {packets} packets"
+        assert 8.0 * farthest < 1.0
+        packets += 1
+    assert packets > 40
+    assert farthest > 0.05  # the trial itself was among them
+
+
+def proved_without(lost: int) -> tuple[list[bool], int]:
+    """Watchdogs of a deaf one and one that works, proved or not, where one answer on places is lost; how many came."""
+    chain, seen = EmulatedChain([EmulatedServo(1, ails=Ails(deaf_watchdog=True)), EmulatedServo(2)]), 0
+
+    def back(data: bytes) -> bytes:
+        nonlocal seen
+        head, *packets = data.split(HEADER)
+        kept = [head]
+        for packet in packets:
+            if len(packet) < STATE_BYTES or seen != lost:
+                kept.append(packet)
+            seen += len(packet) >= STATE_BYTES
+        return HEADER.join(kept)
+
+    chain.back = back
+    facts = DynamixelBus(chain, [1, 2], clock=chain.clock, wait=chain.wait).identify()
+    return [fact.watchdog for fact in facts], seen
+
+
+def test_a_lost_answer_makes_no_watchdog_proved_and_none_doubted() -> None:
+    """Each answer to a question of where they are is lost in turn: what counts is whose watchdog is deaf."""
+    proved, seen = proved_without(-1)
+    assert (proved, seen >= 8) == ([False, True], True)
+    for lost in range(seen):
+        assert proved_without(lost)[0] == [False, True], f"answer {lost} lost"
+
+
+def test_a_motor_that_its_cable_holds_has_not_proved_its_watchdog() -> None:
+    """It stands by itself, told nothing: but it does not go on either when it is told again."""
+    servo = EmulatedServo(1, load=lambda angle: 1.0 if angle > 0.03 else 0.0, ails=Ails(deaf_watchdog=True))
+    chain = EmulatedChain([servo])
+    assert not DynamixelBus(chain, [1], clock=chain.clock, wait=chain.wait).identify()[0].watchdog
