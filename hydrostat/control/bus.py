@@ -119,6 +119,12 @@ class Bus(ABC):
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Let them go to angles [rad] at speeds of at most [rad/s]; return at once (HydrostatError: line gone)."""
 
+    def halt(self) -> None:  # noqa: B027 - where `stop` waits for nobody there is nothing to do
+        """Tell them once to stand where they were last heard, and wait for no answer; `stop` follows. It never raises.
+
+        For the other lines this is the time in which `stop` asks one that does not answer.
+        """
+
     @abstractmethod
     def stop(self) -> None:
         """Let them stand where they are, torque on. It may be called at any time, twice, and never raises."""

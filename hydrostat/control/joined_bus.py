@@ -72,8 +72,15 @@ class JoinedBus(Bus):
         """Send goals and speeds to all parts."""
         self._each(lambda bus, places: bus.write(angles[places], speeds[places]))
 
+    def halt(self) -> None:
+        """Tell all parts once."""
+        for bus, _ in self._parts:
+            with suppress(Exception):
+                bus.halt()
+
     def stop(self) -> None:
-        """Let the motors of all parts stand."""
+        """Let the motors of all parts stand: a line that does not answer keeps no other waiting."""
+        self.halt()
         for bus, _ in self._parts:
             with suppress(Exception):
                 bus.stop()

@@ -16,6 +16,8 @@ from hydrostat.errors import HydrostatError
 
 TURNED = 0.75 * 2 * np.pi
 """No servo turns so far between two answers [rad]: who says so has begun to count anew."""
+LATELY = 0.1
+"""Where it was heard so long ago [s] a motor may be told to stand before it is asked where it is."""
 ANEW = "it has lost its power for a moment, and its count of turns with it; calibrate it anew"
 
 
@@ -56,6 +58,18 @@ class ServoBus(Bus):
             stamps=np.full(len(self._numbers), -np.inf),
             faults=("",) * len(self._numbers),
         )
+
+    def halt(self) -> None:
+        """Goals where each was heard a moment ago; none if another thread is on the line just now."""
+        if not self._lock.acquire(blocking=False):
+            return
+        try:
+            near = np.flatnonzero(self._clock() - self._last.stamps < LATELY).tolist()
+            if near and self._known and not self._closed:
+                with suppress(Exception):
+                    self._hold({self._numbers[index]: float(self._last.angles[index]) for index in near})
+        finally:
+            self._lock.release()
 
     def stop(self) -> None:
         """Let them stand; where one cannot be heard, the goal that it has is the last it was told."""

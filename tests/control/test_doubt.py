@@ -305,6 +305,35 @@ def test_what_happens_to_one_line_is_told_with_its_board_and_stops_all(harm: Cal
     assert max(before) < 1.0 + 0.035 / RADIUS
 
 
+def test_a_mute_line_keeps_no_other_from_standing() -> None:
+    """The first line is asked three times in vain; the second has been told before, and goes no further meanwhile."""
+    link, servos, chains = two_lines(first=2, second=2)
+    link.identify()
+    link.arm()
+    for _ in range(15):
+        link.send(np.full(4, 0.04), chains[0].now, speed=0.05)
+        chains[0].wait(0.02)
+        link.read(chains[0].now)
+    link.send(np.full(4, 0.04), chains[0].now, speed=0.05)
+    chains[0].wait(0.01)
+    for servo in servos[:2]:
+        servo.ails = Ails(deaf=True)
+    began, before, farthest = chains[0].now, [servo.angle for servo in servos[2:]], 0.0
+
+    def look() -> None:
+        nonlocal farthest
+        farthest = max(farthest, *(abs(s.angle - was) for s, was in zip(servos[2:], before, strict=True)))
+
+    chains[1].watch = look
+    link.stop()
+    assert chains[0].now - began > 0.05  # so long the first line was asked
+    chains[0].wait(0.15)
+    stood = [servo.angle for servo in servos[2:]]
+    chains[0].wait(0.3)
+    assert [servo.angle for servo in servos[2:]] == pytest.approx(stood, abs=1e-6)
+    assert RADIUS * farthest < 1e-3  # what it takes to stand; it was 3.2 mm when the second line was told last
+
+
 def test_closing_leaves_no_gap_between_the_stop_and_the_line() -> None:
     """A thread that tells goals while another closes comes too late: the last word on the line is to stand."""
     rig = Rig()
