@@ -165,7 +165,7 @@ def main() -> None:
         goal = profile.at(passed % length)
         heard, took = winches.frame(goal)
         frames, lost, late = frames + 1, lost + (not heard), late + (took > FRAME)
-        phase = passed % 2.0
+        phase = passed % length % 2.0
         if int(passed / length) % ROUNDS == 0 and (0.44 <= phase < 0.46 or 1.2 <= phase < 1.22):
             (held if phase < 0.5 else going).append((goal, winches.places))
     errors = [1e3 * max(apart(simulation, *pair) for pair in pairs) for pairs in (held, going)]

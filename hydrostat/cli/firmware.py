@@ -24,16 +24,18 @@ def firmware(
     port: Annotated[
         str | None, typer.Option(metavar="PORT,...", help="Write it to these boards: /dev/ttyACM0.")
     ] = None,
-    motor: Annotated[str, typer.Option(metavar="KEY", help="Motor with an encoder, of the kit's table.")] = "25d",
+    motor: Annotated[
+        str | None, typer.Option(metavar="KEY", help="Motor with an encoder, of the kit's table; 25d if left out.")
+    ] = None,
     counts: Annotated[float | None, typer.Option(metavar="N", help="Of the encoder in a turn of the spool.")] = None,
     rpm: Annotated[float | None, typer.Option(metavar="N", help="Turns a minute without load.")] = None,
 ) -> None:
     """Build the firmware of a robot for an Arduino with geared motors, and write it to the board.
 
-    Its limits come from robot.toml and motors.toml; where a motor there has no counts they are added. More motors than
-    a board bears are spread over several, each with its own port. Without --port nothing is written to a board, and
-    the command that would do it is shown. Needs Debian's gcc-avr and avr-libc, and
-    avrdude to write. Then: hydrostat calibrate ROBOT --port firmware:/dev/ttyACM0.
+    Its limits come from robot.toml and motors.toml; where a motor there has no counts they are added, and --motor or
+    --counts puts new ones there. More motors than a board bears are spread over several, each with its own port.
+    Without --port nothing is written to a board, and the command that would do it is shown. Needs Debian's gcc-avr and
+    avr-libc, and avrdude to write. Then: hydrostat calibrate ROBOT --port firmware:/dev/ttyACM0.
 
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
     """
@@ -42,9 +44,10 @@ def firmware(
     from hydrostat.fabrication import MOTORS
 
     known = {each.key: each for each in MOTORS if each.counts}
-    if motor not in known:
+    if motor is not None and motor not in known:
         raise InputError(f"--motor {motor}: those with an encoder are: {', '.join(known)}; or give --counts and --rpm")
-    usual, turns = known[motor].counts if counts is None else counts, known[motor].speed if rpm is None else rpm
+    chosen = known[motor or _USUAL]
+    usual, turns = chosen.counts if counts is None else counts, chosen.speed if rpm is None else rpm
     for name, value in (("counts", usual), ("rpm", turns)):
         if not 0 < value < 1e6:
             raise InputError(f"--{name} {value:g}: must be above 0")
@@ -58,19 +61,23 @@ def firmware(
         calibration = control.usual_calibration(loaded)
     boards = _boards(board, calibration)
     given = build.on_boards(calibration, boards)
-    given = control.Calibration(tuple(replace(each, counts=counts or each.counts or usual) for each in given.motors))
+    new = usual if counts or motor else None  # else what motors.toml says stays
+    given = control.Calibration(tuple(replace(each, counts=new or each.counts or usual) for each in given.motors))
     ports = port.split(",") if port else []
     if ports and len(ports) != given.boards:
         raise InputError(f"--port {port}: {counted(given.boards, 'board')} need a port each, with commas between them")
     places = [out if given.boards == 1 else out / f"board_{number}" for number in range(1, given.boards + 1)]
-    stall = known[motor].stall_current
+    build.check_ports(ports)
+    shown = ", ".join(dict.fromkeys(f"{each.counts:g}" for each in given.motors))
+    print(f"For {chosen.title} (another: --motor):")
+    print(f"{shown} counts in a turn of a spool, {turns:g} turns a minute without load")
     texts = [
-        build.firmware_settings(loaded, given, rpm=turns, stall=stall, board=number)
+        build.firmware_settings(loaded, given, rpm=turns, stall=chosen.stall_current, board=number)
         for number in range(1, given.boards + 1)
     ]
     images = [build.build_firmware(*each) for each in zip(texts, boards, places, strict=False)]
     if given != calibration:
-        print(f"{control.write_calibration(folder, given)}: {usual:g} counts in a turn of each spool")
+        print(f"Wrote {control.write_calibration(folder, given)}")
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
         _tell(kind, number, given)
         command = build.flash_command(kind, ports[number - 1] if ports else "PORT", image)
@@ -79,6 +86,10 @@ def firmware(
             build.flash(command)
     if ports:
         print(f"{port}: written. Let all cables out, then: hydrostat calibrate {folder} --port firmware:{port}")
+
+
+_USUAL = "25d"
+"""The motor that is meant where none is named."""
 
 
 def _boards(asked: str | None, calibration: "Calibration") -> list[str]:

@@ -118,6 +118,13 @@ def flash_command(board: str, port: str, image: Path) -> list[str]:
     return ["avrdude", "-p", kind.chip, *kind.loader, "-P", port, "-U", f"flash:w:{image}:i"]
 
 
+def check_ports(ports: Sequence[str]) -> None:
+    """Refuse ports that are not there, as avrdude tries them for ever (HydrostatError)."""
+    for port in ports:
+        if port.startswith("/") and not Path(port).exists():
+            raise HydrostatError(f"{port} is not there; look at the plug and the name")
+
+
 def flash(command: Sequence[str]) -> None:
     """Write firmware to a board (HydrostatError: avrdude is not there, or it could not)."""
     if not shutil.which(command[0]):
@@ -149,8 +156,15 @@ def _numbers(robot: Robot, calibration: Calibration, board: int, gain: float) ->
 
 
 def _run(command: Sequence[str]) -> None:
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=_LONGEST)
+    except subprocess.TimeoutExpired:
+        raise HydrostatError(f"{command[0]} took more than {_LONGEST:g} s; look at the board and its port") from None
     if done.returncode:
         told = (done.stderr or done.stdout).strip().splitlines() or ["without a word"]
         why = next((line for line in told if "error" in line.lower()), told[-1])
         raise HydrostatError(f"{command[0]} failed: {why.strip()}")
+
+
+_LONGEST = 120.0
+"""Neither a compiler nor avrdude takes so long [s]."""

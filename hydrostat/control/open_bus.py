@@ -97,8 +97,9 @@ def check_port(text: str) -> None:
 
 def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:
     """Servos that stand where nothing is taken in, each with the load of its cables."""
+    calibration = calibration.known()
     servos = [
-        EmulatedServo(n, angle=each.zero or 0.0, model=_LIKE_A_KIT) for n, each in enumerate(calibration.motors, 1)
+        EmulatedServo(n, angle=each.angle(0.0), model=_LIKE_A_KIT) for n, each in enumerate(calibration.motors, 1)
     ]
     chain, known, torques = LiveChain(servos), -1.0, np.zeros(len(servos))
 

@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 from builders import strip_robot
 
-from hydrostat.control import Calibration, read_calibration, usual_calibration
+from hydrostat.control import BusLink, Calibration, open_bus, read_calibration, usual_calibration
 from hydrostat.control.calibration import write_calibration
+from hydrostat.errors import HydrostatError
 
 
 @pytest.mark.parametrize("name", ["left", 'the "left" one', "back\\slash", "größer"])
@@ -19,3 +20,13 @@ def test_names_of_winches_are_kept_whatever_is_in_them(name: str, tmp_path: Path
     kept = Calibration(tuple(replace(motor, zero=0.25) for motor in usual_calibration(robot).motors))
     write_calibration(tmp_path, kept)
     assert read_calibration(tmp_path, robot) == kept
+
+
+def test_emulated_motors_of_a_calibration_that_was_cut_short_say_so() -> None:
+    robot = strip_robot(columns=4, rows=1)
+    calibration = usual_calibration(robot)  # no zero is known
+    link = BusLink(open_bus("emulated", robot, calibration, lambda taken: 9.0 * taken), robot.winches, calibration)
+    link.identify()
+    with pytest.raises(HydrostatError, match="motors cannot be armed: first calibrate them"):
+        link.arm()
+    link.close()

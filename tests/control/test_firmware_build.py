@@ -140,21 +140,28 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     assert "avrdude -p atmega2560 -c wiring" in shown.output
     assert not noted.exists()
     assert all(each.counts == 8245.92 for each in read_calibration(folder, robot_of(folder)).motors)
-    done = run(app, [*given, "--port", "/dev/ttyACM7"])
+    gone = run(app, [*given, "--port", "/dev/ttyACM7"])  # avrdude would try it for ever
+    assert "/dev/ttyACM7 is not there; look at the plug" in str(gone.exception)
+    port, *others = (tmp_path / name for name in ("ttyACM7", "ttyACM8", "ttyACM9"))
+    for each in (port, *others):
+        each.touch()
+    done = run(app, [*given, "--port", str(port)])
     assert done.exit_code == 0, done.output
     image = tmp_path / "built" / "winches.hex"
-    assert (
-        noted.read_text().split()
-        == f"-p atmega2560 -c wiring -b 115200 -D -P /dev/ttyACM7 -U flash:w:{image}:i".split()
-    )
+    assert noted.read_text().split() == f"-p atmega2560 -c wiring -b 115200 -D -P {port} -U flash:w:{image}:i".split()
     assert image.read_text().startswith(":10")
     noted.unlink()
-    both = run(app, [*given[:2], "--board", "uno", "--out", str(tmp_path / "two"), "--port", "/dev/one,/dev/two"])
+    both = run(
+        app, [*given[:2], "--board", "uno", "--out", str(tmp_path / "two"), "--port", ",".join(map(str, others))]
+    )
     assert both.exit_code == 0, both.output
     assert "board 2, uno: 1 motor, wired" in both.output
     written = [line.split("flash:w:")[1] for line in noted.read_text().splitlines()]
     assert written == [f"{tmp_path}/two/board_{number}/winches.hex:i" for number in (1, 2)]
     assert [each.board for each in read_calibration(folder, robot_of(folder)).motors] == [1, 1, 2]
+    small = run(app, [*given, "--motor", "n20"])
+    assert "3575.04 counts in a turn" in small.output
+    assert all(each.counts == 3575.04 for each in read_calibration(folder, robot_of(folder)).motors)
 
 
 def robot_of(folder: Path) -> Robot:
