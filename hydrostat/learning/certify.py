@@ -9,9 +9,11 @@ from hydrostat.errors import InputError
 from hydrostat.given import check_kind
 from hydrostat.ik import InverseOptions, InverseReason, Limits, Targets, Tracker, solve_ik
 from hydrostat.ik.objectives.marker_goal import named_targets
+from hydrostat.learning.known_contact import contact_facts
 from hydrostat.learning.learned_model import LearnedModel
 from hydrostat.learning.learned_pose import LearnedPose, Tier
-from hydrostat.robot import Point, Pose
+from hydrostat.learning.sample_plan import physics_hash
+from hydrostat.robot import Point, Pose, Robot
 from hydrostat.simulation import Simulation, SolvedPose
 
 
@@ -20,8 +22,10 @@ def certify(
 ) -> LearnedPose:
     """A learned answer with the error that the simulator finds, if asked after exact Gauss-Newton steps from there.
 
-    The contractions are solved from rest, unless the answer was certified before; each step goes on from the pose
-    before, as an update of `Tracker`. Where no equilibrium is found, `certified` is None and `reason` says why.
+    The contractions are solved from rest, unless the answer was certified before, for the same robot; each step goes on
+    from the pose before, as an update of `Tracker`. Where no equilibrium is found, `certified` is None and `reason`
+    says why. After steps the pose is that at the end of their way: the same contractions, taken in from rest, may lead
+    to another. What they leave from rest says `certify(simulation, model, replace(found, pose=None))`.
 
     Args:
         simulation: of the robot that the model was learned of.
@@ -39,10 +43,11 @@ def certify(
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:
         raise InputError(f"steps must be a whole number of 0 or more, not {steps!r:.60}")
     model.check(simulation.robot)
-    pose = answer.pose or simulation.solve(answer.contractions, strict=False)
-    pose, _ = exact_steps(simulation, pose, answer.target, steps, enough=enough)
-    tier = Tier.STEP if steps else answer.tier
-    found = model.judged(answer.target, pose.contractions, tier)
+    pose = answer.pose
+    if pose is None or not _same(pose.robot, simulation.robot):
+        pose = simulation.solve(answer.contractions, strict=False)
+    pose, taken = exact_steps(simulation, pose, answer.target, steps, enough=enough)
+    found = model.judged(answer.target, pose.contractions, Tier.STEP if taken else answer.tier)
     certified = _missed(answer, pose) if pose.result.converged else None
     return replace(found, certified=certified, reason=pose.result.reason, pose=pose)
 
@@ -109,6 +114,11 @@ def solve_exactly(
     reached = solve_ik(simulation, answer.target, limits=limits, start=begun, options=options)
     found = model.judged(answer.target, reached.pose.contractions, Tier.EXACT)
     return replace(found, certified=_missed(answer, reached.pose), reason=reached.reason, pose=reached.pose)
+
+
+def _same(one: Robot, other: Robot) -> bool:
+    """Whether the poses of one robot are those of the other."""
+    return one is other or (physics_hash(one), contact_facts(one)) == (physics_hash(other), contact_facts(other))
 
 
 def _residual(answer: LearnedPose, pose: SolvedPose) -> np.ndarray:

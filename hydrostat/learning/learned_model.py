@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -68,7 +70,10 @@ class LearnedModel:
     def expect(self, contractions: Vector) -> tuple[Vector, Vector]:
         """What is expected at contractions [m]: coordinates of the markers [m], then tensions [N]; and their spread."""
         values = self.forward.values(self._scaled(self._winches(contractions)))
-        return self.middle + self.unit * values.mean(axis=0), self.unit * values.std(axis=0)
+        mean = values.sum(axis=0) / len(values)
+        values -= mean
+        values *= values
+        return self.middle + self.unit * mean, self.unit * np.sqrt(values.sum(axis=0) / len(values))
 
     def slopes(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
         """How the networks expect the markers to go when winches take in cable."""
@@ -88,7 +93,7 @@ class LearnedModel:
         if given.shape != (count,) or not np.isfinite(given).all():
             raise InputError(f"markers must be {count} finite coordinates [m]")
         raw = self.inverse.values((given - self.middle[:count]) / self.unit[:count])[0]
-        return self._contractions(np.clip(_BEYOND * np.tanh(raw), -1.0, 1.0))
+        return self._contractions(np.minimum(np.maximum(_BEYOND * np.tanh(raw), -1.0), 1.0))
 
     def solve(self, targets: Targets, *, search: bool = True) -> LearnedPose:
         """Contractions that bring markers to targets, as the networks know it.
@@ -104,7 +109,7 @@ class LearnedModel:
         """
         target = self._pose(targets)
         goal, asked = self._goal(target)
-        whole = np.where(asked, goal, self._nearest(goal, asked, 1)[1][0])
+        whole = goal if asked.all() else np.where(asked, goal, self._nearest(goal, asked, 1)[1][0])
         if not search:
             return self.judged(target, self.inverted(whole), Tier.NETWORK)
         return self.judged(target, self._search(whole, asked), Tier.SEARCH)
@@ -113,18 +118,20 @@ class LearnedModel:
         """An answer, with what the networks say of it."""
         expected, spread = self.expect(contractions)
         names, dim, count = self.facts["markers"], self.facts["dim"], self._coordinates
-        markers = dict(zip(names, expected[:count].reshape(-1, dim), strict=True))
-        doubts = np.linalg.norm(spread[:count].reshape(-1, dim), axis=1)
+        places = expected[:count].reshape(-1, dim)
         asked = [name for name in names if name in target.targets]
+        rows = [self._rows[name] for name in asked]
+        errors = _lengths(places[rows] - np.array([target.targets[name] for name in asked]))
+        doubts = _lengths(spread[:count].reshape(-1, dim)[rows])
         return LearnedPose(
             target=target,
             tier=tier,
             contractions=contractions,
             commands=dict(zip(self.facts["winches"], contractions.tolist(), strict=True)),
-            markers=markers,
+            markers=dict(zip(names, places, strict=True)),
             tensions=dict(zip(self.facts["cables"], np.maximum(expected[count:], 0.0).tolist(), strict=True)),
-            errors={name: float(np.linalg.norm(markers[name] - np.array(target.targets[name]))) for name in asked},
-            spread={name: float(doubts[names.index(name)]) for name in asked},
+            errors=dict(zip(asked, errors, strict=True)),
+            spread=dict(zip(asked, doubts, strict=True)),
         )
 
     def _search(self, goal: Vector, asked: np.ndarray) -> Vector:
@@ -156,17 +163,17 @@ class LearnedModel:
 
     def _goal(self, target: Pose) -> tuple[Vector, np.ndarray]:
         """Coordinates of all markers [m], and which of them are asked for."""
-        names, dim = self.facts["markers"], self.facts["dim"]
-        goal, asked = np.zeros((len(names), dim)), np.zeros((len(names), dim), dtype=bool)
+        rows, dim = self._rows, self.facts["dim"]
+        goal, asked = np.zeros((len(rows), dim)), np.zeros((len(rows), dim), dtype=bool)
         if not target.targets:
             raise InputError("there is nothing to reach: give targets for markers")
         for name, point in target.targets.items():
-            if name not in names:
-                raise InputError(f'the model has no marker "{name}"; it has: {", ".join(names)}')
+            if name not in rows:
+                raise InputError(f'the model has no marker "{name}"; it has: {", ".join(rows)}')
             place = np.asarray(point, dtype=float)
-            if place.shape != (dim,) or not np.isfinite(place).all():
+            if place.shape != (dim,) or not all(map(isfinite, place.tolist())):
                 raise InputError(f'target of marker "{name}" must be {dim} finite coordinates [m]')
-            goal[names.index(name)], asked[names.index(name)] = place, True
+            goal[rows[name]], asked[rows[name]] = place, True
         return goal.ravel(), asked.ravel()
 
     def _winches(self, contractions: Vector) -> Vector:
@@ -181,11 +188,16 @@ class LearnedModel:
     def _contractions(self, scaled: Vector) -> Vector:
         return self.low + 0.5 * self._span * (scaled + 1.0)
 
-    @property
+    @cached_property
+    def _rows(self) -> Mapping[str, int]:
+        """Which of the markers is called so."""
+        return {name: row for row, name in enumerate(self.facts["markers"])}
+
+    @cached_property
     def _span(self) -> Vector:
         return span_of(self.low, self.high)
 
-    @property
+    @cached_property
     def _coordinates(self) -> int:
         return len(self.facts["markers"]) * self.facts["dim"]
 
@@ -193,6 +205,11 @@ class LearnedModel:
 def span_of(low: Vector, high: Vector) -> Vector:
     """From the least to the most that each winch takes in [m]; 1 where that is nothing."""
     return np.where(high > low, high - low, 1.0)
+
+
+def _lengths(rows: np.ndarray) -> list[float]:
+    """Of vectors, a row each."""
+    return np.sqrt((rows * rows).sum(axis=1)).tolist()
 
 
 _BEYOND = 1.02

@@ -85,7 +85,8 @@ FINE = {"contract"}  # what of floating point may be rearranged: a product and a
 def _answer(sizes, numbers, point, value, slopes):
     """One network at a point; slopes (inputs, outputs) too unless they have no rows."""
     widest, inputs, tangents = sizes.max(), sizes[0], len(slopes)
-    old, new, moves, moved = np.zeros(widest), np.zeros(widest), np.zeros((tangents, widest)), slopes
+    come, gone, moves, moved = np.zeros((1, widest)), np.zeros((1, widest)), np.zeros((tangents, widest)), slopes
+    old, new = come[0], gone[0]
     if tangents:
         moved = np.zeros((tangents, widest))
     for each in range(inputs):
@@ -96,11 +97,9 @@ def _answer(sizes, numbers, point, value, slopes):
     for layer in range(layers):
         rows, columns = sizes[layer], sizes[layer + 1]
         last = at + rows * columns
+        _move(numbers[at:last], come, gone, rows, columns)
         for column in range(columns):
-            new[column] = numbers[last + column]
-        for row in range(rows):
-            for column in range(columns):
-                new[column] += old[row] * numbers[at + row * columns + column]
+            new[column] += numbers[last + column]
         _move(numbers[at:last], moves, moved, rows, columns)
         if layer < layers - 1:
             for column in range(columns):

@@ -209,6 +209,30 @@ def test_a_step_that_finds_nothing_is_tried_shorter(simulation: hs.Simulation, m
     assert exact_steps(simulation, pose, goal, 5, enough=1.0) == (pose, 0)
 
 
+def test_an_answer_is_certified_by_the_simulator_that_is_asked(robot: Robot, simulation: hs.Simulation) -> None:
+    """Oracle: the other simulator, asked for the contractions itself. A pose of the same robot is kept."""
+    soft = replace(robot, body=replace(robot.body, material=replace(robot.body.material, density=3000.0)))
+    soft = replace(soft, gravity=(0.0, -9.81))
+    other, target = hs.Simulation(soft), {"tip": (0.15, -0.02)}
+    answer = certify(simulation, plain(robot), plain(robot).solve(target))
+    found = certify(other, plain(soft), answer)
+    want = np.linalg.norm(other.solve(answer.contractions).markers["tip"] - target["tip"])
+    assert found.error == pytest.approx(want, rel=1e-9)
+    assert abs(found.error - answer.error) > 1e-4
+    assert certify(hs.Simulation(replace(robot, name="renamed")), plain(robot), answer).pose is answer.pose
+
+
+def test_an_answer_is_of_steps_only_where_one_was_taken(robot: Robot, simulation: hs.Simulation) -> None:
+    model, target = plain(robot), {"tip": (0.15, -0.02)}
+    answer = model.solve(target)
+    assert certify(simulation, model, answer, steps=3, enough=1.0).tier is Tier.SEARCH
+    stepped = certify(simulation, model, answer, steps=1)
+    assert stepped.tier is certify(simulation, model, stepped).tier is Tier.STEP
+    again = certify(simulation, model, replace(stepped, pose=None))
+    assert again.pose is not None
+    assert np.array_equal(again.pose.nodes, simulation.solve(stepped.contractions).nodes)
+
+
 @pytest.mark.slow
 def test_a_tracker_begins_from_an_answer(model: LearnedModel, samples: Samples, simulation: hs.Simulation) -> None:
     target = targets_of(samples)[70]
@@ -277,6 +301,37 @@ def test_a_file_gives_the_model_back(robot: Robot, tmp_path: Path) -> None:
     target = {"tip": (0.1, 0.02)}
     assert again.solve(target).commands == model.solve(target).commands
     assert again.solve(target, search=False).errors == model.solve(target, search=False).errors
+
+
+def test_what_networks_say_of_an_answer(robot: Robot) -> None:
+    """Oracle: plain NumPy on each network, to 1e-12; all markers asked for, and then one of two."""
+    first = plain(robot)
+    facts = {**first.facts, "markers": ["tip", "knee"], "cables": []}
+    known = np.array([[0.1, 0.2, 0.3, 0.4], [0.4, 0.3, 0.2, 0.1], [0.0, 0.1, 0.0, 0.2]])
+    networks = replace(first.inverse, sizes=np.array([4, 2, 2]), numbers=np.linspace(-1, 1, 24)[None])  # type: ignore[type-var]
+    model = replace(first, facts=facts, inverse=networks, known=known[:, :2] * first.high, reached=known)
+
+    def answers(one: Perceptrons, point: np.ndarray) -> np.ndarray:
+        (a, b, c), found = one.sizes.tolist(), []
+        for row in one.numbers:
+            hidden = point @ row[: a * b].reshape(a, b) + row[a * b : a * b + b]
+            rest = row[a * b + b :]
+            out = (hidden / (1 + np.exp(-hidden))) @ rest[: b * c].reshape(b, c) + rest[b * c : b * c + c]
+            found.append(out + point @ rest[b * c + c :].reshape(a, c))
+        return np.array(found)
+
+    for target in ({"tip": (0.1, 0.25), "knee": (0.3, 0.35)}, {"knee": (0.21, 0.12)}):
+        found = model.solve(target, search=False)
+        goal = np.r_[target.get("tip", known[1, :2]), target["knee"]]
+        scaled = np.clip(1.02 * np.tanh(answers(networks, goal)[0]), -1, 1)
+        assert found.contractions == pytest.approx(model.high * (scaled + 1) / 2, abs=1e-12)
+        values = answers(model.forward, scaled)
+        for name, place in target.items():
+            at = slice(0, 2) if name == "tip" else slice(2, 4)
+            assert found.errors[name] == pytest.approx(np.linalg.norm(values.mean(axis=0)[at] - place), abs=1e-12)
+            assert found.spread[name] == pytest.approx(np.linalg.norm(values.std(axis=0)[at]), abs=1e-12)
+            assert found.markers[name] == pytest.approx(values.mean(axis=0)[at], abs=1e-12)
+        assert list(found.errors) == list(found.spread) == list(target)
 
 
 def test_a_model_of_another_contact_is_refused(robot: Robot, tmp_path: Path) -> None:
