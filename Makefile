@@ -3,19 +3,20 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
-# Benchmarks that need programs which the tests do not: other simulators, PyTorch and stable-baselines3.
-NEED_MORE := peers floor hysteresis walk_learned
+# Benchmarks that need programs which the tests do not (other simulators, PyTorch and stable-baselines3), or a robot, samples or a model.
+NEED_MORE := peers floor hysteresis walk_learned learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions sample_starts spool_layers
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 # Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
-test quick: export PYTHONDONTWRITEBYTECODE =
+test test-all quick: export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: help demo studio test quick check lint lint-js fix bench pictures clean
+.PHONY: help demo studio test test-all quick check lint lint-js fix bench pictures clean
 
 help:
 	@echo "make demo      design the cables of the starfish; results in build/starfish"
 	@echo "make studio    open the studio in the browser"
 	@echo "make test      run all tests"
+	@echo "make test-all  the same with all extras (PyTorch, stable-baselines3, Ray, build123d), so that few are skipped"
 	@echo "make quick     each test with its first case, without the slow ones: a minute or two"
 	@echo "make check     lint, types, import layers, tests"
 	@echo "make fix       format and repair what ruff can repair"
@@ -30,6 +31,11 @@ studio: $(VENV)/studio.installed
 
 test: $(VENV)/test.installed
 	$(BIN)/python -m pytest -n 2 --dist worksteal -q
+
+# With all extras that tests know. On Linux the plain wheel of PyTorch brings CUDA, gigabytes; who has its wheel for CPUs keeps it.
+test-all: $(VENV)/test.installed
+	$(INSTALL) --editable ".[test,learn,rl,cluster,cad]"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -rs
 
 quick: $(VENV)/test.installed
 	$(BIN)/python -m pytest -n 2 --dist worksteal -q --quick
