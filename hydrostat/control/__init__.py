@@ -19,7 +19,7 @@ from hydrostat.control.emulated_line import EmulatedLine
 from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
 from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.firmware_bus import FirmwareBus
-from hydrostat.control.guard import GuardLimits, TensionGuard
+from hydrostat.control.guard import GuardLimits, TensionGuard, not_judged
 from hydrostat.control.link import SILENCE, Link, SimulatedLink
 from hydrostat.control.model_tensions import KnownPulls, WinchPull, tensions_along, winch_pulls, winch_tensions
 from hydrostat.control.motors import FASTEST, Motors
@@ -71,6 +71,7 @@ __all__ = [
     "fit_spool",
     "layered",
     "measure_spool",
+    "not_judged",
     "open_bus",
     "open_line",
     "play",

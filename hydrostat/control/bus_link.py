@@ -11,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control.bus import Bus, MotorFacts, Reading, steady
 from hydrostat.control.calibration import Calibration
-from hydrostat.control.guard import TensionGuard
+from hydrostat.control.guard import TensionGuard, not_judged
 from hydrostat.control.link import Link
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
@@ -126,6 +126,8 @@ class BusLink(Link):
             for fact, name in zip(self.facts, self._names, strict=True):
                 stops = "stops by itself" if fact.watchdog else "does not stop by itself: its goals stay close ahead"
                 self._say(f"{name}: motor {fact.number}, {fact.model}, firmware {fact.firmware}, {stops}")
+            if words := not_judged(np.array([fact.constant for fact in self.facts]), self._names):
+                self._say(words)
             return self.facts
 
     def arm(self) -> None:

@@ -5,6 +5,9 @@ STS3215 for the bounds of torque and of angle.
 
 These servos have **no watchdog**: told nothing, they go on to their last goal. A `BusLink` therefore keeps goals so
 close ahead that a dead host leaves them standing soon, and bounds of torque stay in the servo.
+
+Their torque by current is not told: gears and windings of several kinds answer with the same number of model (777), so
+no guard judges tensions of their cables.
 """
 
 from collections.abc import Sequence

@@ -1,6 +1,6 @@
 """`TensionGuard`: does each motor draw what the model says that its cable pulls?"""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,19 @@ class GuardLimits:
     pulls: float = 2.0
     felt: float = 0.2
     seconds: float = 0.5
+
+
+def not_judged(constants: Vector, names: Sequence[str]) -> str:
+    """Say whose cables a guard cannot judge; "" for nobody's.
+
+    Args:
+        constants: torque of each motor by its current [N m/A]; NaN where it is not known.
+        names: of the winches.
+    """
+    blind = [name for name, constant in zip(names, constants.tolist(), strict=True) if np.isnan(constant)]
+    whose = "" if len(blind) == len(names) else f" of {', '.join(blind)}"
+    words = "what torque its motor has by its current is not known, so a slack, broken or held cable is not told by it"
+    return f"no guard by tensions{whose}: {words}" if blind else ""
 
 
 class TensionGuard:

@@ -4,6 +4,7 @@ import random
 
 import numpy as np
 import pytest
+from emulation import Rig
 
 from hydrostat.control.bus_link import BusLink, LinkState
 from hydrostat.control.calibration import Calibration, WinchMotor
@@ -11,6 +12,7 @@ from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.control.emulated_servos import Ails
 from hydrostat.control.feetech_bus import BOUND, LOW, MODE, TICK, TORQUE, FeetechBus
 from hydrostat.control.feetech_packets import SumReader, pack, padded
+from hydrostat.control.guard import not_judged
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch
 
@@ -174,3 +176,16 @@ def test_a_bound_that_was_not_taken_is_told() -> None:
     with pytest.raises(HydrostatError, match="motor 2 did not take its bound of torque"):
         hand.bus.arm(np.full(2, 0.5))
     assert not any(servo.table[TORQUE] for servo in hand.servos)
+
+
+def test_it_says_at_connection_that_no_guard_judges_its_cables() -> None:
+    """Of three motors one whose torque is known is not named; Dynamixel's servos, all known, bring no such line."""
+    hand = Hand()
+    lines = list[str]()
+    hand.link._log = lines.append
+    hand.link.identify()
+    assert sum("no guard by tensions: what torque its motor has" in line for line in lines) == 1
+    assert not_judged(np.array([0.3, np.nan, np.nan]), "abc").startswith("no guard by tensions of b, c: ")
+    rig = Rig()
+    rig.link.identify()
+    assert not any("no guard" in line for line in rig.log)

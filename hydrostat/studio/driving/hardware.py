@@ -18,6 +18,7 @@ from hydrostat.control import (
     TensionGuard,
     check_port,
     emulated_calibration,
+    not_judged,
     open_bus,
     read_calibration,
 )
@@ -128,7 +129,9 @@ class Hardware:
                 link.close()
                 raise HydrostatError(f"{port}: other motors were connected, or let go, meanwhile; connect again")
             self._link, self.port = link, port
-        self._say(f"{port}: {len(facts)} motors answered" + ("" if link.state is LinkState.CALIBRATED else _CALIBRATE))
+        unjudged = not_judged(np.array([fact.constant for fact in facts]), names)
+        missing = "" if link.state is LinkState.CALIBRATED else _CALIBRATE
+        self._say(f"{port}: {len(facts)} motors answered{missing}" + (f"; {unjudged}" if unjudged else ""))
 
     def arm(self) -> None:
         """Let motors turn: they go to what is shown (HydrostatError: none are connected, or they cannot be armed)."""
