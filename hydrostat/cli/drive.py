@@ -75,20 +75,21 @@ def drive(
     learned = None if known is None else teleop.HandMap.open(known)
     simulation, kind = prepared(loaded), "simulated" if port is None else port.partition(":")[0]
     way = _way(simulation, networks, tips=tips, guarded=port is not None)
-    asked: DriveSource | None = None
-    motors: Motors | None = None
-    try:
-        wearer = teleop.Wearer(teleop.winch_channels(loaded))
-        asked = teleop.open_source(source, way.channels, learned, wearer, smoothing=smooth)
-        motors = _motors(folder_of(robot), loaded, port, way)
-        shown = _Shown(kind, motors)
-        _run(shown, f"{'fingertips' if tips else 'winches'} of {loaded.name} by {source}", way, asked, seconds)
-    finally:
-        if motors is not None:  # before all that may take its time
-            motors.link.close()
-        if asked is not None:
-            asked.close()
-        way.close()
+    with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):  # arming turns motors, too
+        asked: DriveSource | None = None
+        motors: Motors | None = None
+        try:
+            wearer = teleop.Wearer(teleop.winch_channels(loaded))
+            asked = teleop.open_source(source, way.channels, learned, wearer, smoothing=smooth)
+            motors = _motors(folder_of(robot), loaded, port, way)
+            shown = _Shown(kind, motors)
+            _run(shown, f"{'fingertips' if tips else 'winches'} of {loaded.name} by {source}", way, asked, seconds)
+        finally:
+            if motors is not None:  # before all that may take its time
+                motors.link.close()
+            if asked is not None:
+                asked.close()
+            way.close()
 
 
 def _run(shown: "_Shown", what: str, way: "Way", source: "DriveSource", seconds: float) -> None:
@@ -97,8 +98,7 @@ def _run(shown: "_Shown", what: str, way: "Way", source: "DriveSource", seconds:
 
     shown.say(what)
     try:
-        with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
-            teleop.drive(shown.motors, way, source, seconds=seconds or inf, tell=shown.tell)
+        teleop.drive(shown.motors, way, source, seconds=seconds or inf, tell=shown.tell)
     except (KeyboardInterrupt, SystemExit) as stop:
         shown.end("stopped")
         code = 130 if isinstance(stop, KeyboardInterrupt) else stop.code

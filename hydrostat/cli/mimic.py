@@ -59,19 +59,21 @@ def mimic(
         simulation = prepared(loaded)
         lesson = _lesson(simulation, hand, out, tips=tips)
         show = wearer.person.mimic if emulated else lambda _: None
-        with _Session(folder_of(robot), simulation, port, hand) as session:
+        with (
+            one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)),  # arming turns motors, too
+            _Session(folder_of(robot), simulation, port, hand) as session,
+        ):
             session.say(lesson.told())
-            with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
-                while lesson.count < poses:
-                    contractions = lesson.next_pose()
-                    session.go(contractions, out, drawn=port is None and not emulated and not worn)
-                    show(session.motors.places)
-                    held = session.take(lesson.count, asks=not (worn or emulated))
-                    if held is None:
-                        break
-                    lesson.take(held, _markers(simulation, session.motors.places) if tips else session.motors.places)
-                    lesson.made.save(out / PAIRS)
-                    session.say(lesson.told())
+            while lesson.count < poses:
+                contractions = lesson.next_pose()
+                session.go(contractions, out, drawn=port is None and not emulated and not worn)
+                show(session.motors.places)
+                held = session.take(lesson.count, asks=not (worn or emulated))
+                if held is None:
+                    break
+                lesson.take(held, _markers(simulation, session.motors.places) if tips else session.motors.places)
+                lesson.made.save(out / PAIRS)
+                session.say(lesson.told())
     except (KeyboardInterrupt, SystemExit):
         print(f"stopped; what was taken is in {out / PAIRS}", flush=True)
         raise typer.Exit(130) from None

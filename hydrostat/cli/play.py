@@ -18,6 +18,7 @@ from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from hydrostat.control import Motors, Player
+    from hydrostat.simulation import Profile
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: on a terminal, and where lines are kept
 
@@ -58,26 +59,37 @@ def play(
     if not loaded.winches:
         raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
     table, kind = ProfileTable.open(moves, loaded), "simulated" if port is None else port.partition(":")[0]
-    simulated = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))))
-    simulated.check(table, speed=speed)
-    motors = simulated
-    if port is not None:
-        pulls = control.tensions_along(loaded, table.profile)
-        motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
-    motors.check(table, speed=speed)
-    seconds = float(table.profile.times[-1])
-    often = {0: "until it is stopped", 1: "once"}.get(loop, f"{loop} times")
-    winches = counted(len(motors.names), "winch")
-    _say(kind, f"{moves} on {loaded.name}, {winches}: {seconds:.2f} s, {often}, at {speed:g}x")
-    back = float(np.abs(table.profile.values[-1] - table.profile.at(0.0)).max())
-    if loop != 1 and back > 1e-6:
+    fastest = control.FASTEST if port is None else control.LinkLimits().speed
+    motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))), fastest=fastest)
+    motors.check(table, speed=speed)  # before anything turns
+    pulls = None if port is None else control.tensions_along(loaded, table.profile)
+    with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):  # arming turns motors, too
+        if port is not None and pulls is not None:
+            motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
+        try:
+            often = {0: "until it is stopped", 1: "once"}.get(loop, f"{loop} times")
+            seconds, winches = float(table.profile.times[-1]), counted(len(motors.names), "winch")
+            _say(kind, f"{moves} on {loaded.name}, {winches}: {seconds:.2f} s, {often}, at {speed:g}x")
+            _play(kind, motors, table.profile, player)
+        finally:
+            motors.link.close()
+    _say(kind, f"played; the motors hold at {_places(motors)}")
+
+
+def _play(kind: str, motors: "Motors", profile: "Profile", player: "Player") -> None:
+    """Play, and say how it was stopped, if it was."""
+    import numpy as np
+
+    from hydrostat import control
+
+    back = float(np.abs(profile.values[-1] - profile.at(0.0)).max())
+    if player.rounds != 1 and back > 1e-6:
         _say(
             kind, f"note: it does not end where it begins; each time anew a winch has {1e3 * back:.1f} mm to go at once"
         )
-    tell, newline = _progress(kind, motors, player, seconds)
+    tell, newline = _progress(kind, motors, player, float(profile.times[-1]))
     try:
-        with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
-            control.play(motors, table.profile, player, tell=tell)
+        control.play(motors, profile, player, tell=tell)
     except (KeyboardInterrupt, SystemExit) as stop:
         newline()
         _say(kind, f"stopped at {player.time:.2f} s; the motors hold at {_places(motors)}")
@@ -86,10 +98,7 @@ def play(
     except HydrostatError as error:
         newline()
         raise HydrostatError(f"{kind}: the motors stopped at {player.time:.2f} s: {error}") from None
-    finally:
-        motors.link.close()
     newline()
-    _say(kind, f"played; the motors hold at {_places(motors)}")
 
 
 def _progress(

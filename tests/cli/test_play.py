@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.errors import HydrostatError
+
 Run = Callable[..., tuple[int, str, str]]
 
 PROGRAM = "import hydrostat.cli.waiting as w; w.PATIENCE = 1e6; from hydrostat.cli.main import main; main()"
@@ -183,3 +185,40 @@ def test_a_robot_without_winches_is_refused(run: Run, tmp_path: Path, wave: Path
     code, _, err = run("play", tmp_path / "box", wave)
     assert code == 2
     assert "has no winches" in err
+
+
+def test_a_table_too_fast_for_the_motors_is_refused_before_they_are_armed(
+    run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """100 mm/s: simulated motors can, those of a link (60 mm/s) cannot."""
+    armed = list[object]()
+    monkeypatch.setattr("hydrostat.control.arm_motors", lambda *_, **__: armed.append(1))
+    table = tmp_path / "fast.csv"
+    table.write_text("time_s,left\n0,0\n0.1,10\n")
+    code, _, err = run("play", starfish, table, "--port", "emulated")
+    assert (code, armed) == (2, [])
+    assert "moves at 100 mm/s, the motors at 60 mm/s at most" in err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("play", "wave.csv"), ("drive", "--source", "osc:0"), ("mimic", "--glove", "emulated", "--out", "out")],
+    ids=["play", "drive", "mimic"],
+)
+def test_signals_are_caught_from_before_motors_are_armed(
+    run: Run, starfish: Path, wave: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
+) -> None:
+    """Arming tries watchdogs, and turns motors: SIGTERM must not end the program then without a word to them."""
+    caught = list[object]()
+
+    def armed(*_: object, **__: object) -> None:
+        caught.append(signal.getsignal(signal.SIGTERM))
+        raise HydrostatError("no motors here")
+
+    monkeypatch.setattr("hydrostat.control.arm_motors", armed)
+    monkeypatch.chdir(wave.parent)
+    before = signal.getsignal(signal.SIGTERM)
+    code, _, err = run(words[0], starfish, *words[1:], "--port", "emulated")
+    assert (code, "no motors here" in err) == (1, True)
+    assert caught != [before]
+    assert callable(caught[0])
