@@ -126,31 +126,34 @@ def _measure(
         return []
     calibration, curves = control.read_calibration(file.parent, robot, name=file.name), list["SpoolCurve"]()
     link = control.BusLink(bus, robot.winches, calibration)
-    link.identify()
-    for place in chosen:
-        motor, travel = calibration.motors[place], robot.winches[place].travel
-        print(f"{bus.kind}: {motor.winch}: make a mark on its cable where it is bare, and lay a ruler beside it")
+    try:
+        link.identify()
+        for place in chosen:
+            motor, travel = calibration.motors[place], robot.winches[place].travel
+            print(f"{bus.kind}: {motor.winch}: make a mark on its cable where it is bare, and lay a ruler beside it")
 
-        def read(thought: float, place: int = place, name: str = motor.winch) -> float:
-            if truth is None:
-                return _asked(name)
-            taken = truth.motors[place].contraction(float(bus.read().angles[place]))
-            shown = 5e-4 * round(taken / 5e-4)
-            by_motor = f"{round(1e3 * thought, 1) + 0.0:.1f} mm by its motor"
-            print(f"{bus.kind}: {name}: {by_motor}, {1e3 * shown:.1f} by the emulated ruler")
-            return shown
+            def read(thought: float, place: int = place, name: str = motor.winch) -> float:
+                if truth is None:
+                    return _asked(name)
+                taken = truth.motors[place].contraction(float(bus.read().angles[place]))
+                shown = 5e-4 * round(taken / 5e-4)
+                by_motor = f"{round(1e3 * thought, 1) + 0.0:.1f} mm by its motor"
+                print(f"{bus.kind}: {name}: {by_motor}, {1e3 * shown:.1f} by the emulated ruler")
+                return shown
 
-        curves.append(control.measure_spool(link, motor, place, travel, read))
-        motors = [*calibration.motors]
-        motors[place] = curves[-1].motor
-        calibration = control.Calibration(tuple(motors))
-        control.write_calibration(file.parent, calibration, name=file.name)
-        print(
-            f"{bus.kind}: {motor.winch}: radius {1e3 * curves[-1].motor.radius:.2f} mm at its zero; at most "
-            f"{1e3 * curves[-1].more:+.1f} mm beside what was thought; readings {1e3 * curves[-1].scatter:.2f} mm "
-            "beside the curve",
-            flush=True,
-        )
+            curves.append(control.measure_spool(link, motor, place, travel, read))
+            motors = [*calibration.motors]
+            motors[place] = curves[-1].motor
+            calibration = control.Calibration(tuple(motors))
+            control.write_calibration(file.parent, calibration, name=file.name)
+            print(
+                f"{bus.kind}: {motor.winch}: radius {1e3 * curves[-1].motor.radius:.2f} mm at its zero; at most "
+                f"{1e3 * curves[-1].more:+.1f} mm beside what was thought; readings {1e3 * curves[-1].scatter:.2f} mm "
+                "beside the curve",
+                flush=True,
+            )
+    finally:
+        link.close()
     return curves
 
 

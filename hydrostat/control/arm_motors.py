@@ -48,7 +48,6 @@ def arm_motors(
         constants = np.array([fact.constant for fact in link.identify()])
         link.guard = TensionGuard(known or pulls, constants, tuple(winch.name for winch in robot.winches))
         link.arm()
-        link.watch()
         places = link.read(time.monotonic())
     except BaseException:
         link.close()

@@ -144,6 +144,8 @@ class BusLink(Link):
             if self.guard is not None:
                 self.guard.begin()
             self._to(LinkState.ARMED)
+            if self._clock is steady:  # a clock of its own, as tests have, is watched by who moves it
+                self.watch()
             if self._stops != stops:  # by another thread, which did not wait for this one
                 raise self._stopped(LinkState.STOPPED, "stopped while they were armed")
 
@@ -206,8 +208,8 @@ class BusLink(Link):
                     self._stopped(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
 
     def watch(self) -> None:
-        """Keep the deadline from a thread of its own, whatever else this program is busy with."""
-        if self._watch is None:
+        """Keep the deadline from a thread of its own, whatever else this program is busy with; arming begins it."""
+        if self._watch is None or not self._watch.is_alive():
             self._watch = threading.Thread(target=self._watching, name="deadline of the motors", daemon=True)
             self._watch.start()
 

@@ -102,10 +102,11 @@ def test_the_deadline_of_the_host_alone_stops_them() -> None:
         rig.link.send(np.full(3, 0.03), 0.0, speed=0.05)
 
 
-def test_the_watch_runs_beside_a_busy_program() -> None:
+def test_the_watch_runs_beside_a_busy_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Arming begins it, on the clock that links have."""
     rig = Rig()
+    monkeypatch.setattr("hydrostat.control.bus_link.steady", rig.link._clock)
     rig.begin()
-    rig.link.watch()
     rig.go(0.03, 0.1)
     rig.chain.now += DEADLINE + 0.1  # the program did not come to tell anything
     until = time.monotonic() + 20.0

@@ -142,7 +142,6 @@ class Hardware:
             link.arm()
             self._places, self._alive = link.read(time.monotonic()), time.monotonic()
             self._goal = self._goal if self._shown else self._places
-            link.watch()
             self.words = ""
         if self._thread is None:
             self._thread = threading.Thread(target=self._run, name="motors of the studio", daemon=True)
