@@ -89,6 +89,7 @@ class EmulatedServo:
         self.speed, self.origin = 0.0, 2 * pi * (self.angle // (2 * pi))
         self.__post_init__()
         self.table[MODE] = mode
+        self.step(0.0, 1e-3)
 
     @property
     def counted(self) -> float:

@@ -1,20 +1,20 @@
 """Faults injected into one or more of several boards, joined as one bus."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from emulated_board import BoardMotor, EmulatedBoard
-from emulation import CONSTANT, CURRENT, RADIUS, SPRING, together
-from fault_campaign import HIGH, LOW, STANDS, WORDS, Campaign, Noise
+from emulation import CONSTANT, CURRENT, RADIUS, cut, jam, let_pull, spring_guard, together
+from fault_campaign import GUARDED, HIGH, LOW, WORDS, Campaign, Noise
 
 from hydrostat.control.bus_link import BusLink, LinkState
 from hydrostat.control.calibration import Calibration, WinchMotor
-from hydrostat.control.dynamixel_bus import DynamixelBus
+from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
 from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.firmware_bus import FirmwareBus
-from hydrostat.control.guard import TensionGuard
 from hydrostat.control.joined_bus import JoinedBus
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch
@@ -22,17 +22,9 @@ from hydrostat.robot import Winch
 ZERO = 4.0  # angle of servos with nothing taken in, so that a turn ends on their way [rad]
 COUNTS = 2000.0
 KINDS = ("dynamixel", "feetech", "firmware")
-HARMS = ("deaf", "mute", "stuck", "hot", "anew", "unplugged")
-TOLD = WORDS | {
-    "mute": ("has not answered",),
-    "stuck": (*WORDS["stuck"], "stall"),
-    "anew": (*WORDS["anew"], "switched off or reset", "has not answered"),
-}
-
-
-def load(angle: float) -> float:
-    """Torque of a spring from the zero on [N m]."""
-    return RADIUS * SPRING * max(RADIUS * (angle - ZERO), 0.0)
+HARMS = ("deaf", "mute", "stuck", "hot", "anew", "unplugged", *GUARDED)
+TOLD = WORDS | {"mute": ("has not answered",), "anew": (*WORDS["anew"], "switched off or reset", "has not answered")}
+FIRMWARE = TOLD | {"deaf": TOLD["mute"], "hot": TOLD["mute"], "stuck": ("stall",)}  # a board is heard as a whole
 
 
 class Boards:
@@ -40,6 +32,7 @@ class Boards:
 
     def __init__(self, random: np.random.Generator, kind: str) -> None:
         counts = random.integers(1, 4, int(random.integers(2, 5))).tolist()
+        self.commanded, self.grace = 0.0, 0.06 if kind == "firmware" else 0.0  # a board stops after 50 ms of too much
         self.kind, self.count = kind, sum(counts)
         order = random.permutation(self.count).tolist()
         self.chains, self.lines, parts = list[EmulatedChain](), list[list[int]](), []
@@ -59,17 +52,22 @@ class Boards:
             WinchMotor(winch=w.name, board=found[n][0], number=found[n][1], zero=zero, radius=RADIUS, current=CURRENT)
             for n, w in enumerate(winches)
         ]
-        names = tuple(winch.name for winch in winches)
-        constant = np.nan if kind == "firmware" else CONSTANT
-        guard = TensionGuard(lambda taken: SPRING * np.maximum(taken, 0.0), np.full(self.count, constant), names)
+        self._names = tuple(winch.name for winch in winches)
         self.bus = JoinedBus(parts)
-        self.link = BusLink(self.bus, winches, Calibration(tuple(spools)), guard=guard, clock=self.chain.clock)
+        self.link = BusLink(self.bus, winches, Calibration(tuple(spools)), clock=self.chain.clock)
+
+    def pull(self, reaches: list[float]) -> None:
+        """Let springs pull, as hard as the bounds of currents at their reaches [m]."""
+        self.reaches = np.array(reaches)
+        let_pull(self.servos, reaches, ZERO)
 
     def begin(self) -> None:
-        """Identify and arm."""
+        """Identify, guard and arm."""
         self.bus.identify()
         self.bus.mark()
-        self.link.identify()
+        facts = self.link.identify()
+        self.guarded = bool(np.isfinite([fact.constant for fact in facts]).all())
+        self.link.guard = spring_guard(facts, self.servos, self.reaches, self._names)
         self.link.arm()
 
     def go(self, goal: np.ndarray, seconds: float, *, speed: float) -> None:
@@ -77,7 +75,8 @@ class Boards:
         end = self.chain.now + seconds
         while self.chain.now < end:
             begin = self.chain.now
-            self.link.send(goal[: self.count], begin, speed=speed)
+            self.link.send(goal, begin, speed=speed)
+            self.commanded = begin
             self.link.read(begin)
             self.chain.wait(max(0.0, 0.02 - (self.chain.now - begin)))
 
@@ -92,6 +91,8 @@ class Boards:
         servo = chain.servos[int(random.integers(len(chain.servos)))]
         if kind == "unplugged":
             chain.gone = True
+        elif kind in GUARDED:
+            (cut if kind == "cut" else jam)(servo)
         elif isinstance(chain, EmulatedBoard):
             if kind == "anew":
                 chain.begin_anew()
@@ -117,16 +118,14 @@ class Boards:
         if self.kind == "firmware":
             scale = COUNTS / (2 * np.pi * RADIUS)
             limits = {"low": round(scale * (LOW - 3e-4)), "high": round(scale * (HIGH + 3e-4))}
-            each = {"angle": ZERO, "load": load, "constant": CONSTANT, "counts": COUNTS} | limits
+            each: dict[str, Any] = {"angle": ZERO, "constant": CONSTANT, "counts": COUNTS} | limits
             return EmulatedBoard([BoardMotor(**each) for _ in range(count)])
         if self.kind == "feetech":
-            return EmulatedFeetechChain(
-                [EmulatedSts(n, angle=ZERO, load=load, constant=CONSTANT) for n in range(1, count + 1)]
-            )
+            return EmulatedFeetechChain([EmulatedSts(n, angle=ZERO, constant=CONSTANT) for n in range(1, count + 1)])
         models = random.choice([1200, 1220, 1060], count).tolist()
         return EmulatedChain(
             [
-                EmulatedServo(n, model=model, angle=ZERO, load=load, constant=CONSTANT)
+                EmulatedServo(n, model=model, angle=ZERO, constant=MODELS[model].torque / MODELS[model].stall)
                 for n, model in enumerate(models, 1)
             ]
         )
@@ -144,7 +143,9 @@ class BoardsCampaign(Campaign):
 
     def rig(self) -> Boards:  # type: ignore[override]
         """Motors of a run."""
-        return Boards(self.random, str(self.random.choice(KINDS, p=(0.4, 0.2, 0.4))))
+        rig = Boards(self.random, str(self.random.choice(KINDS, p=(0.4, 0.2, 0.4))))
+        rig.pull(self.reaches(rig.count))
+        return rig
 
     def noises(self, rig: Boards) -> list[Noise]:  # type: ignore[override]
         """Noise on all lines; less on those of boards, which a single bad line stops."""
@@ -154,7 +155,6 @@ class BoardsCampaign(Campaign):
             chain.towards, chain.back = (
                 Noise(self.random, self.share / 5 if rig.kind == "firmware" else self.share) for _ in range(2)
             )
-            chain.watch = lambda: self._watch(rig)  # type: ignore[arg-type]
             found += [chain.towards, chain.back]
         return found
 
@@ -163,17 +163,13 @@ class BoardsCampaign(Campaign):
         for chain in rig.chains:
             chain.towards = chain.back = lambda data: data
 
-    def goal(self, rig: Boards) -> np.ndarray:  # type: ignore[override]
-        """Where to go, sometimes beyond the limits [m]."""
-        return self.random.uniform(-0.01, 0.05, rig.count)
-
     zero = ZERO
 
     def _settle(self, rig: Boards) -> None:  # type: ignore[override]
         """What noise has left behind is over: a watchdog that has fired is told after half a second."""
         for attempt in range(5):
             if rig.link.state is LinkState.ARMED:
-                words = self._drive(rig, 0.8)  # type: ignore[arg-type]
+                words = self._drive(rig, 0.8, self.within(rig))  # type: ignore[arg-type]
                 if not words:
                     return
                 if attempt:
@@ -182,38 +178,33 @@ class BoardsCampaign(Campaign):
 
     def _hard(self, rig: Boards) -> None:  # type: ignore[override]
         self._settle(rig)  # type: ignore[arg-type]
-        random, last, words = self.random, rig.chain.now, ""
+        random = self.random
         if rig.link.state is not LinkState.ARMED:
             self.wrong[f"{rig.kind}: not armed without noise: {rig.link.why}"] += 1
-        kind = str(random.choice([*HARMS, "host dies", "host sleeps"], p=[0.14] * 6 + [0.08] * 2))
+        harms = [harm for harm in HARMS if rig.guarded or harm not in GUARDED]
+        kind = str(random.choice([*harms, "host dies", "host sleeps"]))
         harmed = dict[int, str]()
         if kind in HARMS:
             for board in random.permutation(len(rig.chains))[: int(random.integers(1, len(rig.chains) + 1))].tolist():
-                harmed[board] = str(random.choice(HARMS)) if harmed else kind
-                rig.harm(harmed[board], board, random)
-        self.count.update(harmed.values() if harmed else [kind])
-        if kind == "host sleeps":
-            rig.chain.wait(float(random.uniform(0.3, 2.0)))
-        if kind != "host dies":
-            for _ in range(12):
-                last = rig.chain.now
-                words = self._drive(rig, 0.25)  # type: ignore[arg-type]
-                if words:
-                    break
-            if not self._named(words, harmed, rig.kind) and not (kind == "host sleeps" and TOLD[kind][0] in words):
-                self.wrong[f"{rig.kind}: {harmed or kind}: told as {words!r}"] += 1
-        rig.chain.wait(STANDS)
-        before = rig.places
-        rig.chain.wait(0.5)
-        if np.abs(rig.places - before).max() > 1e-6:
-            self.wrong[f"still turning {rig.chain.now - last - 0.5:.2f} s after the last command, {kind}"] += 1
+                harmed[board] = str(random.choice(harms)) if harmed else kind
+        if "jammed" in harmed.values():  # where the springs themselves pull little
+            self._drive(rig, 1.2, self.within(rig, 0.2, 0.25))  # type: ignore[arg-type]
+        self.late, kinds = 0.0, list(harmed.values()) or [kind]
+        for board, harm in harmed.items():
+            rig.harm(harm, board, random)
+        self.count.update(kinds)
+        words = self._words(rig, kinds)  # type: ignore[arg-type]
+        if not (self._named(words, harmed, rig) if harmed else TOLD[kind][0] in words):
+            self.wrong[f"{rig.kind}: {harmed or kind}: told as {words!r}"] += 1
+        self._stand(rig, kind)  # type: ignore[arg-type]
         self._once_more(rig)
 
-    def _named(self, words: str, harmed: dict[int, str], kind: str) -> bool:
-        """Whether words name a board that was harmed, and what was done to it."""
+    def _named(self, words: str, harmed: dict[int, str], rig: Boards) -> bool:
+        """Whether words name a board that was harmed (the guard: its winch), and what was done to it."""
+        told = FIRMWARE if rig.kind == "firmware" else TOLD
         for board, harm in harmed.items():
-            told = TOLD["mute" if kind == "firmware" and harm in ("deaf", "hot") else harm]
-            if f"board {board + 1}" in words and any(each in words for each in told):
+            named = [f"winch {place} " for place in rig.lines[board]] if harm in GUARDED else [f"board {board + 1}"]
+            if any(name in words for name in named) and any(each in words for each in told[harm]):
                 return True
         return False
 
@@ -222,7 +213,7 @@ class BoardsCampaign(Campaign):
         rig.heal()
         self._again(rig)  # type: ignore[arg-type]
         if rig.link.state is LinkState.ARMED:
-            self._drive(rig, 1.0)  # type: ignore[arg-type]
+            self._drive(rig, 1.0, np.minimum(0.9 * rig.reaches, 0.05))  # type: ignore[arg-type]
         try:
             rig.link.close()
         except HydrostatError:

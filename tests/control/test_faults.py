@@ -1,4 +1,4 @@
-"""Ten thousand injected faults, and three faults of ours that the campaign must catch. Oracle: the emulated servos."""
+"""Ten thousand injected faults, and faults of ours that the campaign must catch. Oracle: the emulated servos."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,10 @@ from fault_campaign import HARD, Campaign
 
 from hydrostat.control import bus_link
 from hydrostat.control.bus_link import BusLink
+from hydrostat.control.dynamixel_bus import DynamixelBus
 from hydrostat.control.dynamixel_packets import PacketReader
+from hydrostat.control.feetech_bus import FeetechBus
+from hydrostat.control.guard import TensionGuard
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -25,6 +28,14 @@ def test_ten_thousand_faults_leave_motors_within_limits_standing_in_time_and_tol
 def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
     if bug == "goals far ahead":
         monkeypatch.setattr(bus_link, "AHEAD", 5.0)
+    elif bug == "goals too far ahead":
+        monkeypatch.setattr(bus_link, "AHEAD", 0.45)
+    elif bug == "bounds of current that bound nothing":
+        for kind in (DynamixelBus, FeetechBus):
+            arm: Callable = kind.arm
+            monkeypatch.setattr(kind, "arm", lambda self, currents, arm=arm: arm(self, 1000 * currents))
+    elif bug == "no guard of tensions":
+        monkeypatch.setattr(TensionGuard, "fault", lambda *_: "")
     elif bug == "no limits":
         initialise: Callable = BusLink.__init__
 
@@ -38,12 +49,21 @@ def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("bug", "caught"), [("goals far ahead", "still turning"), ("no limits", "beyond"), ("blind guard", "told as")]
+    ("bug", "caught"),
+    [
+        ("goals far ahead", "still turning"),
+        ("goals too far ahead", "after the last command, host sleeps"),
+        ("bounds of current that bound nothing", "pulls too hard"),
+        ("no guard of tensions", "cut: told as ''"),
+        ("no guard of tensions", "jammed: told as"),
+        ("no limits", "beyond"),
+        ("a link that judges nothing", "told as"),
+    ],
 )
-def test_a_bug_in_the_guard_is_caught(bug: str, caught: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bug_is_caught(bug: str, caught: str, monkeypatch: pytest.MonkeyPatch) -> None:
     broken(monkeypatch, bug)
     campaign = Campaign(np.random.default_rng(22), seconds=0.4)
-    for _ in range(40):
+    for _ in range(80):
         campaign.run()
         if any(caught in word for word in campaign.wrong):
             return
