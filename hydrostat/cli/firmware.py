@@ -12,6 +12,8 @@ from hydrostat.errors import InputError
 from hydrostat.units import counted
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from hydrostat.control import Calibration
 
 
@@ -80,10 +82,7 @@ def firmware(
         print(f"Wrote {control.write_calibration(folder, given)}")
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
         _tell(kind, number, given)
-        command = build.flash_command(kind, ports[number - 1] if ports else "PORT", image)
-        print(f"Wrote {image}; {'writing it to the board' if port else 'to write it to a board'}: {join(command)}")
-        if ports:
-            build.flash(command)
+        _flash(kind, image, ports[number - 1] if ports else None)
     if ports:
         print(f"{port}: written. Let all cables out, then: hydrostat calibrate {folder} --port firmware:{port}")
 
@@ -114,3 +113,15 @@ def _tell(kind: str, number: int, given: "Calibration") -> None:
     print(f"{name}: {counted(len(motors), 'motor')}, wired so (driver's PWM, direction, encoder A and B, current):")
     for each, pins in zip(motors, board_kind(kind).wiring, strict=False):
         print(f"  {each.number} {each.winch}: {', '.join(pins)}")
+
+
+def _flash(kind: str, image: "Path", port: str | None) -> None:
+    """Write an image to the board on a port, or say how."""
+    from hydrostat.control import firmware_build as build
+
+    command = build.flash_command(kind, port or "PORT", image)
+    print(
+        f"Wrote {image}; {'writing it to the board' if port else 'to write it to a board'}: {join(command)}", flush=True
+    )
+    if port:
+        build.flash(command)

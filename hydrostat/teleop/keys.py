@@ -12,7 +12,7 @@ from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 FINE, COARSE = 0.5e-3, 3e-3
 """How far a key moves a channel [m], and with a capital letter, or page up and down."""
-HELP = "tab: next, left, right: out, in (A, D: further), r: rest, space: hold, q: end"
+HELP = "tab next; arrows out, in; Shift+A, D further; r rest; space hold; q end"
 _ARROWS = {b"\x1b[A": "w", b"\x1b[B": "s", b"\x1b[C": "d", b"\x1b[D": "a", b"\x1b[5~": "D", b"\x1b[6~": "A"}
 _BACK = b"\x1b[Z"
 

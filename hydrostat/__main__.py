@@ -1,0 +1,5 @@
+"""`python -m hydrostat`."""
+
+from hydrostat.cli.main import main
+
+main()
