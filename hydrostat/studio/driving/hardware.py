@@ -143,7 +143,7 @@ class Hardware:
             self._places, self._alive = link.read(time.monotonic()), time.monotonic()
             self._goal = self._goal if self._shown else self._places
             self.words = ""
-        if self._thread is None:
+        if self._thread is None or not self._thread.is_alive():
             self._thread = threading.Thread(target=self._run, name="motors of the studio", daemon=True)
             self._thread.start()
         self._ring()
@@ -153,12 +153,7 @@ class Hardware:
 
         It waits for no other thread, not even for one that arms them just now: they are not armed then.
         """
-        link = self._link
-        if link is not None:
-            before = link.state
-            link.stop()
-            if before is LinkState.ARMED:
-                self.words = why
+        self._stand(why)
         self._ring()
 
     def disconnect(self) -> None:
@@ -195,24 +190,39 @@ class Hardware:
         self.disconnect()
 
     def _run(self) -> None:
-        """Tell motors what is shown, and see where they are, as long as they are armed."""
+        """Tell motors what is shown, and see where they are, as long as they are armed; only the studio ends it."""
         while not self._over.wait(PERIOD):
-            with self._lock:
-                link = self._link
-                if link is None or not self.armed:
+            try:
+                if not self._turn():
                     continue
-                now = time.monotonic()
-                if now - self._alive > self._silent:
-                    self.hold("nobody looks at the page: the motors hold; arm them anew")
-                    continue
-                try:
-                    link.send(self._goal, now, speed=link.limits.speed)
-                    self._places = link.read(now)
-                except Exception as error:  # noqa: BLE001 - whatever it is, motors stop
-                    link.stop()
-                    self.words = f"the motors stopped: {error}"
+            except Exception as error:  # noqa: BLE001 - whatever it is, motors stop, and this thread goes on
+                self._stand("")
+                self.words = f"the motors stopped: {error}"
             with suppress(Exception):  # who shows it may have gone; this thread is who stops motors
-                self._bell.ring(Topic.DRIVE)
+                self._ring()
+
+    def _turn(self) -> bool:
+        """Tell and read motors once; False where none turn."""
+        with self._lock:
+            link = self._link
+            if link is None or not self.armed:
+                return False
+            now = time.monotonic()
+            if now - self._alive > self._silent:
+                self._stand("nobody looks at the page: the motors hold; arm them anew")
+                return True
+            link.send(self._goal, now, speed=link.limits.speed)
+            self._places = link.read(now)
+            return True
+
+    def _stand(self, why: str) -> None:
+        """Stop motors, and say why if they were armed."""
+        link = self._link
+        if link is not None:
+            before = link.state
+            link.stop()
+            if before is LinkState.ARMED:
+                self.words = why
 
     def _same(self, robot: Robot) -> bool:
         """Whether another state of the document has the same winches."""

@@ -12,6 +12,7 @@ from hydrostat.control import Bus, LinkState
 from hydrostat.control.open_bus import open_bus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot.gallery import gallery_folder
+from hydrostat.studio.bell import Topic
 from hydrostat.studio.driving.kit_speed import kit_speed
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.session import Session
@@ -248,3 +249,29 @@ def test_motors_armed_before_anything_is_shown_stay_where_they_are(session: Sess
     hardware.arm()
     until(lambda: bool(hardware.beat()), 0.5)
     assert min(hardware.places.values()) > 0.0055
+
+
+def test_who_is_told_may_fail_and_motors_are_still_told_and_armed_anew(session: Session) -> None:
+    """The thread that tells motors goes on when a listener of it raises, just as nobody looks at the page."""
+    hardware = session.hardware
+
+    def broken(_: Topic) -> None:
+        if threading.current_thread().name == "motors of the studio":
+            raise RuntimeError("its line is gone")
+
+    session.bell.listen(broken)
+    hardware._silent = 0.2
+    hardware.connect("emulated")
+    hardware.arm()
+    assert until(lambda: not hardware.armed)
+    assert "nobody looks at the page" in hardware.words
+    hardware._silent = 1e3
+    session.driver.turn("left", 0.008)
+
+    def turned() -> bool:
+        step(session, 0.05)
+        if not hardware.armed:  # this computer was too busy to tell them
+            hardware.arm()
+        return hardware.places["left"] > 0.007
+
+    assert until(turned)
