@@ -35,6 +35,9 @@ KEYS = {
 TRAVEL, SPREAD, RESIDUAL = 45e-3, 4.0, 8.0
 """Most that is taken in [m], where the search begins [mm], and most that a policy adds [mm]."""
 
+ENOUGH = 100.0
+"""More counts for no more where keyframes are searched [degree]: all draws shall turn far, not one very far."""
+
 Act = Callable[[dict[str, np.ndarray], int], np.ndarray]
 """What to do by what is seen and the number of the keyframe."""
 
@@ -50,9 +53,9 @@ class AddedTo(TwistEnv):
         return super().contractions(as_action(key + RESIDUAL * np.asarray(action)))
 
 
-def made(body: str, kind: type[TwistEnv] = TwistEnv) -> TwistEnv:
-    """The task on a body."""
-    options: dict[str, Any] = {"steps": len(KEYS[body]), "tied": TIED, "travel": TRAVEL}
+def made(body: str, steps: int, kind: type[TwistEnv] = TwistEnv) -> TwistEnv:
+    """The task on a body, with so many keyframes in a cycle."""
+    options: dict[str, Any] = {"steps": steps, "tied": TIED, "travel": TRAVEL}
     if body == "flat":
         return kind(flat_gripper(), options=TwistOptions(**options, physics=ThingPhysics(drag=DRAG)))
     physics = ThingPhysics(hold=100.0)
@@ -98,18 +101,18 @@ def judged(name: str, env: TwistEnv, act: Act, draws: Sequence[dict[str, Any]], 
 
 
 def searched(
-    env: TwistEnv, keys: np.ndarray, budget: int, *, many: int, each: int, seed: int = 0
+    env: TwistEnv, keys: np.ndarray, budget: int, *, many: int, each: int, spread: float = SPREAD, seed: int = 0
 ) -> tuple[np.ndarray, int]:
     """Keyframes [mm] by the cross-entropy method, so many at a time on so many draws each, and what they cost."""
     random, before = np.random.default_rng([seed, 5]), env.equilibria
-    middle, spread = keys.astype(float), np.full(keys.shape, SPREAD)
+    middle, around = keys.astype(float), np.full(keys.shape, spread)
     while True:
         begun, draws = env.equilibria, held_out_goals(env, each, int(random.integers(1_000_000)))
-        tried = np.clip(middle + spread * random.normal(size=(many, *keys.shape)), 0.0, 1e3 * TRAVEL)
+        tried = np.clip(middle + around * random.normal(size=(many, *keys.shape)), 0.0, 1e3 * TRAVEL)
         tried[0] = middle
-        turned = [np.mean([cycle(env, playing(one), draw)[0] for draw in draws]) for one in tried]
+        turned = [np.mean([min(cycle(env, playing(one), draw)[0], ENOUGH) for draw in draws]) for one in tried]
         best = tried[np.argsort(turned)[::-1][: max(2, many // 3)]]
-        middle, spread = best.mean(axis=0), 0.5 * spread + 0.5 * np.maximum(best.std(axis=0), 0.5)
+        middle, around = best.mean(axis=0), 0.5 * around + 0.5 * np.maximum(best.std(axis=0), 0.5)
         cost = env.equilibria - before
         print(
             f"  {cost} time steps: {max(turned):.1f}, {np.median(turned):.1f}; {np.round(middle, 1).tolist()}",
@@ -121,7 +124,7 @@ def searched(
 
 def learned(body: str, keys: np.ndarray, actions: int, out: Path) -> tuple[Act, int]:
     """A policy that adds to keyframes, and the time steps that it cost."""
-    env, judge_in = made(body, AddedTo), made(body, AddedTo)
+    env, judge_in = made(body, len(keys), AddedTo), made(body, len(keys), AddedTo)
     AddedTo.keys = keys
     few = held_out_goals(judge_in, 2, 1)
     options = TrainOptions(steps=actions, every=max(1, actions // 2), layers=(64, 64), rate=1e-3)
@@ -139,23 +142,23 @@ def main() -> None:
     parser.add_argument("--body", choices=KEYS, default="flat")
     parser.add_argument("--draws", type=int, default=60, help="that none has seen; 0: nothing is judged")
     parser.add_argument("--search", type=int, default=4000, help="time steps; 0: none")
-    parser.add_argument("--many", type=int, nargs=2, default=(10, 2), help="tries at a time, draws of each")
+    parser.add_argument("--many", type=int, nargs=2, default=(12, 4), help="tries at a time, draws of each")
     parser.add_argument("--learn", type=int, default=0, help="actions; 0: none")
-    parser.add_argument("--keys", type=float, nargs="+", help="of the policy and the search [mm], a and b in turn")
+    parser.add_argument("--keys", type=float, nargs="+", help="[mm], a and b in turn, any number")
+    parser.add_argument("--spread", type=float, default=SPREAD, help="of the tries at first [mm]")
     parser.add_argument("--out", type=Path, default=Path("build/twist"))
     given = parser.parse_args()
     print(machine())
-    env = made(given.body)
-    draws, keys = held_out_goals(env, given.draws, 0), np.array(KEYS[given.body], dtype=float)
+    keys = np.array(given.keys or KEYS[given.body], dtype=float).reshape(-1, 2)
+    env = made(given.body, len(keys))
+    draws = held_out_goals(env, given.draws, 0)
     print(f"{given.body}: {len(env.robot.body.mesh.nodes)} nodes, {env.options.physics.beats} time steps a keyframe")
     head = "| way | time steps | draws | degrees a cycle | 10 %, median, 90 % | friction low, high | 90 or more |"
     print(f"{head} moved mm, most | s |\n|{9 * '---|'}")
-    if given.keys:
-        keys = np.array(given.keys).reshape(keys.shape)
     judged("keyframes as given" if given.keys else "keyframes by hand", env, playing(keys), draws, 0)
     cost = 0
     if given.search:
-        keys, cost = searched(env, keys, given.search, many=given.many[0], each=given.many[1])
+        keys, cost = searched(env, keys, given.search, many=given.many[0], each=given.many[1], spread=given.spread)
         judged("keyframes that were searched", env, playing(keys), draws, cost)
     if given.learn:
         act, more = learned(given.body, keys, given.learn, given.out)
