@@ -30,9 +30,9 @@ def learned_start(simulation: "Simulation", model: "LearnedModel", target: "Pose
 
     found = certify(simulation, model, model.solve(target))
     expected = sum(found.errors.values()) / len(found.errors)
-    words = f"networks expect {1e3 * expected:.2f} mm left, with a doubt of {1e3 * found.doubt:.2f} mm"
+    words = f"networks expect {1e3 * expected:.2f} mm left on average, with a doubt of {1e3 * found.doubt:.2f} mm"
     if found.certified is None:
         print(f"{target.name}: {words}; there the simulator says: {found.reason}")
         return None
-    print(f"{target.name}: {words}; the simulator finds {1e3 * found.error:.2f} mm there")
+    print(f"{target.name}: {words}; the simulator finds {1e3 * found.error:.2f} mm there on average")
     return found.pose

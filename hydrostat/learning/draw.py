@@ -43,6 +43,15 @@ def contractions(draw: Draw, points: Points, low: Vector, high: Vector, pairs: W
     return np.where(points[:, len(low) :] < 0.5, box, 0.0) if draw is Draw.FACES else box
 
 
+def shared_numbers(rows: Rows, high: Vector, pairs: Winches) -> Points:
+    """Points in the unit cube, (samples, pairs), that give such contractions drawn by `Draw.ANTAGONIST`."""
+    shares = rows / high
+    columns = [
+        shares[:, one] if not other else 0.5 + 0.5 * (shares[:, one] - shares[:, other[0]]) for one, *other in pairs
+    ]
+    return np.stack(columns, axis=1)
+
+
 def antagonists(moves: Float[np.ndarray, "winches coordinates"]) -> tuple[tuple[int, ...], ...]:
     """Winches two by two whose markers go opposite ways, and the others alone: each is the best partner of its partner.
 

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import InputError
+from hydrostat.learning.draw import Draw, contractions, shared_numbers
 from hydrostat.learning.samples import Samples
 
 Goals = Float[np.ndarray, "targets coordinates"]
@@ -31,7 +32,9 @@ class ThesisNetwork:
 def train_thesis_network(train: Samples, *, seed: int = 0, epochs: int = 300) -> ThesisNetwork:
     """Train the thesis's network (R66): four layers of 30, ReLU, tanh at the end, squares of the action.
 
-    Inputs are raw centimetres; Adam with rate 0.001, batches of 20, the weights that were best on a tenth.
+    Of samples of which two winches that work against one another share a number its action has those numbers, else one
+    for each winch. Inputs are raw centimetres; Adam with rate 0.001, batches of 20, the weights that were best on a
+    tenth.
 
     Raises:
         InputError: no PyTorch.
@@ -41,9 +44,9 @@ def train_thesis_network(train: Samples, *, seed: int = 0, epochs: int = 300) ->
     except ImportError:
         raise InputError("the thesis's network needs PyTorch; install hydrostat[learn]") from None
     draw = torch.Generator().manual_seed(seed)
-    low, high = train.limits
+    to_action, to_contractions = _actions(train)
     inputs = torch.tensor(100 * train.markers.reshape(len(train), -1), dtype=torch.float32)
-    actions = torch.tensor(2 * (train.contractions - low) / (high - low) - 1, dtype=torch.float32)
+    actions = torch.tensor(to_action(train.contractions), dtype=torch.float32)
     with torch.random.fork_rng():
         torch.manual_seed(seed)
         layers: list[torch.nn.Module] = []
@@ -70,6 +73,19 @@ def train_thesis_network(train: Samples, *, seed: int = 0, epochs: int = 300) ->
     def answers(goals: Goals) -> Answers:
         with torch.no_grad():
             found = network(torch.tensor(100 * goals, dtype=torch.float32)).double().numpy()
-        return low + 0.5 * (found + 1) * (high - low)
+        return to_contractions(found)
 
     return ThesisNetwork(answers=answers, curve=curve)
+
+
+def _actions(train: Samples) -> tuple[Callable[[Answers], np.ndarray], Callable[[np.ndarray], Answers]]:
+    """From contractions [m] to actions between -1 and 1, and back."""
+    low, high = train.limits
+    if list(train.facts["draws"]) != [Draw.ANTAGONIST]:
+        return lambda rows: 2 * (rows - low) / (high - low) - 1, lambda found: low + 0.5 * (found + 1) * (high - low)
+    places = {name: place for place, name in enumerate(train.facts["winches"])}
+    pairs = tuple(tuple(places[name] for name in names) for names in train.facts["pairs"])
+    return (
+        lambda rows: 2 * shared_numbers(rows, high, pairs) - 1,
+        lambda found: contractions(Draw.ANTAGONIST, 0.5 * (found + 1), low, high, pairs),
+    )

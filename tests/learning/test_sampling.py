@@ -19,6 +19,8 @@ from builders import gallery_robot, strip_robot
 import hydrostat as hs
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import Draw, SamplePlan, export_samples, plan_samples, read_samples, sample_robot, sample_shard
+from hydrostat.learning.draw import contractions as drawn
+from hydrostat.learning.draw import shared_numbers
 from hydrostat.learning.sample_folder import SampleFolder
 from hydrostat.learning.sample_shard import REASONS
 from hydrostat.robot.unfinished import unfinished
@@ -125,6 +127,14 @@ def test_draws_keep_to_what_they_say() -> None:
     assert 0.4 < (faces == 0).mean() < 0.6
     assert (box > 0).all()
     assert np.abs((box / travel).mean(axis=0) - 0.5).max() < 0.02
+
+
+def test_numbers_that_two_winches_share_are_found_again() -> None:
+    """Oracle: the points that contractions were made of; a winch without partner has a number of its own."""
+    points, high = np.random.default_rng(0).random((50, 2)), np.array([0.03, 0.05, 0.04])
+    pairs = ((0, 2), (1,))
+    rows = drawn(Draw.ANTAGONIST, points, np.zeros(3), high, pairs)
+    assert shared_numbers(rows, high, pairs) == pytest.approx(points, abs=1e-12)
 
 
 def test_samples_drawn_by_tension_pull_no_harder(tmp_path: Path) -> None:
