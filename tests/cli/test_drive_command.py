@@ -11,9 +11,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from own_time import PROGRAM
 
 Run = Callable[..., tuple[int, str, str]]
-PROGRAM = "import hydrostat.cli.waiting as w; w.PATIENCE = 1e6; from hydrostat.cli.main import main; main()"
 
 
 @pytest.mark.slow

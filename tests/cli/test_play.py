@@ -10,12 +10,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from own_time import PROGRAM, run_in_own_time
 
 from hydrostat.errors import HydrostatError
 
 Run = Callable[..., tuple[int, str, str]]
 
-PROGRAM = "import hydrostat.cli.waiting as w; w.PATIENCE = 1e6; from hydrostat.cli.main import main; main()"
 WAVE = "time_s,left,feet\n0,3,0\n0.3,9,4.5\n0.6,3,0\n"
 
 
@@ -39,30 +39,11 @@ def test_it_plays_in_real_time_and_says_that_it_is_simulated(run: Run, starfish:
     assert lines[-1] == "simulated: played; the motors hold at right 0.0 mm, left 3.0 mm, feet 0.0 mm"
 
 
-OWN_TIME = """
-import time
-passed = [1000.0]
-
-def tell(which=None):
-    passed[0] += 1e-6
-    return passed[0]
-
-def sleep(seconds):
-    passed[0] += seconds
-
-time.monotonic, time.clock_gettime, time.sleep = tell, tell, sleep
-"""
-
-
 @pytest.mark.slow
 def test_it_plays_on_emulated_motors(starfish: Path, wave: Path) -> None:
-    """In a time that passes only while one waits: a busy machine, which tells motors nothing for long, stops them."""
-    words = ["play", str(starfish), str(wave), "--port", "emulated", "--speed", "0.5"]
-    done = subprocess.run(
-        [sys.executable, "-c", OWN_TIME + PROGRAM, *words], capture_output=True, text=True, timeout=300, check=False
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    lines = done.stdout.splitlines()
+    code, out, err = run_in_own_time("play", starfish, wave, "--port", "emulated", "--speed", 0.5)
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
     assert all(line.startswith("emulated: ") for line in lines)
     assert any(line.endswith("left: motor 2, XL330-M288, firmware 52, stops by itself") for line in lines)
     played = next(line for line in lines if "played" in line)
