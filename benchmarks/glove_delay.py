@@ -218,7 +218,6 @@ def measure(robot: Robot, way: Way, known: HandMap, given: argparse.Namespace) -
     link = BusLink(bus, robot.winches, calibration)
     again(link.identify)
     again(link.arm)
-    link.watch()
     smoothing = Smoothing(least=given.smoothing) if given.smoothing else None
     source = MappedHand(way.channels, CyberGlove(open_line(glove, BAUD)), known, smoothing=smoothing)
     found: list[Told] = []

@@ -45,7 +45,7 @@ def contractions(draw: Draw, points: Points, low: Vector, high: Vector, pairs: W
 
 def shared_numbers(rows: Rows, high: Vector, pairs: Winches) -> Points:
     """Points in the unit cube, (samples, pairs), that give such contractions drawn by `Draw.ANTAGONIST`."""
-    shares = rows / high
+    shares = rows / np.where(high > 0, high, 1.0)
     columns = [
         shares[:, one] if not other else 0.5 + 0.5 * (shares[:, one] - shares[:, other[0]]) for one, *other in pairs
     ]
