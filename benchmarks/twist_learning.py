@@ -1,11 +1,11 @@
 """Turning a thing: keyframes by hand, keyframes that were searched, a learned policy, judged on draws none has seen.
 
-    python benchmarks/twist_learning.py [--body flat|caging_gripper] [--draws 60] [--search 4000] [--learn 0]
+    python benchmarks/twist_learning.py [--body flat|caging_gripper] [--draws 60] [--search 4000] [--feel 0] [--learn 0]
 
 A cycle is a few keyframes, after which the hand opens. For each cycle friction (+-30 %), radius (+-5 %) and start
 (+-5 mm along each axis) are drawn. Costs are time steps of the exact simulator. The search (cross-entropy) begins at
-the keyframes by hand and tries others on draws of its own; the policy (SAC with hindsight) adds to the best keyframes
-what it sees fit.
+the keyframes by hand and tries others on draws of its own. Two policies add to the best keyframes what they see fit:
+a linear one of what was seen, found by the same search (`--feel`), and networks by TQC with hindsight (`--learn`).
 """
 
 import argparse
@@ -19,10 +19,19 @@ from machine import machine
 import numpy as np  # isort: skip
 
 from flat_gripper import DRAG, flat_gripper
+from twist_feedback import corrected, rule, seen_by, usual_turns
 
 import hydrostat as hs
 from hydrostat.robot import Obstacle
-from hydrostat.training import ThingPhysics, TrainOptions, TwistEnv, TwistOptions, held_out_goals, train
+from hydrostat.training import (
+    ThingPhysics,
+    TrainMethod,
+    TrainOptions,
+    TwistEnv,
+    TwistOptions,
+    held_out_goals,
+    train,
+)
 
 TIED = (" a", " b")
 BALL = Obstacle(name="ball", shape="sphere", at=(0.0, 0.0, 0.078), radius=33.5e-3, mass=0.03, friction=0.8)
@@ -32,11 +41,14 @@ KEYS = {
 }
 """By hand: what all cables a and all cables b take in [mm]."""
 
-TRAVEL, SPREAD, RESIDUAL = 45e-3, 4.0, 8.0
+TRAVEL, SPREAD, RESIDUAL = 45e-3, 4.0, 3.0
 """Most that is taken in [m], where the search begins [mm], and most that a policy adds [mm]."""
 
 ENOUGH = 100.0
 """More counts for no more where keyframes are searched [degree]: all draws shall turn far, not one very far."""
+
+ASKED = 140.0
+"""What a policy is asked for [degree]: so far that more is always better."""
 
 Act = Callable[[dict[str, np.ndarray], int], np.ndarray]
 """What to do by what is seen and the number of the keyframe."""
@@ -53,9 +65,9 @@ class AddedTo(TwistEnv):
         return super().contractions(as_action(key + RESIDUAL * np.asarray(action)))
 
 
-def made(body: str, steps: int, kind: type[TwistEnv] = TwistEnv) -> TwistEnv:
+def made(body: str, steps: int, kind: type[TwistEnv] = TwistEnv, **more: Any) -> TwistEnv:
     """The task on a body, with so many keyframes in a cycle."""
-    options: dict[str, Any] = {"steps": steps, "tied": TIED, "travel": TRAVEL}
+    options: dict[str, Any] = {"steps": steps, "tied": TIED, "travel": TRAVEL, **more}
     if body == "flat":
         return kind(flat_gripper(), options=TwistOptions(**options, physics=ThingPhysics(drag=DRAG)))
     physics = ThingPhysics(hold=100.0)
@@ -81,10 +93,21 @@ def playing(keys: np.ndarray) -> Act:
     return lambda _, number: as_action(keys[number])
 
 
-def judged(name: str, env: TwistEnv, act: Act, draws: Sequence[dict[str, Any]], cost: int) -> None:
-    """Print a row of a table."""
+def feeling(env: TwistEnv, usual: np.ndarray, numbers: np.ndarray) -> Act:
+    """Keyframes that give way to what is seen, by a rule."""
+
+    def act(seen: dict[str, np.ndarray], number: int) -> np.ndarray:
+        return as_action(corrected(numbers[number], *seen_by(env, seen, usual[number])).ravel())
+
+    return act
+
+
+def judged(
+    name: str, env: TwistEnv, act: Act, draws: Sequence[dict[str, Any]], cost: int, beside: np.ndarray | None = None
+) -> np.ndarray:
+    """Print a row of a table, and what is won over others on the same draws; turns are given back [degree]."""
     if not draws:
-        return
+        return np.zeros(0)
     began = time.process_time()
     rows = np.array([cycle(env, act, draw) for draw in draws])
     turned, moved = rows.T
@@ -94,23 +117,37 @@ def judged(name: str, env: TwistEnv, act: Act, draws: Sequence[dict[str, Any]], 
     print(
         f"| {name} | {cost} | {len(draws)} | {turned.mean():.1f} | {np.percentile(turned, 10):.1f}, "
         f"{np.median(turned):.1f}, {np.percentile(turned, 90):.1f} | {low:.1f}, {high:.1f} | "
-        f"{100 * kept.mean():.0f} % | "
+        f"{100 * kept.mean():.0f} % | {100 * (turned >= ENOUGH).mean():.0f} % | "
         f"{np.median(moved):.1f}, {moved.max():.1f} | {time.process_time() - began:.0f} |",
         flush=True,
     )
+    if beside is not None:
+        won = turned - beside
+        around = 1.96 * won.std(ddof=1) / len(won) ** 0.5
+        print(f"  {won.mean():+.1f} +- {around:.1f} degrees beside the first row, draw by draw", flush=True)
+    return turned
 
 
 def searched(
-    env: TwistEnv, keys: np.ndarray, budget: int, *, many: int, each: int, spread: float = SPREAD, seed: int = 0
+    env: TwistEnv,
+    begin: np.ndarray,
+    spread: np.ndarray,
+    playing: Callable[[np.ndarray], Act],
+    budget: int,
+    *,
+    many: int,
+    each: int,
+    enough: float,
 ) -> tuple[np.ndarray, int]:
-    """Keyframes [mm] by the cross-entropy method, so many at a time on so many draws each, and what they cost."""
-    random, before = np.random.default_rng([seed, 5]), env.equilibria
-    middle, around = keys.astype(float), np.full(keys.shape, spread)
+    """Numbers of a policy by the cross-entropy method, so many tries at a time on so many draws, and what they cost."""
+    random, before = np.random.default_rng([0, 5]), env.equilibria
+    middle, around = begin.astype(float), np.broadcast_to(spread, begin.shape)
     while True:
         begun, draws = env.equilibria, held_out_goals(env, each, int(random.integers(1_000_000)))
-        tried = np.clip(middle + around * random.normal(size=(many, *keys.shape)), 0.0, 1e3 * TRAVEL)
+        tried = middle + around * random.normal(size=(many, *begin.shape))
+        tried = np.clip(tried, 0.0, 1e3 * TRAVEL) if begin.ndim == 2 else tried
         tried[0] = middle
-        turned = [np.mean([min(cycle(env, playing(one), draw)[0], ENOUGH) for draw in draws]) for one in tried]
+        turned = [np.mean([min(cycle(env, playing(one), draw)[0], enough) for draw in draws]) for one in tried]
         best = tried[np.argsort(turned)[::-1][: max(2, many // 3)]]
         middle, around = best.mean(axis=0), 0.5 * around + 0.5 * np.maximum(best.std(axis=0), 0.5)
         cost = env.equilibria - before
@@ -124,10 +161,13 @@ def searched(
 
 def learned(body: str, keys: np.ndarray, actions: int, out: Path) -> tuple[Act, int]:
     """A policy that adds to keyframes, and the time steps that it cost."""
-    env, judge_in = made(body, len(keys), AddedTo), made(body, len(keys), AddedTo)
+    asked = (np.deg2rad(ASKED), np.deg2rad(ASKED))
+    env, judge_in = (made(body, len(keys), AddedTo, turn=asked) for _ in range(2))
     AddedTo.keys = keys
-    few = held_out_goals(judge_in, 2, 1)
-    options = TrainOptions(steps=actions, every=max(1, actions // 2), layers=(64, 64), rate=1e-3)
+    few = held_out_goals(judge_in, 4, 1)
+    options = TrainOptions(
+        method=TrainMethod.TQC, steps=actions, every=max(1, actions // 4), layers=(64, 64), updates=4, rate=1e-3
+    )
     model, curve = train(env, few, options, out, judge_in=judge_in, tell=lambda point: print(f"  {point}", flush=True))
 
     def act(seen: dict[str, np.ndarray], number: int) -> np.ndarray:
@@ -142,6 +182,8 @@ def main() -> None:
     parser.add_argument("--body", choices=KEYS, default="flat")
     parser.add_argument("--draws", type=int, default=60, help="that none has seen; 0: nothing is judged")
     parser.add_argument("--search", type=int, default=4000, help="time steps; 0: none")
+    parser.add_argument("--enough", type=float, default=ENOUGH, help="more counts for no more in a search [degree]")
+    parser.add_argument("--feel", type=int, default=0, help="time steps to search a rule that sees; 0: none")
     parser.add_argument("--many", type=int, nargs=2, default=(12, 4), help="tries at a time, draws of each")
     parser.add_argument("--learn", type=int, default=0, help="actions; 0: none")
     parser.add_argument("--keys", type=float, nargs="+", help="[mm], a and b in turn, any number")
@@ -154,15 +196,26 @@ def main() -> None:
     draws = held_out_goals(env, given.draws, 0)
     print(f"{given.body}: {len(env.robot.body.mesh.nodes)} nodes, {env.options.physics.beats} time steps a keyframe")
     head = "| way | time steps | draws | degrees a cycle | 10 %, median, 90 % | friction low, high | 90 or more |"
-    print(f"{head} moved mm, most | s |\n|{9 * '---|'}")
-    judged("keyframes as given" if given.keys else "keyframes by hand", env, playing(keys), draws, 0)
+    print(f"{head} {ENOUGH:.0f} or more | moved mm, most | s |\n|{10 * '---|'}")
+    first = judged("keyframes as given" if given.keys else "keyframes by hand", env, playing(keys), draws, 0)
+    tries: dict[str, Any] = {"many": given.many[0], "each": given.many[1], "enough": given.enough}
     cost = 0
     if given.search:
-        keys, cost = searched(env, keys, given.search, many=given.many[0], each=given.many[1], spread=given.spread)
-        judged("keyframes that were searched", env, playing(keys), draws, cost)
+        keys, cost = searched(env, keys, np.array(given.spread), playing, given.search, **tries)
+        judged("keyframes that were searched", env, playing(keys), draws, cost, first)
+    if given.feel:
+        apart = made(given.body, len(keys), tied=())
+        usual = usual_turns(apart, keys, lambda key: as_action(key.ravel()))
+
+        def obeying(numbers: np.ndarray) -> Act:
+            return feeling(apart, usual, numbers)
+
+        spread = np.array([given.spread, 1.0, 1.0, 1.0])
+        numbers, more = searched(apart, rule(keys), spread, obeying, given.feel, **tries)
+        judged("a rule that sees, on these", apart, obeying(numbers), draws, cost + more, first)
     if given.learn:
         act, more = learned(given.body, keys, given.learn, given.out)
-        judged("policy on these", env, act, draws, cost + more)
+        judged("networks that see, on these", env, act, draws, cost + more, first)
 
 
 if __name__ == "__main__":
