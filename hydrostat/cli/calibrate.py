@@ -106,7 +106,7 @@ def _take_up(
     def save(taken: "TakenUp") -> None:
         before, known[taken.motor.winch] = known[taken.motor.winch], taken.motor
         control.write_calibration(file.parent, control.Calibration(tuple(known.values())), name=file.name)
-        words = f"{1e3 * taken.slack:.1f} mm taken up, measured {1e3 * taken.apart:.2f} mm apart"
+        words = f"{1e3 * taken.slack:z.1f} mm taken up, measured {1e3 * taken.apart:.2f} mm apart"
         if before.zero is not None:
             words += f"; {1e3 * abs(before.contraction(taken.motor.zero or 0.0)):.1f} mm from where it was last time"
         print(f"{kind}: {taken.motor.winch}: {words}", flush=True)
@@ -137,8 +137,8 @@ def _measure(
                     return _asked(name)
                 taken = truth.motors[place].contraction(float(bus.read().angles[place]))
                 shown = 5e-4 * round(taken / 5e-4)
-                by_motor = f"{round(1e3 * thought, 1) + 0.0:.1f} mm by its motor"
-                print(f"{bus.kind}: {name}: {by_motor}, {1e3 * shown:.1f} by the emulated ruler")
+                by_motor = f"{1e3 * thought:z.1f} mm by its motor"
+                print(f"{bus.kind}: {name}: {by_motor}, {1e3 * shown:z.1f} by the emulated ruler")
                 return shown
 
             curves.append(control.measure_spool(link, motor, place, travel, read))
@@ -183,6 +183,7 @@ def _tell(
     curves: "Sequence[SpoolCurve]",
 ) -> None:
     """Compare with the model, in words and on a page."""
+    from hydrostat.control import EMULATED
     from hydrostat.plot.calibration_page import reach, write_calibration_page
 
     notes = []
@@ -194,7 +195,9 @@ def _tell(
                 f"{taken.motor.winch} feels {felt:.0f} N/m where the simulation has {wanted:.0f} N/m: "
                 "look whether motor, cable and material are those of robot.toml"
             )
-    page = write_calibration_page(robot, found, model, constants, notes, file.parent / PAGE, curves)
+    page = write_calibration_page(
+        robot, found, model, constants, notes, file.parent / PAGE, curves, emulated=kind == EMULATED
+    )
     for note in notes:
         print(f"{kind}: note: {note}")
     print(f"{kind}: saved {file}; open {page} to see what was felt")

@@ -5,6 +5,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from hydrostat.errors import InputError
+
 if TYPE_CHECKING:
     from hydrostat.design import Constraints, Network
     from hydrostat.fabrication import Kit
@@ -39,7 +41,10 @@ def write_kit(network: "Network", folder: Path) -> "Kit":
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:
-    """The tension that a design kept [N], from the score.json beside its folder; None for a robot that it is not of."""
+    """The tension that a design kept [N], from the score.json beside its folder, or from the studio's file in it.
+
+    None for a robot of which neither is.
+    """
     from hydrostat.robot import robot_hash
 
     own = robot_hash(robot)
@@ -50,7 +55,21 @@ def designed_tension(robot: "Robot", folder: Path) -> float | None:
                 return float(card["tension_limit"])
         except (OSError, ValueError, KeyError, TypeError):
             continue
-    return None
+    return _wished_tension(robot, folder)
+
+
+def _wished_tension(robot: "Robot", folder: Path) -> float | None:
+    """The limit that the studio kept the poses of a robot to [N]; None where no studio saved it."""
+    from hydrostat.studio.records.wished_constraints import wished_constraints
+    from hydrostat.studio.work_folder import STUDIO_FILE, read_studio_file
+
+    home = folder.parent if folder.suffix == ".toml" else folder
+    if not (home / STUDIO_FILE).is_file():
+        return None
+    try:
+        return wished_constraints(robot, read_studio_file(home).wishes).tension_limit
+    except InputError:
+        return None
 
 
 def print_poses(network: "Network", seconds: float) -> None:
@@ -116,7 +135,7 @@ def _print_filled(network: "Network") -> None:
     )
     for reached in filled.reached:
         taken = zip(network.robot.winches, reached.pose.contractions, strict=True)
-        own = ", ".join(f"{winch.name} {1e3 * value:.1f} mm" for winch, value in taken)
+        own = ", ".join(f"{winch.name} {1e3 * value:z.1f} mm" for winch, value in taken)
         print(f"  {reached.wanted.name}: {1e3 * reached.rms_error:.2f} mm, {own}")
 
 
@@ -145,7 +164,7 @@ def _pose_row(robot: "Robot", reached: "ReachedPose") -> tuple[str, ...]:
         reached.wanted.name,
         f"{1e3 * reached.rms_error:.2f} mm",
         f"{worst} {1e3 * reached.errors[worst]:.1f} mm",
-        ", ".join(f"{winch.name} {1e3 * value:.1f} mm" for winch, value in taken),
+        ", ".join(f"{winch.name} {1e3 * value:z.1f} mm" for winch, value in taken),
     )
 
 

@@ -179,5 +179,5 @@ class _Shown:
     def _places(self) -> str:
         motors = self.motors
         return ", ".join(
-            f"{name} {1e3 * taken:.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True)
+            f"{name} {1e3 * taken:z.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True)
         )

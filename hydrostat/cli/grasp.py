@@ -141,7 +141,7 @@ def _bands(cases: "tuple[PullCase, ...]") -> str:
 
 def _print(pull: "PullOut", thing: "Obstacle", cases: "tuple[PullCase, ...]") -> None:
     """Print the most that the pull took, and how it changes with what nobody knows well."""
-    place = ", ".join(f"{1e3 * value:.1f}" for value in thing.frame()[0])
+    place = ", ".join(f"{1e3 * value:z.1f}" for value in thing.frame()[0])
     print(f"the thing lies at ({place}) mm")
     hardest = 1e3 * float(pull.moved[int(pull.forces.argmax())])
     print(f"hardest pull {pull.peak:.3g} N, {hardest:.1f} mm on its way; {1e3 * pull.work:.3g} mJ; {pull.reason}")

@@ -1,10 +1,13 @@
 """A learned model on the command line: to be read for a robot, and to begin from."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Pose, Robot
     from hydrostat.simulation import Simulation, SolvedPose
@@ -29,10 +32,15 @@ def learned_start(simulation: "Simulation", model: "LearnedModel", target: "Pose
     from hydrostat.learning import certify
 
     found = certify(simulation, model, model.solve(target))
-    expected = sum(found.errors.values()) / len(found.errors)
-    words = f"networks expect {1e3 * expected:.2f} mm left on average, with a doubt of {1e3 * found.doubt:.2f} mm"
+    expected = _root_mean_square(found.errors)
+    words = f"networks expect an rms error of {1e3 * expected:.2f} mm, with a doubt of {1e3 * found.doubt:.2f} mm"
     if found.certified is None:
         print(f"{target.name}: {words}; there the simulator says: {found.reason}")
         return None
-    print(f"{target.name}: {words}; the simulator finds {1e3 * found.error:.2f} mm there on average")
+    print(f"{target.name}: {words}; the simulator finds one of {1e3 * _root_mean_square(found.certified):.2f} mm there")
     return found.pose
+
+
+def _root_mean_square(errors: "Mapping[str, float]") -> float:
+    """Of distances from targets, as everything else that is printed of a pose."""
+    return math.sqrt(sum(error**2 for error in errors.values()) / len(errors))

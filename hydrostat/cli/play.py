@@ -131,7 +131,7 @@ def _progress(
 
 def _places(motors: "Motors") -> str:
     """Contractions of the winches, in words."""
-    return ", ".join(f"{name} {1e3 * taken:.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True))
+    return ", ".join(f"{name} {1e3 * taken:z.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True))
 
 
 def _say(kind: str, text: str) -> None:

@@ -136,7 +136,7 @@ def _write(
 def _print_reached(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -> None:
     """Print what was reached, and what keeps it from more."""
     print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.reason} ({1e3 * seconds:.0f} ms)")
-    text = ", ".join(f"{winch} {1e3 * value:.1f} mm" for winch, value in _taken(loaded, reached).items())
+    text = ", ".join(f"{winch} {1e3 * value:z.1f} mm" for winch, value in _taken(loaded, reached).items())
     print(f"  contractions: {text}")
     if reached.friction_band:
         band = ", ".join(f"{name} {1e3 * apart:.2f} mm" for name, apart in reached.friction_band.items())

@@ -70,7 +70,11 @@ def sample(
     plan = plan_samples(
         loaded, count, contact=contact, seed=seed, draws=draws, shard=file_size, nodes=nodes, tension=most
     )
-    sample_robot(plan, out, part=part, jobs=jobs, backend=backend, tell=told())
+    try:
+        sample_robot(plan, out, part=part, jobs=jobs, backend=backend, tell=told())
+    except KeyboardInterrupt:
+        print(f"{chr(10) * sys.stderr.isatty()}the same command goes on from here", file=sys.stderr, flush=True)
+        raise
     found = read_samples(out)
     words = f"{len(found) + found.lost} of {count} samples in {out}"
     words += f", {found.lost} of them without a stable equilibrium" if found.lost else ""

@@ -88,7 +88,7 @@ def simulate(
 def _print_places(found: "SolvedPose | Motion", robot: "Robot") -> None:
     """Print where each marker is [mm], and how hard each cable pulls [N], with its winch."""
     for name, place in found.markers.items():
-        print(f"{name:<16} {', '.join(f'{1e3 * value:8.2f}' for value in place)} mm")
+        print(f"{name:<16} {', '.join(f'{1e3 * value:z8.2f}' for value in place)} mm")
     for index, tension in enumerate(found.tensions):
         print(f"cable {index + 1:<10} {tension:8.3f} N  {robot.cables[index].winch}")
 

@@ -24,6 +24,8 @@ def write_calibration_page(
     notes: Sequence[str],
     path: Path,
     curves: Sequence[SpoolCurve] = (),
+    *,
+    emulated: bool = False,
 ) -> Path:
     """Write a page: a table of the winches, what each felt beside what the simulation says, notes, and spools.
 
@@ -35,6 +37,7 @@ def write_calibration_page(
         notes: what a person should look at.
         path: of the page.
         curves: of the spools that were measured by a ruler.
+        emulated: whether the motors were not there, but emulated.
     """
     rows, pictures = [], []
     for index, (each, wanted, constant) in enumerate(zip(found, model, constants.tolist(), strict=True)):
@@ -58,6 +61,7 @@ def write_calibration_page(
     content = (
         tag("p", "hydrostat \N{MIDDLE DOT} calibration", class_="eyebrow"),
         tag("h1", robot.name),
+        *((tag("p", "Emulated motors: nothing here was measured on a robot.", class_="note"),) if emulated else ()),
         tag("p", "Each motor took up the slack of its cables at low current, twice, while the others stood."),
         *told,
         table(heads, rows, numbers=range(1, len(heads))),

@@ -215,7 +215,11 @@ MILLIMETRES = "_mm"  # ends the head of a column of contractions
 """Name of the column of times [s]."""
 
 
-_MARKS = {";": "; commas part them, not semicolons", "\t": "; commas part them, not tabs"}
+_MARKS = {
+    "{": "; this is JSON: hydrostat trajectory writes trajectory.csv",
+    ";": "; commas part them, not semicolons",
+    "\t": "; commas part them, not tabs",
+}
 
 _MOST = 50_000_000
 """Bytes that a table of moves may have."""

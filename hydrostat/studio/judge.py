@@ -1,5 +1,6 @@
 """`Judge`: what is said of the robots that are shown, alike in Edit, Design and Export."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from hydrostat.design.finding import Finding, Weight, places_in
@@ -7,6 +8,7 @@ from hydrostat.design.judgement import judgement_of
 from hydrostat.errors import HydrostatError
 from hydrostat.fabrication import KitOptions
 from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Slots
@@ -38,6 +40,16 @@ class _Case:
     said: tuple[Finding, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class _Weighed:
+    """A network of a design that was looked at for what a kit is refused for, with all that counted."""
+
+    robot: Robot
+    options: KitOptions
+    known: _Known | None
+    refused: bool
+
+
 class Judge:
     """Judges robots as they rest, and remembers what was said; a finding can be chosen, to be marked and read.
 
@@ -53,6 +65,7 @@ class Judge:
         self._bell = bell
         self._known: tuple[_Known, ...] = ()
         self._cases: tuple[_Case, ...] = ()
+        self._weighed: tuple[_Weighed, ...] = ()
         self._seen: tuple[Robot, Wishes, KitOptions, float] | None = None
 
     def of(self, robot: Robot, wishes: Wishes) -> tuple[Finding, ...] | None:
@@ -84,6 +97,20 @@ class Judge:
             self.skins.look(robot.body, options)
             self._bell.ring(Topic.JOB, Topic.THINGS)
 
+    def refused(self, robot: Robot) -> bool | None:
+        """Whether a kit of a network that `weigh` has looked at would be refused, as far as known; None: not yet."""
+        weighed = self._weighed_of(robot)
+        return None if weighed is None else weighed.refused
+
+    def weigh(self, robots: Iterable[Robot]) -> None:
+        """Look at one of some networks that nobody has looked at yet: whether a kit of it would be refused."""
+        robot = next((robot for robot in robots if self._weighed_of(robot) is None), None)
+        if robot is not None:
+            options, known = self.options, self._of(robot)
+            weighed = _Weighed(robot, options, known, _is_refused(robot, options, known))
+            self._weighed = (weighed, *self._weighed)[:KEPT]
+            self._bell.ring(Topic.JOB)
+
     def learn(self, robot: Robot, *, demand: Demand | None = None, refused: tuple[str, ...] = ()) -> None:
         """Remember the loads of a robot's poses, or why a kit of it was refused."""
         before = self._of(robot) or _Known(robot)
@@ -108,6 +135,13 @@ class Judge:
                 and case.options == self.options
                 and case.known is known
             ),
+            None,
+        )
+
+    def _weighed_of(self, robot: Robot) -> _Weighed | None:
+        known = self._of(robot)
+        return next(
+            (one for one in self._weighed if one.robot is robot and one.known is known and one.options == self.options),
             None,
         )
 
@@ -136,3 +170,11 @@ def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _Known | Non
     told = {finding.text for finding in found}
     more = (text for text in (known.refused if known else ()) if text not in told)
     return (*(Finding(text=text, weight=Weight.REFUSED, places=places_in(text, robot)) for text in more), *found)
+
+
+def _is_refused(robot: Robot, options: KitOptions, known: _Known | None) -> bool:
+    """Whether there is any reason; what cannot be judged has none."""
+    try:
+        return bool((known and known.refused) or find_refusals(robot, known.demand if known else None, options=options))
+    except HydrostatError:
+        return False

@@ -101,7 +101,8 @@ def save_work(work: Work, folder: Path, text: str = "") -> None:
     """
     folder = _home(folder)
     save_robot(work.robot, folder, text=_text(work, folder, text))
-    if (folder / STUDIO_FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes():
+    kept = (folder / STUDIO_FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes()
+    if kept or work.robot.cables:  # a kit keeps the tensions of cables to these limits
         write_studio_file(folder, work.timeline, work.wishes)
 
 

@@ -122,4 +122,5 @@ class LessonPoses:
             return f"{self.count} poses; errors are known from 4 on"
         known = self.made.learn()
         one, folds = (f"{1e3 * error:.2f} mm ({2 * error / self.span:.4f})" for error in self.made.errors(known))
-        return f"{self.count} poses; error of poses left out {one}, of five folds {folds}"
+        words = f"error of poses left out {one}, of five folds {folds}"
+        return f"{self.count} poses; {words}; in brackets on a scale from -1 to 1"

@@ -42,6 +42,7 @@ def test_emulated_motors_are_calibrated_and_saved(copy: Path) -> None:
     assert not (copy / CALIBRATION).exists(), "what was measured on real motors is another file"
     assert [motor.zero for motor in motors] == pytest.approx([0.0] * 3, abs=5e-4 / 0.006)
     page = (copy / "calibration.html").read_text("utf-8")
+    assert "Emulated motors: nothing here was measured on a robot." in page
     assert "Nothing stands out." in page
     assert page.count("<svg") == 4
     assert [bool(motor.curve) for motor in motors] == [True, False, False]

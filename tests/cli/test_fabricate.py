@@ -11,6 +11,9 @@ from plush import near_the_edge
 
 from hydrostat.cli.design_results import designed_tension
 from hydrostat.robot import robot_hash, save_robot
+from hydrostat.studio.records.wishes import Wishes
+from hydrostat.studio.records.work import Work
+from hydrostat.studio.work_folder import save_work
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -107,6 +110,19 @@ def test_the_tension_of_its_design_is_beside_a_robot(tmp_path: Path) -> None:
     assert designed_tension(robot, out / "alternatives" / "01") == 12.5
     (out / "score.json").write_text("{")
     assert designed_tension(robot, out / "robot") is None
+
+
+def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Path) -> None:
+    """Oracle: the wish; by its kit in the studio no cable is pulled harder either."""
+    robot = near_the_edge()
+    save_work(Work(robot=robot), tmp_path / "usual")
+    assert designed_tension(robot, tmp_path / "usual") == Wishes().tension
+    save_work(Work(robot=robot, wishes=Wishes(tension=7.5)), tmp_path / "weak")
+    assert designed_tension(robot, tmp_path / "weak") == designed_tension(robot, tmp_path / "weak/robot.toml") == 7.5
+    (tmp_path / "weak" / "studio.json").write_text("{")
+    assert designed_tension(robot, tmp_path / "weak") is None
+    save_work(Work(robot=robot.with_network((), ())), tmp_path / "bare")
+    assert not (tmp_path / "bare" / "studio.json").exists()
 
 
 @pytest.mark.slow

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.cli.sample import sample
+
 PROGRAM = """
 import os, signal
 from hydrostat.cli.waiting import heed_interrupts, one_interrupt
@@ -102,6 +104,18 @@ def work():
 Thread(target=work).start()
 """
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "written\n"
+
+
+def test_sampling_that_is_interrupted_says_that_it_can_go_on(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("hydrostat.learning.sample_robot", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        sample(Path("examples/starfish"), tmp_path / "out", count=3)
+    assert capsys.readouterr().err == "the same command goes on from here\n"
 
 
 @pytest.mark.parametrize("begun", [USUAL, IGNORED])

@@ -279,5 +279,5 @@ def test_the_commands(
     posed = replace(robot, poses={"far": hs.Pose(name="far", targets={"tip": place})})
     monkeypatch.setattr("hydrostat.cli.pose.read_robot", lambda path: posed)
     pose(tmp_path / "strip", tmp_path / "out", model=save_model(model, tmp_path / "good.model"))
-    assert "far: networks expect" in (printed := capsys.readouterr().out)
+    assert "far: networks expect an rms error of" in (printed := capsys.readouterr().out)
     assert "every goal is reached" in printed

@@ -90,6 +90,27 @@ def test_loads_that_a_design_found_and_reasons_of_a_kit_count_for_the_accepted_n
     assert all("is torn" not in finding.text for finding in judged(judge, other))
 
 
+def test_networks_of_a_design_are_weighed_one_after_another(squid: Robot) -> None:
+    """Oracle: with a larger motor, and after a kit that was refused, the mark; no network is looked at twice."""
+    heard: list[Topic] = []
+    bell = Bell()
+    bell.listen(heard.append)
+    judge = Judge(bell)
+    other = squid.with_network(squid.winches[:1], [squid.cables[0]])
+    for known in ([False, None], [False, False], [False, False]):
+        judge.weigh([squid, other])
+        assert [judge.refused(squid), judge.refused(other)] == known
+    assert heard == [Topic.JOB] * 2
+    judge.learn(other, refused=("it is torn",))
+    assert judge.refused(other) is None
+    judge.weigh([squid, other])
+    assert judge.refused(other) is True
+    judge.options = KitOptions(motor="25d")
+    assert judge.refused(squid) is None
+    judge.weigh([squid])
+    assert judge.refused(squid) is True
+
+
 def test_a_finding_is_chosen_and_let_go(squid: Robot) -> None:
     judge = Judge(Bell())
     first = judged(judge, squid)[0]

@@ -1,5 +1,6 @@
 """`arranged`: how all units in a flat body are laid: within its seam, and clear of each other if there is a way."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, UnitPlace, ways_to_lie
+from hydrostat.fabrication.solids.construct import sides_text
 
 _SWEEPS = 8  # rounds of a search
 
@@ -38,10 +40,13 @@ def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> 
         [_alone(place, thickness) for place in places],
         [_bulging(place, thickness) for place in places],
     )
+    stuck = {number for number, told in enumerate(problems) if told}  # no way of laying these is any good
     for pile in _piles(places):
         words, possible = _piled([places[number] for number in pile], thickness)
         (warnings if possible else problems)[pile[0]].append(words)
-    moved = [number for number, way in enumerate(ways) if places[number] is not way.alone or any(places[number].slid)]
+        stuck |= set() if possible else set(pile)
+    turned = [number for number, way in enumerate(ways) if places[number] is not way.alone or any(places[number].slid)]
+    moved = [number for number in turned if number not in stuck]
     if moved:
         ways_told = "; ".join(places[number].instruction for number in moved)
         warnings[moved[0]].append(
@@ -153,7 +158,7 @@ def _piles(places: Sequence[UnitPlace]) -> list[tuple[int, ...]]:
 def _piled(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
     """What is said of units above each other, and whether that can be built."""
     high = sum(place.depth for place in pile)
-    names = " and ".join(f'"{place.box.winch}"' for place in pile)
+    names = " and ".join(f'"{place.box.winch}"' for place in pile) + _sizes(pile)
     possible = high <= (1 + GIVES) * thickness
     if possible:
         bulge = f", so it bulges by {high - thickness:.0f} mm" if high > thickness else ""
@@ -167,6 +172,14 @@ def _piled(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
         f"{high:.0f} mm of a body of {thickness:.0f} mm: move the winches apart, or take smaller motors",
         False,
     )
+
+
+def _sizes(pile: Sequence[UnitPlace]) -> str:
+    """How large units are, and of two how far apart the robot has their winches, in brackets."""
+    sides = [sides_text(place.box.size) for place in pile]
+    alike = len(set(sides)) == 1
+    apart = f", {math.dist(pile[0].box.at, pile[1].box.at):.0f} mm apart" if len(pile) == 2 else ""
+    return f" ({sides[0]} mm each{apart})" if alike else f" ({' and '.join(sides)} mm{apart})"
 
 
 def _alone(place: UnitPlace, thickness: float) -> list[str]:

@@ -30,6 +30,7 @@ from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Point, Robot
 
 _MARGIN = 7.0  # room round the body for labels [mm]
+_DRAWN = 0.45  # grey of what is drawn on the body
 _HOLE = 0.65  # radius of a drawn hole [mm]
 _NEAR = 3.2  # a number further than this from its hole is led to it by a line [mm]
 _SHARP = 70.0  # on a body, edges are drawn that are sharper than this [degrees]: scans are rough
@@ -69,6 +70,7 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     frame = CanvasFrame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
     canvas.fill([frame.way(ring) for ring in rings], grey=0.95)
     canvas.line([frame.way(ring) for ring in rings], width=THICK, closed=True)
+    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN, grey=_DRAWN)
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
     for ring in rings:
         labels.take_line(frame.way([*ring, ring[0]]), weight=3)
@@ -264,6 +266,11 @@ def _put_stopper(canvas: Canvas, run: CableRun) -> None:
     aside = np.array([-way[1], way[0]])
     corners = [end + 1.35 * a * aside + 0.55 * b * way for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1))]
     canvas.fill([[(float(x), float(y)) for x, y in corners]], grey=0.0)
+
+
+def flat_marks(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
+    """What is drawn on a flat body, such as eyes, to know its front by [mm]."""
+    return [1e3 * np.array(mark) for mark in robot.body.marks]
 
 
 def flat_rings(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:

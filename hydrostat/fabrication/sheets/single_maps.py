@@ -12,6 +12,7 @@ from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets.cable_map import (
     CableRun,
     SightedBody,
+    flat_marks,
     flat_rings,
     front_runs,
     pane_of,
@@ -75,6 +76,7 @@ def _flat_scene(robot: Robot, stitches: Sequence[CableStitches]) -> _Scene:
 
     def draw(canvas: Canvas, frame: CanvasFrame) -> None:
         canvas.line([frame.way(ring) for ring in rings], width=THIN, grey=0.35, closed=True)
+        canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN, grey=_PALE)
 
     box = np.array([places.min(axis=0), places.max(axis=0)])
     return _Scene(box, lambda frame: front_runs(robot, stitches, frame), draw)

@@ -12,7 +12,7 @@ from hydrostat.drawing.camera import Camera
 from hydrostat.drawing.canvas import MIDDLE, PIXELS, THIN, Box, Canvas, CanvasFrame, Spot, balloon_radius, snug
 from hydrostat.drawing.depth import Polyline, level_rings
 from hydrostat.drawing.line_drawing import DrawnSolid, LineDrawing, line_drawing
-from hydrostat.fabrication.sheets.cable_map import body_solid, flat_rings
+from hydrostat.fabrication.sheets.cable_map import body_solid, flat_marks, flat_rings
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import triangles_of
 from hydrostat.robot import Robot
@@ -168,6 +168,7 @@ def portrait(robot: Robot, view: Camera | None, *, width: float, height: float) 
     for grey, shade in _puffed(rings, box, 500 * (robot.body.thickness or 0.04)):
         canvas.fill([frame.way(ring) for ring in shade], grey=grey)
     canvas.line([frame.way(ring) for ring in rings], width=MIDDLE, closed=True)
+    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN)
     seam = shapely.Polygon(rings[0], rings[1:]).buffer(-1.1 / frame.scale)
     lines = [np.array(part.exterior.coords) for part in shapely.get_parts(seam) if not part.is_empty]
     canvas.line([frame.way(line) for line in lines], width=THIN, dash=(0.9, 0.7), grey=0.35)

@@ -210,8 +210,11 @@ class Designer(Stage):
         return [*things, *flags, *self.painter.things()]
 
     def step(self, now: float) -> bool:
-        """The body glides to the shape that is to be shown; a network that rests is judged."""
-        self._document.judge.look(self.shown, self.wishes, now, held=self.running)
+        """The body glides to the shape that is to be shown; what rests is judged, then one card after another."""
+        judge = self._document.judge
+        judge.look(self.shown, self.wishes, now, held=self.running)
+        if not self.running and judge.of(self.shown, self.wishes) is not None:
+            judge.weigh(candidate.robot for candidate in self.candidates)
         reach = self._reach()
         nodes = self._document.robot.body.mesh.nodes if reach is None else reach.nodes
         tensions = np.zeros(len(self.shown.cables)) if reach is None else reach.tensions

@@ -43,6 +43,7 @@ class Editor(Stage):
         self.draft: CableDraft | None = None  # the cable that is being laid
         self.snap = 0.0  # places of parts are multiples of it [m]; 0: of a tenth of a millimetre
         self.ruler: Ruler | None = None  # laid with its tool; None: it is not
+        self.several = False  # whether a press adds to what is selected, as with Shift: fingers have none
         self._chosen: tuple[str, ...] = ()
         self._copied: tuple[Robot, tuple[str, ...]] | None = None
         self._hold: Hold | None = None
@@ -96,6 +97,11 @@ class Editor(Stage):
         elif key:
             rest = tuple(own for own in self.selection if own != key)
             self._chosen = rest if key in self.selection else (*rest, key)
+        self._ring()
+
+    def choose_several(self, on: bool) -> None:
+        """Let each press add to what is selected, or take out of it."""
+        self.several = on
         self._ring()
 
     def choose_all(self) -> None:
@@ -244,7 +250,7 @@ class Editor(Stage):
         if self.tool is Tool.CABLE and not hit.key.startswith("via:"):
             return False  # it is a click that begins a cable
         if hit.key not in self.selection:
-            self.choose(hit.key, also=hit.shift)
+            self.choose(hit.key, also=hit.shift or self.several)
         self._hold = take_hold(robot, hit.key, self.mirror, hit.world)
         self._holds += 1
         return True
@@ -276,7 +282,8 @@ class Editor(Stage):
         elif self.tool is Tool.RULER:
             self._measure(hit)
         elif self.tool is Tool.MOVE or find_part(self._document.robot, hit.key) is not None:
-            self.choose(hit.key if find_part(self._document.robot, hit.key) else "", also=hit.shift)
+            key = hit.key if find_part(self._document.robot, hit.key) else ""
+            self.choose(key, also=hit.shift or (self.several and bool(key)))
         else:
             at = self._clicked(hit, skin=self.tool is not Tool.WINCH)
             add = {Tool.PIN: add_pin, Tool.MARKER: add_marker, Tool.WINCH: add_winch}[self.tool]

@@ -1,6 +1,7 @@
 """`SaveDialog`, `may_leave`: questions asked before something is lost."""
 
 from functools import partial
+from itertools import count
 from pathlib import Path
 
 from nicegui import ui
@@ -36,8 +37,9 @@ class SaveDialog:
             await self._save_in(self._document.folder)
 
     async def save_as(self) -> None:
-        """Save where a person says."""
-        self._folder.set_value(str(self._document.folder or Path.cwd() / self._document.robot.name))
+        """Save where a person says; at first a folder beside that of the robot."""
+        now = self._document.folder
+        self._folder.set_value(str(Path.cwd() / self._document.robot.name if now is None else beside(now)))
         told = await self._dialog
         name = (told or "").strip()
         if name:
@@ -62,6 +64,12 @@ class SaveDialog:
             await self._page.act_slowly(self._page.session.save, goal)
         elif answer == "elsewhere":
             await self.save_as()
+
+
+def beside(folder: Path) -> Path:
+    """A folder of nearly the same name that is not there yet, such as fish_2."""
+    tried = (folder.with_name(f"{folder.name}_{number}") for number in count(2))
+    return next(place for place in tried if not place.exists())
 
 
 class _Sure:

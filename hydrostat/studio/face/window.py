@@ -138,8 +138,8 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
         undo = _tool("undo", "Undo", session.undo)
         redo = _tool("redo", "Do again", session.redo)
         save = _tool("save", "Save", ask_save.save)
-        more = _tool("arrow_drop_down", "Save as, take home", lambda: None)
-        with more.style("margin-left: -10px; width: 22px"), ui.menu():
+        more = ui.button(icon="arrow_drop_down", color=None).props('flat round dense aria-label="Save as, take home"')
+        with more.classes("studio-tool").style("margin-left: -10px; width: 22px"), ui.menu():
             _saving_menu(page, ask_save)
         if links is not None:
             _tool("group_add", "Share this room", share_dialog(links))
@@ -171,7 +171,7 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
 def _saving_menu(page: WindowPage, ask_save: SaveDialog) -> None:
     if not page.session.guest:
         ui.menu_item("Save as ...", ask_save.save_as).props('data-testid="save-as"')
-    ui.menu_item("Take home as .zip", ask_save.take_home).props('data-testid="save-zip"')
+    ui.menu_item("Take home as .zip", ask_save.take_home).props('data-testid="save-zip"').classes("no-wrap")
 
 
 def _tool(icon: str, words: str, action: Ask) -> ui.button:

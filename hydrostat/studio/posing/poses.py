@@ -1,5 +1,6 @@
-"""`with_pose`, `renamed_pose`, `without_pose`, `wishes_after`, `held_of`: the poses of a robot, changed."""
+"""`with_pose`, `same_as`, `renamed_pose`, `without_pose`, `wishes_after`, `held_of`: the poses of a robot, changed."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -8,6 +9,8 @@ from hydrostat.robot import Marker, Pose, Robot
 from hydrostat.robot.checks import check_name
 from hydrostat.studio.posing.held import Held
 from hydrostat.studio.records.wishes import Wishes
+
+SAME = 1e-4  # poses whose targets are nearer to each other are the same [m]
 
 
 def with_pose(robot: Robot, name: str, held: Mapping[str, Held]) -> Robot:
@@ -19,6 +22,16 @@ def with_pose(robot: Robot, name: str, held: Mapping[str, Held]) -> Robot:
     new = tuple(Marker(name=own, at=point.at) for own, point in held.items() if own not in known)
     pose = Pose(name=name, targets={own: point.target for own, point in held.items()})
     return replace(robot, markers=(*robot.markers, *new), poses={**robot.poses, name: pose})
+
+
+def same_as(robot: Robot, name: str) -> str:
+    """The first other pose with the same targets as one, to a tenth of a millimetre; "" if there is none."""
+    own = robot.pose(name).targets
+    for pose in robot.poses.values():
+        alike = pose.name != name and set(pose.targets) == set(own)
+        if alike and all(math.dist(pose.targets[marker], goal) < SAME for marker, goal in own.items()):
+            return pose.name
+    return ""
 
 
 def renamed_pose(robot: Robot, old: str, new: str) -> Robot:

@@ -43,7 +43,6 @@ def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
 
 def _sketch(report: Report, draft: BodyDraft) -> Sketch:
     from hydrostat.geometry.files.outline_file import read_drawing
-    from hydrostat.ik.first_pose import with_first_pose
 
     report.progress("reading", 0, 3)
     file, content, size, lines = draft.file, draft.content, draft.size, ()
@@ -71,10 +70,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         material=draft.material,
         tell=lambda stage: report.progress(stage, 0, 3),
     )
-    made = _drawn(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
-    report.part(made)
-    report.progress("finding a first pose", 2, 3)
-    return replace(made, robot=with_first_pose(sketch.robot))
+    return _drawn(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
 
 
 def _here(words: str) -> str:
@@ -100,7 +96,7 @@ def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:
 def _drawn(
     report: Report, draft: BodyDraft, robot: Robot, lines: tuple[str, ...], sketch: SurfaceSketch | None
 ) -> Sketch:
-    """With its pictures."""
+    """With its pictures, and without the pose that a first robot has as an example: a person makes poses here."""
     from hydrostat.plot import draw_healing, draw_rest, inline_svg
 
     report.progress("drawing", 1, 3)
@@ -110,7 +106,9 @@ def _drawn(
         figure = draw_healing(sketch.before, sketch.healing.surface, places=sketch.healing.places, width=WIDTH)
         repair = inline_svg(figure, name="repair", label=f"{draft.file} as it came, and healed")
     clean = not lines if sketch is None else sketch.healing.clean
-    return Sketch(draft=draft, robot=robot, lines=tuple(lines), clean=clean, picture=picture, repair=repair)
+    return Sketch(
+        draft=draft, robot=replace(robot, poses={}), lines=tuple(lines), clean=clean, picture=picture, repair=repair
+    )
 
 
 def _limit_memory() -> None:

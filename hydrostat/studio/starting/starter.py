@@ -32,7 +32,6 @@ _MODULES = (  # what a process that meshes needs; a process that has them alread
     "hydrostat.studio.starting.sketch",
     "hydrostat.geometry.files.outline_file",
     "hydrostat.geometry.tetrahedra.tetrahedralise",
-    "hydrostat.ik.first_pose",
     "hydrostat.plot",
 )
 

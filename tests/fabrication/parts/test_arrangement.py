@@ -149,6 +149,8 @@ def test_two_in_one_place_lie_above_each_other_or_are_refused():
     (refused,) = problems(arranged(pair, narrow, 31.0))
     assert '"a" and "b"' in refused
     assert "40 mm of a body of 31 mm" in refused
+    assert "20 x 20 x " in refused, "how large they are"
+    assert " mm apart)" in refused, "how far apart the robot has them"
     (three,) = problems(arranged([*pair, brick("c", 0, 0, deep=10.0)], narrow, 40.0))
     assert '"a" and "b" and "c"' in three
     assert "60 mm of a body of 40 mm" in three
@@ -165,6 +167,8 @@ def test_two_winches_in_one_place_of_a_robot():
     assert [text for unit in units_of(one) for text in unit.problems] == []
     (refused,) = (text for unit in units_of(twice) for text in unit.problems)
     assert '"pull" and "again"' in refused
+    minded = [text for unit in units_of(twice) for text in unit.warnings]
+    assert not any("lay these units so" in text and "again" in text for text in minded), "no advice for what is refused"
     thick = replace(twice, body=replace(twice.body, thickness=0.045))
     assert [text for unit in units_of(thick) for text in unit.problems] == []
     told = [text for unit in units_of(thick) for text in unit.warnings]

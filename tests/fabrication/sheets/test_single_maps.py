@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from builders import gallery_robot
 
@@ -13,6 +14,7 @@ from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.sheets.cable_map import flat_map
 from hydrostat.fabrication.sheets.legible import minds
 from hydrostat.fabrication.sheets.single_maps import single_maps
+from hydrostat.fabrication.sheets.solid_pictures import portrait
 from hydrostat.fabrication.winch_marks import marked_name, winch_marks_of
 from hydrostat.robot import Robot
 
@@ -49,6 +51,24 @@ def test_the_map_tells_cables_apart() -> None:
     svg = flat_map(robot, stitches, width=112.0, height=119.0).svg
     assert all(colour in svg for colour in WINCHES[: len(robot.cables)])
     assert {f"C{number}-2" for number in range(1, 6)} <= set(words(svg))
+
+
+def test_an_eye_is_on_every_picture_that_shows_the_front() -> None:
+    """Oracle: the same pictures without it have its line less."""
+    bare, stitches = stitched("starfish")
+    eye = 0.005 * np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)])
+    seeing = replace(bare, body=replace(bare.body, marks=(eye,)))
+
+    def drawn(robot: Robot) -> list[int]:
+        pages = single_maps(robot, stitches, width=182.0, height=235.0)
+        map_of_all = flat_map(robot, stitches, width=112.0, height=119.0)
+        return [
+            canvas.svg.count("<path") for canvas in (map_of_all, portrait(robot, None, width=60.0, height=60.0), *pages)
+        ]
+
+    more = np.subtract(drawn(seeing), drawn(bare)).tolist()
+    assert more[:2] == [1, 1]
+    assert more[2] == len(bare.cables), "one in each small map"
 
 
 @pytest.mark.parametrize(("name", "pages"), [("starfish", 1), ("squid", 1), ("pig", 0)])

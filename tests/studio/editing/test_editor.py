@@ -338,6 +338,26 @@ def test_several_parts_move_copy_and_go_together(editor: Editor, document: Docum
     assert editor.selection == (), "a second click takes it out again"
 
 
+def test_a_finger_chooses_several_without_shift(editor: Editor, document: Document, starfish: Robot) -> None:
+    """Oracle: the selection; the next press beside all parts clears it, the switch stays."""
+    markers = [(marker.at, f"marker:{marker.name}") for marker in starfish.markers[:2]]
+    editor.choose_several(True)
+    for at, key in markers:
+        editor.click(on(at, key))
+    assert editor.selection == tuple(key for _, key in markers)
+    start = markers[0][0]
+    drag(editor, document, markers[0][1], tuple((0.98 * np.array(start)).tolist()), start=start)
+    assert document.undo_label == "move 2 parts"
+    editor.click(on(*markers[1]))
+    assert editor.selection == (markers[0][1],), "pressed again it is taken out"
+    editor.click(on((0.0, 0.0)))
+    assert editor.selection == ()
+    editor.choose_several(False)
+    for at, key in markers:
+        editor.click(on(at, key))
+    assert editor.selection == (markers[1][1],)
+
+
 def test_a_winch_is_pasted_with_its_cables(editor: Editor, document: Document, starfish: Robot) -> None:
     winch = starfish.winches[0]
     own = [cable for cable in starfish.cables if cable.winch == winch.name]

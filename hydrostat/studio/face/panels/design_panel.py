@@ -216,7 +216,8 @@ def design_compare(page: WindowPage) -> None:
                     _cards(page, candidates, own())
 
     def state() -> tuple[object, ...]:
-        return tuple(one.number for one in designer.candidates), designer.chosen, designer.pose, own()
+        refused = tuple(document.judge.refused(one.robot) for one in designer.candidates)
+        return tuple(one.number for one in designer.candidates), designer.chosen, designer.pose, own(), refused
 
     page.on_new((Topic.JOB, Topic.ROBOT), state, room, build)
 
@@ -265,11 +266,11 @@ def _cards(page: WindowPage, candidates: tuple[Candidate, ...], own: tuple[int, 
             card = pressable("design-card" + (" design-card-on" if now else ""), show)
             with card.props('data-testid="design-card"').tooltip(_more(one)):
                 ui.html(designer.sketch(one), sanitize=False).classes("w-full")
-                ui.html(_words(one, own), sanitize=False)
+                ui.html(_words(one, own, refused=bool(page.session.document.judge.refused(one.robot))), sanitize=False)
 
 
-def _words(one: Candidate, own: tuple[int, ...]) -> str:
-    """Error once built, counts, minutes, price, crossings where there are any, as lines of HTML; only numbers."""
+def _words(one: Candidate, own: tuple[int, ...], *, refused: bool) -> str:
+    """Error once built, whether a kit is refused, counts, minutes, price, crossings if any, as lines of HTML."""
     craft = one.craft
     lines = [
         one.counts,
@@ -280,7 +281,8 @@ def _words(one: Candidate, own: tuple[int, ...]) -> str:
         lines.append(counted(craft.crossings, "crossing"))
     if one.number in own or not one.complete:
         lines.append("in the robot" if one.number in own else "stopped early")
-    return f"<b>{told_error(one.built)} once built</b>" + "".join(f"<span>{line}</span>" for line in lines)
+    mark = '<i class="design-bad">cannot be built so</i>' if refused else ""
+    return f"<b>{told_error(one.built)} once built</b>{mark}" + "".join(f"<span>{line}</span>" for line in lines)
 
 
 def _more(one: Candidate) -> str:
@@ -288,5 +290,6 @@ def _more(one: Candidate) -> str:
     craft = one.craft
     return (
         f"{told_error(one.error)} in the model; {counted(craft.holes, 'hole')}, "
-        f"{1e3 * one.length:.0f} mm of cable pulled with up to {one.tension:.1f} N"
+        f"{1e3 * one.length:.0f} mm of cable pulled with up to {one.tension:.1f} N. "
+        "Price: motors, power and cables; the kit's list adds cloth, screws and what comes in packs only"
     )

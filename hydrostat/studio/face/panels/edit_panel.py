@@ -16,7 +16,7 @@ TOOLS = {  # icon, name and what to do with each tool
     Tool.MOVE: (
         "near_me",
         "Select and move",
-        "Drag a part, or a point out of a cable. Shift and click chooses several.",
+        "Drag a part, or a point out of a cable. Shift and click, or Several, chooses more than one.",
     ),
     Tool.PIN: ("push_pin", "Place pins", "Click on the body where it is held."),
     Tool.MARKER: ("my_location", "Place markers", "Click on a point to track."),
@@ -32,6 +32,7 @@ def edit_panel(page: WindowPage) -> None:
     _tools(page)
     _mirror(page)
     _snap(page)
+    _several(page)
     part_card(page)
     parts_list(page)
     body_card(page)
@@ -113,6 +114,25 @@ def _snap(page: WindowPage) -> None:
     page.on(Topic.THINGS, show)
 
 
+def _several(page: WindowPage) -> None:
+    """Whether each press chooses one part more: with a finger there is no Shift."""
+    editor = page.session.editor
+    with ui.element("div").classes("studio-row"):
+        ui.icon("checklist", size="20px").style("color: var(--muted)")
+        ui.label("Several").style("font-size: 13px")
+        ui.space()
+        chips = {on: chip("on" if on else "off", page.doing(editor.choose_several, on)) for on in (False, True)}
+        for on, button in chips.items():
+            button.tooltip("Each press chooses one part more" if on else "A press chooses one part")
+            button.mark(f"edit-several-{'on' if on else 'off'}")
+
+    def show() -> None:
+        for on, button in chips.items():
+            light(button, on == editor.several)
+
+    page.on(Topic.THINGS, show)
+
+
 def _depth(page: WindowPage) -> None:
     editor = page.session.editor
 
@@ -164,11 +184,11 @@ def parts_list(page: WindowPage) -> None:
 def _part_row(page: WindowPage, robot: Robot, key: str, words: str, number: str) -> ui.element:
     part = find_part(robot, key)
     kind = Kind.PIN if part is None else part.kind
-    choose = page.session.editor.choose
+    editor = page.session.editor
 
     def press(event: events.GenericEventArguments) -> None:
         also = bool((event.args or {}).get("shiftKey"))
-        page.act(lambda: choose(key, also=also))
+        page.act(lambda: editor.choose(key, also=also or editor.several))
 
     row = ui.element("div").classes("studio-row cursor-pointer").mark(f"part-{key}").props('role="option" tabindex="0"')
     for kind_of_press in ("click", "keydown.enter"):

@@ -46,7 +46,7 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
         if not found and not (skin is not None and skin.awaited):
             with ui.element("div").classes("studio-row"):
                 ui.icon("check_circle", size="18px").style(f"color: {GOOD}")
-                ui.label("Nothing is wrong.").style("font-size: 13px")
+                ui.label(_good(shown())).style("font-size: 13px")
         for weight in Weight:
             alike = [finding for finding in found if finding.weight is weight]
             if alike:
@@ -55,6 +55,13 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
                 _line(page, finding, chosen=finding == judge.chosen)
 
     page.on_new((Topic.JOB, Topic.ROBOT, Topic.THINGS), lambda: (said(), sewn(), judge.chosen), room, build)
+
+
+def _good(robot: Robot | None) -> str:
+    """That nothing is wrong; of a robot without cables, that little was looked at."""
+    if robot is None or robot.cables:
+        return "Nothing is wrong."
+    return "Nothing is wrong so far, but there are no cables yet: lay some in Edit, or let Design find them."
 
 
 def _line(page: WindowPage, finding: Finding, *, chosen: bool) -> None:

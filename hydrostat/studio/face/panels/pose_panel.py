@@ -10,6 +10,7 @@ from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_la
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.face.panels.pose_muscles import muscles_card
 from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.posing.poses import same_as
 from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.view.robot_things import Bar
@@ -214,6 +215,8 @@ def poses_card(page: WindowPage) -> None:
         if document.serial != before:
             if replaced:
                 page.tell(f"{given} was there and is replaced; undo brings it back")
+            elif twin := same_as(document.robot, given.strip()):
+                page.tell(f"{given.strip()} is stored, and is the same pose as {twin}")
             name.set_value("")
 
     def draw() -> None:

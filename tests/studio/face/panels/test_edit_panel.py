@@ -84,6 +84,32 @@ def test_tools_mirror_and_check(starfish: Robot) -> None:
     at_desk(starfish, act)
 
 
+def test_a_robot_without_cables_is_not_called_sound(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.EDIT)
+        desk.session.editor.step(0.0)
+        desk.session.editor.step(2 * QUIET)
+        desk.beat()
+        assert "Nothing is wrong." not in desk.words
+        assert any("there are no cables yet" in words for words in desk.words)
+
+    at_desk(starfish.with_network((), ()), act)
+
+
+def test_several_parts_are_chosen_by_presses_alone(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.EDIT)
+        await desk.press("edit-several-on")
+        for name in ("top", "left"):
+            await desk.press(f"part-marker:{name}")
+        assert desk.session.editor.selection == ("marker:top", "marker:left")
+        await desk.press("edit-several-off")
+        await desk.press("part-marker:top")
+        assert desk.session.editor.selection == ("marker:top",)
+
+    at_desk(starfish, act)
+
+
 def test_material_gravity_and_contact(starfish: Robot) -> None:
     async def act(desk: Desk) -> None:
         desk.go(StageName.EDIT)

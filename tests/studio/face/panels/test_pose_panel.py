@@ -23,6 +23,11 @@ def test_what_is_held_is_listed_stored_and_let_go(starfish: Robot) -> None:
         await desk.press("pose-store")
         assert desk.robot.poses["hello"].targets == {"top": poser.held["top"].target}
         assert desk.one("pose-name").value == ""
+        assert desk.told == []
+        await desk.choose("pose-name", "again")
+        await desk.press("pose-store")
+        assert desk.told == ["again is stored, and is the same pose as hello"]
+        await desk.press("Delete again")
         await desk.press("Let go of top")
         assert dict(poser.held) == {}
         await desk.press("pose-show-hello")

@@ -66,6 +66,7 @@ def test_save_as_goes_to_another_folder(starfish: Robot, tmp_path: Path) -> None
     async def act(desk: Desk) -> None:
         desk.session.open_folder(tmp_path / "mine")
         await desk.press("save-as")
+        assert desk.one("save-folder").value == str(tmp_path / "mine_2"), "not over the robot that it is a copy of"
         await desk.choose("save-folder", str(tmp_path / "yours"))
         await desk.press("save-now")
         await desk.until(lambda: desk.session.document.folder == tmp_path / "yours")

@@ -41,9 +41,12 @@ export class Camera {
     this.place();
   }
 
+  /** What a person has moved to stays in view: all is drawn larger or smaller as the shorter side is. */
   resize(width, height) {
+    const scale = this.metre / Math.min(this.width, this.height);
     this.width = Math.max(width, 1);
     this.height = Math.max(height, 1);
+    if (this.moved) this.span = this.height / (scale * Math.min(this.width, this.height));
     this.place();
   }
 
