@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
+from math import dist, hypot
 from typing import Any
 
 import numpy as np
@@ -69,16 +69,12 @@ class LearnedModel:
 
     def expect(self, contractions: Vector) -> tuple[Vector, Vector]:
         """What is expected at contractions [m]: coordinates of the markers [m], then tensions [N]; and their spread."""
-        values = self.forward.values(self._scaled(self._winches(contractions)))
-        mean = values.sum(axis=0) / len(values)
-        values -= mean
-        values *= values
-        return self.middle + self.unit * mean, self.unit * np.sqrt(values.sum(axis=0) / len(values))
+        return self._expected(self._winches(contractions))
 
     def slopes(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
         """How the networks expect the markers to go when winches take in cable."""
         _, slopes = self.forward.slopes(self._scaled(self._winches(contractions)))
-        return (self.unit[:, None] * slopes / (0.5 * self._span))[: self._coordinates]
+        return (self.unit[:, None] * slopes / self._half)[: self._coordinates]
 
     def inverted(self, markers: Vector) -> Vector:
         """Contractions [m] by the inverse network alone, for coordinates of all markers [m] in their order.
@@ -86,14 +82,10 @@ class LearnedModel:
         Raises:
             InputError: there is no inverse network, or another number of coordinates.
         """
-        if self.inverse is None:
-            raise InputError("the model has no inverse network: its learning was stopped before")
-        given = np.asarray(markers, dtype=float).ravel()
-        count = self._coordinates
+        given, count = np.asarray(markers, dtype=float).ravel(), self._coordinates
         if given.shape != (count,) or not np.isfinite(given).all():
             raise InputError(f"markers must be {count} finite coordinates [m]")
-        raw = self.inverse.values((given - self.middle[:count]) / self.unit[:count])[0]
-        return self._contractions(np.minimum(np.maximum(_BEYOND * np.tanh(raw), -1.0), 1.0))
+        return self._inverted(given)
 
     def solve(self, targets: Targets, *, search: bool = True) -> LearnedPose:
         """Contractions that bring markers to targets, as the networks know it.
@@ -109,20 +101,20 @@ class LearnedModel:
         """
         target = self._pose(targets)
         goal, asked = self._goal(target)
-        whole = goal if asked.all() else np.where(asked, goal, self._nearest(goal, asked, 1)[1][0])
+        whole = goal
+        if len(target.targets) < len(self._rows):
+            whole = np.where(asked, goal, self._nearest(goal, asked, 1)[1][0])
         if not search:
-            return self.judged(target, self.inverted(whole), Tier.NETWORK)
+            return self.judged(target, self._inverted(whole), Tier.NETWORK)
         return self.judged(target, self._search(whole, asked), Tier.SEARCH)
 
     def judged(self, target: Pose, contractions: Vector, tier: Tier) -> LearnedPose:
         """An answer, with what the networks say of it."""
-        expected, spread = self.expect(contractions)
+        expected, spread = self._expected(contractions)
         names, dim, count = self.facts["markers"], self.facts["dim"], self._coordinates
         places = expected[:count].reshape(-1, dim)
-        asked = [name for name in names if name in target.targets]
-        rows = [self._rows[name] for name in asked]
-        errors = _lengths(places[rows] - np.array([target.targets[name] for name in asked]))
-        doubts = _lengths(spread[:count].reshape(-1, dim)[rows])
+        found, doubted, goals = places.tolist(), spread[:count].reshape(-1, dim).tolist(), target.targets
+        asked = [(row, name) for name, row in self._rows.items() if name in goals]
         return LearnedPose(
             target=target,
             tier=tier,
@@ -130,9 +122,20 @@ class LearnedModel:
             commands=dict(zip(self.facts["winches"], contractions.tolist(), strict=True)),
             markers=dict(zip(names, places, strict=True)),
             tensions=dict(zip(self.facts["cables"], np.maximum(expected[count:], 0.0).tolist(), strict=True)),
-            errors=dict(zip(asked, errors, strict=True)),
-            spread=dict(zip(asked, doubts, strict=True)),
+            errors={name: dist(found[row], goals[name]) for row, name in asked},
+            spread={name: hypot(*doubted[row]) for row, name in asked},
         )
+
+    def _inverted(self, markers: Vector) -> Vector:
+        if self.inverse is None:
+            raise InputError("the model has no inverse network: its learning was stopped before")
+        count = self._coordinates
+        raw, _ = self.inverse.agreed((markers - self.middle[:count]) / self.unit[:count])
+        return self._contractions(_BEYOND * np.tanh(raw))
+
+    def _expected(self, contractions: Vector) -> tuple[Vector, Vector]:
+        mean, spread = self.forward.agreed(self._scaled(contractions))
+        return self.middle + self.unit * mean, self.unit * spread
 
     def _search(self, goal: Vector, asked: np.ndarray) -> Vector:
         """The best of descents from the inverse network's answer and, if need be, from samples."""
@@ -142,7 +145,7 @@ class LearnedModel:
         wanted = np.zeros(len(self.unit))
         wanted[:count] = (goal - self.middle[:count]) / self.unit[:count]
         enough = asked.sum() / self.facts["dim"] * (_USUAL * self.facts["error"]) ** 2
-        starts = [] if self.inverse is None else [self.inverted(goal)]
+        starts = [] if self.inverse is None else [self._inverted(goal)]
         best, least = np.zeros(len(self.low)), np.inf
         for start in [*starts, *self._nearest(goal, asked, _STARTS)[0]]:
             found, left = self.forward.descend(self._scaled(start), wanted, weights)
@@ -162,19 +165,16 @@ class LearnedModel:
         return targets if isinstance(targets, Pose) else Pose(name="target", targets=dict(named_targets(targets)))
 
     def _goal(self, target: Pose) -> tuple[Vector, np.ndarray]:
-        """Coordinates of all markers [m], and which of them are asked for."""
-        rows, dim = self._rows, self.facts["dim"]
-        goal, asked = np.zeros((len(rows), dim)), np.zeros((len(rows), dim), dtype=bool)
-        if not target.targets:
-            raise InputError("there is nothing to reach: give targets for markers")
-        for name, point in target.targets.items():
+        """Coordinates of all markers [m], NaN where nothing is asked for, and which of them are asked for."""
+        rows, dim, targets = self._rows, self.facts["dim"], target.targets
+        for name, point in targets.items():
             if name not in rows:
                 raise InputError(f'the model has no marker "{name}"; it has: {", ".join(rows)}')
-            place = np.asarray(point, dtype=float)
-            if place.shape != (dim,) or not all(map(isfinite, place.tolist())):
+            if len(point) != dim:
                 raise InputError(f'target of marker "{name}" must be {dim} finite coordinates [m]')
-            goal[rows[name]], asked[rows[name]] = place, True
-        return goal.ravel(), asked.ravel()
+        unknown = (np.nan,) * dim
+        goal = np.array([targets.get(name, unknown) for name in rows], dtype=float).ravel()
+        return goal, ~np.isnan(goal)
 
     def _winches(self, contractions: Vector) -> Vector:
         given = np.asarray(contractions, dtype=float)
@@ -183,10 +183,10 @@ class LearnedModel:
         return given
 
     def _scaled(self, contractions: Vector) -> Vector:
-        return 2.0 * (contractions - self.low) / self._span - 1.0
+        return (contractions - self._centre) / self._half
 
     def _contractions(self, scaled: Vector) -> Vector:
-        return self.low + 0.5 * self._span * (scaled + 1.0)
+        return np.minimum(np.maximum(self._centre + self._half * scaled, self.low), self.high)
 
     @cached_property
     def _rows(self) -> Mapping[str, int]:
@@ -194,8 +194,13 @@ class LearnedModel:
         return {name: row for row, name in enumerate(self.facts["markers"])}
 
     @cached_property
-    def _span(self) -> Vector:
-        return span_of(self.low, self.high)
+    def _half(self) -> Vector:
+        """Half of what each winch can take in [m]."""
+        return 0.5 * span_of(self.low, self.high)
+
+    @cached_property
+    def _centre(self) -> Vector:
+        return self.low + self._half
 
     @cached_property
     def _coordinates(self) -> int:
@@ -205,11 +210,6 @@ class LearnedModel:
 def span_of(low: Vector, high: Vector) -> Vector:
     """From the least to the most that each winch takes in [m]; 1 where that is nothing."""
     return np.where(high > low, high - low, 1.0)
-
-
-def _lengths(rows: np.ndarray) -> list[float]:
-    """Of vectors, a row each."""
-    return np.sqrt((rows * rows).sum(axis=1)).tolist()
 
 
 _BEYOND = 1.02

@@ -107,7 +107,10 @@ def _work(pipe: Connection, env: GoalEnv, count: int) -> None:
             told = copies.answer(), None
         except HydrostatError as error:
             told = [], error
-        pipe.send(told)
+        try:
+            pipe.send(told)
+        except OSError:  # nobody waits for it any more
+            return
 
 
 _PATIENCE = 5.0

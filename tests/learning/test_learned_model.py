@@ -64,7 +64,7 @@ def test_a_file_gives_the_model_back(robot: Robot, tmp_path: Path) -> None:
 
 
 def test_what_networks_say_of_an_answer(robot: Robot) -> None:
-    """Oracle: plain NumPy on each network, to 1e-12; all markers asked for, and then one of two."""
+    """Oracle: plain NumPy, to 1e-6 as networks run in single precision; all markers asked for, and then one of two."""
     first = plain(robot)
     facts = {**first.facts, "markers": ["tip", "knee"], "cables": []}
     known = np.array([[0.1, 0.2, 0.3, 0.4], [0.4, 0.3, 0.2, 0.1], [0.0, 0.1, 0.0, 0.2]])
@@ -84,13 +84,13 @@ def test_what_networks_say_of_an_answer(robot: Robot) -> None:
         found = model.solve(target, search=False)
         goal = np.r_[target.get("tip", known[1, :2]), target["knee"]]
         scaled = np.clip(1.02 * np.tanh(answers(networks, goal)[0]), -1, 1)
-        assert found.contractions == pytest.approx(model.high * (scaled + 1) / 2, abs=1e-12)
+        assert found.contractions == pytest.approx(model.high * (scaled + 1) / 2, abs=1e-6)
         values = answers(model.forward, scaled)
         for name, place in target.items():
             at = slice(0, 2) if name == "tip" else slice(2, 4)
-            assert found.errors[name] == pytest.approx(np.linalg.norm(values.mean(axis=0)[at] - place), abs=1e-12)
-            assert found.spread[name] == pytest.approx(np.linalg.norm(values.std(axis=0)[at]), abs=1e-12)
-            assert found.markers[name] == pytest.approx(values.mean(axis=0)[at], abs=1e-12)
+            assert found.errors[name] == pytest.approx(np.linalg.norm(values.mean(axis=0)[at] - place), abs=1e-6)
+            assert found.spread[name] == pytest.approx(np.linalg.norm(values.std(axis=0)[at]), abs=1e-6)
+            assert found.markers[name] == pytest.approx(values.mean(axis=0)[at], abs=1e-6)
         assert list(found.errors) == list(found.spread) == list(target)
 
 

@@ -10,10 +10,12 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from hydrostat.cli.trial_tables import shared_table  # noqa: E402
+from hydrostat.simulation import Simulation  # noqa: E402
 from hydrostat.training import policies as room  # noqa: E402
 from hydrostat.training import shared_data  # noqa: E402
 from hydrostat.training.policies import WAYS, Budget, TriedPairs  # noqa: E402
 from hydrostat.training.trials import NetworkReach  # noqa: E402
+from tests.builders import strip_robot  # noqa: E402
 
 
 class StraightReach(NetworkReach):
@@ -82,8 +84,8 @@ def test_others_learn_from_what_was_tried(tmp_path: Path, monkeypatch: pytest.Mo
 
     monkeypatch.setattr(shared_data, "exact_distances", exact)
     monkeypatch.setattr(shared_data, "HindsightDdpg", Kept)
-    budget = Budget(steps=60, epochs=8, batch=32)
-    found = list(shared_data.compare_on_shared_data(StraightReach(), None, seeds=2, goals=50, budget=budget))  # type: ignore[arg-type]
+    budget, unasked = Budget(steps=60, epochs=8, batch=32), Simulation(strip_robot())
+    found = list(shared_data.compare_on_shared_data(StraightReach(), unasked, seeds=2, goals=50, budget=budget))
     assert [each.pairs for each in found[::8]] == [40, 80, 160, 320]
     left = {(each.way, each.pairs): each.expected for each in found}
     ends = {each.way: each.exact for each in found if each.exact is not None}
