@@ -16,7 +16,15 @@ if TYPE_CHECKING:
     from hydrostat.simulation import Simulation
     from hydrostat.training.run_experiment import Judged
 
-TRIALS = ("figure-5.8", "figure-5.9", "figure-5.10", "figure-5.12", "table-noise", "table-reward")
+TRIALS = (
+    "figure-5.8",
+    "figure-5.9",
+    "figure-5.9-small",
+    "figure-5.10",
+    "figure-5.12",
+    "table-noise",
+    "table-reward",
+)
 """Experiments of the thesis that can be reproduced; figure-5.10 is figure 5.11 too."""
 
 POLICIES, GRADIENT = "table-policies", "table-gradient"

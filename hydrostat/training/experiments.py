@@ -114,27 +114,18 @@ def _first_action(ran: Mapping[str, Ran]) -> np.ndarray:
     return (ran["T=10"].best[0] < ran["T=10"].run.options.tolerance).mean(axis=1)
 
 
-EXPERIMENTS: Mapping[str, Experiment] = {
-    "figure-5.8": Experiment(
-        title="episodes of one action and of ten, with as many actions in all; 3 x 256, sparse",
-        runs={"T=1": Run(options=_PAPER), "T=10": Run(options=_PAPER, horizon=10)},
-        claims=(
-            Claim(text="T=10 learns faster than T=1 (N13)", measure=_faster("T=10", "T=1")),
-            Claim(text="T=1 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=1"]), above=MASTERED),
-            Claim(text="T=10 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=10"]), above=MASTERED),
-            Claim(text="T=10 arrives with its first action (N13)", measure=_first_action, above=MASTERED),
-        ),
-    ),
-    "figure-5.9": Experiment(
-        title="the tolerance is made smaller when nine of ten tests succeed; 3 x 256, sparse, T=5",
-        runs={
-            "a: halved": Run(options=replace(_PAPER, curriculum=Curriculum.HALVE), horizon=5),
-            "b: less a tenth": Run(options=replace(_PAPER, curriculum=Curriculum.TENTH), horizon=5),
-            "c: b, critic 0.01": Run(
-                options=replace(_PAPER, curriculum=Curriculum.TENTH, late_critic_rate=1e-2), horizon=5
-            ),
-            "d: current error": Run(options=replace(_PAPER, curriculum=Curriculum.CURRENT), horizon=5),
-        },
+def _curricula(options: DdpgOptions, layers: str) -> Experiment:
+    """What becomes of networks as the tolerance is made smaller in one way or another (Fig 5.9)."""
+    tenth = replace(options, curriculum=Curriculum.TENTH)
+    ways = {
+        "a: halved": replace(options, curriculum=Curriculum.HALVE),
+        "b: less a tenth": tenth,
+        "c: b, critic 0.01": replace(tenth, late_critic_rate=1e-2),
+        "d: current error": replace(options, curriculum=Curriculum.CURRENT),
+    }
+    return Experiment(
+        title=f"the tolerance is made smaller when nine of ten tests succeed; {layers}, sparse, T=5",
+        runs={name: Run(options=each, horizon=5) for name, each in ways.items()},
         claims=(
             Claim(
                 text="b masters smaller tolerances than a (R83)",
@@ -154,7 +145,22 @@ EXPERIMENTS: Mapping[str, Experiment] = {
             ),
         ),
         shown=("success", "tolerance"),
+    )
+
+
+EXPERIMENTS: Mapping[str, Experiment] = {
+    "figure-5.8": Experiment(
+        title="episodes of one action and of ten, with as many actions in all; 3 x 256, sparse",
+        runs={"T=1": Run(options=_PAPER), "T=10": Run(options=_PAPER, horizon=10)},
+        claims=(
+            Claim(text="T=10 learns faster than T=1 (N13)", measure=_faster("T=10", "T=1")),
+            Claim(text="T=1 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=1"]), above=MASTERED),
+            Claim(text="T=10 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=10"]), above=MASTERED),
+            Claim(text="T=10 arrives with its first action (N13)", measure=_first_action, above=MASTERED),
+        ),
     ),
+    "figure-5.9": _curricula(_PAPER, "3 x 256"),
+    "figure-5.9-small": _curricula(replace(_PAPER, layers=SMALL.layers), "4 x 30"),
     "figure-5.10": Experiment(
         title="tolerances, and errors of the best policies (Figs 5.10, 5.11); 4 x 30, shaped",
         runs={"T=1": Run(options=_SHRINKING), "T=5": Run(options=_SHRINKING, horizon=5)},
