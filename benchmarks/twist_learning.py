@@ -159,8 +159,8 @@ def searched(
             return middle, cost
 
 
-def learned(body: str, keys: np.ndarray, actions: int, out: Path) -> tuple[Act, int]:
-    """A policy that adds to keyframes, and the time steps that it cost."""
+def learned(body: str, keys: np.ndarray, actions: int, out: Path, *, again: bool) -> tuple[Act, int]:
+    """A policy that adds to keyframes, asked for `ASKED`, and the time steps that it cost; again: as it is in `out`."""
     asked = (np.deg2rad(ASKED), np.deg2rad(ASKED))
     env, judge_in = (made(body, len(keys), AddedTo, turn=asked) for _ in range(2))
     AddedTo.keys = keys
@@ -168,9 +168,14 @@ def learned(body: str, keys: np.ndarray, actions: int, out: Path) -> tuple[Act, 
     options = TrainOptions(
         method=TrainMethod.TQC, steps=actions, every=max(1, actions // 4), layers=(64, 64), updates=4, rate=1e-3
     )
-    model, curve = train(env, few, options, out, judge_in=judge_in, tell=lambda point: print(f"  {point}", flush=True))
+
+    def tell(point: object) -> None:
+        print(f"  {point}", flush=True)
+
+    model, curve = train(env, few, options, out, judge_in=judge_in, resume=again, tell=tell)
 
     def act(seen: dict[str, np.ndarray], number: int) -> np.ndarray:
+        seen = {**seen, "desired_goal": np.array([ASKED / 180.0])}
         return as_action(keys[number] + RESIDUAL * model.predict(seen, deterministic=True)[0])
 
     return act, curve[-1].equilibria
@@ -188,6 +193,7 @@ def main() -> None:
     parser.add_argument("--learn", type=int, default=0, help="actions; 0: none")
     parser.add_argument("--keys", type=float, nargs="+", help="[mm], a and b in turn, any number")
     parser.add_argument("--spread", type=float, default=SPREAD, help="of the tries at first [mm]")
+    parser.add_argument("--again", action="store_true", help="judge the policy in OUT, which was learned before")
     parser.add_argument("--out", type=Path, default=Path("build/twist"))
     given = parser.parse_args()
     print(machine())
@@ -214,7 +220,7 @@ def main() -> None:
         numbers, more = searched(apart, rule(keys), spread, obeying, given.feel, **tries)
         judged("a rule that sees, on these", apart, obeying(numbers), draws, cost + more, first)
     if given.learn:
-        act, more = learned(given.body, keys, given.learn, given.out)
+        act, more = learned(given.body, keys, given.learn, given.out, again=given.again)
         judged("networks that see, on these", env, act, draws, cost + more, first)
 
 
