@@ -1,7 +1,7 @@
 """`hydrostat learn`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -9,6 +9,9 @@ from hydrostat.cli.folders import require_writable
 from hydrostat.cli.sample import told
 from hydrostat.cli.waiting import one_interrupt
 from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.learning import LearnedModel
 
 
 def learn(
@@ -57,7 +60,8 @@ def learn(
         with one_interrupt("stopping; what was learned so far is kept"):
             model = correct_model(known, samples, tell=told())
             save_model(model, out)
-        print(f"{len(samples)} samples: markers are expected within {1e3 * model.facts['error']:.3f} mm\nWrote {out}")
+        print(f"{len(samples)} samples: markers are expected within {1e3 * model.facts['error']:.3f} mm")
+        _end(model, out)
         return
     with one_interrupt("stopping; what was learned so far is kept"):
         model = learn_model(samples, options=options, tell=told())
@@ -66,9 +70,13 @@ def learn(
     moved, error = 1e3 * facts["displacement"], 1e3 * facts["error"]
     print(f"{len(samples)} samples: markers that move {moved:.1f} mm are expected within {error:.3f} mm", end="")
     print("" if facts["inverse_error"] is None else f", brought back within {1e3 * facts['inverse_error']:.3f} mm")
+    _end(model, out)
+
+
+def _end(model: "LearnedModel", out: Path) -> None:
+    """Say what was written, and whether it was stopped early; then the command ends with 130."""
     print(f"Wrote {out}")
-    if facts["stopped"]:
-        print(
-            "It was stopped early: this is the best so far" + ("" if model.inverse else ", without an inverse network")
-        )
+    if model.facts["stopped"]:
+        lacks = "" if model.inverse else ", without an inverse network"
+        print(f"It was stopped early: this is the best so far{lacks}")
         raise typer.Exit(130)

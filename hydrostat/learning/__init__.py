@@ -4,7 +4,7 @@ from hydrostat.learning.certify import certify, solve_exactly
 from hydrostat.learning.compare import METHODS, Compared, compare
 from hydrostat.learning.correct_model import correct_model
 from hydrostat.learning.draw import Draw
-from hydrostat.learning.export import EXPORTS, export_samples
+from hydrostat.learning.export import EXPORTS, check_export, export_samples
 from hydrostat.learning.learn_model import learn_model
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel
@@ -35,6 +35,7 @@ __all__ = [
     "StudyRow",
     "Tier",
     "certify",
+    "check_export",
     "compare",
     "correct_model",
     "export_samples",

@@ -30,6 +30,7 @@ def correct_model(
 
     Raises:
         InputError: too few samples, of a robot with other winches, markers, cables or travel, or no PyTorch.
+        KeyboardInterrupt: before there was anything to keep.
     """
     from hydrostat.learning.train import train_forward
 
@@ -42,6 +43,8 @@ def correct_model(
     began, lesson = time.process_time(), lesson_of(samples, model)
     trained = train_forward(lesson, model.facts["dim"], options, tell or silent, start=model.forward)
     if not np.isfinite(trained.error):
+        if trained.stopped:
+            raise KeyboardInterrupt
         raise InputError("the networks learned nothing: try a smaller rate")
     facts = (
         dict(model.facts)

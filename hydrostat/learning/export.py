@@ -1,6 +1,7 @@
 """`export_samples`: samples for the tools of others."""
 
 from collections.abc import Callable, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -21,11 +22,8 @@ def export_samples(folder: Path, out: Path) -> Path:
     Raises:
         InputError: an unknown ending, a missing library, a file that is there, or no samples.
     """
-    write = EXPORTS.get(out.suffix)
-    if write is None:
-        raise InputError(f"{out}: must end in {' or '.join(EXPORTS)}")
-    if out.exists():
-        raise InputError(f"{out}: is there already; name another")
+    check_export(out)
+    write = EXPORTS[out.suffix]
     facts, rows = read_rows(folder)
     part = out.with_name(f".{out.name}.part")
     try:
@@ -36,6 +34,20 @@ def export_samples(folder: Path, out: Path) -> Path:
     except OSError as error:
         raise InputError(f"{out}: cannot be written ({error.strerror})") from None
     return out
+
+
+def check_export(out: Path) -> None:
+    """Check, before any work, that samples can be written there.
+
+    Raises:
+        InputError: an unknown ending, a file that is there, or a missing library.
+    """
+    if out.suffix not in EXPORTS:
+        raise InputError(f"{out}: must end in {' or '.join(EXPORTS)}")
+    if out.exists():
+        raise InputError(f"{out}: is there already; name another")
+    if find_spec(_NEEDS[out.suffix]) is None:
+        raise InputError(f"{out}: needs {_NEEDS[out.suffix]}; install hydrostat[cluster]")
 
 
 def _parquet(path: Path, facts: Mapping[str, Any], rows: np.ndarray) -> None:
@@ -75,3 +87,6 @@ def _zarr(path: Path, facts: Mapping[str, Any], rows: np.ndarray) -> None:
 
 EXPORTS: Mapping[str, Callable[[Path, Mapping[str, Any], np.ndarray], None]] = {".parquet": _parquet, ".zarr": _zarr}
 """How samples are written, by the ending of the file."""
+
+_NEEDS: Mapping[str, str] = {".parquet": "pyarrow", ".zarr": "zarr"}
+"""Libraries that write them."""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 from builders import strip_robot
 
 import hydrostat as hs
@@ -141,7 +142,9 @@ def test_ways_to_learn_side_by_side(samples: Samples, simulation: hs.Simulation,
 
 
 @pytest.mark.slow
-def test_a_few_samples_of_a_finer_mesh_correct_a_model(model: LearnedModel, tmp_path: Path) -> None:
+def test_a_few_samples_of_a_finer_mesh_correct_a_model(
+    model: LearnedModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Oracle: samples of the finer mesh that nothing was learned from; the model as it was."""
     finer = strip_robot(columns=16, rows=4)
     found = read_samples(sample_robot(plan_samples(finer, 20), tmp_path / "finer").path)
@@ -159,9 +162,16 @@ def test_a_few_samples_of_a_finer_mesh_correct_a_model(model: LearnedModel, tmp_
     assert load_model(save_model(better, tmp_path / "finer.model")).facts["physics"] == better.facts["physics"]
     with pytest.raises(InputError, match="there are 3 samples; learning takes 5"):
         correct_model(model, known.first(3))
+    monkeypatch.setattr("hydrostat.learning.train.sobolev_loss", _interrupted)
+    with pytest.raises(KeyboardInterrupt):  # nothing is there to keep, and no rate is to blame
+        correct_model(model, known)
     other = replace(known, facts={**known.facts, "markers": ["elsewhere"]})
     with pytest.raises(InputError, match="other markers"):
         correct_model(model, other)
+
+
+def _interrupted(*_: object) -> None:
+    raise KeyboardInterrupt
 
 
 def test_a_step_that_finds_nothing_is_tried_shorter(simulation: hs.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -275,6 +285,13 @@ def test_the_commands(
     learn(folder, tmp_path / "strip.model", count=60, members=1, steps=100)
     assert "Wrote" in capsys.readouterr().out
     assert load_model(tmp_path / "strip.model").facts["samples"] == 60
+    part = learn_model(read_samples(folder).first(60), options=replace(OPTIONS, steps=1, inverse_steps=1))
+    early = replace(part, facts={**part.facts, "stopped": True})
+    monkeypatch.setattr("hydrostat.learning.correct_model", lambda *_, **__: early)
+    with pytest.raises(typer.Exit) as ended:
+        learn(folder, tmp_path / "early.model", start=tmp_path / "strip.model")
+    assert ended.value.exit_code == 130
+    assert capsys.readouterr().out.endswith("It was stopped early: this is the best so far\n")
     place = tuple(read_samples(folder).markers[70, 0].tolist())
     posed = replace(robot, poses={"far": hs.Pose(name="far", targets={"tip": place})})
     monkeypatch.setattr("hydrostat.cli.pose.read_robot", lambda path: posed)

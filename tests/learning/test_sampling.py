@@ -17,6 +17,7 @@ import pytest
 from builders import gallery_robot, strip_robot
 
 import hydrostat as hs
+from hydrostat.cli.sample import sample
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import Draw, SamplePlan, export_samples, plan_samples, read_samples, sample_robot, sample_shard
 from hydrostat.learning.draw import contractions as drawn
@@ -331,6 +332,16 @@ def test_damaged_files_are_told(plan: SamplePlan, tmp_path: Path) -> None:
 def test_a_wrong_plan_is_one_line(plan: SamplePlan, wrong: dict, words: str) -> None:
     with pytest.raises(InputError, match=words):
         replace(plan, **wrong)
+
+
+def test_what_cannot_be_exported_is_told_before_sampling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: no folder of samples is begun."""
+    (tmp_path / "there.zarr").mkdir()
+    monkeypatch.setattr("hydrostat.learning.export.find_spec", lambda name: None)
+    for name, words in (("a.csv", "must end in"), ("there.zarr", "is there already"), ("a.parquet", "needs pyarrow")):
+        with pytest.raises(InputError, match=words):
+            sample(Path("gallery:starfish"), tmp_path / "out", count=1, jobs=1, export=tmp_path / name)
+    assert not (tmp_path / "out").exists()
 
 
 def test_exports_hold_the_same_numbers(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
