@@ -60,7 +60,8 @@ def _print_judgement(robot: "Robot") -> None:
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Weight.REFUSED, Weight.MIND))
-    wrong = f"{counted(refused, 'thing')} cannot be built" if refused else "Nothing is wrong"
+    good = "Nothing is wrong" if robot.cables else "Nothing is wrong with the body; there are no cables yet"
+    wrong = f"{counted(refused, 'thing')} cannot be built" if refused else good
     print(f"{wrong}, {risky} risky." if risky else f"{wrong}.")
 
 
