@@ -75,8 +75,8 @@ def _near_the_edge_at_points(parts: Parts) -> Iterator[str]:
     for (index, at), depth in zip(asked, depths, strict=True):
         if depth < least - LENGTH:
             yield (
-                f"cable[{index}].points[{at}] at {place(parts.points[index][at])} lies {mm(depth)} inside the "
-                f"{parts.edge}, less than the {_limit(parts, least)}"
+                f"cable[{index}].points[{at}] at {place(parts.points[index][at])} lies {parts.within(depth)}, "
+                f"less than the {_limit(parts, least)}"
             )
         elif depth > most + LENGTH:
             yield (
@@ -106,7 +106,7 @@ def _near_the_edge(parts: Parts, segments: _Segments) -> Iterator[str]:
     for index, depth in zip(asked, found, strict=True):
         if depth < least - LENGTH:
             allowed = _limit(parts, least) if skin else f"half the clearance of {mm(clearance)}"
-            yield f"{segments.name(index)} comes to {mm(depth)} inside the {parts.edge}, less than {allowed}"
+            yield f"{segments.name(index)} comes to {parts.within(depth)}, less than {allowed}"
     if not skin:
         return
     found = least_along(

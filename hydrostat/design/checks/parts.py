@@ -62,6 +62,10 @@ class Parts:
         """What a body ends at."""
         return "edge" if self.robot.body.mesh.dim == 2 else "surface"
 
+    def within(self, depth: float) -> str:
+        """How deep something is in the body [m], in words; negative is outside."""
+        return f"{mm(abs(depth))} {'inside' if depth >= 0 else 'outside'} the {self.edge}"
+
 
 def mm(length: float) -> str:
     """A length [m] in millimetres, to a hundredth."""

@@ -70,7 +70,7 @@ class _Card:
         self._page, self._typing = page, False
         driver, least, most = page.session.driver, -1e3 * winch.release, 1e3 * winch.travel
         card = ui.element("div").classes("studio-card")
-        with card.style(f"display: flex; align-items: center; gap: 12px; padding: {size // 8}px 12px"):
+        with card.style(f"display: flex; align-items: center; gap: 8px; padding: {size // 8}px 10px"):
             self._knob = Knob(least=least, most=most, step=STEP, colour=colour, label=winch.name)
             self._knob.style(f"width: {size}px; height: {size}px; flex: none; margin: -3px 0 -5px -4px")
             self._knob.mark(f"knob-{winch.name}")
@@ -86,7 +86,8 @@ class _Card:
                 self._pull = ui.label("0.0 N").classes("studio-hint studio-figure").style("line-height: 1")
                 self._pull.tooltip("Largest tension of its cables")
             self._box = ui.number(min=least, max=most, step=STEP, format="%.1f", suffix="mm", value=0.0)
-            self._box.props(f'dense outlined aria-label="{winch.name}, millimetres"').style("width: 98px; flex: none")
+            self._box.props(f'dense outlined aria-label="{winch.name}, millimetres"').classes("drive-box")
+            self._box.style("width: 88px; flex: none")
             self._box.mark(f"box-{winch.name}")
         self._colour = f"color-mix(in oklab, {colour}, white var(--lift, 0%))"
         self._knob.on_turn(
