@@ -34,7 +34,9 @@ def reproduce(
     what: Annotated[list[str], typer.Argument(metavar="TABLE...", help="table-5.1 table-5.2 figure-5.3 ...; or all.")],
     out: OutFolder,
     size: Annotated[str, typer.Option(metavar="minutes|hour|full", help="How much is sampled.")] = "minutes",
-    draw: Annotated[str, typer.Option(metavar="WAY,WAY", help="How contractions are drawn: box, antagonist.")] = "box",
+    draw: Annotated[
+        str, typer.Option(metavar="WAY,WAY", help="How contractions are drawn: box, antagonist, faces.")
+    ] = "box",
     robots: Annotated[str | None, typer.Option(metavar="NAME,NAME", help="Robots of the gallery, or folders.")] = None,
     counts: Annotated[str | None, typer.Option(metavar="N,N", help="Numbers of samples to learn from.")] = None,
     targets: Annotated[int | None, typer.Option(metavar="N", help="How many targets.")] = None,
@@ -108,9 +110,13 @@ def _study(
     """What is compared, and on which robots."""
     from hydrostat.learning import Draw, LearnOptions, Study
 
-    usual = _SIZES[size]
+    usual, draws = _SIZES[size], tuple(member(Draw, each.strip(), what="--draw") for each in draw.split(","))
+    if Draw.TENSION in draws:
+        raise InputError(
+            "--draw tension: is for hydrostat sample, which takes a --tension; here: box, antagonist, faces"
+        )
     study = Study(
-        draws=tuple(member(Draw, each.strip(), what="--draw") for each in draw.split(",")),
+        draws=draws,
         counts=tuple(usual.counts if counts is None else _numbers(counts)),
         targets=usual.targets if targets is None else targets,
         seeds=usual.seeds if seeds is None else seeds,
@@ -120,10 +126,15 @@ def _study(
 
 
 def _numbers(text: str) -> list[int]:
+    from hydrostat.learning.lesson import LEAST
+
     parts = [part.strip() for part in text.split(",")]
     if not all(part.isdecimal() and int(part) for part in parts):
         raise InputError(f"--counts {text}: write numbers above 0, for example 100,1000")
-    return [int(part) for part in parts]
+    counts = [int(part) for part in parts]
+    if min(counts) < LEAST:
+        raise InputError(f"--counts {text}: networks learn from {LEAST} samples or more")
+    return counts
 
 
 def _robot(name: str) -> "Robot":

@@ -116,9 +116,13 @@ def test_the_tables_and_figures_of_the_thesis(
         reproduce.reproduce(["table-9"], tmp_path)
     with pytest.raises(InputError, match="--counts 1,x"):
         reproduce.reproduce(["all"], tmp_path, counts="1,x")
+    with pytest.raises(InputError, match="--counts 10,100: networks learn from 20 samples or more"):
+        reproduce.reproduce(["all"], tmp_path, counts="10,100")
+    with pytest.raises(InputError, match="--draw tension: is for hydrostat sample"):
+        reproduce.reproduce(["all"], tmp_path, draw="box,tension")
 
 
 def test_options_of_a_size() -> None:
-    chosen, robots = reproduce._study(reproduce.Size.FULL, "box,antagonist", "trunk", "7", None, None)
-    assert (robots, chosen.counts, chosen.targets, chosen.seeds) == (["trunk"], (7,), 5000, 5)
+    chosen, robots = reproduce._study(reproduce.Size.FULL, "box,antagonist", "trunk", "70", None, None)
+    assert (robots, chosen.counts, chosen.targets, chosen.seeds) == (["trunk"], (70,), 5000, 5)
     assert chosen.options == LearnOptions()
