@@ -43,8 +43,7 @@ def _near_the_edge(parts: Parts) -> Iterator[str]:
     for index, depth in zip(inside, depths, strict=True):
         if depth < least - LENGTH:
             yield (
-                f"{parts.winch_name(index)} stands {parts.within(depth)}, "
-                f"less than the winch_clearance of {mm(least)}"
+                f"{parts.winch_name(index)} stands {parts.within(depth)}, less than the winch_clearance of {mm(least)}"
             )
 
 
