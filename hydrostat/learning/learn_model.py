@@ -3,13 +3,15 @@
 import time
 from dataclasses import asdict
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.learning.draw import Draw
 from hydrostat.learning.known_contact import told_contact
 from hydrostat.learning.learn_options import LearnOptions
-from hydrostat.learning.learned_model import LearnedModel
+from hydrostat.learning.learned_model import LearnedModel, paired
 from hydrostat.learning.lesson import lesson_of
 from hydrostat.learning.sample_robot import Tell
 from hydrostat.learning.samples import Samples
@@ -34,15 +36,17 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
 
     options, told = options or LearnOptions(), tell or silent
     began, lesson, dim = time.process_time(), lesson_of(samples), samples.facts["dim"]
+    kept = kept_facts(samples)
+    pairs = paired(kept["pairs"], samples.facts["winches"])
     length = float(lesson.unit[0])
     forward = train_forward(lesson, dim, options, told)
     if not np.isfinite(forward.error):
         if forward.stopped:
             raise KeyboardInterrupt
         raise InputError("the networks learned nothing: try a smaller rate")
-    inverse = None if forward.stopped else train_inverse(lesson, dim, forward.networks, options, told)
+    inverse = None if forward.stopped else train_inverse(lesson, dim, forward.networks, options, told, pairs)
     some = np.linspace(0, len(samples) - 1, min(len(samples), KNOWN)).astype(int)
-    facts = kept_facts(samples) | {
+    facts = kept | {
         "version": version("hydrostat"),
         "samples": len(samples),
         "lost": samples.lost,
@@ -66,9 +70,10 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
     )
 
 
-def kept_facts(samples: Samples) -> dict[str, object]:
+def kept_facts(samples: Samples) -> dict[str, Any]:
     """What a model tells of the robot that it was learned of."""
-    return {**{name: samples.facts[name] for name in _KEPT}, **told_contact(samples.facts)}
+    pairs = samples.facts["pairs"] if list(samples.facts["draws"]) == [Draw.ANTAGONIST] else []
+    return {**{name: samples.facts[name] for name in _KEPT}, "pairs": pairs, **told_contact(samples.facts)}
 
 
 def silent(stage: str, done: int, total: int) -> None:

@@ -1,6 +1,6 @@
 """`LearnedModel`: networks that know where the markers of one robot go, and how to bring them somewhere."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import dist, hypot
@@ -131,7 +131,7 @@ class LearnedModel:
             raise InputError("the model has no inverse network: its learning was stopped before")
         count = self._coordinates
         raw, _ = self.inverse.agreed((markers - self.middle[:count]) / self.unit[:count])
-        return self._contractions(_BEYOND * np.tanh(raw))
+        return self._held(self._contractions(_BEYOND * np.tanh(raw)))
 
     def _expected(self, contractions: Vector) -> tuple[Vector, Vector]:
         mean, spread = self.forward.agreed(self._scaled(contractions))
@@ -148,12 +148,35 @@ class LearnedModel:
         starts = [] if self.inverse is None else [self._inverted(goal)]
         best, least = np.zeros(len(self.low)), np.inf
         for start in [*starts, *self._nearest(goal, asked, _STARTS)[0]]:
-            found, left = self.forward.descend(self._scaled(start), wanted, weights)
+            found, left = self.forward.descend(self._scaled(start), wanted, weights, self._box(start))
             if left < least:
                 best, least = found, left
             if least <= enough:
                 break
         return self._contractions(best)
+
+    def _held(self, contractions: Vector) -> Vector:
+        """As samples were drawn: of two winches against one another only that which takes in more does, by as much."""
+        one, other = self._pairs
+        if not len(one):
+            return contractions
+        shares = contractions / np.where(self.high > 0, self.high, 1.0)
+        more, held = shares[one] - shares[other], contractions.copy()
+        held[one], held[other] = np.maximum(more, 0.0) * self.high[one], np.maximum(-more, 0.0) * self.high[other]
+        return held
+
+    def _box(self, start: Vector) -> tuple[Vector, Vector] | None:
+        """Where a search from a start that is held so stays held; None where nothing is."""
+        one, other = self._pairs
+        if not len(one):
+            return None
+        low, high = np.full(len(self.low), -1.0), np.ones(len(self.low))
+        rest = self._scaled(np.zeros(len(self.low)))
+        both = np.r_[one, other]
+        low[both] = rest[both]
+        idle = np.where(start[one] > start[other], other, one)
+        high[idle] = rest[idle]
+        return low, high
 
     def _nearest(self, goal: Vector, asked: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Samples whose markers were nearest to what is asked: contractions, coordinates."""
@@ -194,6 +217,11 @@ class LearnedModel:
         return {name: row for row, name in enumerate(self.facts["markers"])}
 
     @cached_property
+    def _pairs(self) -> tuple[np.ndarray, np.ndarray]:
+        """Winches of which samples had only one take in, as two rows of places."""
+        return paired(self.facts.get("pairs", ()), self.facts["winches"])
+
+    @cached_property
     def _half(self) -> Vector:
         """Half of what each winch can take in [m]."""
         return 0.5 * span_of(self.low, self.high)
@@ -205,6 +233,13 @@ class LearnedModel:
     @cached_property
     def _coordinates(self) -> int:
         return len(self.facts["markers"]) * self.facts["dim"]
+
+
+def paired(pairs: Sequence[Sequence[str]], winches: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Places of the first and of the second winch of each pair by name; groups of one are left out."""
+    places = [(winches.index(group[0]), winches.index(group[1])) for group in pairs if len(group) == 2]
+    one, other = np.array(places, dtype=int).reshape(-1, 2).T
+    return one, other
 
 
 def span_of(low: Vector, high: Vector) -> Vector:

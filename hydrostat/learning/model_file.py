@@ -36,6 +36,9 @@ def _check_facts(facts: Mapping[str, Any]) -> None:
     for name in ("winches", "markers", "cables"):
         if not all(isinstance(one, str) for one in facts[name]) or len(set(facts[name])) != len(facts[name]):
             raise ValueError(f"its {name} are no names")
+    paired = [name for group in facts.get("pairs", ()) for name in group]
+    if len(set(paired)) != len(paired) or not set(paired) <= set(facts["winches"]):
+        raise ValueError("its pairs are none of its winches")
     if facts["dim"] not in {2, 3} or not all(isfinite(facts[one]) and facts[one] >= 0 for one in ("error", "size")):
         raise ValueError("its numbers are out of their ranges")
     told = [facts.get(one) for one in ("contact_distance", "contact_friction")]

@@ -71,8 +71,10 @@ class Perceptrons:
         value, slopes = _mean(self.sizes, self.numbers, np.ascontiguousarray(point, dtype=float))
         return value, slopes.T
 
-    def descend(self, start: Vector, goal: Vector, weights: Vector) -> tuple[Vector, float]:
-        """Levenberg-Marquardt from a point in [-1, 1]^inputs to the best one hereabouts, and what is left there.
+    def descend(
+        self, start: Vector, goal: Vector, weights: Vector, box: tuple[Vector, Vector] | None = None
+    ) -> tuple[Vector, float]:
+        """Levenberg-Marquardt from a point in a box to the best one hereabouts, and what is left there.
 
         Minimises the sum of squares of weights x (mean answer - goal) within the box. The first network leads there,
         all of them finish it.
@@ -81,12 +83,14 @@ class Perceptrons:
             start: in the box.
             goal: as many numbers as the networks answer.
             weights: 0 where the goal does not matter.
+            box: least and most of each input; -1 and 1 if left out.
         """
-        point = np.clip(start, -1.0, 1.0)
+        low, high = box or (np.full(len(start), -1.0), np.ones(len(start)))
+        point = np.clip(start, low, high)
         if len(self) == 1:
-            return _descend(self.sizes, self.numbers, point, goal, weights, _ROUNDS)
-        point, _ = _descend(self.sizes, self.numbers[:1], point, goal, weights, _ROUNDS)
-        return _descend(self.sizes, self.numbers, point, goal, weights, _LAST_ROUNDS)
+            return _descend(self.sizes, self.numbers, point, goal, weights, low, high, _ROUNDS)
+        point, _ = _descend(self.sizes, self.numbers[:1], point, goal, weights, low, high, _ROUNDS)
+        return _descend(self.sizes, self.numbers, point, goal, weights, low, high, _LAST_ROUNDS)
 
 
 FINE = {"contract"}  # what of floating point may be rearranged: a product and a sum are one
@@ -212,7 +216,7 @@ def _left(sizes, numbers, point, goal, weights):
 
 @njit(**KERNEL)
 @no_type_check
-def _descend(sizes, numbers, point, goal, weights, rounds):
+def _descend(sizes, numbers, point, goal, weights, low, high, rounds):
     inputs = sizes[0]
     damping, left, step = 1e-3, np.inf, np.zeros(inputs)
     for _ in range(rounds):
@@ -229,14 +233,15 @@ def _descend(sizes, numbers, point, goal, weights, rounds):
         for one in range(inputs):
             largest = max(largest, normal[one, one])
         for one in range(inputs):  # what presses against the box stays
-            step[one] = 0.0 if abs(point[one]) >= 1.0 and gradient[one] * point[one] <= 0.0 else 1.0
+            below, above = point[one] <= low[one], point[one] >= high[one]
+            step[one] = 0.0 if (below and gradient[one] >= 0.0) or (above and gradient[one] <= 0.0) else 1.0
             free = max(free, step[one] * gradient[one] ** 2)
         if free <= _FLAT * largest * max(left, _FLAT):
             break
         better, moved = False, 0.0
         for _ in range(_TRIES):
             change = _damped(normal, gradient, step, damping, largest)
-            trial = np.minimum(np.maximum(point + change, -1.0), 1.0)
+            trial = np.minimum(np.maximum(point + change, low), high)
             moved = np.max(np.abs(trial - point))
             found = _left(sizes, numbers, trial, goal, weights)
             if found < left:

@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from hydrostat.errors import InputError
 from hydrostat.learning.learn_options import LearnOptions
+from hydrostat.learning.learned_model import span_of
 from hydrostat.learning.lesson import Lesson, linear_map
 from hydrostat.learning.perceptrons import Perceptrons
 
@@ -73,23 +74,31 @@ def train_forward(
     return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
 
 
-def train_inverse(lesson: Lesson, dim: int, forward: Perceptrons, options: LearnOptions, tell: Tell) -> Trained:
+def train_inverse(
+    lesson: Lesson,
+    dim: int,
+    forward: Perceptrons,
+    options: LearnOptions,
+    tell: Tell,
+    pairs: tuple[np.ndarray, np.ndarray],
+) -> Trained:
     """A network from markers to contractions, taught by what the forward networks make of its answers.
 
     It sees the samples' markers, and what the networks expect between samples; so it is never told contractions, of
-    which many may do the same, but only what they lead to, and what effort they are.
+    which many may do the same, but only what they lead to, and what effort they are. Of each of the pairs of winches
+    only one takes in, as in its samples.
     """
     draw = torch.Generator().manual_seed(options.seed + 1)
     inputs, markers = _tensor(lesson.inputs), _tensor(lesson.outputs[:, : lesson.coordinates])
     teacher = tensors_of(forward)
     sizes = [lesson.coordinates, *[options.width] * options.depth, inputs.shape[1]]
     numbers = _begin(sizes, 1, linear_map(lesson.outputs[:, : lesson.coordinates], lesson.inputs), draw)
-    held = torch.arange(0, len(inputs), max(2, round(1 / options.held_out)))
-    learned = torch.tensor(np.setdiff1d(np.arange(len(inputs)), held.numpy()))[None]
-    batches, members = _batches(learned, options.batch, draw), len(forward)
+    aside = torch.arange(0, len(inputs), max(2, round(1 / options.held_out)))
+    learned = torch.tensor(np.setdiff1d(np.arange(len(inputs)), aside.numpy()))[None]
+    batches, members, held = _batches(learned, options.batch, draw), len(forward), _holding(lesson, pairs)
 
     def reached(goals: Tensor, number: int) -> tuple[Tensor, Tensor, Tensor]:
-        scaled = BEYOND * torch.tanh(answer(numbers, goals[None], None)[0])
+        scaled = held(BEYOND * torch.tanh(answer(numbers, goals[None], None)[0]))
         value = answer([part[number : number + 1] for part in teacher], scaled, None)[0][0]
         return value[:, : lesson.coordinates], value[:, lesson.coordinates :], scaled[0]
 
@@ -97,7 +106,7 @@ def train_inverse(lesson: Lesson, dim: int, forward: Perceptrons, options: Learn
         rows, others = next(batches)[0], next(batches)[0]
         number = int(torch.randint(members, (1,), generator=draw))
         share = _BETWEEN * torch.rand(len(rows), 1, generator=draw)
-        between = inputs[rows] + share * (inputs[others] - inputs[rows])
+        between = held(inputs[rows] + share * (inputs[others] - inputs[rows]))
         with torch.no_grad():
             expected = answer([part[number : number + 1] for part in teacher], between[None], None)[0][0]
         goals = torch.cat([markers[rows], expected[:, : lesson.coordinates]])
@@ -106,13 +115,31 @@ def train_inverse(lesson: Lesson, dim: int, forward: Perceptrons, options: Learn
         return (found - goals).square().sum(-1).mean() + options.effort * effort.mean()
 
     def error() -> Tensor:
-        found = torch.stack([reached(markers[held], number)[0] for number in range(members)]).mean(0)
-        return (found - markers[held]).unflatten(-1, (-1, dim)).norm(dim=-1).mean()[None]
+        found = torch.stack([reached(markers[aside], number)[0] for number in range(members)]).mean(0)
+        return (found - markers[aside]).unflatten(-1, (-1, dim)).norm(dim=-1).mean()[None]
 
     best, errors, stopped = _train(
         numbers, loss, error, options.inverse_steps, options.rate, lambda n: tell("inverse", *n)
     )
     return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
+
+
+def _holding(lesson: Lesson, pairs: tuple[np.ndarray, np.ndarray]) -> Callable[[Tensor], Tensor]:
+    """What makes of scaled contractions such that of each pair only one takes in, as `LearnedModel` does."""
+    one, other = (torch.tensor(places) for places in pairs)
+    if not len(one):
+        return lambda scaled: scaled
+    low, high, half = (_tensor(part) for part in (lesson.low, lesson.high, 0.5 * span_of(lesson.low, lesson.high)))
+
+    def held(scaled: Tensor) -> Tensor:
+        shares = (low + half * (scaled + 1.0)) / torch.where(high > 0, high, 1.0)
+        more = shares[..., one] - shares[..., other]
+        found = scaled.clone()
+        for places, taken in ((one, torch.relu(more)), (other, torch.relu(-more))):
+            found[..., places] = (taken * high[places] - low[places]) / half[places] - 1.0
+        return found
+
+    return held
 
 
 def loss_weights(coordinates: int, outputs: int, options: LearnOptions) -> tuple[Tensor, Tensor]:

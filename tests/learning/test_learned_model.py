@@ -94,6 +94,34 @@ def test_what_networks_say_of_an_answer(robot: Robot) -> None:
         assert list(found.errors) == list(found.spread) == list(target)
 
 
+def test_answers_hold_what_samples_held(robot: Robot, tmp_path: Path) -> None:
+    """Of two winches that worked against one another in all samples only one takes in, by how much more it is asked to.
+
+    Oracles: the same model without that, and the best of both sides by a grid of what the networks expect.
+    """
+    free = plain(robot)
+    kept = save_model(replace(free, facts={**free.facts, "pairs": [[w.name for w in robot.winches]]}), tmp_path / "a")
+    held = load_model(kept)
+    with pytest.raises(InputError, match="pairs are none of its winches"):
+        load_model(save_model(replace(free, facts={**free.facts, "pairs": [["W1", "nobody"]]}), tmp_path / "b"))
+    sides = np.linspace(0, 1, 201)[:, None] * np.diag(free.high)[:, None]
+    left = []
+    places = np.array([held.expect(row)[0][:2] for row in sides.reshape(-1, 2)])
+    for target in np.random.default_rng(3).uniform(-2, 2, (20, 2)):
+        before, after = (one.solve({"tip": target}, search=False) for one in (free, held))
+        share = before.contractions / free.high
+        assert after.contractions / free.high == pytest.approx(
+            np.maximum([share[0] - share[1], share[1] - share[0]], 0)
+        )
+        found = held.solve({"tip": target})
+        assert found.contractions.min() == 0.0
+        assert found.error <= after.error + 1e-9
+        left.append(found.error - np.linalg.norm(places - target, axis=1).min())
+    assert np.median(np.abs(left)) < 1e-3
+    assert min(left) > -1e-3
+    assert sum(one > 1e-3 for one in left) <= 2, "from the other side of a pair it may end in another optimum"
+
+
 def test_a_model_of_another_contact_is_refused(robot: Robot, tmp_path: Path) -> None:
     """The two contacts differ in a number alone; the hash of physics knows neither."""
     felt = replace(robot, contact=hs.Contact())

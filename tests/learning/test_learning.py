@@ -5,6 +5,7 @@ import sys
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -298,3 +299,19 @@ def test_the_commands(
     pose(tmp_path / "strip", tmp_path / "out", model=save_model(model, tmp_path / "good.model"))
     assert "far: networks expect an rms error of" in (printed := capsys.readouterr().out)
     assert "every goal is reached" in printed
+
+
+def test_the_way_back_learns_what_a_model_answers() -> None:
+    """Of two winches against one another one takes in: in training as in `LearnedModel`. Oracle: the model, by NumPy."""
+    torch = pytest.importorskip("torch")
+    from hydrostat.learning.learned_model import paired
+    from hydrostat.learning.train import _holding
+
+    lesson = SimpleNamespace(low=np.array([0.0, -0.01, 0.0]), high=np.array([0.04, 0.05, 0.02]))
+    pairs = paired([["a", "c"], ["b"]], ["a", "b", "c"])
+    model = SimpleNamespace(_pairs=pairs, high=lesson.high)
+    half = 0.5 * (lesson.high - lesson.low)
+    for scaled in np.random.default_rng(0).uniform(-1, 1, (20, 3)):
+        want = LearnedModel._held(model, lesson.low + half * (scaled + 1))  # type: ignore[arg-type]
+        found = _holding(lesson, pairs)(torch.tensor(scaled[None]))[0]  # type: ignore[arg-type]
+        assert lesson.low + half * (found.numpy() + 1) == pytest.approx(want, abs=1e-8)
