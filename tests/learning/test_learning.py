@@ -302,7 +302,7 @@ def test_the_commands(
 
 
 def test_the_way_back_learns_what_a_model_answers() -> None:
-    """Of two winches against one another one takes in: in training as in `LearnedModel`. Oracle: the model, by NumPy."""
+    """Of two winches against one another one takes in, in training as in the model. Oracle: the model, by NumPy."""
     torch = pytest.importorskip("torch")
     from hydrostat.learning.learned_model import paired
     from hydrostat.learning.train import _holding
