@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # Benchmarks that need programs which the tests do not (other simulators, PyTorch and stable-baselines3), or a robot, samples or a model.
-NEED_MORE := peers floor hysteresis walk_learned learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions sample_starts spool_layers
+NEED_MORE := peers floor hysteresis walk_learned learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions learned_thesis sample_starts spool_layers
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 # Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
