@@ -52,7 +52,7 @@ def _pane(axes: Axes, rows: list[dict[str, str]], across: str, up: str) -> None:
     if rows[0]["task"] == "reach":
         axes.set_xscale("log")
         axes.set_yscale("log")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        axes.xaxis.set_major_locator(LogLocator())
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.yaxis.set_major_formatter(FuncFormatter(lambda error, _: f"{error:g}"))
     else:
