@@ -60,9 +60,11 @@ def _print_judgement(robot: "Robot") -> None:
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Weight.REFUSED, Weight.MIND))
-    good = "Nothing is wrong" if robot.cables else "Nothing is wrong with the body; there are no cables yet"
+    good = "Nothing is wrong" if robot.cables else "Nothing is wrong with the body"
     wrong = f"{counted(refused, 'thing')} cannot be built" if refused else good
-    print(f"{wrong}, {risky} risky." if risky else f"{wrong}.")
+    minded = f", {risky} risky" if risky else ""
+    missing = "" if robot.cables else "; there are no cables yet"
+    print(f"{wrong}{minded}{missing}.")
 
 
 def print_sewing(body: "Body") -> tuple[str, ...]:

@@ -43,7 +43,7 @@ def write_kit(network: "Network", folder: Path) -> "Kit":
 def designed_tension(robot: "Robot", folder: Path) -> float | None:
     """The tension that a design kept [N], from the score.json beside its folder, or from the studio's file in it.
 
-    None for a robot of which neither is.
+    None for a robot of which neither is. Raises InputError: the studio's file is there, and cannot be read.
     """
     from hydrostat.robot import robot_hash
 
@@ -59,7 +59,7 @@ def designed_tension(robot: "Robot", folder: Path) -> float | None:
 
 
 def _wished_tension(robot: "Robot", folder: Path) -> float | None:
-    """The limit that the studio kept the poses of a robot to [N]; None where no studio saved it."""
+    """The limit that the studio kept a robot's poses to [N]; None where no studio saved it (InputError: a bad file)."""
     from hydrostat.studio.records.wished_constraints import wished_constraints
     from hydrostat.studio.work_folder import STUDIO_FILE, read_studio_file
 
@@ -68,8 +68,8 @@ def _wished_tension(robot: "Robot", folder: Path) -> float | None:
         return None
     try:
         return wished_constraints(robot, read_studio_file(home).wishes).tension_limit
-    except InputError:
-        return None
+    except InputError as error:
+        raise InputError(f"{error}; mend the file, or say with --tension how hard cables may be pulled") from None
 
 
 def print_poses(network: "Network", seconds: float) -> None:

@@ -25,7 +25,7 @@ Tension = Annotated[
     str | None,
     typer.Option(
         metavar="FORCE",
-        help="The most that its poses pull a cable with; if left out that of its design, else no limit.",
+        help="The most that its poses pull a cable with; if left out that of its design or of the studio, else none.",
     ),
 ]
 Force = Annotated[
@@ -86,12 +86,17 @@ def fabricate(
     limit = asked("--tension", tension, FORCE)
     began = time.perf_counter()
     loaded = read_robot(robot)
-    options = replace(options, tension=designed_tension(loaded, robot) if limit is None else limit)
+    kept = designed_tension(loaded, robot) if limit is None else None
+    options = replace(options, tension=kept or limit)
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: is for bodies of foam; leave it out, or add --method foam")
     kit = _built(robot, loaded, options)
     kit.write(out)
     print_kit(kit)
+    if kept is not None:
+        print(
+            f"Cables: pulled with at most {kept:g} N, the limit of its design or of the studio; --tension says another"
+        )
     print(
         f"Wrote {len(kit.files)} files in {time.perf_counter() - began:.1f} s; begin with {out / 'assembly_sheet.pdf'}"
     )

@@ -75,7 +75,8 @@ def sample(
     try:
         sample_robot(plan, out, part=part, jobs=jobs, backend=backend, tell=told())
     except KeyboardInterrupt:
-        print(f"{chr(10) * sys.stderr.isatty()}the same command goes on from here", file=sys.stderr, flush=True)
+        line_end = "\n" if sys.stderr.isatty() else ""  # of the line with the progress
+        print(f"{line_end}the same command goes on from here", file=sys.stderr, flush=True)
         raise
     found = read_samples(out)
     words = f"{len(found) + found.lost} of {count} samples in {out}"

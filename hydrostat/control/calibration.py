@@ -197,7 +197,7 @@ def read_calibration(folder: Path, robot: Robot, *, name: str = CALIBRATION) -> 
 def write_calibration(folder: Path, calibration: Calibration, *, name: str = CALIBRATION) -> Path:
     """Write the motors of a robot beside its robot.toml, whole or not at all; returns the path."""
     known = any(spool.zero is not None for spool in calibration.motors)
-    told = "zero and curve are of this one robot" if known else "where cables begin to pull, hydrostat calibrate finds"
+    told = "zero and curve are of this one robot" if known else "hydrostat calibrate finds where cables begin to pull"
     lines = [f"# Which motor turns which winch; {told}.\n"]
     for spool in calibration.motors:
         lines += ["\n[[motor]]\n", f"winch = {json.dumps(spool.winch)}\n", f"number = {spool.number}\n"]

@@ -10,7 +10,8 @@ import pytest
 from plush import near_the_edge
 
 from hydrostat.cli.design_results import designed_tension
-from hydrostat.robot import robot_hash, save_robot
+from hydrostat.errors import InputError
+from hydrostat.robot import load_robot, robot_hash, save_robot
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import save_work
@@ -120,18 +121,21 @@ def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Pa
     save_work(Work(robot=robot, wishes=Wishes(tension=7.5)), tmp_path / "weak")
     assert designed_tension(robot, tmp_path / "weak") == designed_tension(robot, tmp_path / "weak/robot.toml") == 7.5
     (tmp_path / "weak" / "studio.json").write_text("{")
-    assert designed_tension(robot, tmp_path / "weak") is None
+    with pytest.raises(InputError, match=r"^studio\.json: .*; mend the file, or say with --tension"):
+        designed_tension(robot, tmp_path / "weak")
     save_work(Work(robot=robot.with_network((), ())), tmp_path / "bare")
     assert not (tmp_path / "bare" / "studio.json").exists()
 
 
 @pytest.mark.slow
 def test_a_kit_keeps_to_a_tension(run: Run, tmp_path: Path, starfish: Path) -> None:
-    """Oracle: the largest tension of its list, which is more than 3 N without a limit."""
-    largest = {}
-    for limit in ("3 N", "200 N"):
-        code, _, _ = run("fabricate", starfish, "--tension", limit, "--force", "--out", tmp_path / limit[0])
+    """Oracle: the largest tension of its list: of the 3 N that the studio kept to, and more if the command says so."""
+    largest, robot = {}, tmp_path / "robot"
+    save_work(Work(robot=load_robot(starfish), wishes=Wishes(tension=3.0)), robot)
+    for limit, asked in {"3 N": (), "200 N": ("--tension", "200 N")}.items():
+        code, out, _ = run("fabricate", robot, *asked, "--force", "--out", tmp_path / limit[0])
         assert code == 0
+        assert ("Cables: pulled with at most 3 N, the limit of" in out) == (not asked)
         text = (tmp_path / limit[0] / "lists" / "line_strength.csv").read_text()
         rows = [row for row in csv.reader(text.splitlines()) if row and re.fullmatch(r"C\d+", row[0])]
         largest[limit] = max(float(row[2]) for row in rows)

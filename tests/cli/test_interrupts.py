@@ -107,14 +107,14 @@ Thread(target=work).start()
 
 
 def test_sampling_that_is_interrupted_says_that_it_can_go_on(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path, starfish: Path
 ) -> None:
     def stopped(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("hydrostat.learning.sample_robot", stopped)
     with pytest.raises(KeyboardInterrupt):
-        sample(Path("examples/starfish"), tmp_path / "out", count=3)
+        sample(starfish, tmp_path / "out", count=3)
     assert capsys.readouterr().err == "the same command goes on from here\n"
 
 

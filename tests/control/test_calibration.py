@@ -22,7 +22,7 @@ def test_names_of_winches_are_kept_whatever_is_in_them(name: str, tmp_path: Path
     assert read_calibration(tmp_path, robot) == kept
     assert "of this one robot" in write_calibration(tmp_path, kept).read_text("utf-8").splitlines()[0]
     unknown = write_calibration(tmp_path, usual_calibration(robot)).read_text("utf-8")
-    assert "where cables begin to pull, hydrostat calibrate finds" in unknown.splitlines()[0]
+    assert "hydrostat calibrate finds where cables begin to pull" in unknown.splitlines()[0]
 
 
 def test_emulated_motors_of_a_calibration_that_was_cut_short_say_so() -> None:

@@ -150,7 +150,10 @@ def test_two_in_one_place_lie_above_each_other_or_are_refused():
     assert '"a" and "b"' in refused
     assert "40 mm of a body of 31 mm" in refused
     assert "20 x 20 x " in refused, "how large they are"
-    assert " mm apart)" in refused, "how far apart the robot has them"
+    assert " mm each, 0 mm apart)" in refused, "how far apart the robot has them"
+    (refused,) = problems(arranged([pair[0], brick("b", 3, 4, deep=12.0)], narrow, 31.0))
+    assert refused.count("20 x 20 x ") == 2, "of two sizes both"
+    assert " mm, 5 mm apart)" in refused
     (three,) = problems(arranged([*pair, brick("c", 0, 0, deep=10.0)], narrow, 40.0))
     assert '"a" and "b" and "c"' in three
     assert "60 mm of a body of 40 mm" in three

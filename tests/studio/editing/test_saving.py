@@ -276,6 +276,7 @@ def test_a_plain_robot_needs_no_second_file(robot: Robot, tmp_path: Path) -> Non
     assert doubts(Work(robot=plain), tmp_path, folder_stamp(tmp_path)) == []
     save_work(Work(robot=robot), tmp_path)
     assert sorted(file.name for file in tmp_path.iterdir()) == ["body.svg", "robot.toml", "studio.json"]
+    assert doubts(Work(robot=robot), tmp_path, folder_stamp(tmp_path)) == []
 
 
 @pytest.mark.parametrize(

@@ -216,7 +216,7 @@ def design_compare(page: WindowPage) -> None:
                     _cards(page, candidates, own())
 
     def state() -> tuple[object, ...]:
-        refused = tuple(document.judge.refused(one.robot) for one in designer.candidates)
+        refused = tuple(bool(document.judge.refused(one.robot)) for one in designer.candidates)
         return tuple(one.number for one in designer.candidates), designer.chosen, designer.pose, own(), refused
 
     page.on_new((Topic.JOB, Topic.ROBOT), state, room, build)
