@@ -44,7 +44,7 @@ def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
 def _sketch(report: Report, draft: BodyDraft) -> Sketch:
     from hydrostat.geometry.files.outline_file import read_drawing
 
-    report.progress("reading", 0, 3)
+    report.progress("reading", 0, 2)
     file, content, size, lines = draft.file, draft.content, draft.size, ()
     behind = None
     if draft.is_drawing:
@@ -58,7 +58,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         if draft.inflate is None:
             made = _drawn(report, draft, _flat(report, draft, file, content), lines, None)
             return replace(made, behind=behind)
-        report.progress("inflating the outline", 0, 3)
+        report.progress("inflating the outline", 0, 2)
         content, file, size = inflated(drawing.outline, draft.inflate), f"{PurePath(file).stem}.ply", None
     sketch = sketch_surface(
         content,
@@ -68,7 +68,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         element_size=draft.element_size,
         nodes=draft.nodes,
         material=draft.material,
-        tell=lambda stage: report.progress(stage, 0, 3),
+        tell=lambda stage: report.progress(stage, 0, 2),
     )
     return _drawn(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
 
@@ -79,7 +79,7 @@ def _here(words: str) -> str:
 
 
 def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:
-    report.progress("meshing", 0, 3)
+    report.progress("meshing", 0, 2)
     return sketch_robot(
         content,
         file=file,
@@ -99,7 +99,7 @@ def _drawn(
     """With its pictures, and without the pose that a first robot has as an example: a person makes poses here."""
     from hydrostat.plot import draw_healing, draw_rest, inline_svg
 
-    report.progress("drawing", 1, 3)
+    report.progress("drawing", 1, 2)
     picture = inline_svg(draw_rest(robot, title="", width=WIDTH), name="sketch", label=f"{draft.name} at rest")
     repair = ""
     if sketch is not None and not sketch.healing.clean:

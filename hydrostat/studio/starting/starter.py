@@ -226,7 +226,7 @@ class Starter(Stage):
     def _begin(self, draft: BodyDraft) -> None:
         self._working = draft
         try:
-            self._jobs.start(TITLE, make_sketch, draft, on_part=self._found, on_done=self._found, on_end=self._ended)
+            self._jobs.start(TITLE, make_sketch, draft, on_done=self._found, on_end=self._ended)
         except InputError as error:
             self._working, self.problem = None, str(error)
 
