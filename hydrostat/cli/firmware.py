@@ -12,9 +12,11 @@ from hydrostat.errors import InputError
 from hydrostat.units import counted
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from hydrostat.control import Calibration
+    from hydrostat.fabrication import Motor
 
 
 def firmware(
@@ -27,7 +29,8 @@ def firmware(
         str | None, typer.Option(metavar="PORT,...", help="Write it to these boards: /dev/ttyACM0.")
     ] = None,
     motor: Annotated[
-        str | None, typer.Option(metavar="KEY", help="Motor with an encoder, of the kit's table; 25d if left out.")
+        str | None,
+        typer.Option(metavar="KEY", help="Motor of the kit, n20 or 25d; that of motors.toml if left out, else 25d."),
     ] = None,
     counts: Annotated[float | None, typer.Option(metavar="N", help="Of the encoder in a turn of the spool.")] = None,
     rpm: Annotated[float | None, typer.Option(metavar="N", help="Turns a minute without load.")] = None,
@@ -48,11 +51,6 @@ def firmware(
     known = {each.key: each for each in MOTORS if each.counts}
     if motor is not None and motor not in known:
         raise InputError(f"--motor {motor}: those with an encoder are: {', '.join(known)}; or give --counts and --rpm")
-    chosen = known[motor or _USUAL]
-    usual, turns = chosen.counts if counts is None else counts, chosen.speed if rpm is None else rpm
-    for name, value in (("counts", usual), ("rpm", turns)):
-        if not 0 < value < 1e6:
-            raise InputError(f"--{name} {value:g}: must be above 0")
     folder = robot if robot.is_dir() else robot.parent
     loaded = read_robot(robot)
     if not loaded.winches:
@@ -61,6 +59,11 @@ def firmware(
         calibration = control.read_calibration(folder, loaded)
     else:
         calibration = control.usual_calibration(loaded)
+    chosen = known[motor or _meant(known, calibration)]
+    usual, turns = chosen.counts if counts is None else counts, chosen.speed if rpm is None else rpm
+    for name, value in (("counts", usual), ("rpm", turns)):
+        if not 0 < value < 1e6:
+            raise InputError(f"--{name} {value:g}: must be above 0")
     boards = _boards(board, calibration)
     given = build.on_boards(calibration, boards)
     new = usual if counts or motor else None  # else what motors.toml says stays
@@ -71,7 +74,7 @@ def firmware(
     places = [out if given.boards == 1 else out / f"board_{number}" for number in range(1, given.boards + 1)]
     build.check_ports(ports)
     shown = ", ".join(dict.fromkeys(f"{each.counts:g}" for each in given.motors))
-    print(f"For {chosen.title} (another: --motor):")
+    print(f"For {chosen.title} ({'as said' if motor else 'is it what the kit names? Another: --motor'}):")
     print(f"{shown} counts in a turn of a spool, {turns:g} turns a minute without load")
     texts = [
         build.firmware_settings(loaded, given, rpm=turns, stall=chosen.stall_current, board=number)
@@ -88,7 +91,13 @@ def firmware(
 
 
 _USUAL = "25d"
-"""The motor that is meant where none is named."""
+"""The motor that is meant where neither a command nor motors.toml tells one."""
+
+
+def _meant(known: "Mapping[str, Motor]", calibration: "Calibration") -> str:
+    """Key of the motor whose counts all motors of a robot have, or else of the usual one."""
+    told = {each.counts for each in calibration.motors}
+    return next((key for key, one in known.items() if told == {one.counts}), _USUAL)
 
 
 def _boards(asked: str | None, calibration: "Calibration") -> list[str]:

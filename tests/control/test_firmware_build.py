@@ -161,6 +161,7 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     assert [each.board for each in read_calibration(folder, robot_of(folder)).motors] == [1, 1, 2]
     small = run(app, [*given, "--motor", "n20"])
     assert "3575.04 counts in a turn" in small.output
+    assert "micro metal gearmotor" in run(app, given).output  # what motors.toml tells is not called another motor
     assert all(each.counts == 3575.04 for each in read_calibration(folder, robot_of(folder)).motors)
 
 

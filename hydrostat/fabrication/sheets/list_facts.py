@@ -202,6 +202,7 @@ def power_facts(given: SheetInput) -> Facts | None:
             pins.append([named[place], board if len(plan.boards) == 1 else f"{board} {number}", *wires])
             place += 1
     mind += [
+        f"The firmware needs to know this motor: hydrostat firmware ROBOT --motor {plan.motor.key} --out DIR.",
         "10 kOhm from each PWM pin to GND keeps motors off while the board starts; 10 uF from RESET to GND, put in "
         "after the firmware is written, keeps it from starting anew when a program opens its port.",
         "A motor that runs away at once has its two wires swapped: the board stops it after 0.2 s.",

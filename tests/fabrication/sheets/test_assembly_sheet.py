@@ -9,8 +9,10 @@ from pypdf import PdfReader
 from sheet_inputs import checks, foam, plush, tables
 
 from hydrostat.fabrication.kit_options import Method, Paper
+from hydrostat.fabrication.lists.power import power_plan
 from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.moulds.casting import make_casting
+from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.legible import legible, minds, shortened, typeset
 from hydrostat.fabrication.solids.printed import Printed
@@ -77,6 +79,11 @@ def test_what_a_plush_sheet_says(plush_sheet):
 
 
 @pytest.mark.slow
+def test_a_sheet_tells_which_motor_the_firmware_is_for():
+    power = power_plan({plush().robot.winches[0].name: 40.0}, next(one for one in MOTORS if one.key == "n20"))
+    assert "hydrostat firmware ROBOT --motor n20" in words(assembly_sheet(plush(power=power)))
+
+
 def test_what_a_foam_sheet_says(foam_sheet):
     text = words(foam_sheet)
     for part in (
