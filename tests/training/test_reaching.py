@@ -291,7 +291,13 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Go
     trained = getattr(library, method)("MultiInputPolicy", env, seed=3, device="cpu", policy_kwargs=silu())
     nothing = Perceptrons(sizes=np.array([3, count]), numbers=np.zeros((1, 3 * count * 2 + count)))
     model = LearnedModel(
-        facts={"physics": physics_hash(env.robot), "contact": False, "markers": [m.name for m in env.robot.markers]},
+        facts={
+            "physics": physics_hash(env.robot),
+            "contact": False,
+            "markers": [m.name for m in env.robot.markers],
+            "winches": [w.name for w in env.robot.winches],
+            "pairs": [[w.name for w in env.robot.winches[:2]]],  # which the policy does not know
+        },
         low=np.array([-winch.release for winch in env.robot.winches]),
         high=np.array([winch.travel for winch in env.robot.winches]),
         middle=env.rest[env.seen] + 0.01 * random.normal(size=count),
