@@ -13,6 +13,7 @@ from plain_model import plain
 import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.learning import Tier, certify, load_model, plan_samples, read_samples, sample_robot, save_model
+from hydrostat.learning.draw import Draw, contractions, shared_numbers
 from hydrostat.learning.learn_model import kept_facts
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.robot import Robot
@@ -97,13 +98,17 @@ def test_what_networks_say_of_an_answer(robot: Robot) -> None:
 def test_answers_hold_what_samples_held(robot: Robot, tmp_path: Path) -> None:
     """Of two winches that worked against one another in all samples only one takes in, by how much more it is asked to.
 
-    Oracles: the same model without that, and the best of both sides by a grid of what the networks expect.
+    Oracles: how samples are drawn so, the same model without that, and the best of both sides by a grid of what the
+    networks expect.
     """
     free = plain(robot)
     kept = save_model(replace(free, facts={**free.facts, "pairs": [[w.name for w in robot.winches]]}), tmp_path / "a")
     held = load_model(kept)
     with pytest.raises(InputError, match="pairs are none of its winches"):
         load_model(save_model(replace(free, facts={**free.facts, "pairs": [["W1", "nobody"]]}), tmp_path / "b"))
+    rows = np.random.default_rng(4).uniform(0, 1, (20, 2)) * held.high
+    again = contractions(Draw.ANTAGONIST, shared_numbers(rows, held.high, [(0, 1)]), held.low, held.high, [(0, 1)])
+    assert np.array([held._held(row) for row in rows]) == pytest.approx(again, abs=1e-15)
     sides = np.linspace(0, 1, 201)[:, None] * np.diag(free.high)[:, None]
     left = []
     places = np.array([held.expect(row)[0][:2] for row in sides.reshape(-1, 2)])

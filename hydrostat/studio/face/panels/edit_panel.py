@@ -1,5 +1,8 @@
 """The panel of the stage "edit": tools, the mirror, all parts, the chosen one, the body, and what the check says."""
 
+from collections.abc import Callable, Mapping
+from typing import Any
+
 from nicegui import events, ui
 
 from hydrostat.drawing.palette import winch_colours
@@ -99,36 +102,43 @@ SNAPS = {0.0: "off", 1e-3: "1", 5e-3: "5", 1e-2: "10 mm"}  # steps of the grid [
 def _snap(page: WindowPage) -> None:
     """On which grid parts are placed."""
     editor = page.session.editor
-    with ui.element("div").classes("studio-row"):
-        ui.icon("grid_on", size="20px").style("color: var(--muted)")
-        ui.label("Snap").style("font-size: 13px")
-        ui.space()
-        chips = {step: chip(words, page.doing(editor.set_snap, step)) for step, words in SNAPS.items()}
-        for step, button in chips.items():
-            button.mark(f"edit-snap-{SNAPS[step].split()[0]}")
-
-    def show() -> None:
-        for step, button in chips.items():
-            light(button, step == editor.snap)
-
-    page.on(Topic.THINGS, show)
+    words = {step: (word, f"edit-snap-{word.split()[0]}", "") for step, word in SNAPS.items()}
+    _choice(page, "grid_on", "Snap", words, editor.set_snap, lambda: editor.snap)
 
 
 def _several(page: WindowPage) -> None:
     """Whether each press chooses one part more: with a finger there is no Shift."""
     editor = page.session.editor
+    words = {
+        False: ("off", "edit-several-off", "A press chooses one part"),
+        True: ("on", "edit-several-on", "Each press chooses one part more"),
+    }
+    _choice(page, "checklist", "Several", words, editor.choose_several, lambda: editor.several)
+
+
+def _choice(
+    page: WindowPage,
+    icon: str,
+    title: str,
+    words: Mapping[Any, tuple[str, str, str]],
+    choose: Callable[[Any], None],
+    chosen: Callable[[], Any],
+) -> None:
+    """A row of chips, one of which is chosen: for each value its word, its mark for tests, and a tooltip."""
     with ui.element("div").classes("studio-row"):
-        ui.icon("checklist", size="20px").style("color: var(--muted)")
-        ui.label("Several").style("font-size: 13px")
+        ui.icon(icon, size="20px").style("color: var(--muted)")
+        ui.label(title).style("font-size: 13px")
         ui.space()
-        chips = {on: chip("on" if on else "off", page.doing(editor.choose_several, on)) for on in (False, True)}
-        for on, button in chips.items():
-            button.tooltip("Each press chooses one part more" if on else "A press chooses one part")
-            button.mark(f"edit-several-{'on' if on else 'off'}")
+        chips = {value: chip(word, page.doing(choose, value)) for value, (word, _, _) in words.items()}
+        for value, button in chips.items():
+            _, mark, hint = words[value]
+            button.mark(mark)
+            if hint:
+                button.tooltip(hint)
 
     def show() -> None:
-        for on, button in chips.items():
-            light(button, on == editor.several)
+        for value, button in chips.items():
+            light(button, value == chosen())
 
     page.on(Topic.THINGS, show)
 
