@@ -153,11 +153,12 @@ def _policies(
         text = f"{name:24}{pairs:8}{used:12}{spanned(found, 3):>24}{100 * found.mean / width:8.3f}"
         print(f"{text}{far:10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
 
-    tell(CERTIFIED, known, known, 10.0 * certified_distances(simulation, trials, networks, usual.goals))
+    sure = certified_distances(simulation, trials, networks, usual.goals, tell=told())
+    tell(CERTIFIED, known, known, 10.0 * sure)
     for name, way in list(WAYS.items())[: 1 if table == GRADIENT else None]:
         for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
             act = way(trials, every.first(many), effort)
-            exact = 10.0 * exact_distances(simulation, trials, act, seeds, usual.goals)
+            exact = 10.0 * exact_distances(simulation, trials, act, seeds, usual.goals, tell=told())
             tell(name, many, _used(name, many, known, usual), exact)
     replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}

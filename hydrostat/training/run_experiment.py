@@ -64,22 +64,31 @@ def run_experiment(
         learner = HindsightDdpg(trials, run.options, seeds=seeds, epochs=many)
         done = learner.learn(tell=lambda at, of, name=name: tell(name, at, of))
         ran = Ran(run=run, epochs=done, best=learner.test(learner.best, _TESTS))
-        yield Judged(name=name, ran=ran, exact=exact_distances(simulation, trials, learner.best, seeds, goals))
+        exact = exact_distances(simulation, trials, learner.best, seeds, goals, tell=tell)
+        yield Judged(name=name, ran=ran, exact=exact)
 
 
-def exact_distances(simulation: Simulation, trials: NetworkReach, policy: Act, seeds: int, goals: int) -> np.ndarray:
-    """Distances [cm] after the last action of episodes in the simulator, (seeds, goals); each pose begins from rest."""
-    begun, goal = (part.expand(seeds, -1, -1) for part in _exact_goals(simulation, trials, goals))
+def exact_distances(
+    simulation: Simulation, trials: NetworkReach, policy: Act, seeds: int, goals: int, *, tell: Tell = lambda *_: None
+) -> np.ndarray:
+    """Distances [cm] after the last action of episodes in the simulator, (seeds, goals)."""
+    begun, goal = (part.expand(seeds, -1, -1) for part in _exact_goals(simulation, trials, goals, tell))
     seen = begun
     with torch.no_grad():
         for _ in range(trials.horizon):
             acts = policy(torch.nan_to_num(seen), torch.nan_to_num(goal))
-            seen = _places(simulation, trials.contractions(acts))
+            seen = _places(simulation, trials.contractions(acts), tell)
     return trials.distances(seen, goal).numpy()
 
 
 def certified_distances(
-    simulation: Simulation, trials: NetworkReach, model: LearnedModel, goals: int, *, steps: int = 3
+    simulation: Simulation,
+    trials: NetworkReach,
+    model: LearnedModel,
+    goals: int,
+    *,
+    steps: int = 3,
+    tell: Tell = lambda *_: None,
 ) -> np.ndarray:
     """Distances [cm] that the same goals are left with by the networks' search and exact steps from there, (1, goals).
 
@@ -87,9 +96,10 @@ def certified_distances(
     more steps are taken than needed for 0.01 mm. NaN where a goal, or the answer to it, is no equilibrium.
     """
     names, dim = model.facts["markers"], model.facts["dim"]
-    _, goal = _exact_goals(simulation, trials, goals)
+    _, goal = _exact_goals(simulation, trials, goals, tell)
     found = []
-    for row in goal[0].double().numpy():
+    for number, row in enumerate(goal[0].double().numpy()):
+        tell("certified", number, goals)
         if not np.isfinite(row).all():
             found.append(np.nan)
             continue
@@ -99,19 +109,34 @@ def certified_distances(
     return np.array(found)[None]
 
 
-def _exact_goals(simulation: Simulation, trials: NetworkReach, goals: int) -> tuple[torch.Tensor, torch.Tensor]:
+def _exact_goals(
+    simulation: Simulation, trials: NetworkReach, goals: int, tell: Tell = lambda *_: None
+) -> tuple[torch.Tensor, torch.Tensor]:
     """Where episodes begin and what they shall reach in the simulator [cm], (1, goals, size) each."""
     draw = torch.Generator().manual_seed(_GOALS)
     begun, _, _ = trials.begin(draw, (1, goals))
     wanted = trials.contractions(2.0 * torch.rand(1, goals, trials.actions, generator=draw) - 1.0)
-    return begun, _places(simulation, wanted)
+    return begun, _places(simulation, wanted, tell)
 
 
-def _places(simulation: Simulation, taken: torch.Tensor) -> torch.Tensor:
-    """Coordinates of the markers [cm] at contractions [m], (many, goals, winches), in the simulator."""
-    rows = taken.flatten(0, 1).double().numpy()
-    found = simulation.solve_many(rows, jacobians=False, threads=1).markers
-    return torch.tensor(100.0 * found.reshape(*taken.shape[:2], -1), dtype=torch.float32)
+def _places(simulation: Simulation, taken: torch.Tensor, tell: Tell) -> torch.Tensor:
+    """Coordinates of the markers [cm] at contractions [m], (many, goals, winches), in the simulator; NaN where none.
+
+    The first of many begins from rest; the others, which want the same, each from the pose before: eight times faster
+    where they differ little.
+    """
+    rows = taken.double().numpy()
+    found = np.full((*rows.shape[:2], len(simulation.robot.markers), simulation.robot.body.mesh.dim), np.nan)
+    for goal in range(rows.shape[1]):
+        tell("in the simulator", goal, rows.shape[1])
+        pose = None
+        for one in range(rows.shape[0]):
+            pose = simulation.solve(rows[one, goal], start=pose, strict=False)
+            if not pose.result.converged:
+                pose = None
+                continue
+            found[one, goal] = simulation.marker_anchors.positions(pose.nodes)
+    return torch.tensor(100.0 * found.reshape(*rows.shape[:2], -1), dtype=torch.float32)
 
 
 _TESTS = 300

@@ -55,7 +55,7 @@ def test_one_number_moves_the_one_or_the_other_winch(model: LearnedModel) -> Non
 
 
 def test_the_simulator_judges_where_contractions_lead(model: LearnedModel, robot: Robot) -> None:
-    """Oracle: poses solved one by one, for a policy that always does the same."""
+    """Oracle: poses solved one by one from rest, for a policy of two seeds that always does the same."""
     simulation, trials = Simulation(robot), NetworkReach(model, groups=finger_pairs(model))
     acts = torch.full((2, 3, trials.actions), 0.3)
 
