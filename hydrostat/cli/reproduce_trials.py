@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 TRIALS = (
     "figure-5.8",
+    "figure-5.8-small",
     "figure-5.9",
     "figure-5.9-small",
     "figure-5.10",

@@ -90,6 +90,7 @@ def error(ran: Ran) -> np.ndarray:
 
 _PAPER = DdpgOptions()
 SMALL = DdpgOptions(layers=(30,) * 4, shaped=True)
+_SPARSE = replace(SMALL, shaped=False)
 _FREE = replace(SMALL, penalty=0.0, cut=False)
 _SHRINKING = replace(SMALL, curriculum=Curriculum.TENTH)
 
@@ -112,6 +113,20 @@ def _finer(one: str, other: str) -> Callable[[Mapping[str, Ran]], np.ndarray]:
 def _first_action(ran: Mapping[str, Ran]) -> np.ndarray:
     """Share of tests that the first action of T=10 brings within the tolerance."""
     return (ran["T=10"].best[0] < ran["T=10"].run.options.tolerance).mean(axis=1)
+
+
+def _lengths(options: DdpgOptions, layers: str) -> Experiment:
+    """What networks learn in episodes of one action and of ten (Fig 5.8)."""
+    return Experiment(
+        title=f"episodes of one action and of ten, with as many actions in all; {layers}, sparse",
+        runs={"T=1": Run(options=options), "T=10": Run(options=options, horizon=10)},
+        claims=(
+            Claim(text="T=10 learns faster than T=1 (N13)", measure=_faster("T=10", "T=1")),
+            Claim(text="T=1 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=1"]), above=MASTERED),
+            Claim(text="T=10 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=10"]), above=MASTERED),
+            Claim(text="T=10 arrives with its first action (N13)", measure=_first_action, above=MASTERED),
+        ),
+    )
 
 
 def _curricula(options: DdpgOptions, layers: str) -> Experiment:
@@ -149,18 +164,10 @@ def _curricula(options: DdpgOptions, layers: str) -> Experiment:
 
 
 EXPERIMENTS: Mapping[str, Experiment] = {
-    "figure-5.8": Experiment(
-        title="episodes of one action and of ten, with as many actions in all; 3 x 256, sparse",
-        runs={"T=1": Run(options=_PAPER), "T=10": Run(options=_PAPER, horizon=10)},
-        claims=(
-            Claim(text="T=10 learns faster than T=1 (N13)", measure=_faster("T=10", "T=1")),
-            Claim(text="T=1 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=1"]), above=MASTERED),
-            Claim(text="T=10 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=10"]), above=MASTERED),
-            Claim(text="T=10 arrives with its first action (N13)", measure=_first_action, above=MASTERED),
-        ),
-    ),
+    "figure-5.8": _lengths(_PAPER, "3 x 256"),
+    "figure-5.8-small": _lengths(_SPARSE, "4 x 30"),
     "figure-5.9": _curricula(_PAPER, "3 x 256"),
-    "figure-5.9-small": _curricula(replace(_PAPER, layers=SMALL.layers), "4 x 30"),
+    "figure-5.9-small": _curricula(_SPARSE, "4 x 30"),
     "figure-5.10": Experiment(
         title="tolerances, and errors of the best policies (Figs 5.10, 5.11); 4 x 30, shaped",
         runs={"T=1": Run(options=_SHRINKING), "T=5": Run(options=_SHRINKING, horizon=5)},
@@ -206,7 +213,7 @@ EXPERIMENTS: Mapping[str, Experiment] = {
         title="shaped and sparse rewards; what penalty and cut targets do (E54); 4 x 30",
         runs={
             "shaped, T=1": Run(options=SMALL),
-            "sparse, T=1": Run(options=replace(SMALL, shaped=False)),
+            "sparse, T=1": Run(options=_SPARSE),
             "shaped, free, T=1": Run(options=_FREE),
             "shaped, T=5": Run(options=SMALL, horizon=5),
             "shaped, free, T=5": Run(options=_FREE, horizon=5),
