@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import require_writable
-from hydrostat.cli.sample import told
-from hydrostat.cli.waiting import one_interrupt
+from hydrostat.cli.waiting import one_interrupt, told
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:

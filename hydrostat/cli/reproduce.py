@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from hydrostat.cli.folders import OutFolder, require_folder
-from hydrostat.cli.sample import told
+from hydrostat.cli.waiting import told
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hydrostat.cli.sample import told
 from hydrostat.cli.trial_tables import drawn_runs, judged_claims, spanned, trials_missing
+from hydrostat.cli.waiting import told
 
 if TYPE_CHECKING:
     from hydrostat.training.experiments import Ran

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from hydrostat.cli.sample import told
 from hydrostat.cli.trial_tables import drawn_runs, judged_claims, shared_table, spanned, trials_missing
+from hydrostat.cli.waiting import told
 
 if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel

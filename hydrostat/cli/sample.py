@@ -1,8 +1,6 @@
 """`hydrostat sample`."""
 
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,7 +8,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import asked
-from hydrostat.cli.waiting import read_robot
+from hydrostat.cli.waiting import read_robot, told
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -99,37 +97,3 @@ def _part(text: str | None) -> tuple[int, int]:
     if not (slash and one.isdecimal() and many.isdecimal() and 1 <= int(one) <= int(many)):
         raise InputError(f"--shard {text}: write I/N, for example 2/8, with I from 1 to N")
     return int(one) - 1, int(many)
-
-
-def told() -> Callable[[str, int, int], None]:
-    """A function that tells how much is done, how fast, and how long the rest will take."""
-    begin: dict[str, tuple[float, int]] = {}
-    last = [0.0]
-
-    def tell(stage: str, done: int, total: int) -> None:
-        now = time.monotonic()
-        if done < begin.get(stage, (now, 0))[1]:
-            del begin[stage]  # the next one of its kind
-        since, first = begin.setdefault(stage, (now, done))
-        terminal = sys.stderr.isatty()
-        if done < total and now - last[0] < (_OFTEN if terminal else _SELDOM):
-            return
-        last[0] = now
-        seconds, made = now - since, done - first
-        words = f"{stage}: {done} of {total}"
-        if made and seconds > 0:
-            rate = made / seconds
-            words += f", {rate:.3g} a second" + (f", {_span((total - done) / rate)} left" if done < total else "")
-        end = "\n" if done == total or not terminal else ""
-        print(f"{chr(13)}{words:<70}" if terminal else words, end=end, file=sys.stderr, flush=True)
-
-    return tell
-
-
-def _span(seconds: float) -> str:
-    minutes = seconds / 60
-    return f"{seconds:.0f} s" if minutes < 2 else f"{minutes:.0f} min" if minutes < 120 else f"{minutes / 60:.1f} h"
-
-
-_OFTEN, _SELDOM = 0.5, 20.0
-"""So often progress is told on a terminal, and in a log [s]."""

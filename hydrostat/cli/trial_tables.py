@@ -40,9 +40,8 @@ def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[st
     for claim in experiment.claims:
         values = claim.measure(ran)
         word = verdict(values, claim.above)
-        print(
-            f"  {claim.text}: {word}, {spanned(interquartile(values), 3)} {claim.unit}, above {claim.above:g} claimed"
-        )
+        number = f"{spanned(interquartile(values), 3)} {claim.unit}".rstrip()
+        print(f"  {claim.text}: {word}, {number}, above {claim.above:g} claimed")
         claims.append({"claim": claim.text, "verdict": word, "seeds": values.tolist(), "above": claim.above})
     runs = {
         name: {

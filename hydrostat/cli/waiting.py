@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 PATIENCE = 3.0  # seconds after which a person is told what takes so long
 
+_OFTEN, _SELDOM = 0.5, 20.0  # so often progress is told on a terminal, and in a log [s]
+
 
 @contextmanager
 def patiently(words: str) -> Iterator[None]:
@@ -67,6 +69,38 @@ def progress_bar() -> Iterator[Callable[[str, int, int], None]]:
             bar.update(tasks[stage], completed=done, total=total)  # type: ignore[arg-type]
 
         yield tell
+
+
+def told() -> Callable[[str, int, int], None]:
+    """A function that tells how much is done, how fast, and how long the rest will take."""
+    begin: dict[str, tuple[float, int]] = {}
+    seen: dict[str, int] = {}
+    last = [0.0]
+
+    def tell(stage: str, done: int, total: int) -> None:
+        now = time.monotonic()
+        if done < seen.get(stage, 0):
+            del begin[stage]  # the next one of its kind
+        seen[stage] = done
+        since, first = begin.setdefault(stage, (now, done))
+        terminal = sys.stderr.isatty()
+        if done < total and now - last[0] < (_OFTEN if terminal else _SELDOM):
+            return
+        last[0] = now
+        seconds, made = now - since, done - first
+        words = f"{stage}: {done} of {total}"
+        if made and seconds > 0:
+            rate = made / seconds
+            words += f", {rate:.3g} a second" + (f", {_span((total - done) / rate)} left" if done < total else "")
+        end = "\n" if done == total or not terminal else ""
+        print(f"{chr(13)}{words:<70}" if terminal else words, end=end, file=sys.stderr, flush=True)
+
+    return tell
+
+
+def _span(seconds: float) -> str:
+    minutes = seconds / 60
+    return f"{seconds:.0f} s" if minutes < 2 else f"{minutes:.0f} min" if minutes < 120 else f"{minutes / 60:.1f} h"
 
 
 @contextmanager

@@ -4,7 +4,8 @@ import time
 
 import pytest
 
-from hydrostat.cli.waiting import patiently
+from hydrostat.cli import waiting
+from hydrostat.cli.waiting import patiently, told
 
 
 def test_what_takes_long_is_told_and_what_is_quick_is_not(
@@ -19,3 +20,17 @@ def test_what_takes_long_is_told_and_what_is_quick_is_not(
             time.sleep(0.01)
             told = capsys.readouterr().out
     assert told == "long ...\n"
+
+
+def test_a_stage_that_comes_again_has_a_clock_of_its_own(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Oracle, by hand: ten in ten seconds; a hundred seconds later five of ten in one second, so one is left."""
+    now = [0.0]
+    monkeypatch.setattr(waiting.time, "monotonic", lambda: now[0])
+    tell = told()
+    for at, done in ((0.0, 0), (10.0, 10), (110.0, 0), (111.0, 5), (131.0, 10)):
+        now[0] = at
+        tell("poses", done, 10)
+    assert "poses: 10 of 10, 1 a second" in (words := capsys.readouterr().err)
+    assert words.endswith("poses: 10 of 10, 0.476 a second\n")
