@@ -22,7 +22,16 @@ import numpy as np  # isort: skip
 from flat_gripper import DISC, flat_gripper
 
 from hydrostat.robot import Robot
-from hydrostat.training import PushEnv, PushOptions, ThingPhysics, TrainMethod, TrainOptions, held_out_goals, train
+from hydrostat.training import (
+    Listener,
+    PushEnv,
+    PushOptions,
+    ThingPhysics,
+    TrainMethod,
+    TrainOptions,
+    held_out_goals,
+    train,
+)
 
 RADIUS, MASS, TRAVEL, DRAG = 10e-3, 0.05, 12e-3, 30.0
 KEYFRAMES = 2
@@ -166,7 +175,14 @@ def learned(far: float, actions: int, updates: int, out: Path) -> tuple[Act, int
         method=TrainMethod.TQC, steps=actions, every=max(1, actions // 2), layers=(64, 64), updates=updates, rate=1e-3
     )
     few = held_out_goals(judge_in, 4, 1)
-    model, curve = train(env, few, options, out, judge_in=judge_in, tell=lambda point: print(f"  {point}", flush=True))
+    model, curve = train(
+        env,
+        few,
+        options,
+        out,
+        judge_in=judge_in,
+        listener=Listener(point=lambda point: print(f"  {point}", flush=True)),
+    )
     return lambda seen, _: model.predict(seen, deterministic=True)[0], curve[-1].equilibria
 
 

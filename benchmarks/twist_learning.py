@@ -24,6 +24,7 @@ from twist_feedback import corrected, rule, seen_by, usual_turns
 import hydrostat as hs
 from hydrostat.robot import Obstacle
 from hydrostat.training import (
+    Listener,
     ThingPhysics,
     TrainMethod,
     TrainOptions,
@@ -172,7 +173,7 @@ def learned(body: str, keys: np.ndarray, actions: int, out: Path, *, again: bool
     def tell(point: object) -> None:
         print(f"  {point}", flush=True)
 
-    model, curve = train(env, few, options, out, judge_in=judge_in, resume=again, tell=tell)
+    model, curve = train(env, few, options, out, judge_in=judge_in, resume=again, listener=Listener(point=tell))
 
     def act(seen: dict[str, np.ndarray], number: int) -> np.ndarray:
         seen = {**seen, "desired_goal": np.array([ASKED / 180.0])}

@@ -1,5 +1,6 @@
 """`hydrostat train`."""
 
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
@@ -7,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from hydrostat.cli.folders import RobotFolder, require_folder
-from hydrostat.cli.waiting import one_interrupt, read_robot
+from hydrostat.cli.waiting import one_interrupt, read_robot, told
 from hydrostat.errors import HydrostatError, InputError
 
 if TYPE_CHECKING:
@@ -122,20 +123,22 @@ def train(
     networks = None if model is None else load_model(model)
     if networks is not None:
         env.learn_in(networks, exact=exact)
-    wanted = training.held_out_goals(judged, goals, seed)
-    size, began = judged.unit, time.process_time()
-    word, factor = judged.measure
-    print(f"    actions{judged.cost:>12}  mean     median   worst    within  CPU", flush=True)
-
-    def tell(point: "CurvePoint") -> None:
-        print(f"{_line(point, word, factor)}   {time.process_time() - began:.0f} s", flush=True)
-
     options = training.TrainOptions(
         method=training.TrainMethod(method), steps=steps, seed=seed, every=max(1, steps // 10), together=together
     )
-    with one_interrupt("stopping; the last checkpoint is kept, --resume goes on"):
+    training.begun_curve(out, options, resume=resume)
+    progress, began = told(), time.process_time()
+    wanted = training.held_out_goals(judged, goals, seed, progress=progress)
+    size, (word, factor) = judged.unit, judged.measure
+    _row(f"    actions{judged.cost:>12}  mean     median   worst    within  CPU")
+
+    def tell(point: "CurvePoint") -> None:
+        _row(f"{_line(point, word, factor)}   {time.process_time() - began:.0f} s")
+
+    with one_interrupt("stopping; --resume goes on from the last row above, if there is one"):
         more = {"resume": resume, "processes": processes}
-        trained, curve = training.train(env, wanted, options, out, judge_in=judged, tell=tell, **more)
+        listener = training.Listener(point=tell, progress=progress)
+        trained, curve = training.train(env, wanted, options, out, judge_in=judged, listener=listener, **more)
     last = curve[-1]
     share = f", {100 * last.mean / size:.2f} % of the size" if word == "mm" else ""
     print(f"{factor * last.mean:.2f} {word}{share}, on {goals} unseen goals")
@@ -159,6 +162,11 @@ def _thing(robot: "Robot", text: str, at: str | None, mass: str, friction: float
     dim = robot.body.mesh.dim
     thing = read_thing(text, dim, mass=positive("--mass", mass, MASS), friction=0.8 if friction is None else friction)
     return thing if at is None else moved_thing(thing, middle(at, dim))
+
+
+def _row(text: str) -> None:
+    """Print a row, over the words of progress that a terminal shows."""
+    print(f"{chr(13)}{text:<70}" if sys.stderr.isatty() else text, flush=True)
 
 
 def _line(point: "CurvePoint", word: str, factor: float) -> str:

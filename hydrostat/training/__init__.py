@@ -13,7 +13,17 @@ from hydrostat.training.reach_env import ReachEnv, ReachOptions
 from hydrostat.training.tasks import TASKS, Task, task_of
 from hydrostat.training.thing_env import ThingEnv, ThingOptions
 from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld
-from hydrostat.training.train import CurvePoint, TrainMethod, TrainOptions, held_out_goals, judge, moves_of, train
+from hydrostat.training.train import (
+    CurvePoint,
+    Listener,
+    TrainMethod,
+    TrainOptions,
+    begun_curve,
+    held_out_goals,
+    judge,
+    moves_of,
+    train,
+)
 from hydrostat.training.twist_env import TwistEnv, TwistOptions
 from hydrostat.training.walk_env import WalkActions, WalkEnv, WalkOptions
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
@@ -25,6 +35,7 @@ __all__ = [
     "GoalEnv",
     "HysteresisEnv",
     "LearnedWorld",
+    "Listener",
     "MixedWorld",
     "PushEnv",
     "PushOptions",
@@ -45,6 +56,7 @@ __all__ = [
     "WalkEnv",
     "WalkOptions",
     "World",
+    "begun_curve",
     "held_out_goals",
     "judge",
     "moves_of",

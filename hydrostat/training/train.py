@@ -90,11 +90,33 @@ class CurvePoint:
     success: float
 
 
-def held_out_goals(env: GoalEnv, count: int, seed: int) -> list[dict[str, Any]]:
+Progress = Callable[[str, int, int], None]
+"""Is told what is done, how much of it, and of how much."""
+
+
+def untold(*_: object) -> None:
+    """Progress that nobody looks at."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listener:
+    """Who is told how training goes.
+
+    Attributes:
+        point: called after each evaluation.
+        progress: told how many actions are done, and how many goals judged.
+    """
+
+    point: Callable[[CurvePoint], None] = untold
+    progress: Progress = untold
+
+
+def held_out_goals(env: GoalEnv, count: int, seed: int, *, progress: Progress = untold) -> list[dict[str, Any]]:
     """Goals that training does not see, from a generator of their own: `options` for `reset`; counted nowhere."""
     before, goals = env.equilibria, []
     random = np.random.default_rng([seed, 77])
     while len(goals) < count:
+        progress("unseen goals drawn", len(goals), count)
         goal = env.drawn(random)
         if goal is not None:
             goals.append(goal)
@@ -102,10 +124,17 @@ def held_out_goals(env: GoalEnv, count: int, seed: int) -> list[dict[str, Any]]:
     return goals
 
 
-def judge(env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goals: Sequence[Mapping[str, Any]]) -> Vector:
+def judge(
+    env: GoalEnv,
+    act: Callable[[dict[str, Vector]], np.ndarray],
+    goals: Sequence[Mapping[str, Any]],
+    *,
+    progress: Progress = untold,
+) -> Vector:
     """Distance at the end of an episode for each goal, in the unit of the task; equilibria are counted nowhere."""
     before, left = env.equilibria, []
     for goal in goals:
+        progress("judged by unseen goals", len(left), len(goals))
         observation, info = env.reset(options=dict(goal))
         over = False
         while not over:
@@ -131,7 +160,7 @@ def train(
     resume: bool = False,
     processes: int = 1,
     judge_in: GoalEnv | None = None,
-    tell: Callable[[CurvePoint], None] = lambda _: None,
+    listener: Listener | None = None,
 ) -> tuple[Any, list[CurvePoint]]:
     """Learn a policy; `out` gets curve.json and a checkpoint after each evaluation, both whole whenever it is killed.
 
@@ -145,7 +174,7 @@ def train(
         judge_in: where policies are judged, such as the exact simulator; in `env` if left out.
         resume: go on from the checkpoint in `out`: the same curve as without a break.
         processes: that share the episodes side by side; the curve does not depend on it.
-        tell: called after each evaluation.
+        listener: is told how it goes.
 
     Returns:
         The model of stable-baselines3 and the curve.
@@ -156,14 +185,15 @@ def train(
     """
     if not 1 <= processes <= options.together:
         raise InputError(f"processes must be 1 to {options.together}, the episodes side by side, not {processes}")
-    curve = _curve(options, out) if resume else []
+    curve, listener = begun_curve(out, options, resume=resume), listener or Listener()
     with _copies(env, options, processes) as copies:
         learner = _resumed(copies, options, _checkpoint(curve, out)) if resume else _learner(env, copies, options)
         out.mkdir(parents=True, exist_ok=True)
         learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
         while learner.num_timesteps < options.steps:
-            _stretch(learner, options, env.steps * options.together)
-            left = judge(judge_in or env, lambda seen: learner.predict(seen, deterministic=True)[0], goals)
+            _stretch(learner, options, env.steps * options.together, listener.progress)
+            act = lambda seen: learner.predict(seen, deterministic=True)[0]  # noqa: E731
+            left = judge(judge_in or env, act, goals, progress=listener.progress)
             point = CurvePoint(
                 steps=learner.num_timesteps,
                 equilibria=copies.equilibria,
@@ -175,8 +205,38 @@ def train(
             curve.append(point)
             _record(learner, point)
             _keep(learner, options, curve, out)
-            tell(point)
+            listener.point(point)
     return learner, curve
+
+
+def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[CurvePoint]:
+    """The curve of a folder, to go on from with `resume`; else an empty one.
+
+    Raises:
+        InputError: there is no checkpoint to go on from, or one of other options; or a run that would be lost.
+    """
+    if not resume:
+        if list(out.glob("checkpoint-*")):
+            raise InputError(f"{out}: holds a run already; go on with --resume, or name another folder")
+        return []
+    if not (out / "curve.json").exists():
+        raise InputError(f"{out}: there is no checkpoint to go on from; begin anew, without --resume")
+    with _read_whole(out / "curve.json"):
+        kept = json.loads((out / "curve.json").read_text())
+        curve = [CurvePoint(**each) for each in kept["curve"]]
+        made = dict(kept["options"])
+    for name, value in json.loads(json.dumps(asdict(options))).items():
+        was = made.get(name)
+        if was != value and name not in ("steps", "every"):
+            raise InputError(f"{out}: this was begun with {name} = {was}, not {value}; go on with the same")
+    return curve
+
+
+def _no_other(out: Path) -> list[CurvePoint]:
+    """The curve of a run that begins (InputError: the folder holds one that would be lost)."""
+    if list(out.glob("checkpoint-*")):
+        raise InputError(f"{out}: holds a run already; go on with --resume, or name another folder")
+    return []
 
 
 @contextmanager
@@ -191,11 +251,16 @@ def _copies(env: GoalEnv, options: TrainOptions, processes: int) -> Iterator[Any
         copies.close()
 
 
-def _stretch(model: Any, options: TrainOptions, whole: int) -> None:
+def _stretch(model: Any, options: TrainOptions, whole: int, progress: Progress) -> None:
     """Learn from as many actions as are due until the next evaluation, in whole episodes of so many together."""
     due = min(options.every, options.steps - model.num_timesteps)
     model._last_obs = None  # each stretch begins with episodes of its own
-    model.learn(whole * math.ceil(due / whole), reset_num_timesteps=False)
+
+    def told(*_: object) -> bool:
+        progress("actions", min(model.num_timesteps, options.steps - 1), options.steps)
+        return True
+
+    model.learn(whole * math.ceil(due / whole), callback=told, reset_num_timesteps=False)
 
 
 def _learner(env: GoalEnv, copies: Any, options: TrainOptions) -> Any:
@@ -276,21 +341,6 @@ def _keep(model: Any, options: TrainOptions, curve: list[CurvePoint], out: Path)
     for old in out.glob("checkpoint-*"):
         if old != folder:
             shutil.rmtree(old)
-
-
-def _curve(options: TrainOptions, out: Path) -> list[CurvePoint]:
-    """The curve until a checkpoint (InputError: there is none, or one that was made in another way)."""
-    if not (out / "curve.json").exists():
-        raise InputError(f"{out}: there is no checkpoint to go on from; begin anew, without --resume")
-    with _read_whole(out / "curve.json"):
-        kept = json.loads((out / "curve.json").read_text())
-        curve = [CurvePoint(**each) for each in kept["curve"]]
-        made = dict(kept["options"])
-    for name, value in json.loads(json.dumps(asdict(options))).items():
-        was = made.get(name)
-        if was != value and name not in ("steps", "every"):
-            raise InputError(f"{out}: this was begun with {name} = {was}, not {value}; go on with the same")
-    return curve
 
 
 @contextmanager

@@ -19,6 +19,7 @@ from hydrostat.arrays import Vector  # noqa: E402
 from hydrostat.training import (  # noqa: E402
     CurvePoint,
     ExactWorld,
+    Listener,
     MixedWorld,
     ReachEnv,
     ReachOptions,
@@ -65,6 +66,16 @@ def test_checkers_of_both_libraries_pass(incremental: bool) -> None:
     check_env(made.unwrapped)
     checker = pytest.importorskip("stable_baselines3.common.env_checker", reason="no stable-baselines3")
     checker.check_env(made.unwrapped)
+
+
+def test_the_example_in_the_docs_runs() -> None:
+    """Oracle: the text of docs/theory/reinforcement.md, line by line."""
+    page = Path(__file__).parents[2] / "docs" / "theory" / "reinforcement.md"
+    example = page.read_text().split("```python")[1].split("```")[0]
+    names: dict[str, Any] = {}
+    exec(example, names)
+    assert set(names["seen"]) == {"observation", "achieved_goal", "desired_goal"}
+    assert names["env"].observation_space.contains(names["seen"])
 
 
 def test_exact_episodes_are_equilibria_and_are_counted() -> None:
@@ -263,6 +274,9 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
         train(straight(), goals, TrainOptions(), tmp_path, processes=5)
     with pytest.raises(InputError, match="there is no checkpoint"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
+    (tmp_path / "before" / "checkpoint-4").mkdir(parents=True)
+    with pytest.raises(InputError, match="before: holds a run already; go on with --resume, or name another folder"):
+        train(straight(), goals, TrainOptions(), tmp_path / "before")
     (tmp_path / "curve.json").write_text('{"options": {"method": "ddpg-her"}, "curve": []}')
     with pytest.raises(InputError, match="begun with method = ddpg-her, not sac-her"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
@@ -320,11 +334,15 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Go
 
 
 @QUIET
-def test_tensorboard_reads_what_the_curve_says(goals: Goals, tmp_path: Path) -> None:
+def test_tensorboard_reads_what_the_curve_says_and_how_far_it_is_is_told(goals: Goals, tmp_path: Path) -> None:
     pytest.importorskip("sb3_contrib", reason="sb3-contrib is not installed")
     reader = pytest.importorskip("tensorboard.backend.event_processing.event_accumulator", reason="no tensorboard")
     options = TrainOptions(method=TrainMethod.TQC, steps=60, every=30, layers=(8,), batch=16)
-    curve = train(straight(), goals, options, tmp_path)[1]
+    heard: list[tuple[str, int, int]] = []
+    listener = Listener(progress=lambda *words: heard.append(words))
+    curve = train(straight(), goals, options, tmp_path, listener=listener)[1]
+    assert [words for words in heard if words[0] == "actions"][::5] == [("actions", n, 60) for n in (4, 24, 44)]
+    assert [done for stage, done, _ in heard if stage == "judged by unseen goals"] == 2 * list(range(len(goals)))
     found = {}
     for file in tmp_path.glob("tensorboard/*/events*"):
         events = reader.EventAccumulator(str(file)).Reload()
