@@ -42,4 +42,6 @@ def scale(
     text = merged_text(read_text(home / "robot.toml"), made)
     path = save_robot(made, out or home, text=text)
     size = f"{1e3 * loaded.body.mesh.size:.0f} mm to {1e3 * made.body.mesh.size:.0f} mm"
+    if out is None and (home / "studio.json").exists():
+        print("note: studio.json keeps its keyframes and wishes, lengths and forces, as they were; set them anew")
     print(f"Scaled {path}: from {size}; see what is risky now: hydrostat check {out or home}")

@@ -62,8 +62,11 @@ def test_a_robot_is_scaled_in_its_file(run: Run, tmp_path: Path) -> None:
     after = (tmp_path / "mine" / "robot.toml").read_text()
     assert comments(after) == comments(before)
     assert 'size = "420 mm"' in after
+    assert "studio.json" not in out
     assert run("scale", tmp_path / "mine", "2", "--out", tmp_path / "big")[0] == 0
     assert 'size = "840 mm"' in (tmp_path / "big" / "robot.toml").read_text()
+    (tmp_path / "mine" / "studio.json").write_text("{}")
+    assert "note: studio.json keeps its keyframes" in run("scale", tmp_path / "mine", "1.1")[1]
     for factor, words in (("x", "is no factor"), ("0", "must be from 0.01 to 100")):
         code, _, errors = run("scale", tmp_path / "mine", factor)
         assert (code, errors.count("\n")) == (2, 1)
