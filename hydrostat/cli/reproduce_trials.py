@@ -139,7 +139,7 @@ def _policies(
 
     trials, effort = (
         NetworkReach(networks, groups=finger_pairs(networks)),
-        Budget(steps=usual.steps, epochs=usual.small),
+        Budget(steps=usual.steps, epochs=usual.small, tell=told()),
     )
     every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
     known = int(networks.facts["samples"])
