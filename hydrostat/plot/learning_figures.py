@@ -7,7 +7,7 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from scipy.stats import trim_mean
 
 from hydrostat.arrays import Nodes
@@ -80,9 +80,11 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
     Each is (actions, numbers), the numbers (epochs, seeds): the line is the mean over the middle half of the seeds, the
     field what lies between the least and the largest; width in inches.
     """
-    height = 3.4
+    handles, names = [], list(dict.fromkeys(name for curves in panes.values() for name in curves))
+    columns = 5 if sum(map(len, names)) < _LETTERS else 3
+    height = 3.2 + 0.2 * -(-len(names) // columns)
     figure = new_figure(width, height)
-    handles, names, lower, tall = [], [], 0.8 / height, (height - 0.95) / height
+    lower, tall = (height - 2.6) / height, 2.45 / height
     for number, (words, curves) in enumerate(panes.items()):
         axes = figure.add_axes((0.09 + 0.5 * number, lower, 0.39, tall))
         plain_axes(axes)
@@ -95,9 +97,10 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
         axes.set_ylim(0.0, 1.05 * (most or 1.0))
         axes.set_xlabel("actions", color=INK, fontsize=8.5)
         axes.set_ylabel(words, color=INK, fontsize=8.5)
+        axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axes.xaxis.set_major_formatter(FuncFormatter(_short))
         handles, names = axes.get_legend_handles_labels()
-    figure.legend(handles, names, loc="lower center", ncol=5, frameon=False, fontsize=8, labelcolor=INK)
+    figure.legend(handles, names, loc="lower center", ncol=columns, frameon=False, fontsize=8, labelcolor=INK)
     return figure
 
 
@@ -198,3 +201,7 @@ def _short(value: float, place: object = None) -> str:
 def _half(value: float, place: object = None) -> str:
     """Numbers between powers of ten: 2 and 5 alone."""
     return _short(value, place) if f"{value:e}"[0] in "25" else ""
+
+
+_LETTERS = 60
+"""So many letters of names stand beside one another below a picture of curves."""
