@@ -56,8 +56,8 @@ def reproduce(
     Each answer is rolled out in the simulator. Samples and results go to DIR and are used again. The thesis had another
     hand, and another range of motion.
 
-    Reinforcement learning (section 5.4) has figure-5.8 (one action or ten) and figure-5.9 (curricula), each with -small
-    behind its name in small networks, too; figure-5.10 (tolerances and errors), figure-5.12 (from anywhere),
+    Reinforcement learning (section 5.4) has figure-5.8 (one action, five or ten) and figure-5.9 (curricula), each with
+    -small behind its name in small networks, too; figure-5.10 (tolerances and errors), figure-5.12 (from anywhere),
     table-noise and table-reward. figure-5.14-trial puts it beside others that learn from the pairs that it tried;
     table-policies has other ways to a policy, on the same outcomes, and table-gradient the best of them. It learns in
     networks of our hand, one number for each finger, several seeds at once, and says which claims hold. Needs the

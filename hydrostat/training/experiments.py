@@ -116,10 +116,10 @@ def _first_action(ran: Mapping[str, Ran]) -> np.ndarray:
 
 
 def _lengths(options: DdpgOptions, layers: str) -> Experiment:
-    """What networks learn in episodes of one action and of ten (Fig 5.8)."""
+    """What networks learn in episodes of one action, five and ten (R79, R80; Fig 5.8 has one and ten)."""
     return Experiment(
-        title=f"episodes of one action and of ten, with as many actions in all; {layers}, sparse",
-        runs={"T=1": Run(options=options), "T=10": Run(options=options, horizon=10)},
+        title=f"episodes of one action, five and ten, with as many actions in all; {layers}, sparse",
+        runs={f"T={horizon}": Run(options=options, horizon=horizon) for horizon in (1, 5, 10)},
         claims=(
             Claim(text="T=10 learns faster than T=1 (N13)", measure=_faster("T=10", "T=1")),
             Claim(text="T=1 ends above 0.9 (N13)", measure=lambda ran: final(ran["T=1"]), above=MASTERED),
