@@ -141,7 +141,7 @@ def train(
         trained, curve = training.train(env, wanted, options, out, judge_in=judged, listener=listener, **more)
     last = curve[-1]
     share = f", {100 * last.mean / size:.2f} % of the size" if word == "mm" else ""
-    print(f"{factor * last.mean:.2f} {word}{share}, on {counted(goals, "unseen goal")}")
+    print(f"{factor * last.mean:.2f} {word}{share}, on {counted(goals, 'unseen goal')}")
     print(f"Wrote {_picture(curve, method, out, word, factor)}")
     policy = training.policy_of(trained, env, task=task, error=last.mean)
     print(f"Wrote {policy.save(out / 'actor.policy')}, which runs without PyTorch")
