@@ -133,7 +133,7 @@ def _policies(
     from hydrostat.plot import draw_costs, save_png
     from hydrostat.robot import replace_file
     from hydrostat.training.policies import PAIRS_ALONE, WAYS, Budget, drawn_pairs
-    from hydrostat.training.run_experiment import certified_distances, exact_distances, finger_pairs
+    from hydrostat.training.run_experiment import certified_distances, exact_distances, exact_goals, finger_pairs
     from hydrostat.training.trials import NetworkReach
     from hydrostat.training.verdict import interquartile
 
@@ -154,12 +154,13 @@ def _policies(
         text = f"{name:24}{pairs:8}{used:12}{spanned(found, 3):>24}{100 * found.mean / width:8.3f}"
         print(f"{text}{far:10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
 
-    sure = certified_distances(simulation, trials, networks, usual.goals, tell=told())
+    asked = exact_goals(simulation, trials, usual.goals, tell=told())
+    sure = certified_distances(simulation, networks, asked, tell=told())
     tell(CERTIFIED, known, known, 10.0 * sure)
     for name, way in list(WAYS.items())[: 1 if table == GRADIENT else None]:
         for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
             act = way(trials, every.first(many), effort)
-            exact = 10.0 * exact_distances(simulation, trials, act, seeds, usual.goals, tell=told())
+            exact = 10.0 * exact_distances(simulation, trials, act, seeds, asked, tell=told())
             tell(name, many, _used(name, many, known, usual), exact)
     replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}

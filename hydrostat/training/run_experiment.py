@@ -16,6 +16,7 @@ from hydrostat.training.trials import NetworkReach
 
 Groups = tuple[tuple[int, ...], ...]
 Tell = Callable[[str, int, int], None]
+Asked = tuple[torch.Tensor, torch.Tensor]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,31 +65,34 @@ def run_experiment(
         learner = HindsightDdpg(trials, run.options, seeds=seeds, epochs=many)
         done = learner.learn(tell=lambda at, of, name=name: tell(name, at, of))
         ran = Ran(run=run, epochs=done, best=learner.test(learner.best, _TESTS))
-        exact = exact_distances(simulation, trials, learner.best, seeds, goals, tell=tell)
+        asked = exact_goals(simulation, trials, goals, tell=tell)
+        exact = exact_distances(simulation, trials, learner.best, seeds, asked, tell=tell)
         yield Judged(name=name, ran=ran, exact=exact)
 
 
+def exact_goals(simulation: Simulation, trials: NetworkReach, goals: int, *, tell: Tell = lambda *_: None) -> Asked:
+    """Where episodes begin and what they shall reach in the simulator [cm], (1, goals, size) each; NaN where none."""
+    draw = torch.Generator().manual_seed(_GOALS)
+    begun, _, _ = trials.begin(draw, (1, goals))
+    wanted = trials.contractions(2.0 * torch.rand(1, goals, trials.actions, generator=draw) - 1.0)
+    return begun, _places(simulation, wanted, "goals in the simulator", tell)
+
+
 def exact_distances(
-    simulation: Simulation, trials: NetworkReach, policy: Act, seeds: int, goals: int, *, tell: Tell = lambda *_: None
+    simulation: Simulation, trials: NetworkReach, policy: Act, seeds: int, asked: Asked, *, tell: Tell = lambda *_: None
 ) -> np.ndarray:
-    """Distances [cm] after the last action of episodes in the simulator, (seeds, goals)."""
-    begun, goal = (part.expand(seeds, -1, -1) for part in _exact_goals(simulation, trials, goals, tell))
+    """Distances [cm] after the last action of episodes in the simulator, (seeds, goals); asked: `exact_goals`."""
+    begun, goal = (part.expand(seeds, -1, -1) for part in asked)
     seen = begun
     with torch.no_grad():
         for _ in range(trials.horizon):
             acts = policy(torch.nan_to_num(seen), torch.nan_to_num(goal))
-            seen = _places(simulation, trials.contractions(acts), tell)
+            seen = _places(simulation, trials.contractions(acts), "in the simulator", tell)
     return trials.distances(seen, goal).numpy()
 
 
 def certified_distances(
-    simulation: Simulation,
-    trials: NetworkReach,
-    model: LearnedModel,
-    goals: int,
-    *,
-    steps: int = 3,
-    tell: Tell = lambda *_: None,
+    simulation: Simulation, model: LearnedModel, asked: Asked, *, steps: int = 3, tell: Tell = lambda *_: None
 ) -> np.ndarray:
     """Distances [cm] that the same goals are left with by the networks' search and exact steps from there, (1, goals).
 
@@ -96,10 +100,9 @@ def certified_distances(
     more steps are taken than needed for 0.01 mm. NaN where a goal, or the answer to it, is no equilibrium.
     """
     names, dim = model.facts["markers"], model.facts["dim"]
-    _, goal = _exact_goals(simulation, trials, goals, tell)
-    found = []
-    for number, row in enumerate(goal[0].double().numpy()):
-        tell("certified", number, goals)
+    rows, found = asked[1][0].double().numpy(), []
+    for number, row in enumerate(rows):
+        tell("certified", number, len(rows))
         if not np.isfinite(row).all():
             found.append(np.nan)
             continue
@@ -109,17 +112,7 @@ def certified_distances(
     return np.array(found)[None]
 
 
-def _exact_goals(
-    simulation: Simulation, trials: NetworkReach, goals: int, tell: Tell = lambda *_: None
-) -> tuple[torch.Tensor, torch.Tensor]:
-    """Where episodes begin and what they shall reach in the simulator [cm], (1, goals, size) each."""
-    draw = torch.Generator().manual_seed(_GOALS)
-    begun, _, _ = trials.begin(draw, (1, goals))
-    wanted = trials.contractions(2.0 * torch.rand(1, goals, trials.actions, generator=draw) - 1.0)
-    return begun, _places(simulation, wanted, tell)
-
-
-def _places(simulation: Simulation, taken: torch.Tensor, tell: Tell) -> torch.Tensor:
+def _places(simulation: Simulation, taken: torch.Tensor, stage: str, tell: Tell) -> torch.Tensor:
     """Coordinates of the markers [cm] at contractions [m], (many, goals, winches), in the simulator; NaN where none.
 
     The first of many begins from rest; the others, which want the same, each from the pose before: eight times faster
@@ -128,7 +121,7 @@ def _places(simulation: Simulation, taken: torch.Tensor, tell: Tell) -> torch.Te
     rows = taken.double().numpy()
     found = np.full((*rows.shape[:2], len(simulation.robot.markers), simulation.robot.body.mesh.dim), np.nan)
     for goal in range(rows.shape[1]):
-        tell("in the simulator", goal, rows.shape[1])
+        tell(stage, goal, rows.shape[1])
         pose = None
         for one in range(rows.shape[0]):
             pose = simulation.solve(rows[one, goal], start=pose, strict=False)

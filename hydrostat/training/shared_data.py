@@ -11,7 +11,7 @@ from hydrostat.simulation import Simulation
 from hydrostat.training.experiments import SMALL
 from hydrostat.training.hindsight_ddpg import HindsightDdpg
 from hydrostat.training.policies import Act, Budget, TriedPairs, cloned, drawn_pairs, nearest, ridge
-from hydrostat.training.run_experiment import exact_distances
+from hydrostat.training.run_experiment import exact_distances, exact_goals
 from hydrostat.training.trials import NetworkReach
 
 try:
@@ -77,12 +77,13 @@ def compare_on_shared_data(
     acts, reached = (torch.tensor(part) for part in learner.tried)
     each = acts.shape[1] // budget.epochs
     tried, drawn = TriedPairs(acts=acts, reached=reached), drawn_pairs(trials, seeds, acts.shape[1])
+    asked = exact_goals(simulation, trials, goals)
     for at in marks:
         ways = dict(zip((TRIED, BEST), then[at], strict=True))
         for data, pairs in (("shared", tried.first(each * at)), ("independent", drawn.first(each * at))):
             ways |= {f"{name}, {data}": way(trials, pairs, budget) for name, way in OTHERS.items()}
         for name, act in ways.items():
-            exact = exact_distances(simulation, trials, act, seeds, goals) if at == marks[-1] else None
+            exact = exact_distances(simulation, trials, act, seeds, asked) if at == marks[-1] else None
             yield OfPairs(way=name, pairs=each * at, expected=_expected(trials, act, seeds), exact=exact)
 
 

@@ -16,10 +16,9 @@ from hydrostat.learning.learned_model import LearnedModel  # noqa: E402
 from hydrostat.robot import Robot  # noqa: E402
 from hydrostat.simulation import Simulation  # noqa: E402
 from hydrostat.training import experiments as room  # noqa: E402
-from hydrostat.training import run_experiment as runs  # noqa: E402
 from hydrostat.training.experiments import EXPERIMENTS, Ran, error, final, least, speed  # noqa: E402
 from hydrostat.training.hindsight_ddpg import Epochs  # noqa: E402
-from hydrostat.training.run_experiment import certified_distances, exact_distances, finger_pairs  # noqa: E402
+from hydrostat.training.run_experiment import certified_distances, exact_distances, exact_goals, finger_pairs  # noqa: E402
 from hydrostat.training.trials import NetworkReach  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("unchecked")
@@ -59,7 +58,8 @@ def test_the_simulator_judges_where_contractions_lead(model: LearnedModel, robot
     simulation, trials = Simulation(robot), NetworkReach(model, groups=finger_pairs(model))
     acts = torch.full((2, 3, trials.actions), 0.3)
 
-    found = exact_distances(simulation, trials, lambda states, goals: acts, 2, 3)  # type: ignore[arg-type]
+    asked = exact_goals(simulation, trials, 3)
+    found = exact_distances(simulation, trials, lambda states, goals: acts, 2, asked)
     pose = simulation.solve(trials.contractions(acts)[0, 0].double().numpy())
     draw = torch.Generator().manual_seed(31_415)
     trials.begin(draw, (1, 3))
@@ -72,19 +72,17 @@ def test_the_simulator_judges_where_contractions_lead(model: LearnedModel, robot
 def test_certified_answers_reach_the_same_goals(model: LearnedModel, robot: Robot) -> None:
     """Oracle: the goals are places that the robot has been in, so exact steps arrive; without them networks miss."""
     simulation, trials = Simulation(robot), NetworkReach(model, groups=finger_pairs(model))
-    rough, sure = (certified_distances(simulation, trials, model, 3, steps=steps) for steps in (0, 3))
+    asked = exact_goals(simulation, trials, 3)
+    rough, sure = (certified_distances(simulation, model, asked, steps=steps) for steps in (0, 3))
     assert sure.shape == (1, 3)
     assert 10.0 * sure.max() < 0.05 < 10.0 * rough.max()  # [mm]
 
 
-def test_a_goal_that_is_no_equilibrium_is_lost_and_the_others_count(
-    model: LearnedModel, robot: Robot, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_goal_that_is_no_equilibrium_is_lost_and_the_others_count(model: LearnedModel, robot: Robot) -> None:
     simulation, trials = Simulation(robot), NetworkReach(model, groups=finger_pairs(model))
-    begun, goal = runs._exact_goals(simulation, trials, 2)
+    begun, goal = exact_goals(simulation, trials, 2)
     goal[0, 0] = torch.nan
-    monkeypatch.setattr(runs, "_exact_goals", lambda *_: (begun, goal))
-    found = certified_distances(simulation, trials, model, 2, steps=0)
+    found = certified_distances(simulation, model, (begun, goal), steps=0)
     assert np.isnan(found).tolist() == [[True, False]]
 
 
