@@ -1,32 +1,37 @@
-// The elastic energy of simplices, eight at a time; formulas and names are those of neo_hookean.py and warp.py.
+// The elastic energy of simplices, as many at a time as a vector has lanes. Formulas: neo_hookean.py and warp.py.
 #pragma once
 #include "kernels.hpp"
 #include "vectors.hpp"
 
 namespace {
 
+constexpr int PACK = 8;  // elements whose numbers lie side by side in memory, at every level
+
+// LANES elements, `first` and those after it.
 template <int D> struct Group {
     static constexpr int C = D + 1;
-    const int32_t* nodes;
+    const int32_t* nodes;  // corner by corner, PACK apart
     const double* gradients;
-    V8 volume;
+    Lanes volume;
+    int count;  // elements in it; the others are filled up
 
-    Group(const Elements& all, int64_t which)
-        : nodes(all.stencils + which * C * 8), gradients(all.gradients + which * C * D * 8),
-          volume(load<V8>(all.volumes + which * 8)) {}
+    Group(const Elements& all, int64_t first)
+        : nodes(all.stencils + first / PACK * C * PACK + first % PACK),
+          gradients(all.gradients + first / PACK * C * D * PACK + first % PACK),
+          volume(load<Lanes>(all.volumes + first)), count(all.terms - first < LANES ? (int)(all.terms - first) : LANES) {}
 
-    INLINE V8 slope(int corner, int axis) const { return load<V8>(gradients + (corner * D + axis) * 8); }
+    INLINE Lanes slope(int corner, int axis) const { return load<Lanes>(gradients + (corner * D + axis) * PACK); }
 
     // Sum of field x shape gradient; the gradients of a simplex add up to 0, so corner 0 only gives the origin.
-    INLINE void differentiate(const double* field, V8 (&found)[D][D]) const {
-        V8 origin[D], at;
+    INLINE void differentiate(const double* field, Lanes (&found)[D][D]) const {
+        Lanes origin[D], at;
         for (int i = 0; i < D; i++) {
-            for (int lane = 0; lane < 8; lane++) origin[i][lane] = field[(int64_t)nodes[lane] * D + i];
-            for (int j = 0; j < D; j++) found[i][j] = V8{};
+            for (int lane = 0; lane < LANES; lane++) origin[i][lane] = field[(int64_t)nodes[lane] * D + i];
+            for (int j = 0; j < D; j++) found[i][j] = Lanes{};
         }
         for (int corner = 1; corner < C; corner++)
             for (int i = 0; i < D; i++) {
-                for (int lane = 0; lane < 8; lane++) at[lane] = field[(int64_t)nodes[corner * 8 + lane] * D + i];
+                for (int lane = 0; lane < LANES; lane++) at[lane] = field[(int64_t)nodes[corner * PACK + lane] * D + i];
                 at -= origin[i];
                 for (int j = 0; j < D; j++) found[i][j] += at * slope(corner, j);
             }
@@ -34,24 +39,24 @@ template <int D> struct Group {
 };
 
 // J - 1 without cancellation.
-template <int D> INLINE V8 change_of(const V8 (&G)[D][D]) {
+template <int D> INLINE Lanes change_of(const Lanes (&G)[D][D]) {
     if constexpr (D == 2) return G[0][0] + G[1][1] + (G[0][0] * G[1][1] - G[0][1] * G[1][0]);
     else {
-        V8 a = G[1][1] * G[2][2] - G[1][2] * G[2][1], b = G[1][0] * G[2][2] - G[1][2] * G[2][0],
+        Lanes a = G[1][1] * G[2][2] - G[1][2] * G[2][1], b = G[1][0] * G[2][2] - G[1][2] * G[2][0],
            c = G[1][0] * G[2][1] - G[1][1] * G[2][0];
-        V8 minors = (G[0][0] * G[1][1] - G[0][1] * G[1][0]) + (G[0][0] * G[2][2] - G[0][2] * G[2][0]) + a;
+        Lanes minors = (G[0][0] * G[1][1] - G[0][1] * G[1][0]) + (G[0][0] * G[2][2] - G[0][2] * G[2][0]) + a;
         return G[0][0] + G[1][1] + G[2][2] + minors + (G[0][0] * a - G[0][1] * b + G[0][2] * c);
     }
 }
 
 // F^-T, with F = I + G and J = det F.
-template <int D> INLINE void inverse_transposed(const V8 (&G)[D][D], V8 J, V8 (&found)[D][D]) {
-    V8 scale = 1.0 / J;
+template <int D> INLINE void inverse_transposed(const Lanes (&G)[D][D], Lanes J, Lanes (&found)[D][D]) {
+    Lanes scale = 1.0 / J;
     if constexpr (D == 2) {
         found[0][0] = (1.0 + G[1][1]) * scale, found[0][1] = -G[1][0] * scale;
         found[1][0] = -G[0][1] * scale, found[1][1] = (1.0 + G[0][0]) * scale;
     } else {
-        V8 F[3][3];
+        Lanes F[3][3];
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) F[i][j] = i == j ? 1.0 + G[i][j] : G[i][j];
         for (int i = 0; i < 3; i++)
@@ -63,14 +68,14 @@ template <int D> INLINE void inverse_transposed(const V8 (&G)[D][D], V8 J, V8 (&
 }
 
 template <int D> double value(const Elements& all, const double* displacements) {
-    V8 total{};
-    for (int64_t which = 0; which < all.groups; which++) {
-        Group<D> group(all, which);
-        V8 G[D][D];
+    Lanes total{};
+    for (int64_t element = 0; element < all.terms; element += LANES) {
+        Group<D> group(all, element);
+        Lanes G[D][D];
         group.differentiate(displacements, G);
-        V8 change = change_of<D>(G);
+        Lanes change = change_of<D>(G);
         if (any(~(change > -1.0))) return __builtin_inf();
-        V8 log_j = log1p8(change), stretch{};
+        Lanes log_j = log1p(change), stretch{};
         for (int i = 0; i < D; i++) {
             stretch += G[i][i];
             for (int j = 0; j < D; j++) stretch += 0.5 * G[i][j] * G[i][j];
@@ -82,64 +87,63 @@ template <int D> double value(const Elements& all, const double* displacements) 
 
 template <int D> void gradient(const Elements& all, const double* displacements, double* total) {
     constexpr int C = D + 1;
-    for (int64_t which = 0; which < all.groups; which++) {
-        Group<D> group(all, which);
-        V8 G[D][D], T[D][D], forces[C][D];
+    for (int64_t element = 0; element < all.terms; element += LANES) {
+        Group<D> group(all, element);
+        Lanes G[D][D], T[D][D], forces[C][D];
         group.differentiate(displacements, G);
-        V8 change = change_of<D>(G);
+        Lanes change = change_of<D>(G);
         inverse_transposed<D>(G, 1.0 + change, T);
-        V8 pressure = all.lame * log1p8(change);
+        Lanes pressure = all.lame * log1p(change);
         for (int i = 0; i < D; i++)  // P = mu (G + I - F^-T) + pressure F^-T
             for (int j = 0; j < D; j++) {
-                V8 rest = i == j ? 1.0 - T[i][j] : -T[i][j];
+                Lanes rest = i == j ? 1.0 - T[i][j] : -T[i][j];
                 T[i][j] = group.volume * (all.mu * (G[i][j] + rest) + pressure * T[i][j]);
             }
-        for (int i = 0; i < D; i++) forces[0][i] = V8{};
+        for (int i = 0; i < D; i++) forces[0][i] = Lanes{};
         for (int corner = 1; corner < C; corner++)
             for (int i = 0; i < D; i++) {
-                V8 force{};
+                Lanes force{};
                 for (int j = 0; j < D; j++) force += T[i][j] * group.slope(corner, j);
                 forces[corner][i] = force;
                 forces[0][i] -= force;
             }
-        int lanes = all.terms - which * 8 < 8 ? (int)(all.terms - which * 8) : 8;
-        for (int lane = 0; lane < lanes; lane++)
+        for (int lane = 0; lane < group.count; lane++)
             for (int corner = 0; corner < C; corner++)
                 for (int i = 0; i < D; i++)
-                    total[(int64_t)group.nodes[corner * 8 + lane] * D + i] += forces[corner][i][lane];
+                    total[(int64_t)group.nodes[corner * PACK + lane] * D + i] += forces[corner][i][lane];
     }
 }
 
 // Eigenvalues, on the diagonal of A, and eigenvectors, the columns of Q, by Jacobi's rotations.
-template <int D> INLINE void eigen(V8 (&A)[D][D], V8 (&Q)[D][D]) {
-    V8 size{};
+template <int D> INLINE void eigen(Lanes (&A)[D][D], Lanes (&Q)[D][D]) {
+    Lanes size{};
     for (int i = 0; i < D; i++) {
-        size += size_of(A[i][i]);
+        size += absolute(A[i][i]);
         for (int j = 0; j < D; j++) Q[i][j] = all(i == j ? 1.0 : 0.0);
     }
     for (int sweep = 0; sweep < 12; sweep++) {
-        V8 off{};
+        Lanes off{};
         for (int p = 0; p < D; p++)
-            for (int q = p + 1; q < D; q++) off += size_of(A[p][q]);
+            for (int q = p + 1; q < D; q++) off += absolute(A[p][q]);
         if (!any(off > 1e-15 * size)) return;
         for (int p = 0; p < D - 1; p++)
             for (int q = p + 1; q < D; q++) {
-                I8 none = A[p][q] == V8{};
-                V8 tilt = 0.5 * (A[q][q] - A[p][p]) / where(none, all(1.0), A[p][q]);
-                V8 t = 1.0 / (size_of(tilt) + root(tilt * tilt + 1.0));
-                t = where(tilt < V8{}, -t, t);
-                t = where(none, V8{}, t);
-                V8 c = 1.0 / root(t * t + 1.0), s = t * c, turn = t * A[p][q];
+                Bits none = A[p][q] == Lanes{};
+                Lanes tilt = 0.5 * (A[q][q] - A[p][p]) / where(none, all(1.0), A[p][q]);
+                Lanes t = 1.0 / (absolute(tilt) + root(tilt * tilt + 1.0));
+                t = where(tilt < Lanes{}, -t, t);
+                t = where(none, Lanes{}, t);
+                Lanes c = 1.0 / root(t * t + 1.0), s = t * c, turn = t * A[p][q];
                 A[p][p] -= turn, A[q][q] += turn;
-                A[p][q] = A[q][p] = V8{};
+                A[p][q] = A[q][p] = Lanes{};
                 if constexpr (D == 3) {
                     int r = 3 - p - q;
-                    V8 x = A[r][p], y = A[r][q];
+                    Lanes x = A[r][p], y = A[r][q];
                     A[r][p] = A[p][r] = c * x - s * y;
                     A[r][q] = A[q][r] = s * x + c * y;
                 }
                 for (int i = 0; i < D; i++) {
-                    V8 x = Q[i][p], y = Q[i][q];
+                    Lanes x = Q[i][p], y = Q[i][q];
                     Q[i][p] = c * x - s * y;
                     Q[i][q] = s * x + c * y;
                 }
@@ -150,46 +154,46 @@ template <int D> INLINE void eigen(V8 (&A)[D][D], V8 (&Q)[D][D]) {
 // What is negative in the Hessian of Psi by F, in the axes of F = U diag(s) V^T (Smith, de Goes and Kim 2019):
 // `stretch` for the stretches; for each pair of axes `even` on the product of equal places and `odd` across.
 template <int D> struct Negative {
-    V8 U[D][D], V[D][D], stretch[D][D], even[D][D], odd[D][D];
+    Lanes U[D][D], V[D][D], stretch[D][D], even[D][D], odd[D][D];
     bool some = false;
 
-    INLINE Negative(const V8 (&G)[D][D], V8 J, V8 log_j, double mu, double lame) {
-        V8 F[D][D], squares[D][D], s[D];
+    INLINE Negative(const Lanes (&G)[D][D], Lanes J, Lanes log_j, double mu, double lame) {
+        Lanes F[D][D], squares[D][D], s[D];
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) F[i][j] = i == j ? 1.0 + G[i][j] : G[i][j];
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) {
-                squares[i][j] = V8{};
+                squares[i][j] = Lanes{};
                 for (int k = 0; k < D; k++) squares[i][j] += F[k][i] * F[k][j];
             }
         eigen<D>(squares, V);
         for (int k = 0; k < D; k++) {
             s[k] = root(where(squares[k][k] > 1e-300, squares[k][k], all(1e-300)));
             for (int i = 0; i < D; i++) {
-                V8 along{};
+                Lanes along{};
                 for (int j = 0; j < D; j++) along += F[i][j] * V[j][k];
                 U[i][k] = along / s[k];
             }
         }
-        V8 pull = lame * log_j - mu, zero{};
+        Lanes pull = lame * log_j - mu, zero{};
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) {
-                V8 product = 1.0 / (s[i] * s[j]);
+                Lanes product = 1.0 / (s[i] * s[j]);
                 squares[i][j] = i == j ? mu + (lame - pull) * product : lame * product;
                 if (i != j) {
                     // The twist and the flip of two axes: mu -+ (lame ln J - mu) / (s_i s_j).
-                    V8 plus = least(mu - pull * product, zero), minus = least(mu + pull * product, zero);
+                    Lanes plus = least(mu - pull * product, zero), minus = least(mu + pull * product, zero);
                     even[i][j] = 0.5 * (minus + plus);
                     odd[i][j] = 0.5 * (plus - minus);
                     some = some || any((plus < zero) | (minus < zero));
                 }
             }
-        V8 Q[D][D];
+        Lanes Q[D][D];
         for (int i = 0; i < D; i++)
-            for (int j = 0; j < D; j++) stretch[i][j] = V8{};
+            for (int j = 0; j < D; j++) stretch[i][j] = Lanes{};
         eigen<D>(squares, Q);
         for (int k = 0; k < D; k++) {
-            V8 below = least(squares[k][k], zero);
+            Lanes below = least(squares[k][k], zero);
             if (!any(below < zero)) continue;
             some = true;
             for (int i = 0; i < D; i++)
@@ -198,8 +202,8 @@ template <int D> struct Negative {
     }
 
     // Its part of the block of two corners with shape gradients a and b, which are in the axes V.
-    INLINE void block(const V8 (&a)[D], const V8 (&b)[D], V8 (&found)[D][D]) const {
-        V8 inner[D][D], half[D][D];
+    INLINE void block(const Lanes (&a)[D], const Lanes (&b)[D], Lanes (&found)[D][D]) const {
+        Lanes inner[D][D], half[D][D];
         for (int i = 0; i < D; i++)
             for (int k = 0; k < D; k++) {
                 inner[i][k] = stretch[i][k] * a[i] * b[k];
@@ -210,12 +214,12 @@ template <int D> struct Negative {
             }
         for (int i = 0; i < D; i++)
             for (int k = 0; k < D; k++) {
-                half[i][k] = V8{};
+                half[i][k] = Lanes{};
                 for (int j = 0; j < D; j++) half[i][k] += U[i][j] * inner[j][k];
             }
         for (int i = 0; i < D; i++)
             for (int k = 0; k < D; k++) {
-                found[i][k] = V8{};
+                found[i][k] = Lanes{};
                 for (int j = 0; j < D; j++) found[i][k] += half[i][j] * U[k][j];
             }
     }
@@ -225,36 +229,36 @@ template <int D>
 void hessian(const Elements& all, const double* displacements, double share, const int64_t* slots,
              const int64_t* strides, double* data) {
     constexpr int C = D + 1, PAIRS = C * (C + 1) / 2;
-    for (int64_t which = 0; which < all.groups; which++) {
-        Group<D> group(all, which);
-        V8 G[D][D], T[D][D], spatial[C][D], blocks[PAIRS][D][D];
+    for (int64_t element = 0; element < all.terms; element += LANES) {
+        Group<D> group(all, element);
+        Lanes G[D][D], T[D][D], spatial[C][D], blocks[PAIRS][D][D];
         group.differentiate(displacements, G);
-        V8 change = change_of<D>(G), J = 1.0 + change, log_j = log1p8(change);
+        Lanes change = change_of<D>(G), J = 1.0 + change, log_j = log1p(change);
         inverse_transposed<D>(G, J, T);
         for (int corner = 0; corner < C; corner++)
             for (int i = 0; i < D; i++) {
-                spatial[corner][i] = V8{};
+                spatial[corner][i] = Lanes{};
                 for (int j = 0; j < D; j++) spatial[corner][i] += T[i][j] * group.slope(corner, j);
             }
-        V8 straight = group.volume * all.lame, crossed = group.volume * (all.mu - all.lame * log_j);
+        Lanes straight = group.volume * all.lame, crossed = group.volume * (all.mu - all.lame * log_j);
         for (int a = 0, pair = 0; a < C; a++)
             for (int b = 0; b <= a; b++, pair++) {
-                V8 along{};
+                Lanes along{};
                 for (int i = 0; i < D; i++) along += group.slope(a, i) * group.slope(b, i);
                 along *= group.volume * all.mu;
                 for (int i = 0; i < D; i++)
                     for (int j = 0; j < D; j++) {
-                        V8 entry = straight * spatial[a][i] * spatial[b][j] + crossed * spatial[b][i] * spatial[a][j];
+                        Lanes entry = straight * spatial[a][i] * spatial[b][j] + crossed * spatial[b][i] * spatial[a][j];
                         blocks[pair][i][j] = i == j ? entry + along : entry;
                     }
             }
         if (share > 0.0) {
             Negative<D> negative(G, J, log_j, all.mu, all.lame);
             if (negative.some) {
-                V8 local[C][D], found[D][D];
+                Lanes local[C][D], found[D][D];
                 for (int corner = 0; corner < C; corner++)
                     for (int k = 0; k < D; k++) {
-                        local[corner][k] = V8{};
+                        local[corner][k] = Lanes{};
                         for (int j = 0; j < D; j++) local[corner][k] += group.slope(corner, j) * negative.V[j][k];
                     }
                 for (int a = 0, pair = 0; a < C; a++)
@@ -265,14 +269,13 @@ void hessian(const Elements& all, const double* displacements, double share, con
                     }
             }
         }
-        int lanes = all.terms - which * 8 < 8 ? (int)(all.terms - which * 8) : 8;
-        for (int lane = 0; lane < lanes; lane++) {
-            const int64_t* slot = slots + (which * 8 + lane) * C * C;
+        for (int lane = 0; lane < group.count; lane++) {
+            const int64_t* slot = slots + (element + lane) * C * C;
             for (int a = 0, pair = 0; a < C; a++) {
-                int64_t stride = strides[group.nodes[a * 8 + lane]];
+                int64_t stride = strides[group.nodes[a * PACK + lane]];
                 for (int b = 0; b <= a; b++, pair++) {
                     double* here = data + slot[a * C + b];
-                    int64_t other = strides[group.nodes[b * 8 + lane]];
+                    int64_t other = strides[group.nodes[b * PACK + lane]];
                     for (int j = 0; j < D; j++)
                         for (int i = 0; i < D; i++) here[j * other + i] += blocks[pair][i][j][lane];
                     if (a == b) continue;
@@ -286,16 +289,16 @@ void hessian(const Elements& all, const double* displacements, double share, con
 }
 
 // sin(t) / t - 1 and (1 - cos t) / t^2 from t^2, by their series where t is below 1, else by the library.
-INLINE void arc(V8 square, V8& first, V8& second) {
+INLINE void arc(Lanes square, Lanes& first, Lanes& second) {
     if (!any(square > 1.0)) {
-        V8 x = square;
+        Lanes x = square;
         first = -x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0 * (1.0 - x / 110.0 *
                 (1.0 - x / 156.0 * (1.0 - x / 210.0 * (1.0 - x / 272.0)))))));
         second = 0.5 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0 * (1.0 - x / 90.0 *
                  (1.0 - x / 132.0 * (1.0 - x / 182.0 * (1.0 - x / 240.0)))))));
         return;
     }
-    for (int lane = 0; lane < 8; lane++) {
+    for (int lane = 0; lane < LANES; lane++) {
         double angle = __builtin_sqrt(square[lane]);
         bool tiny = angle < 1e-3;
         first[lane] = tiny ? -square[lane] / 6.0 : __builtin_sin(angle) / angle - 1.0;
@@ -305,27 +308,27 @@ INLINE void arc(V8 square, V8& first, V8& second) {
 
 template <int D> void turn(const Elements& all, const double* nodes, const double* step, double* right) {
     constexpr int C = D + 1;
-    for (int64_t which = 0; which < all.groups; which++) {
-        Group<D> group(all, which);
-        V8 F[D][D], A[D][D], T[D][D], G[D][D], S[D][D], bent[D][D];
+    for (int64_t element = 0; element < all.terms; element += LANES) {
+        Group<D> group(all, element);
+        Lanes F[D][D], A[D][D], T[D][D], G[D][D], S[D][D], bent[D][D];
         group.differentiate(nodes, F);
         group.differentiate(step, G);
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) T[i][j] = i == j ? F[i][j] - 1.0 : F[i][j];
-        V8 J = 1.0 + change_of<D>(T), inverse[D][D], first, second;
+        Lanes J = 1.0 + change_of<D>(T), inverse[D][D], first, second;
         inverse_transposed<D>(T, J, inverse);
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) {
-                A[i][j] = V8{};
+                A[i][j] = Lanes{};
                 for (int k = 0; k < D; k++) A[i][j] += G[i][k] * inverse[j][k];
             }
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) S[i][j] = 0.5 * (A[i][j] + A[j][i]);
         // exp W - I - W, then (exp W - I) S is added
         if constexpr (D == 2) {
-            V8 z = 0.5 * (A[1][0] - A[0][1]);
+            Lanes z = 0.5 * (A[1][0] - A[0][1]);
             arc(z * z, first, second);
-            V8 across = z + first * z, along = -second * z * z;
+            Lanes across = z + first * z, along = -second * z * z;
             bent[0][0] = bent[1][1] = along;
             bent[0][1] = -first * z, bent[1][0] = first * z;
             for (int j = 0; j < 2; j++) {
@@ -333,11 +336,11 @@ template <int D> void turn(const Elements& all, const double* nodes, const doubl
                 bent[1][j] += across * S[0][j] + along * S[1][j];
             }
         } else {
-            V8 x = 0.5 * (A[2][1] - A[1][2]), y = 0.5 * (A[0][2] - A[2][0]), z = 0.5 * (A[1][0] - A[0][1]);
+            Lanes x = 0.5 * (A[2][1] - A[1][2]), y = 0.5 * (A[0][2] - A[2][0]), z = 0.5 * (A[1][0] - A[0][1]);
             arc(x * x + y * y + z * z, first, second);
-            V8 spin[3][3] = {{V8{}, -z, y}, {z, V8{}, -x}, {-y, x, V8{}}}, turned[3][3];
-            V8 xy = second * x * y, xz = second * x * z, yz = second * y * z;
-            V8 more[3][3] = {{-second * (y * y + z * z), xy, xz},
+            Lanes spin[3][3] = {{Lanes{}, -z, y}, {z, Lanes{}, -x}, {-y, x, Lanes{}}}, turned[3][3];
+            Lanes xy = second * x * y, xz = second * x * z, yz = second * y * z;
+            Lanes more[3][3] = {{-second * (y * y + z * z), xy, xz},
                              {xy, -second * (x * x + z * z), yz},
                              {xz, yz, -second * (x * x + y * y)}};
             for (int i = 0; i < 3; i++)
@@ -349,26 +352,25 @@ template <int D> void turn(const Elements& all, const double* nodes, const doubl
                 for (int j = 0; j < 3; j++)
                     for (int k = 0; k < 3; k++) bent[i][j] += turned[i][k] * S[k][j];
         }
-        V8 whole[D][D], parts[C][D];
+        Lanes whole[D][D], parts[C][D];
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) {
-                whole[i][j] = V8{};
+                whole[i][j] = Lanes{};
                 for (int k = 0; k < D; k++) whole[i][j] += bent[i][k] * F[k][j];
                 whole[i][j] *= group.volume;
             }
-        for (int i = 0; i < D; i++) parts[0][i] = V8{};
+        for (int i = 0; i < D; i++) parts[0][i] = Lanes{};
         for (int corner = 1; corner < C; corner++)
             for (int i = 0; i < D; i++) {
-                V8 part{};
+                Lanes part{};
                 for (int j = 0; j < D; j++) part += whole[i][j] * group.slope(corner, j);
                 parts[corner][i] = part;
                 parts[0][i] -= part;
             }
-        int lanes = all.terms - which * 8 < 8 ? (int)(all.terms - which * 8) : 8;
-        for (int lane = 0; lane < lanes; lane++)
+        for (int lane = 0; lane < group.count; lane++)
             for (int corner = 0; corner < C; corner++)
                 for (int i = 0; i < D; i++)
-                    right[(int64_t)group.nodes[corner * 8 + lane] * D + i] += parts[corner][i][lane];
+                    right[(int64_t)group.nodes[corner * PACK + lane] * D + i] += parts[corner][i][lane];
     }
 }
 

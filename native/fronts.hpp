@@ -3,9 +3,6 @@
 // Panels are column by column, their columns as high as the front. Vectors read past the end of a column, never past
 // the end of an array, which must have 8 numbers to spare; what they write ends where the column does.
 #pragma once
-#if defined(__AVX512F__)
-#include <immintrin.h>
-#endif
 #include "kernels.hpp"
 #include "vectors.hpp"
 
@@ -13,43 +10,32 @@ namespace {
 
 enum { COLUMNS, BELOW, FIRST, PANEL, STARTS, CHILD, SIBLING, STACK, OFFSET, RUNS, ENTRIES, WIDTH };
 
-#if defined(__AVX512F__)
-typedef V8 Wide;
-constexpr int TALL = 3;  // vectors in a tile's column: 3 x 8 accumulators fill the registers
-#else
-typedef V4 Wide;
-constexpr int TALL = 1;
-#endif
-constexpr int LANES = sizeof(Wide) / 8, BLOCK = 8;
+// A tile of TALL vectors by BLOCK columns: its sums fill three quarters of the registers, 16 or (AVX-512) 32.
+constexpr int TALL = 3, BLOCK = LANES == 8 ? 8 : 4;
 
-INLINE Wide wide(double value) {
-    Wide found;
-    for (int lane = 0; lane < LANES; lane++) found[lane] = value;
-    return found;
-}
+template <int N> struct Count {
+    static constexpr int value = N;
+};
 
-// The first `rows` numbers of a vector, all if there are as many.
-INLINE void store_rows(double* at, Wide value, int rows) {
-    if (rows >= LANES) return store<Wide>(at, value);
-#if defined(__AVX512F__)
-    _mm512_mask_storeu_pd(at, (__mmask8)((1 << rows) - 1), (__m512d)value);
-#else
-        for (int lane = 0; lane < rows; lane++) at[lane] = value[lane];
-#endif
+// Call with Count<count>, from 1 to BLOCK, so that loops over columns are unrolled.
+template <int N = BLOCK, class Call> INLINE auto with_count(int count, const Call& call) {
+    if constexpr (N > 1)
+        if (count < N) return with_count<N - 1>(count, call);
+    return call(Count<N>{});
 }
 
 // C -= A B^T for a tile of `high` vectors x `count` columns; B is packed, BLOCK numbers for each step of the depth.
 template <int HIGH, int COUNT>
 INLINE void tile(double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth, int rows) {
-    Wide sums[COUNT][HIGH];
+    Lanes sums[COUNT][HIGH];
 UNROLL
     for (int j = 0; j < COUNT; j++)
 UNROLL
-        for (int i = 0; i < HIGH; i++) sums[j][i] = load<Wide>(c + j * ldc + i * LANES);
+        for (int i = 0; i < HIGH; i++) sums[j][i] = load<Lanes>(c + j * ldc + i * LANES);
     for (int64_t k = 0; k < depth; k++, a += lda, b += BLOCK) {
-        Wide left[HIGH];
+        Lanes left[HIGH];
 UNROLL
-        for (int i = 0; i < HIGH; i++) left[i] = load<Wide>(a + i * LANES);
+        for (int i = 0; i < HIGH; i++) left[i] = load<Lanes>(a + i * LANES);
     UNROLL
     for (int j = 0; j < COUNT; j++)
     UNROLL
@@ -66,31 +52,23 @@ void strip(double* c, int64_t ldc, const double* a, int64_t lda, const double* b
     int64_t row = 0;
     for (; row + TALL * LANES <= rows; row += TALL * LANES)
         tile<TALL, COUNT>(c + row, ldc, a + row, lda, b, depth, TALL * LANES);
-    if constexpr (TALL > 1) {
-        if (rows - row > 2 * LANES) tile<3, COUNT>(c + row, ldc, a + row, lda, b, depth, (int)(rows - row));
-        else if (rows - row > LANES) tile<2, COUNT>(c + row, ldc, a + row, lda, b, depth, (int)(rows - row));
-        else if (rows > row) tile<1, COUNT>(c + row, ldc, a + row, lda, b, depth, (int)(rows - row));
-    } else if (rows > row) tile<1, COUNT>(c + row, ldc, a + row, lda, b, depth, (int)(rows - row));
+    const int left = (int)(rows - row);
+    if (left > 2 * LANES) tile<3, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
+    else if (left > LANES) tile<2, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
+    else if (left > 0) tile<1, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
 }
 
 INLINE void any_strip(int count, double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth,
                       int64_t rows) {
-    switch (count) {
-        case 1: return strip<1>(c, ldc, a, lda, b, depth, rows);
-        case 2: return strip<2>(c, ldc, a, lda, b, depth, rows);
-        case 3: return strip<3>(c, ldc, a, lda, b, depth, rows);
-        case 4: return strip<4>(c, ldc, a, lda, b, depth, rows);
-        case 5: return strip<5>(c, ldc, a, lda, b, depth, rows);
-        case 6: return strip<6>(c, ldc, a, lda, b, depth, rows);
-        case 7: return strip<7>(c, ldc, a, lda, b, depth, rows);
-        default: return strip<8>(c, ldc, a, lda, b, depth, rows);
-    }
+    with_count(count, [&](auto known) { strip<known.value>(c, ldc, a, lda, b, depth, rows); });
 }
 
 // Rows of S P^T, BLOCK numbers for each step of the depth.
 INLINE void pack(double* packed, const double* panel, int64_t height, const double* sign, int64_t depth, int count) {
     if (count == BLOCK)
-        for (int64_t k = 0; k < depth; k++) store<V8>(packed + k * BLOCK, sign[k] * load<V8>(panel + k * height));
+        for (int64_t k = 0; k < depth; k++)
+            for (int at = 0; at < BLOCK; at += LANES)
+                store<Lanes>(packed + k * BLOCK + at, sign[k] * load<Lanes>(panel + k * height + at));
     else
         for (int64_t k = 0; k < depth; k++)
             for (int j = 0; j < count; j++) packed[k * BLOCK + j] = sign[k] * panel[k * height + j];
@@ -109,11 +87,11 @@ INLINE void subtract(double* c, int64_t ldc, const double* panel, int64_t height
 // Divide `MANY` vectors of rows by the triangle that COUNT columns make; `factors` is S L, row by row.
 template <int COUNT, int MANY>
 INLINE void divide(double* panel, int64_t height, const double* factors, const double* scale, int rows) {
-    Wide own[COUNT][MANY];
+    Lanes own[COUNT][MANY];
 UNROLL
     for (int j = 0; j < COUNT; j++) {
 UNROLL
-        for (int v = 0; v < MANY; v++) own[j][v] = load<Wide>(panel + j * height + v * LANES);
+        for (int v = 0; v < MANY; v++) own[j][v] = load<Lanes>(panel + j * height + v * LANES);
 UNROLL
         for (int k = 0; k < j; k++)
     UNROLL
@@ -161,16 +139,7 @@ UNROLL
 }
 
 INLINE int any_eliminate(int count, double* panel, int64_t height, int64_t rows, double* sign, double least) {
-    switch (count) {
-        case 1: return eliminate<1>(panel, height, rows, sign, least);
-        case 2: return eliminate<2>(panel, height, rows, sign, least);
-        case 3: return eliminate<3>(panel, height, rows, sign, least);
-        case 4: return eliminate<4>(panel, height, rows, sign, least);
-        case 5: return eliminate<5>(panel, height, rows, sign, least);
-        case 6: return eliminate<6>(panel, height, rows, sign, least);
-        case 7: return eliminate<7>(panel, height, rows, sign, least);
-        default: return eliminate<8>(panel, height, rows, sign, least);
-    }
+    return with_count(count, [&](auto known) { return eliminate<known.value>(panel, height, rows, sign, least); });
 }
 
 // C += A for blocks of HIGH rows.
@@ -270,9 +239,12 @@ int64_t factorise(const Fronts& fronts, const double* data, double* lower, doubl
     return negative;
 }
 
-// Right-hand sides row by row, VECTORS vectors V a row; `work` holds as many rows as the highest front has.
-template <class V, int VECTORS> void forward(const Fronts& fronts, const double* lower, double* values, double* work) {
-    constexpr int ROW = VECTORS * (int)(sizeof(V) / 8), TILE = 4;
+// Rows of right-hand sides at a time, so that their sums stay in registers.
+template <int VECTORS> constexpr int tile_of = VECTORS > 4 ? 1 : VECTORS > 3 ? 2 : 4;
+
+// Right-hand sides row by row, VECTORS vectors T a row; `work` holds as many rows as the highest front has.
+template <class T, int VECTORS> void forward(const Fronts& fronts, const double* lower, double* values, double* work) {
+    constexpr int W = width_of<T>, ROW = VECTORS * W, TILE = tile_of<VECTORS>;
     for (int64_t which = 0; which < fronts.count; which++) {
         const int64_t* row = fronts.table + which * WIDTH;
         const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
@@ -280,43 +252,43 @@ template <class V, int VECTORS> void forward(const Fronts& fronts, const double*
         const int64_t* rows = fronts.rows + row[STARTS];
         double* own = values + row[FIRST] * ROW;
         for (int64_t column = 0; column < columns; column++) {
-            V sums[VECTORS];
-            for (int v = 0; v < VECTORS; v++) sums[v] = load<V>(own + column * ROW + v * (sizeof(V) / 8));
+            T sums[VECTORS];
+            for (int v = 0; v < VECTORS; v++) sums[v] = load<T>(own + column * ROW + v * W);
             for (int64_t k = 0; k < column; k++) {
                 double factor = panel[k * height + column];
-                for (int v = 0; v < VECTORS; v++) sums[v] -= factor * load<V>(own + k * ROW + v * (sizeof(V) / 8));
+                for (int v = 0; v < VECTORS; v++) sums[v] -= factor * load<T>(own + k * ROW + v * W);
             }
             double scale = 1.0 / panel[column * height + column];
-            for (int v = 0; v < VECTORS; v++) store<V>(own + column * ROW + v * (sizeof(V) / 8), sums[v] * scale);
+            for (int v = 0; v < VECTORS; v++) store<T>(own + column * ROW + v * W, sums[v] * scale);
         }
         int64_t at = 0;
         for (; at + TILE <= below; at += TILE) {
-            V sums[TILE][VECTORS] = {};
+            T sums[TILE][VECTORS] = {};
             const double* factors = panel + columns + at;
             for (int64_t k = 0; k < columns; k++, factors += height)
                 for (int v = 0; v < VECTORS; v++) {
-                    V value = load<V>(own + k * ROW + v * (sizeof(V) / 8));
+                    T value = load<T>(own + k * ROW + v * W);
                     for (int i = 0; i < TILE; i++) sums[i][v] += factors[i] * value;
                 }
             for (int i = 0; i < TILE; i++)
                 for (int v = 0; v < VECTORS; v++) {
-                    double* to = values + rows[at + i] * ROW + v * (sizeof(V) / 8);
-                    store<V>(to, load<V>(to) - sums[i][v]);
+                    double* to = values + rows[at + i] * ROW + v * W;
+                    store<T>(to, load<T>(to) - sums[i][v]);
                 }
         }
         for (; at < below; at++)
             for (int v = 0; v < VECTORS; v++) {
-                double* to = values + rows[at] * ROW + v * (sizeof(V) / 8);
-                V total = load<V>(to);
+                double* to = values + rows[at] * ROW + v * W;
+                T total = load<T>(to);
                 for (int64_t k = 0; k < columns; k++)
-                    total -= panel[k * height + columns + at] * load<V>(own + k * ROW + v * (sizeof(V) / 8));
-                store<V>(to, total);
+                    total -= panel[k * height + columns + at] * load<T>(own + k * ROW + v * W);
+                store<T>(to, total);
             }
     }
 }
 
-template <class V, int VECTORS> void backward(const Fronts& fronts, const double* lower, double* values, double* work) {
-    constexpr int ROW = VECTORS * (int)(sizeof(V) / 8), TILE = 4;
+template <class T, int VECTORS> void backward(const Fronts& fronts, const double* lower, double* values, double* work) {
+    constexpr int W = width_of<T>, ROW = VECTORS * W, TILE = tile_of<VECTORS>;
     for (int64_t which = fronts.count - 1; which >= 0; which--) {
         const int64_t* row = fronts.table + which * WIDTH;
         const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
@@ -325,45 +297,39 @@ template <class V, int VECTORS> void backward(const Fronts& fronts, const double
         double* own = values + row[FIRST] * ROW;
         for (int64_t i = 0; i < below; i++)
             for (int v = 0; v < VECTORS; v++)
-                store<V>(work + i * ROW + v * (sizeof(V) / 8), load<V>(values + rows[i] * ROW + v * (sizeof(V) / 8)));
+                store<T>(work + i * ROW + v * W, load<T>(values + rows[i] * ROW + v * W));
         int64_t high = columns;
         while (high > 0) {
             int64_t low = high >= TILE ? high - TILE : 0;
             int count = (int)(high - low);
-            V sums[TILE][VECTORS] = {};
+            T sums[TILE][VECTORS] = {};
             if (count == TILE)
                 for (int64_t i = 0; i < below; i++)
                     for (int v = 0; v < VECTORS; v++) {
-                        V value = load<V>(work + i * ROW + v * (sizeof(V) / 8));
+                        T value = load<T>(work + i * ROW + v * W);
                         for (int j = 0; j < TILE; j++) sums[j][v] += panel[(low + j) * height + columns + i] * value;
                     }
             else
                 for (int64_t i = 0; i < below; i++)
                     for (int v = 0; v < VECTORS; v++) {
-                        V value = load<V>(work + i * ROW + v * (sizeof(V) / 8));
+                        T value = load<T>(work + i * ROW + v * W);
                         for (int j = 0; j < count; j++) sums[j][v] += panel[(low + j) * height + columns + i] * value;
                     }
             for (int64_t i = high; i < columns; i++)
                 for (int v = 0; v < VECTORS; v++) {
-                    V value = load<V>(own + i * ROW + v * (sizeof(V) / 8));
+                    T value = load<T>(own + i * ROW + v * W);
                     for (int j = 0; j < count; j++) sums[j][v] += panel[(low + j) * height + i] * value;
                 }
             for (int j = count - 1; j >= 0; j--)
                 for (int v = 0; v < VECTORS; v++) {
-                    V value = load<V>(own + (low + j) * ROW + v * (sizeof(V) / 8)) - sums[j][v];
+                    T value = load<T>(own + (low + j) * ROW + v * W) - sums[j][v];
                     for (int i = j + 1; i < count; i++)
-                        value -= panel[(low + j) * height + low + i] * load<V>(own + (low + i) * ROW + v * (sizeof(V) / 8));
-                    store<V>(own + (low + j) * ROW + v * (sizeof(V) / 8), value / panel[(low + j) * height + low + j]);
+                        value -= panel[(low + j) * height + low + i] * load<T>(own + (low + i) * ROW + v * W);
+                    store<T>(own + (low + j) * ROW + v * W, value / panel[(low + j) * height + low + j]);
                 }
             high = low;
         }
     }
-}
-
-INLINE double total(Wide a) {
-    double found = 0.0;
-    for (int lane = 0; lane < LANES; lane++) found += a[lane];
-    return found;
 }
 
 // One right-hand side: along the columns of the panels, four at a time.
@@ -390,8 +356,8 @@ void forward_one(const Fronts& fronts, const double* lower, double* values, doub
             const double* four = three + (count > 3 ? height : 0);
             int64_t i = low + count;
             for (; i + LANES <= height; i += LANES)
-                store<Wide>(work + i, load<Wide>(work + i) - (factor[0] * load<Wide>(one + i) + factor[1] * load<Wide>(two + i) +
-                                                              (factor[2] * load<Wide>(three + i) + factor[3] * load<Wide>(four + i))));
+                store<Lanes>(work + i, load<Lanes>(work + i) - (factor[0] * load<Lanes>(one + i) + factor[1] * load<Lanes>(two + i) +
+                                                              (factor[2] * load<Lanes>(three + i) + factor[3] * load<Lanes>(four + i))));
             for (; i < height; i++)
                 work[i] -= factor[0] * one[i] + factor[1] * two[i] + (factor[2] * three[i] + factor[3] * four[i]);
         }
@@ -415,14 +381,14 @@ void backward_one(const Fronts& fronts, const double* lower, double* values, dou
             const double* two = one + (count > 1 ? height : 0);
             const double* three = two + (count > 2 ? height : 0);
             const double* four = three + (count > 3 ? height : 0);
-            Wide a{}, b{}, c{}, d{};
+            Lanes a{}, b{}, c{}, d{};
             int64_t i = high;
             for (; i + LANES <= height; i += LANES) {
-                Wide value = load<Wide>(work + i);
-                a += load<Wide>(one + i) * value, b += load<Wide>(two + i) * value;
-                c += load<Wide>(three + i) * value, d += load<Wide>(four + i) * value;
+                Lanes value = load<Lanes>(work + i);
+                a += load<Lanes>(one + i) * value, b += load<Lanes>(two + i) * value;
+                c += load<Lanes>(three + i) * value, d += load<Lanes>(four + i) * value;
             }
-            double sums[4] = {total(a), total(b), total(c), total(d)};
+            double sums[4] = {sum(a), sum(b), sum(c), sum(d)};
             for (; i < height; i++) {
                 sums[0] += one[i] * work[i], sums[1] += two[i] * work[i];
                 sums[2] += three[i] * work[i], sums[3] += four[i] * work[i];
@@ -437,22 +403,24 @@ void backward_one(const Fronts& fronts, const double* lower, double* values, dou
     }
 }
 
-// `sides` right-hand sides a row: 1, 4, 8 or 16.
+// `sides` right-hand sides a row: 1, 4, 8, 12 or 16.
 void any_forward(const Fronts& fronts, const double* lower, double* values, int sides, double* work) {
     switch (sides) {
         case 1: return forward_one(fronts, lower, values, work);
-        case 4: return forward<V4, 1>(fronts, lower, values, work);
-        case 8: return forward<V8, 1>(fronts, lower, values, work);
-        default: return forward<V8, 2>(fronts, lower, values, work);
+        case 4: return forward<Narrow, 4 / FEW>(fronts, lower, values, work);
+        case 8: return forward<Lanes, 8 / LANES>(fronts, lower, values, work);
+        case 12: return forward<Narrow, 12 / FEW>(fronts, lower, values, work);
+        default: return forward<Lanes, 16 / LANES>(fronts, lower, values, work);
     }
 }
 
 void any_backward(const Fronts& fronts, const double* lower, double* values, int sides, double* work) {
     switch (sides) {
         case 1: return backward_one(fronts, lower, values, work);
-        case 4: return backward<V4, 1>(fronts, lower, values, work);
-        case 8: return backward<V8, 1>(fronts, lower, values, work);
-        default: return backward<V8, 2>(fronts, lower, values, work);
+        case 4: return backward<Narrow, 4 / FEW>(fronts, lower, values, work);
+        case 8: return backward<Lanes, 8 / LANES>(fronts, lower, values, work);
+        case 12: return backward<Narrow, 12 / FEW>(fronts, lower, values, work);
+        default: return backward<Lanes, 16 / LANES>(fronts, lower, values, work);
     }
 }
 

@@ -28,5 +28,5 @@ double any_largest(const Fronts& fronts, const double* data) { return largest_di
 
 }  // namespace
 
-extern const Kernels TABLE(LEVEL) = {NAME(LEVEL), any_value, any_gradient, any_hessian, any_turn,
-                                     factorise,   any_largest, join, any_forward, any_backward};
+extern const Kernels TABLE(LEVEL) = {NAME(LEVEL), LANES, any_value, any_gradient, any_hessian, any_turn,
+                                     factorise, any_largest, join, any_forward, any_backward};

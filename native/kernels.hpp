@@ -53,6 +53,7 @@ constexpr int64_t PACKED = 256 * 256 + 256 * 8 + 16;
 
 struct Kernels {
     const char* name;
+    int lanes;  // doubles in a vector
     double (*value)(const Elements&, const double* displacements);
     void (*gradient)(const Elements&, const double* displacements, double* total);
     void (*hessian)(const Elements&, const double* displacements, double share, const int64_t* slots,

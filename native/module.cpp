@@ -5,6 +5,8 @@
 #include <functional>
 #include <mutex>
 #include <new>
+#include <stdexcept>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -15,17 +17,28 @@
 
 namespace {
 
-const Kernels& chosen() {
+// The widest table of kernels that the processor has, or the lower one that HYDROSTAT_LEVEL names.
+const Kernels& choose_kernels() {
+    const char* named = std::getenv("HYDROSTAT_LEVEL");
+    const std::string level = named ? named : "";
+    if (!level.empty() && level != "base" && level != "v3" && level != "v4")
+        throw std::invalid_argument("HYDROSTAT_LEVEL: unknown level \"" + level + "\". Available: base, v3, v4.");
 #ifdef WITH_X86_LEVELS
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512bw"))
-        return kernels_v4;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kernels_v3;
+    const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                    __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+    if ((level == "v4" && !v4) || (level == "v3" && !v3))
+        throw std::invalid_argument("HYDROSTAT_LEVEL: this processor lacks " + level + ". Choose a lower level.");
+    if (v4 && (level.empty() || level == "v4")) return kernels_v4;
+    if (v3 && level != "base") return kernels_v3;
+#else
+    if (!level.empty() && level != "base")
+        throw std::invalid_argument("HYDROSTAT_LEVEL: this build has only the level base.");
 #endif
     return kernels_base;
 }
 
-const Kernels& kernels = chosen();
+const Kernels& kernels = choose_kernels();
 
 // Elements as they come from Python.
 struct Packed {
@@ -269,7 +282,8 @@ void solve(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<co
     Free free(0.2 * (double)lower.shape(0) * (double)(sides + 1));
     static thread_local std::vector<double> values, work;
     for (int64_t low = 0; low < sides; low += 16) {
-        int some = (int)(sides - low < 16 ? sides - low : 16), width = some == 1 ? 1 : some <= 4 ? 4 : some <= 8 ? 8 : 16;
+        const int some = (int)(sides - low < 16 ? sides - low : 16), step = some <= 4 ? 4 : kernels.lanes == 8 ? 8 : 4;
+        const int width = some == 1 ? 1 : (some + step - 1) / step * step;
         values.assign(dofs * width + 8, 0.0);
         work.resize(height * width + 8);
         for (int64_t dof = 0; dof < dofs; dof++) {

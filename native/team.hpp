@@ -75,33 +75,21 @@ template <int COUNT> void carry(const double* corner, double* panel, int64_t hei
     double scale[COUNT];
     for (int j = 0; j < COUNT; j++) scale[j] = sign[j] / corner[j * height + j];
     for (int64_t row = 0; row < rows; row += LANES) {
-        Wide own[COUNT];
+        Lanes own[COUNT];
         int left = rows - row < LANES ? (int)(rows - row) : LANES;
         for (int j = 0; j < COUNT; j++) {
-            Wide value = load<Wide>(panel + j * height + row);
+            Lanes value = load<Lanes>(panel + j * height + row);
             for (int k = 0; k < j; k++) value -= own[k] * (sign[k] * corner[k * height + j]);
             own[j] = value * scale[j];
         }
         for (int j = 0; j < COUNT; j++) {
-            double* at = panel + j * height + row;
-            if (left == LANES) store<Wide>(at, own[j]);
-            else
-                for (int lane = 0; lane < left; lane++) at[lane] = own[j][lane];
+            store_rows(panel + j * height + row, own[j], left);
         }
     }
 }
 
 INLINE void any_carry(int count, const double* corner, double* panel, int64_t height, int64_t rows, const double* sign) {
-    switch (count) {
-        case 1: return carry<1>(corner, panel, height, rows, sign);
-        case 2: return carry<2>(corner, panel, height, rows, sign);
-        case 3: return carry<3>(corner, panel, height, rows, sign);
-        case 4: return carry<4>(corner, panel, height, rows, sign);
-        case 5: return carry<5>(corner, panel, height, rows, sign);
-        case 6: return carry<6>(corner, panel, height, rows, sign);
-        case 7: return carry<7>(corner, panel, height, rows, sign);
-        default: return carry<8>(corner, panel, height, rows, sign);
-    }
+    with_count(count, [&](auto known) { carry<known.value>(corner, panel, height, rows, sign); });
 }
 
 // Columns `low` to `high` of a front, to which all before `low` have been applied: their own square, or rows below it.
@@ -156,7 +144,8 @@ void add_columns(const Fronts& fronts, int64_t child, const double* given, const
                 const double* from = source + part[0] + start;
                 double* to = target + part[1] + start - shift;
                 int64_t length = part[2] - start, place = 0;
-                for (; place + 4 <= length; place += 4) store<V4>(to + place, load<V4>(to + place) + load<V4>(from + place));
+                for (; place + LANES <= length; place += LANES)
+                    store<Lanes>(to + place, load<Lanes>(to + place) + load<Lanes>(from + place));
                 for (; place < length; place++) to[place] += from[place];
             }
         }
