@@ -67,7 +67,11 @@ pictures: $(VENV)/demo.installed
 clean:
 	rm -rf build dist node_modules $(VENV)
 
+# The compiled core needs a C++17 compiler; make stops with one line that says what to install.
+TOOLS_PROBLEM = $(shell $(PYTHON) native/check_tools.py 2>&1)
+
 $(VENV)/demo.installed: pyproject.toml constraints.txt
+	$(if $(TOOLS_PROBLEM),$(error $(TOOLS_PROBLEM)))
 	@echo "Installing hydrostat into $(VENV), this takes about a minute ..."
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(INSTALL) --editable .

@@ -1,5 +1,6 @@
-"""Build the compiled core with the wheel, or beside the sources of an editable install; leave it out if that fails."""
+"""Build the compiled core with the wheel, or beside the sources of an editable install."""
 
+import runpy
 import shutil
 import subprocess
 import sys
@@ -14,11 +15,13 @@ class CompiledCore(BuildHookInterface):
     """Run CMake, which puts the core into the package."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build before the files are gathered; without a core the package is pure Python, and slower."""
+        """Build before the files are gathered; stop with one line if a tool is missing."""
         if self.target_name != "wheel":
             return
-        package = Path(self.root) / "hydrostat"
-        for old in package.glob("_native.*"):
+        tools = runpy.run_path(str(Path(self.root) / "native" / "check_tools.py"))
+        if problem := tools["find_problem"]():
+            self.app.abort(problem)
+        for old in (Path(self.root) / "hydrostat").glob("_native.*"):
             old.unlink()
         with tempfile.TemporaryDirectory() as folder:
             try:
@@ -27,10 +30,10 @@ class CompiledCore(BuildHookInterface):
                 run("cmake", "--install", folder, "--config", "Release", "--prefix", self.root)
             except (OSError, subprocess.CalledProcessError) as error:
                 output = getattr(error, "stdout", None) or str(error)
-                self.app.display_warning(f"hydrostat is installed without its compiled core, and slower:\n{output}")
-        if any(package.glob("_native.*")):
-            build_data["artifacts"].append("hydrostat/_native.*")
-            build_data.update(pure_python=False, infer_tag=True)
+                needed = tools["INSTALL"].get(sys.platform, "GCC or Clang")
+                self.app.abort(f"{output}\nhydrostat's compiled core was not built (output above). It needs: {needed}")
+        build_data["artifacts"].append("hydrostat/_native.*")
+        build_data.update(pure_python=False, infer_tag=True)
 
 
 def ninja() -> list[str]:
