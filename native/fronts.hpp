@@ -24,14 +24,17 @@ template <int N = BLOCK, class Call> INLINE auto with_count(int count, const Cal
     return call(Count<N>{});
 }
 
-// C -= A B^T for a tile of `high` vectors x `count` columns; B is packed, BLOCK numbers for each step of the depth.
-template <int HIGH, int COUNT>
+// What a product does to the numbers that are there.
+enum Into { SUBTRACT, REPLACE };
+
+// C -= A B^T, or C = -A B^T, for a tile of HIGH vectors x COUNT columns; B is packed, BLOCK numbers a step of the depth.
+template <Into INTO, int HIGH, int COUNT>
 INLINE void tile(double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth, int rows) {
     Lanes sums[COUNT][HIGH];
 UNROLL
     for (int j = 0; j < COUNT; j++)
 UNROLL
-        for (int i = 0; i < HIGH; i++) sums[j][i] = load<Lanes>(c + j * ldc + i * LANES);
+        for (int i = 0; i < HIGH; i++) sums[j][i] = INTO == REPLACE ? Lanes{} : load<Lanes>(c + j * ldc + i * LANES);
     for (int64_t k = 0; k < depth; k++, a += lda, b += BLOCK) {
         Lanes left[HIGH];
 UNROLL
@@ -47,20 +50,21 @@ UNROLL
         for (int i = 0; i < HIGH; i++) store_rows(c + j * ldc + i * LANES, sums[j][i], rows - i * LANES);
 }
 
-template <int COUNT>
+template <Into INTO, int COUNT>
 void strip(double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth, int64_t rows) {
     int64_t row = 0;
     for (; row + TALL * LANES <= rows; row += TALL * LANES)
-        tile<TALL, COUNT>(c + row, ldc, a + row, lda, b, depth, TALL * LANES);
+        tile<INTO, TALL, COUNT>(c + row, ldc, a + row, lda, b, depth, TALL * LANES);
     const int left = (int)(rows - row);
-    if (left > 2 * LANES) tile<3, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
-    else if (left > LANES) tile<2, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
-    else if (left > 0) tile<1, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
+    if (left > 2 * LANES) tile<INTO, 3, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
+    else if (left > LANES) tile<INTO, 2, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
+    else if (left > 0) tile<INTO, 1, COUNT>(c + row, ldc, a + row, lda, b, depth, left);
 }
 
+template <Into INTO>
 INLINE void any_strip(int count, double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth,
                       int64_t rows) {
-    with_count(count, [&](auto known) { strip<known.value>(c, ldc, a, lda, b, depth, rows); });
+    with_count(count, [&](auto known) { strip<INTO, known.value>(c, ldc, a, lda, b, depth, rows); });
 }
 
 // Rows of S P^T, BLOCK numbers for each step of the depth.
@@ -74,13 +78,13 @@ INLINE void pack(double* packed, const double* panel, int64_t height, const doub
             for (int j = 0; j < count; j++) packed[k * BLOCK + j] = sign[k] * panel[k * height + j];
 }
 
-// C -= P S P^T below the diagonal, for `wide` columns of C; P begins at the row of C's first column.
-INLINE void subtract(double* c, int64_t ldc, const double* panel, int64_t height, int64_t depth, const double* sign,
+// C = -P S P^T below the diagonal, for some columns of C; P begins at the row of C's first column.
+INLINE void multiply(double* c, int64_t ldc, const double* panel, int64_t height, int64_t depth, const double* sign,
                      int64_t columns, int64_t rows, double* packed) {
     for (int64_t column = 0; column < columns; column += BLOCK) {
         int count = columns - column < BLOCK ? (int)(columns - column) : BLOCK;
         pack(packed, panel + column, height, sign, depth, count);
-        any_strip(count, c + column * ldc + column, ldc, panel + column, height, packed, depth, rows - column);
+        any_strip<REPLACE>(count, c + column * ldc + column, ldc, panel + column, height, packed, depth, rows - column);
     }
 }
 
@@ -162,17 +166,24 @@ INLINE void add_block(double* to, int64_t ldt, const double* from, int64_t ldf, 
     }
 }
 
-// Add what a child hands up to its parent's front, lower triangle only: block by block of rows that lie together.
-INLINE void extend_add(const Fronts& fronts, int64_t child, const double* stack, double* panel, int64_t columns,
-                       int64_t height, double* update, int64_t below) {
+// First run of a child's rows beyond its parent's own columns; no run lies half in them.
+INLINE int64_t first_beyond(const Fronts& fronts, int64_t child, int64_t columns) {
+    const int64_t* row = fronts.table + child * WIDTH;
+    int64_t run = row[RUNS];
+    while (run < row[WIDTH + RUNS] && fronts.runs[run * 3 + 1] < columns) run++;
+    return run;
+}
+
+// Add the columns `begin` to `end`, as runs, of what a child hands up to its parent's panel (`shift` 0) or update
+// (`shift` is the parent's number of columns); lower triangle only, block by block of rows that lie together.
+INLINE void extend_add(const Fronts& fronts, int64_t child, const double* stack, int64_t begin, int64_t end,
+                       double* to, int64_t lead, int64_t shift) {
     const int64_t* row = fronts.table + child * WIDTH;
     const int64_t size = row[BELOW], high = row[WIDTH + RUNS];
     const double* given = stack + row[OFFSET];
-    for (int64_t run = row[RUNS]; run < high; run++) {
+    for (int64_t run = begin; run < end; run++) {
         const int64_t* piece = fronts.runs + run * 3;
-        const bool own = piece[1] < columns;  // no run lies half in the parent's own columns
-        const int64_t shift = own ? 0 : columns, lead = own ? height : below;
-        double* target = (own ? panel : update) + (piece[1] - shift) * lead - shift;
+        double* target = to + (piece[1] - shift) * lead - shift;
         const double* source = given + piece[0] * size;
         for (int64_t step = 0; step < piece[2]; step++)
             for (int64_t i = step; i < piece[2]; i++) target[step * lead + piece[1] + i] += source[step * size + piece[0] + i];
@@ -202,10 +213,8 @@ INLINE int64_t factorise_front(const Fronts& fronts, int64_t which, const double
     __builtin_memset(panel, 0, columns * height * sizeof(double));
     for (int64_t entry = row[ENTRIES]; entry < row[WIDTH + ENTRIES]; entry++)
         panel[fronts.entries[2 * entry + 1]] = data[fronts.entries[2 * entry]];
-    for (int64_t column = 0; column < below; column++)
-        __builtin_memset(update + column * (below + 1), 0, (below - column) * sizeof(double));
     for (int64_t child = row[CHILD]; child >= 0; child = fronts.table[child * WIDTH + SIBLING])
-        extend_add(fronts, child, theirs, panel, columns, height, update, below);
+        extend_add(fronts, child, theirs, fronts.table[child * WIDTH + RUNS], first_beyond(fronts, child, columns), panel, height, 0);
     double* sign = signs + row[FIRST];
     int64_t negative = 0;
     for (int64_t low = 0; low < columns; low += BLOCK) {
@@ -213,13 +222,17 @@ INLINE int64_t factorise_front(const Fronts& fronts, int64_t which, const double
         double* corner = panel + low * height + low;
         if (low) {
             pack(spare, panel + low, height, sign, low, count);
-            any_strip(count, corner, height, panel + low, height, spare, low, height - low);
+            any_strip<SUBTRACT>(count, corner, height, panel + low, height, spare, low, height - low);
         }
         int found = any_eliminate(count, corner, height, height - low, sign + low, least);
         if (found < 0) return -1;
         negative += found;
     }
-    if (below) subtract(update, below, panel + columns, height, columns, sign, below, below, spare);
+    if (!below) return negative;
+    multiply(update, below, panel + columns, height, columns, sign, below, below, spare);
+    for (int64_t child = row[CHILD]; child >= 0; child = fronts.table[child * WIDTH + SIBLING])
+        extend_add(fronts, child, theirs, first_beyond(fronts, child, columns), fronts.table[(child + 1) * WIDTH + RUNS],
+                   update, below, columns);
     return negative;
 }
 
@@ -239,6 +252,13 @@ int64_t factorise(const Fronts& fronts, const double* data, double* lower, doubl
     return negative;
 }
 
+// Whether numbers are all 0: right-hand sides of few places leave most fronts as they are.
+INLINE bool all_zero(const double* numbers, int64_t count) {
+    for (int64_t at = 0; at < count; at++)
+        if (numbers[at] != 0.0) return false;
+    return true;
+}
+
 // Rows of right-hand sides at a time, so that their sums stay in registers.
 template <int VECTORS> constexpr int tile_of = VECTORS > 4 ? 1 : VECTORS > 3 ? 2 : 4;
 
@@ -251,6 +271,7 @@ template <class T, int VECTORS> void forward(const Fronts& fronts, const double*
         const double* panel = lower + row[PANEL];
         const int64_t* rows = fronts.rows + row[STARTS];
         double* own = values + row[FIRST] * ROW;
+        if (all_zero(own, columns * ROW)) continue;
         for (int64_t column = 0; column < columns; column++) {
             T sums[VECTORS];
             for (int v = 0; v < VECTORS; v++) sums[v] = load<T>(own + column * ROW + v * W);

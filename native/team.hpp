@@ -51,9 +51,10 @@ struct Front {
     double* sign;
 };
 
-// C -= P S P^T for the rows `low` to `high` of some columns of C, `depth` columns of P from its row `shift` on.
-// C begins with row and column `shift`; only what is on or below the diagonal counts.
-void subtract_rows(double* c, int64_t ldc, const Front& front, int64_t shift, int64_t depth, int64_t columns, int64_t low,
+// C -= P S P^T, or C = -P S P^T, for the rows `low` to `high` of some columns of C, `depth` columns of P from its row
+// `shift` on. C begins with row and column `shift`; only what is on or below the diagonal counts.
+template <Into INTO>
+void multiply_rows(double* c, int64_t ldc, const Front& front, int64_t shift, int64_t depth, int64_t columns, int64_t low,
                    int64_t high, double* packed) {
     double* factors = packed + DEPTH * 256;
     const int64_t rows = high - low;
@@ -65,7 +66,10 @@ void subtract_rows(double* c, int64_t ldc, const Front& front, int64_t shift, in
             int count = columns - column < BLOCK ? (int)(columns - column) : BLOCK;
             int64_t start = column > low ? column : low;
             pack(factors, from + column, front.height, front.sign + begin, deep, count);
-            any_strip(count, c + column * ldc + start, ldc, packed + (start - low), ROWS, factors, deep, high - start);
+            double* target = c + column * ldc + start;
+            const double* rows_of = packed + (start - low);
+            if (INTO == REPLACE && begin == 0) any_strip<REPLACE>(count, target, ldc, rows_of, ROWS, factors, deep, high - start);
+            else any_strip<SUBTRACT>(count, target, ldc, rows_of, ROWS, factors, deep, high - start);
         }
     }
 }
@@ -100,7 +104,7 @@ int64_t eliminate_square(const Front& front, int64_t low, int64_t high, double* 
         double* corner = front.panel + at * front.height + at;
         pack(factors, front.panel + low * front.height + at, front.height, front.sign + low, at - low, count);
         if (at > low)
-            any_strip(count, corner, front.height, front.panel + low * front.height + at, front.height, factors, at - low, high - at);
+            any_strip<SUBTRACT>(count, corner, front.height, front.panel + low * front.height + at, front.height, factors, at - low, high - at);
         int found = any_eliminate(count, corner, front.height, high - at, front.sign + at, least);
         if (found < 0) return -1;
         negative += found;
@@ -114,7 +118,7 @@ void eliminate_rows(const Front& front, int64_t low, int64_t high, int64_t row, 
         double* target = front.panel + at * front.height + row;
         pack(factors, front.panel + low * front.height + at, front.height, front.sign + low, at - low, count);
         if (at > low)
-            any_strip(count, target, front.height, front.panel + low * front.height + row, front.height, factors, at - low, rows);
+            any_strip<SUBTRACT>(count, target, front.height, front.panel + low * front.height + row, front.height, factors, at - low, rows);
         any_carry(count, front.panel + at * front.height + at, target, front.height, rows, front.sign + at);
     }
 }
@@ -128,17 +132,18 @@ INLINE int64_t chunk(int64_t rows, int threads) {
 // Which of several threads writes a column of a front that they collect together.
 INLINE bool mine(int64_t column, int me, int threads) { return (column >> 4) % threads == me; }
 
-// As `extend_add`, column by column: those of one thread.
-void add_columns(const Fronts& fronts, int64_t child, const double* given, const Front& front, int me, int threads) {
+// As `extend_add`, column by column: those of one thread, in the panel or in the update.
+void add_columns(const Fronts& fronts, int64_t child, const double* given, const Front& front, bool panel, int me, int threads) {
     const int64_t* row = fronts.table + child * WIDTH;
-    const int64_t size = row[BELOW], high = row[WIDTH + RUNS];
-    for (int64_t run = row[RUNS]; run < high; run++) {
+    const int64_t size = row[BELOW], high = row[WIDTH + RUNS], middle = first_beyond(fronts, child, front.columns);
+    const int64_t shift = panel ? 0 : front.columns, lead = panel ? front.height : front.below;
+    for (int64_t run = panel ? row[RUNS] : middle; run < (panel ? middle : high); run++) {
         const int64_t* piece = fronts.runs + run * 3;
         for (int64_t step = 0; step < piece[2]; step++) {
             const double* source = given + (piece[0] + step) * size;
-            int64_t column = piece[1] + step, start = step, shift = column < front.columns ? 0 : front.columns;
+            int64_t column = piece[1] + step, start = step;
             if (!mine(column, me, threads)) continue;
-            double* target = shift ? front.update + (column - shift) * front.below : front.panel + column * front.height;
+            double* target = (panel ? front.panel : front.update) + (column - shift) * lead;
             for (int64_t other = run; other < high; other++, start = 0) {
                 const int64_t* part = fronts.runs + other * 3;
                 const double* from = source + part[0] + start;
@@ -152,20 +157,23 @@ void add_columns(const Fronts& fronts, int64_t child, const double* given, const
     }
 }
 
-// Collect a front: each thread its own columns.
-void collect(const Fronts& fronts, const Team& team, int64_t which, const Front& front, const double* data, int me, int threads) {
+// Add what the children of a front hand up: each thread its own columns.
+void add_children(const Fronts& fronts, const Team& team, int64_t which, const Front& front, bool panel, int me) {
+    for (int64_t child = fronts.table[which * WIDTH + CHILD]; child >= 0; child = fronts.table[child * WIDTH + SIBLING])
+        add_columns(fronts, child, team.updates[child], front, panel, me, team.size);
+}
+
+// Collect the panel of a front: each thread its own columns.
+void collect(const Fronts& fronts, const Team& team, int64_t which, const Front& front, const double* data, int me) {
+    const int threads = team.size;
     const int64_t* row = fronts.table + which * WIDTH;
     for (int64_t column = 0; column < front.columns; column++)
         if (mine(column, me, threads)) __builtin_memset(front.panel + column * front.height, 0, front.height * sizeof(double));
-    for (int64_t column = 0; column < front.below; column++)
-        if (mine(front.columns + column, me, threads))
-            __builtin_memset(front.update + column * (front.below + 1), 0, (front.below - column) * sizeof(double));
     for (int64_t entry = row[ENTRIES]; entry < row[WIDTH + ENTRIES]; entry++) {
         int64_t place = fronts.entries[2 * entry + 1];
         if (mine(place / front.height, me, threads)) front.panel[place] = data[fronts.entries[2 * entry]];
     }
-    for (int64_t child = row[CHILD]; child >= 0; child = fronts.table[child * WIDTH + SIBLING])
-        add_columns(fronts, child, team.updates[child], front, me, threads);
+    add_children(fronts, team, which, front, true, me);
 }
 
 // One front above the subtrees by all threads; false where a pivot was too small.
@@ -176,7 +184,7 @@ bool share_front(Together& all, const Front& front, double* packed) {
             int64_t* counter = all.begin();
             const int64_t rows = front.height - low, size = chunk(rows, all.team.size);
             for (int64_t at; (at = size * Together::take(counter)) < rows;)
-                subtract_rows(front.panel + low * front.height + low, front.height, front, low, low, high - low, at,
+                multiply_rows<SUBTRACT>(front.panel + low * front.height + low, front.height, front, low, low, high - low, at,
                               at + size < rows ? at + size : rows, packed);
             all.wait();
         }
@@ -193,7 +201,7 @@ bool share_front(Together& all, const Front& front, double* packed) {
     const int64_t size = chunk(front.below, all.team.size), chunks = (front.below + size - 1) / size;
     for (int64_t taken; (taken = Together::take(counter)) < chunks;) {  // the longest rows first
         const int64_t at = (chunks - 1 - taken) * size;
-        subtract_rows(front.update, front.below, front, front.columns, front.columns, front.below, at,
+        multiply_rows<REPLACE>(front.update, front.below, front, front.columns, front.columns, front.below, at,
                       at + size < front.below ? at + size : front.below, packed);
     }
     all.wait();
@@ -242,14 +250,16 @@ void join(const Fronts& fronts, Team& team, const Room& room, const double* data
         all.wait();
         if (all.failed()) return;
         Front front{row[COLUMNS], below, row[COLUMNS] + below, lower + row[PANEL], team.updates[which], signs + row[FIRST]};
-        collect(fronts, team, which, front, data, room.me, team.size);
+        collect(fronts, team, which, front, data, room.me);
+        all.wait();
+        if (!share_front(all, front, room.packed)) return;
+        add_children(fronts, team, which, front, false, room.me);
         all.wait();
         if (room.me == 0)
             for (int64_t child = row[CHILD]; child >= 0; child = fronts.table[child * WIDTH + SIBLING]) {
                 team.release(team.updates[child]);
                 team.updates[child] = nullptr;
             }
-        if (!share_front(all, front, room.packed)) return;
     }
 }
 
