@@ -9,8 +9,9 @@
 The public names below load their module when they are first used, so that `import hydrostat` stays light.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.design import Constraints, Network, RouteOptions, TreeOptions, Uncertainty, Zone, design_cables
@@ -148,87 +149,4 @@ __all__ = [
     "touches",
 ]
 
-_HOMES = {
-    "Branch": "simulation",
-    "Cable": "robot",
-    "CentreGoal": "ik",
-    "Closeness": "ik",
-    "Constraints": "design",
-    "Effort": "ik",
-    "HydrostatError": "errors",
-    "InputError": "errors",
-    "InverseOptions": "ik",
-    "InverseReason": "ik",
-    "Keyframe": "ik",
-    "Kit": "fabrication",
-    "KitOptions": "fabrication",
-    "Limits": "ik",
-    "Marker": "robot",
-    "MarkerGoal": "ik",
-    "Material": "robot",
-    "ManyPoses": "simulation",
-    "Motion": "simulation",
-    "Moves": "ik",
-    "Network": "design",
-    "NewtonOptions": "mechanics",
-    "NotConvergedError": "errors",
-    "Objective": "ik",
-    "PathDependence": "simulation",
-    "PatternOptions": "fabrication",
-    "Pin": "robot",
-    "PointGoal": "ik",
-    "Pose": "robot",
-    "Posture": "ik",
-    "Profile": "simulation",
-    "ReachedPose": "ik",
-    "Robot": "robot",
-    "RouteOptions": "design",
-    "ShapeGoal": "ik",
-    "Simulation": "simulation",
-    "SolvedPose": "simulation",
-    "StepOptions": "simulation",
-    "Term": "ik",
-    "Touch": "simulation",
-    "Tracker": "ik",
-    "Trajectory": "ik",
-    "TrajectoryOptions": "ik",
-    "TreeOptions": "design",
-    "UnbuildableError": "fabrication",
-    "Contact": "robot",
-    "Obstacle": "robot",
-    "Winch": "robot",
-    "Uncertainty": "design",
-    "Zone": "design",
-    "build_kit": "fabrication",
-    "design_cables": "design",
-    "draw_network": "plot",
-    "draw_pose": "plot",
-    "draw_reached": "plot",
-    "draw_rest": "plot",
-    "drawn_pose": "ik",
-    "export_kit": "fabrication",
-    "find_material": "robot",
-    "follow_branch": "simulation",
-    "friction_band": "simulation",
-    "gallery": "robot",
-    "load_robot": "robot",
-    "new_robot": "ik",
-    "path_dependence": "simulation",
-    "save_robot": "robot",
-    "solve_ik": "ik",
-    "solve_ik_trajectory": "ik",
-    "touches": "simulation",
-}
-
-_OWN_NAMES = {"gallery": "gallery_names"}
-"""What is called otherwise within the package."""
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'hydrostat' has no attribute '{name}'")
-    return getattr(import_module(f"hydrostat.{_HOMES[name]}"), _OWN_NAMES.get(name, name))
-
-
-def __dir__() -> list[str]:
-    return list(__all__)
+open_package(__name__)

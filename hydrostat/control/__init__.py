@@ -1,33 +1,38 @@
 """From contractions in time to motors: a bus and a link to them, motors within limits, playing (R58)."""
 
-from hydrostat.control.arm_motors import arm_motors
-from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
-from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
-from hydrostat.control.calibration import (
-    CALIBRATION,
-    EMULATED_CALIBRATION,
-    Calibration,
-    WinchMotor,
-    emulated_calibration,
-    read_calibration,
-    usual_calibration,
-    write_calibration,
-)
-from hydrostat.control.dynamixel_bus import DynamixelBus
-from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
-from hydrostat.control.emulated_line import EmulatedLine
-from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
-from hydrostat.control.feetech_bus import FeetechBus
-from hydrostat.control.firmware_bus import FirmwareBus
-from hydrostat.control.guard import GuardLimits, TensionGuard, not_judged
-from hydrostat.control.link import SILENCE, Link, SimulatedLink
-from hydrostat.control.model_tensions import KnownPulls, WinchPull, tensions_along, winch_pulls, winch_tensions
-from hydrostat.control.motors import FASTEST, Motors
-from hydrostat.control.open_bus import EMULATED, check_port, layered, open_bus, open_line
-from hydrostat.control.player import Player, play
-from hydrostat.control.spool_curve import SpoolCurve, fit_spool, measure_spool
-from hydrostat.control.take_up import TakenUp, take_up_slack
-from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_table
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.control.arm_motors import arm_motors
+    from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+    from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
+    from hydrostat.control.calibration import (
+        CALIBRATION,
+        EMULATED_CALIBRATION,
+        Calibration,
+        WinchMotor,
+        emulated_calibration,
+        read_calibration,
+        usual_calibration,
+        write_calibration,
+    )
+    from hydrostat.control.dynamixel_bus import DynamixelBus
+    from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
+    from hydrostat.control.emulated_line import EmulatedLine
+    from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+    from hydrostat.control.feetech_bus import FeetechBus
+    from hydrostat.control.firmware_bus import FirmwareBus
+    from hydrostat.control.guard import GuardLimits, TensionGuard, not_judged
+    from hydrostat.control.link import SILENCE, Link, SimulatedLink
+    from hydrostat.control.model_tensions import KnownPulls, WinchPull, tensions_along, winch_pulls, winch_tensions
+    from hydrostat.control.motors import FASTEST, Motors
+    from hydrostat.control.open_bus import EMULATED, check_port, layered, open_bus, open_line
+    from hydrostat.control.player import Player, play
+    from hydrostat.control.spool_curve import SpoolCurve, fit_spool, measure_spool
+    from hydrostat.control.take_up import TakenUp, take_up_slack
+    from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_table
 
 __all__ = [
     "CALIBRATION",
@@ -85,3 +90,5 @@ __all__ = [
     "winch_tensions",
     "write_calibration",
 ]
+
+open_package(__name__)

@@ -1,8 +1,13 @@
 """Grasps: a robot closes on a thing, which is pulled out again."""
 
-from hydrostat.grasp.pull_out import PullOptions, PullOut, pull_out
-from hydrostat.grasp.spread import PullCase, pull_bands
-from hydrostat.grasp.thing import FORMS, moved_thing, place_thing, read_thing
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.grasp.pull_out import PullOptions, PullOut, pull_out
+    from hydrostat.grasp.spread import PullCase, pull_bands
+    from hydrostat.grasp.thing import FORMS, moved_thing, place_thing, read_thing
 
 __all__ = [
     "FORMS",
@@ -15,3 +20,5 @@ __all__ = [
     "pull_out",
     "read_thing",
 ]
+
+open_package(__name__)

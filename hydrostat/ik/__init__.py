@@ -1,25 +1,30 @@
 """Which contractions reach a pose."""
 
-from hydrostat.ik.left_free import left_free
-from hydrostat.ik.limits import Limits
-from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, begin_robot, new_robot
-from hydrostat.ik.objectives.centre_goal import CentreGoal
-from hydrostat.ik.objectives.closeness import Closeness, ClosenessKind
-from hydrostat.ik.objectives.effort import Effort, EffortKind
-from hydrostat.ik.objectives.marker_goal import MarkerGoal
-from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Term, moves_at, posture_at
-from hydrostat.ik.objectives.point_goal import PointGoal
-from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
-from hydrostat.ik.outlook import Outlook
-from hydrostat.ik.reach import FoundReach, find_reach
-from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search.problem import InverseOptions
-from hydrostat.ik.solve_ik import Targets, solve_ik
-from hydrostat.ik.tracker import Tracker
-from hydrostat.ik.trajectory.keys import Key, Keyframe
-from hydrostat.ik.trajectory.poses import Snap
-from hydrostat.ik.trajectory.solve_ik_trajectory import TrajectoryOptions, solve_ik_trajectory
-from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.ik.left_free import left_free
+    from hydrostat.ik.limits import Limits
+    from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, begin_robot, new_robot
+    from hydrostat.ik.objectives.centre_goal import CentreGoal
+    from hydrostat.ik.objectives.closeness import Closeness, ClosenessKind
+    from hydrostat.ik.objectives.effort import Effort, EffortKind
+    from hydrostat.ik.objectives.marker_goal import MarkerGoal
+    from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Term, moves_at, posture_at
+    from hydrostat.ik.objectives.point_goal import PointGoal
+    from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
+    from hydrostat.ik.outlook import Outlook
+    from hydrostat.ik.reach import FoundReach, find_reach
+    from hydrostat.ik.reached_pose import InverseReason, ReachedPose
+    from hydrostat.ik.search.problem import InverseOptions
+    from hydrostat.ik.solve_ik import Targets, solve_ik
+    from hydrostat.ik.tracker import Tracker
+    from hydrostat.ik.trajectory.keys import Key, Keyframe
+    from hydrostat.ik.trajectory.poses import Snap
+    from hydrostat.ik.trajectory.solve_ik_trajectory import TrajectoryOptions, solve_ik_trajectory
+    from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory
 
 __all__ = [
     "BegunRobot",
@@ -61,3 +66,5 @@ __all__ = [
     "solve_ik",
     "solve_ik_trajectory",
 ]
+
+open_package(__name__)

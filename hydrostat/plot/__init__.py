@@ -1,28 +1,40 @@
 """Pictures and the report: how robots, poses and designs look."""
 
-from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
-from hydrostat.plot.animation import find_ffmpeg, save_gif, save_mp4
-from hydrostat.plot.branch_figure import draw_branches
-from hydrostat.plot.design_charts import draw_front, draw_growth
-from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, winch_stops
-from hydrostat.plot.frame import Frame
-from hydrostat.plot.grasp_figure import draw_pull, pull_frames
-from hydrostat.plot.healing_figure import draw_healing
-from hydrostat.plot.learning_figures import (
-    draw_calibration,
-    draw_costs,
-    draw_curves,
-    draw_errors,
-    draw_losses,
-    draw_side_by_side,
-)
-from hydrostat.plot.motion import motion_frames, motion_svg
-from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
-from hydrostat.plot.picture_file import inline_svg, save_png
-from hydrostat.plot.reach_figure import draw_reach
-from hydrostat.plot.report import report_text, write_report
-from hydrostat.plot.robot_figures import draw_network, draw_portrait, draw_pose, draw_reached, draw_rest, draw_target
-from hydrostat.plot.scene import save_glb
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
+    from hydrostat.plot.animation import find_ffmpeg, save_gif, save_mp4
+    from hydrostat.plot.branch_figure import draw_branches
+    from hydrostat.plot.design_charts import draw_front, draw_growth
+    from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, winch_stops
+    from hydrostat.plot.frame import Frame
+    from hydrostat.plot.grasp_figure import draw_pull, pull_frames
+    from hydrostat.plot.healing_figure import draw_healing
+    from hydrostat.plot.learning_figures import (
+        draw_calibration,
+        draw_costs,
+        draw_curves,
+        draw_errors,
+        draw_losses,
+        draw_side_by_side,
+    )
+    from hydrostat.plot.motion import motion_frames, motion_svg
+    from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
+    from hydrostat.plot.picture_file import inline_svg, save_png
+    from hydrostat.plot.reach_figure import draw_reach
+    from hydrostat.plot.report import report_text, write_report
+    from hydrostat.plot.robot_figures import (
+        draw_network,
+        draw_portrait,
+        draw_pose,
+        draw_reached,
+        draw_rest,
+        draw_target,
+    )
+    from hydrostat.plot.scene import save_glb
 
 __all__ = [
     "Film",
@@ -67,3 +79,5 @@ __all__ = [
     "winch_stops",
     "write_report",
 ]
+
+open_package(__name__)

@@ -1,22 +1,27 @@
 """Shapes to begin from: signed distances, limbs, and the bodies of the gallery."""
 
-from hydrostat.shapes.field import (
-    Field,
-    Place,
-    chain,
-    ellipsoid,
-    half_space,
-    intersection,
-    placed,
-    round_cone,
-    rounded_box,
-    turn_about,
-    union,
-)
-from hydrostat.shapes.gripper import BASE, SIDES, caging_gripper
-from hydrostat.shapes.hand import CUPPING, EXTENDED, FOREARM, HandPosture, cupping_hand, extended_hand, hand
-from hydrostat.shapes.hydrostats import fish_tail, octopus_arm, tongue, trunk
-from hydrostat.shapes.limb import Limb, Shape, limb
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.shapes.field import (
+        Field,
+        Place,
+        chain,
+        ellipsoid,
+        half_space,
+        intersection,
+        placed,
+        round_cone,
+        rounded_box,
+        turn_about,
+        union,
+    )
+    from hydrostat.shapes.gripper import BASE, SIDES, caging_gripper
+    from hydrostat.shapes.hand import CUPPING, EXTENDED, FOREARM, HandPosture, cupping_hand, extended_hand, hand
+    from hydrostat.shapes.hydrostats import fish_tail, octopus_arm, tongue, trunk
+    from hydrostat.shapes.limb import Limb, Shape, limb
 
 __all__ = [
     "BASE",
@@ -48,3 +53,5 @@ __all__ = [
     "turn_about",
     "union",
 ]
+
+open_package(__name__)

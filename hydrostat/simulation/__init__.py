@@ -1,25 +1,30 @@
 """The one bridge between robots and mechanics: `Simulation`."""
 
-from hydrostat.simulation.adjoint import Sensitivity
-from hydrostat.simulation.body_physics import BodyPhysics
-from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
-from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
-from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_filled
-from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
-from hydrostat.simulation.friction_band import friction_band
-from hydrostat.simulation.many_poses import ManyPoses
-from hydrostat.simulation.meeting import as_posed, carried_frames, obstacle_forces, replacing, with_obstacles
-from hydrostat.simulation.motion import Motion
-from hydrostat.simulation.motion_file import MotionTable, write_motion
-from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
-from hydrostat.simulation.pose_file import pose_facts, write_pose
-from hydrostat.simulation.profile import Profile, ProfileTable, profile_text, read_profile, write_profile
-from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
-from hydrostat.simulation.simulation import Simulation
-from hydrostat.simulation.solved_pose import Contractions, SolvedPose, largest_distance
-from hydrostat.simulation.still import check_still, rests_at_first, smooth_robot
-from hydrostat.simulation.strain import node_strains, node_stresses
-from hydrostat.simulation.touches import Touch, touch_words, touches
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.simulation.adjoint import Sensitivity
+    from hydrostat.simulation.body_physics import BodyPhysics
+    from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
+    from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
+    from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_filled
+    from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
+    from hydrostat.simulation.friction_band import friction_band
+    from hydrostat.simulation.many_poses import ManyPoses
+    from hydrostat.simulation.meeting import as_posed, carried_frames, obstacle_forces, replacing, with_obstacles
+    from hydrostat.simulation.motion import Motion
+    from hydrostat.simulation.motion_file import MotionTable, write_motion
+    from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
+    from hydrostat.simulation.pose_file import pose_facts, write_pose
+    from hydrostat.simulation.profile import Profile, ProfileTable, profile_text, read_profile, write_profile
+    from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
+    from hydrostat.simulation.simulation import Simulation
+    from hydrostat.simulation.solved_pose import Contractions, SolvedPose, largest_distance
+    from hydrostat.simulation.still import check_still, rests_at_first, smooth_robot
+    from hydrostat.simulation.strain import node_strains, node_stresses
+    from hydrostat.simulation.touches import Touch, touch_words, touches
 
 __all__ = [
     "BodyPhysics",
@@ -72,3 +77,5 @@ __all__ = [
     "write_pose",
     "write_profile",
 ]
+
+open_package(__name__)

@@ -1,24 +1,29 @@
 """From a person to a robot: keys, knobs, gloves and cameras, and what is learned of a hand (R68 to R70)."""
 
-from hydrostat.control import EMULATED
-from hydrostat.teleop.camera_hand import CameraHand
-from hydrostat.teleop.cyber_glove import CyberGlove, EmulatedGlove, EmulatedPerson
-from hydrostat.teleop.drive import DriveLoop, drive
-from hydrostat.teleop.gamepad import Gamepad
-from hydrostat.teleop.hand_map import HandMap
-from hydrostat.teleop.hand_source import HandReading, HandSource
-from hydrostat.teleop.keys import Keys
-from hydrostat.teleop.landmarks import HandLandmarks
-from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold_still, pose_pool
-from hydrostat.teleop.mapped_hand import MappedHand
-from hydrostat.teleop.midi_knobs import MidiKnobs
-from hydrostat.teleop.mimicry import Mimicry, write_mcap
-from hydrostat.teleop.one_euro import OneEuro, Smoothing
-from hydrostat.teleop.open_source import Wearer, open_hand, open_source
-from hydrostat.teleop.osc import Osc
-from hydrostat.teleop.ridge import Ridge, fit_ridge
-from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
-from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, marker_channels, winch_channels
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.control import EMULATED
+    from hydrostat.teleop.camera_hand import CameraHand
+    from hydrostat.teleop.cyber_glove import CyberGlove, EmulatedGlove, EmulatedPerson
+    from hydrostat.teleop.drive import DriveLoop, drive
+    from hydrostat.teleop.gamepad import Gamepad
+    from hydrostat.teleop.hand_map import HandMap
+    from hydrostat.teleop.hand_source import HandReading, HandSource
+    from hydrostat.teleop.keys import Keys
+    from hydrostat.teleop.landmarks import HandLandmarks
+    from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold_still, pose_pool
+    from hydrostat.teleop.mapped_hand import MappedHand
+    from hydrostat.teleop.midi_knobs import MidiKnobs
+    from hydrostat.teleop.mimicry import Mimicry, write_mcap
+    from hydrostat.teleop.one_euro import OneEuro, Smoothing
+    from hydrostat.teleop.open_source import Wearer, open_hand, open_source
+    from hydrostat.teleop.osc import Osc
+    from hydrostat.teleop.ridge import Ridge, fit_ridge
+    from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
+    from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, marker_channels, winch_channels
 
 __all__ = [
     "EMULATED",
@@ -60,3 +65,5 @@ __all__ = [
     "winch_channels",
     "write_mcap",
 ]
+
+open_package(__name__)
