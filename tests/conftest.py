@@ -3,12 +3,17 @@
 import gc
 import os
 import sys
+import tempfile
 from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
+
+if "HYDROSTAT_CACHE" not in os.environ:  # meshed bodies, kept for this run and shared by its workers
+    _CACHE = tempfile.TemporaryDirectory(prefix="hydrostat-tests-")
+    os.environ["HYDROSTAT_CACHE"] = _CACHE.name
 
 _HERE = Path(__file__).parent
 sys.path[:0] = [str(_HERE), str(_HERE / "fabrication"), str(_HERE.parent / "benchmarks")]

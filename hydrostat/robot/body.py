@@ -1,6 +1,6 @@
 """`Body`: the soft part of a robot, its file and its mesh, and how volumetric locking is avoided."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -15,11 +15,12 @@ from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.geometry.files.drawn_lines import Inner
-from hydrostat.geometry.healing.heal import Healing, heal
+from hydrostat.geometry.healing.healing import Healing
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.surface import Solid
 from hydrostat.geometry.thickness import Thickness, measure_thickness
+from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.checks import check_positive
 from hydrostat.robot.materials import Material, find_material
 
@@ -163,14 +164,21 @@ def outline_body(
     inner: Inner = Inner.HOLES,
 ) -> Body:
     """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
-    from hydrostat.geometry.files.outline_file import read_drawing
-    from hydrostat.geometry.triangles.triangulate import triangulate
-
     _check_lengths(size=size, element_size=element_size)
-    drawing = read_drawing(content, name=file, size=size, inner=Inner(inner))
-    outline = drawing.outline
-    with _blaming_the_element_size():
-        mesh = triangulate(outline, element_size)
+    inner = Inner(inner)
+
+    def make() -> Arrays:
+        from hydrostat.geometry.files.outline_file import read_drawing
+        from hydrostat.geometry.triangles.triangulate import triangulate
+
+        drawing = read_drawing(content, name=file, size=size, inner=inner)
+        with _blaming_the_element_size():
+            mesh = triangulate(drawing.outline, element_size)
+        rings, marks = drawing.outline.rings, drawing.marks
+        return _mesh_arrays(mesh) | _number("ring", rings) | _number("mark", marks)
+
+    kept = keep_body(("outline", Path(file).suffix, size, str(inner), element_size), content, make)
+    exterior, *holes = _numbered("ring", kept)
     return Body(
         source=Source.OUTLINE,
         file=file,
@@ -181,10 +189,24 @@ def outline_body(
         thickness=thickness,
         volume=volume,
         inner=inner,
-        mesh=mesh,
-        outline=outline,
-        marks=drawing.marks,
+        mesh=Mesh(kept["nodes"], kept["elements"]),
+        outline=Outline(exterior, tuple(holes)),
+        marks=_numbered("mark", kept),
     )
+
+
+def _mesh_arrays(mesh: Mesh) -> dict[str, np.ndarray]:
+    return {"nodes": mesh.nodes, "elements": mesh.elements}
+
+
+def _number(name: str, arrays: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
+    """Arrays under names with a number."""
+    return {f"{name} {number}": array for number, array in enumerate(arrays)}
+
+
+def _numbered(name: str, kept: Arrays) -> tuple[np.ndarray, ...]:
+    """Arrays of names with a number."""
+    return tuple(kept[f"{name} {number}"] for number in range(sum(key.startswith(f"{name} ") for key in kept)))
 
 
 def surface_body(
@@ -213,14 +235,19 @@ def surface_body(
     Raises:
         InputError: the file holds no surface, it encloses no body, or a number is out of its range.
     """
-    from hydrostat.geometry.files.surface_file import read_surface
-    from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
-
     _check_lengths(size=size, element_size=element_size, thickness=thickness)
-    surface = read_surface(content, name=file, unit=unit, size=size)
-    healing = heal(surface, resolution=element_size / 4)
-    with _blaming_the_element_size():
-        mesh = tetrahedralise(healing.surface, element_size)
+
+    def make() -> Arrays:
+        from hydrostat.geometry.files.surface_file import read_surface
+        from hydrostat.geometry.healing.heal import heal
+        from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+
+        healing = heal(read_surface(content, name=file, unit=unit, size=size), resolution=element_size / 4)
+        with _blaming_the_element_size():
+            mesh = tetrahedralise(healing.surface, element_size)
+        return _mesh_arrays(mesh) | healing.arrays()
+
+    kept = keep_body(("surface", Path(file).suffix, unit, size, element_size), content, make)
     return Body(
         source=Source.SURFACE,
         file=file,
@@ -230,8 +257,8 @@ def surface_body(
         element_size=element_size,
         thickness=thickness,
         volume=volume,
-        mesh=mesh,
-        healing=healing,
+        mesh=Mesh(kept["nodes"], kept["elements"]),
+        healing=Healing.of_arrays(kept),
     )
 
 

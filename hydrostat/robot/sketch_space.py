@@ -11,7 +11,8 @@ from scipy.sparse import coo_array
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import clearance, locate
-from hydrostat.geometry.healing.heal import Healing, heal
+from hydrostat.geometry.healing.heal import heal
+from hydrostat.geometry.healing.healing import Healing
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.sizing import size_for

@@ -22,7 +22,8 @@ from geometry.dirty import (
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.contour import contour
 from hydrostat.geometry.healing.faults import crossing_pairs
-from hydrostat.geometry.healing.heal import Healing, heal
+from hydrostat.geometry.healing.heal import heal
+from hydrostat.geometry.healing.healing import Healing
 from hydrostat.geometry.healing.mend import holes_of, sides_of, weld
 from hydrostat.geometry.healing.remake import WindingField
 from hydrostat.geometry.surface import Surface

@@ -1,12 +1,12 @@
 """Faults of a surface: where it runs through itself, and all that was found, in words."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.errors import SurfaceError
+from hydrostat.geometry.healing.healing import Piece
 from hydrostat.geometry.healing.mend import Holes, Welded, sides_of
 from hydrostat.geometry.healing.shells import Role, Shells
 from hydrostat.geometry.surface import Surface
@@ -139,35 +139,6 @@ def _runs_through(
 
 
 SLIVER = 1e-3  # a triangle lower than this share of its longest side is a sliver
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A part of the input that is not in the healed surface."""
-
-    size: float  # longest side of its box [m]
-    place: tuple[float, float, float]  # middle of its box [m]
-    triangles: int  # how many it had
-    why: str  # what it was
-
-    @classmethod
-    def of(cls, surface: Surface, triangles: Int[np.ndarray, " some"], why: str) -> "Piece":
-        """Some triangles of a surface as a piece."""
-        corners = surface.vertices[surface.triangles[triangles]].reshape(-1, 3)
-        return cls.of_box(np.stack([corners.min(axis=0), corners.max(axis=0)]), len(triangles), why)
-
-    @classmethod
-    def of_box(cls, box: np.ndarray, triangles: int, why: str) -> "Piece":
-        """A piece by its lowest and highest coordinates [m]."""
-        x, y, z = box.mean(axis=0).tolist()
-        return cls(float(np.ptp(box, axis=0).max()), (x, y, z), triangles, why)
-
-    @property
-    def text(self) -> str:
-        """The piece in words."""
-        x, y, z = (f"{round(1e3 * coordinate, 2) + 0.0:g}" for coordinate in self.place)
-        triangles = counted(self.triangles, "triangle")
-        return f"{self.why}, {1e3 * self.size:.3g} mm in size at ({x}, {y}, {z}) mm, {triangles}"
 
 
 def pieces_of(shells: Shells) -> tuple[Piece, ...]:

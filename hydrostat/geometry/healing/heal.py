@@ -1,20 +1,17 @@
 """`heal`: one closed body of a surface as scans, careless CAD and damaged files give it, and what was done for it."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from jaxtyping import Bool, Int
 
-from hydrostat.arrays import Points
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.healing.faults import (
     MOST_PAIRS,
-    Piece,
     crossing_pairs,
     describe_faults,
     pieces_of,
     sliver_count,
 )
+from hydrostat.geometry.healing.healing import Healing, Piece
 from hydrostat.geometry.healing.mend import (
     NEAR,
     Holes,
@@ -33,51 +30,10 @@ from hydrostat.units import counted
 
 _MOST_PATCHED = 0.25
 _MOST_LOST = 0.1
-_LISTED = 5
 _MOST_CROSSED = 20
 _MOST_AT_EDGE = 200
 _MOST_PARTS = 20_000
 _SMALL_HOLE = 24.0  # resolutions around: about two elements across
-
-
-@dataclass(frozen=True, eq=False)
-class Healing:
-    """A closed surface, and how it came to be."""
-
-    surface: Surface  # closed, manifold, turned outward, not crossing itself: one body, perhaps with cavities
-    found: tuple[str, ...]  # what was found, a line each
-    done: tuple[str, ...]  # what was done, a line each
-    removed: tuple[Piece, ...]  # parts that are not in the surface any more
-    # of the parts that are kept, once turned [m^3]; overlaps count twice, holes as if closed by fans
-    volume_before: float
-    volume_after: float  # of the body [m^3]
-    largest_distance: float  # between input and result [m], where both are there: not over closed holes, nor inside
-    patched: float  # share of the result's area that lies over holes of the input
-    clean: bool  # nothing was to be done, but for vertices in the same place
-
-    @property
-    def places(self) -> Points:
-        """Where the parts were that are not in the surface any more [m]."""
-        return np.array([piece.place for piece in self.removed]).reshape(-1, 3)
-
-    def lines(self) -> tuple[str, ...]:
-        """The report in plain words."""
-        if self.clean:
-            return ("the surface is clean", *(f"found: {line}" for line in self.found))
-        pieces = sorted(self.removed, key=lambda piece: -piece.size)
-        removed = [f"removed: {piece.text}" for piece in pieces[:_LISTED]]
-        if len(pieces) > _LISTED:
-            removed.append(f"removed: {len(pieces) - _LISTED} more, up to {1e3 * pieces[_LISTED].size:.3g} mm in size")
-        change = f", {self.volume_after / self.volume_before - 1.0:+.2%}" if self.volume_before > 0.0 else ""
-        return (
-            *(f"found: {line}" for line in self.found),
-            *(f"done: {line}" for line in self.done),
-            *removed,
-            f"volume: {1e6 * self.volume_before:.4g} cm^3 as it came (overlaps twice, holes as if closed), "
-            f"{1e6 * self.volume_after:.4g} cm^3 healed{change}",
-            f"largest distance to the input: {1e3 * self.largest_distance:.2g} mm"
-            + (f"; {self.patched:.1%} of the surface closes holes" if self.patched > 0.0005 else ""),
-        )
 
 
 def heal(surface: Surface, *, resolution: float) -> Healing:
