@@ -15,14 +15,20 @@ if TYPE_CHECKING:
 
 def check(
     robot: RobotFolder,
+    thorough: Annotated[
+        bool,
+        typer.Option(
+            "--thorough", help="Also compute the reach of markers, and how far a filled body leaves its plane."
+        ),
+    ] = False,
     filled: Annotated[
         bool,
         typer.Option("--filled", help="Play its poses on the filled body, cables on each face, however long."),
     ] = False,
 ) -> None:
-    """Say what is wrong with a robot and what is risky; of a flat one, how far it leaves its plane once it is filled.
+    """Check a robot: report what is wrong with it and what is risky.
 
-    Example: hydrostat check examples/starfish --filled
+    Example: hydrostat check examples/starfish --thorough
     """
     from hydrostat.robot import face_words
 
@@ -43,10 +49,14 @@ def check(
         print(f"to build its network: {craft_of(found, ())}; more if poses ask for stronger ones")
     if filled:
         _print_filled(found)
-    elif words:
+    elif words and thorough:
         _print_out_of_plane(found)
-    if found.markers and found.cables:
+    reaches = bool(found.markers and found.cables)
+    if reaches and thorough:
         _print_reach(found)
+    left_out = ["reach of markers"] * reaches + ["motion out of the plane"] * (bool(words) and not filled)
+    if left_out and not thorough:
+        print(f"not computed: {' and '.join(left_out)}. Add --thorough.")
     _print_judgement(found)
 
 

@@ -5,7 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import nnls
 
 from hydrostat.arrays import Vector
 from hydrostat.control.bus_link import BusLink
@@ -115,6 +114,8 @@ def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve
     Raises:
         HydrostatError: readings that lie on no such curve, or on one far from the spool's radius.
     """
+    from scipy.optimize import nnls
+
     taken = (readings - readings[0]) * np.sign(readings[-1] - readings[0])
     begins = turned[1:-1]
     table = np.stack([np.ones_like(turned), -np.ones_like(turned), turned], axis=1)

@@ -7,7 +7,6 @@ from math import ceil, log2
 import numpy as np
 import shapely
 from jaxtyping import Float
-from scipy.spatial import ConvexHull, QhullError
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
@@ -147,6 +146,8 @@ def _covered_area(cells: Float[np.ndarray, "poses corners dim"]) -> float:
 
 def _covered_volume(cells: Float[np.ndarray, "poses corners dim"]) -> float:
     """Volume of the union of the hulls [m^3]: the share of random points that are in one of them."""
+    from scipy.spatial import ConvexHull, QhullError  # Imported here: not every command needs it.
+
     corners = cells.reshape(-1, 3)
     low, span = corners.min(axis=0), np.ptp(corners, axis=0)
     points = low + np.random.default_rng(SEED).uniform(size=(_POINTS, 3)) * span

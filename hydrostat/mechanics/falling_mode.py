@@ -1,7 +1,6 @@
 """`falling_mode`: along which an equilibrium that is no minimum is left."""
 
 import numpy as np
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from hydrostat.arrays import Vector
 from hydrostat.mechanics.stiffness import Stiffness
@@ -12,6 +11,8 @@ def falling_mode(stiffness: Stiffness, size: int) -> Vector | None:
 
     None if Lanczos does not arrive.
     """
+    from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh  # Imported here: seldom needed.
+
     inverse = LinearOperator((size, size), matvec=stiffness.solve, dtype=float)  # pyright: ignore[reportCallIssue]
     start = np.random.default_rng(0).standard_normal(size)
     try:

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
@@ -196,6 +195,8 @@ class _Follower:
 
     def _find_fold(self, place: PathPoint, trial: PathPoint, step: float) -> PathPoint:
         """Where d share / d length is 0, by Brent's method."""
+        from scipy.optimize import brentq  # Imported here: not every command needs it.
+
         known = {0.0: place, step: trial}
 
         def rate(length: float) -> float:

@@ -53,7 +53,7 @@ def check(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -
     """Run the command on a folder; returns its lines."""
 
     def run(folder: Path) -> list[str]:
-        monkeypatch.setattr(sys, "argv", ["hydrostat", "check", str(folder)])
+        monkeypatch.setattr(sys, "argv", ["hydrostat", "check", str(folder), "--thorough"])
         with pytest.raises(SystemExit) as stop:
             main()
         assert stop.value.code == 0

@@ -12,7 +12,6 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import BSpline
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.drawn_lines import Inner, drawing_of
@@ -192,6 +191,8 @@ def _flatten(entity: Any) -> Ring:
 
 def _spline(entity: Any) -> Ring:
     """Points along a spline, where its knots say it is: not all begin and end at a control point."""
+    from scipy.interpolate import BSpline  # Imported here: few drawings need it.
+
     tool = entity.construction_tool()
     control = np.array([(point.x, point.y) for point in tool.control_points]).reshape(-1, 2)
     knots, degree = np.array(tool.knots(), dtype=float), tool.order - 1

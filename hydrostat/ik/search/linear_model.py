@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 from scipy.linalg import solve_triangular
-from scipy.optimize import nnls
 
 from hydrostat.arrays import Vector
 from hydrostat.ik.limits import Bounds
@@ -140,6 +139,8 @@ class LinearModel:
         Multipliers of the limits that hold are those that leave least of the gradient; 0 at an optimum (Karush, Kuhn
         and Tucker).
         """
+        from scipy.optimize import nnls  # Imported here: not every command needs it.
+
         matrix, right = self._squares(effort)
         length = float(np.linalg.norm(right))
         if length == 0.0 or not self.active.any():
@@ -223,6 +224,8 @@ def _least_distance(
     rows: Float[np.ndarray, "limits size"], room: Float[np.ndarray, " limits"]
 ) -> Float[np.ndarray, " size"] | None:
     """The shortest z with rows z <= room."""
+    from scipy.optimize import nnls  # Imported here: not every command needs it.
+
     lengths = np.linalg.norm(rows, axis=1)
     some = lengths > 0
     if (room[~some] < 0).any():
