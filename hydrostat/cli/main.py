@@ -132,11 +132,20 @@ def _run() -> None:
 
 def _close_quietly() -> None:
     """End as a program does whose reader has gone, such as `head`: without a word."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    _discard_output()
     raise SystemExit(1)
+
+
+def _discard_output() -> None:
+    """Send what is still to be printed nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _stop(message: str, code: int) -> None:
     line = " ".join(message.split())
     print(f"hydrostat: {line}", file=sys.stderr)
+    try:
+        sys.stdout.flush()
+    except OSError:  # else Python tries again when it exits, and ends with 120
+        _discard_output()
     raise SystemExit(code)

@@ -326,13 +326,14 @@ def test_a_name_as_long_as_any_may_be_can_be_written(tmp_path: Path) -> None:
 def test_a_closed_pipe_and_a_full_disk_end_without_a_trace() -> None:
     """Oracle: the exit codes of a shell, and what is said."""
     command = [sys.executable, "-c", START, "materials"]
+    shell = {name: value for name, value in os.environ.items() if not name.startswith("PYTHONUNBUFFERED")}
     reader, writer = os.pipe()
     os.close(reader)
-    closed = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False)
+    closed = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, check=False, env=shell)
     os.close(writer)
     assert (closed.returncode, closed.stderr) == (1, "")
     with open("/dev/full", "w") as full:
-        filled = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        filled = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False, env=shell)
     assert filled.returncode == 2
     assert filled.stderr == "hydrostat: what was to be written: No space left on device\n"
 

@@ -21,9 +21,11 @@ and stationary in kappa:
     b Integral P_1 r dY + T r(c) = 0.
 
 The first gives the axial force at once: b Integral P_1 dY = -T; the second is the moment about the centre of bending.
-So the beam carries exactly the thrust -T along the cable. The state (r, s = r', M = Integral P_1 r) obeys ordinary
-equations, as P_2' = (dP_2/d lambda_2) s' + (dP_2/d lambda_1) kappa s; two unknowns, r at the lower face and kappa, are
-shot for. Psi is R22, for which dP_2/d lambda_1 = lambda / (lambda_1 lambda_2).
+So the beam carries exactly the thrust -T along the cable, and the moment may be taken about any point: about the line of
+radius 1 / kappa, which is as long as at rest, nothing cancels where the bending is small. The state (rho = r - 1 / kappa,
+s = r', M = Integral P_1 rho) obeys ordinary equations, as P_2' = (dP_2/d lambda_2) s' + (dP_2/d lambda_1) kappa s; two
+unknowns, rho at the lower face and kappa, are shot for, both in units of what linear theory gives. Psi is R22, for which
+dP_2/d lambda_1 = lambda / (lambda_1 lambda_2).
 """
 
 import numpy as np
@@ -42,26 +44,30 @@ def curvature(tension: float, *, height: float, offset: float, thickness: float,
         return float(found.root)
 
     def equations(_: float, state: np.ndarray, kappa: float) -> list[float]:
-        r, s, _ = state
-        one = kappa * r
+        rho, s, _ = state
+        one = 1 + kappa * rho
         log = np.log(one * s)
         along = mu * (one - 1 / one) + lame * log / one
         stiffness = mu * (1 + 1 / s**2) + lame * (1 - log) / s**2
-        return [s, (kappa * along - lame / (one * s) * kappa * s) / stiffness, along * r]
+        return [s, (kappa * along - lame / (one * s) * kappa * s) / stiffness, along * rho]
 
     def integrate(start: list[float], span: tuple[float, float], kappa: float) -> np.ndarray:
-        return solve_ivp(equations, span, start, args=(kappa,), method="DOP853", rtol=1e-12, atol=1e-15).y[:, -1]
+        return solve_ivp(equations, span, start, args=(kappa,), method="DOP853", rtol=1e-12, atol=1e-18).y[:, -1]
 
     def misfit(unknowns: np.ndarray) -> list[float]:
-        one, kappa = unknowns[0], unknowns[1] / height
-        r, s, moment = integrate([one / kappa, slope_at(one, 0.0), 0.0], (-height / 2, -offset), kappa)
-        after = slope_at(kappa * r, across(kappa * r, s) + tension * kappa / thickness)
-        end, s, total = integrate([r, after, moment], (-offset, height / 2), kappa)
-        return [across(kappa * end, s) / mu, (total + tension * r / thickness) * kappa / (mu * height)]
+        rho, kappa = unknowns[0] * height, unknowns[1] * small
+        start = [rho, slope_at(1 + kappa * rho, 0.0), 0.0]
+        rho, s, moment = integrate(start, (-height / 2, -offset), kappa)
+        one = 1 + kappa * rho
+        pulled = tension * rho / thickness
+        after = slope_at(one, across(one, s) + tension * kappa / thickness)
+        rho, s, total = integrate([rho, after, moment], (-offset, height / 2), kappa)
+        bent = modulus * height**2 * small
+        return [across(1 + kappa * rho, s) / bent, (total + pulled) / (bent * height)]
 
     modulus = 4 * mu * (mu + lame) / (2 * mu + lame)
     area, inertia = thickness * height, thickness * height**3 / 12
     small = tension * offset / (modulus * inertia)
-    lower = 1 - tension / (modulus * area) - small * height / 2
-    found = root(misfit, [lower, small * height], tol=1e-13)
-    return float(found.x[1]) / height
+    lower = -tension / (modulus * area) / (small * height) - 0.5
+    found = root(misfit, [lower, 1.0], tol=1e-13)
+    return float(found.x[1]) * small
