@@ -79,10 +79,12 @@ def _print_judgement(robot: "Robot") -> None:
 
 def print_sewing(body: "Body") -> tuple[str, ...]:
     """Print what sewing the skin of a stuffed body in space takes; returns why it cannot be sewn, if so."""
-    from hydrostat.fabrication import KitOptions, find_sewing
+    from hydrostat.fabrication import KitOptions
 
     if not KitOptions().sews_skin(body):
         return ()
+    from hydrostat.fabrication import find_sewing
+
     with patiently("laying its skin flat, patch by patch ..."):
         sewing = find_sewing(body)
     if not sewing.problems:

@@ -60,12 +60,12 @@ def designed_tension(robot: "Robot", folder: Path) -> float | None:
 
 def _wished_tension(robot: "Robot", folder: Path) -> float | None:
     """The limit that the studio kept a robot's poses to [N]; None where no studio saved it (InputError: a bad file)."""
-    from hydrostat.studio.records.wished_constraints import wished_constraints
-    from hydrostat.studio.work_folder import STUDIO_FILE, read_studio_file
-
     home = folder.parent if folder.suffix == ".toml" else folder
-    if not (home / STUDIO_FILE).is_file():
+    if not (home / "studio.json").is_file():
         return None
+    from hydrostat.studio.records.wished_constraints import wished_constraints
+    from hydrostat.studio.work_folder import read_studio_file
+
     try:
         return wished_constraints(robot, read_studio_file(home).wishes).tension_limit
     except InputError as error:

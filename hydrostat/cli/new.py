@@ -162,14 +162,14 @@ def _made_whole(name: Path) -> Iterator[Path]:
 
 def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> list[str]:
     """Make the robot; returns what there is to tell."""
-    from hydrostat.ik import begin_robot
-    from hydrostat.plot import draw_healing, save_png
-    from hydrostat.robot import replace_file, save_robot
-    from hydrostat.robot.commented import commented_text
     from hydrostat.robot.gallery import is_of_gallery
 
     if is_of_gallery(source):
         return _from_gallery(source, folder, wish)
+    from hydrostat.ik import begin_robot
+    from hydrostat.robot import replace_file, save_robot
+    from hydrostat.robot.commented import commented_text
+
     wish = _asked_about_holes(source, wish, seconds)
 
     def run(sketch: Callable[[], "BegunRobot"]) -> "BegunRobot":
@@ -179,6 +179,8 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
     save_robot(begun.robot, folder, text=commented_text(begun.robot, Path(source).name))
     lines, sketch = list(begun.notes), begun.sketch
     if sketch is not None and not sketch.healing.clean:
+        from hydrostat.plot import draw_healing, save_png
+
         told = sketch.healing.lines()
         replace_file(folder / "healing.txt", ("\n".join(told) + "\n").encode())
         figure = draw_healing(sketch.before, sketch.healing.surface, notes=told, places=sketch.healing.places)
@@ -229,6 +231,9 @@ def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
 
 def _draw(folder: Path) -> "Robot":
     """Read the robot back, as any command will, and draw it."""
+    from hydrostat.cli.pictures import load_matplotlib
+
+    load_matplotlib()
     from hydrostat.plot import draw_rest, save_png
     from hydrostat.robot import load_robot
 

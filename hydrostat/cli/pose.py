@@ -110,6 +110,9 @@ def _write(
     jacobian: bool,
 ) -> None:
     from hydrostat import __version__
+    from hydrostat.cli.pictures import load_matplotlib
+
+    load_matplotlib()
     from hydrostat.plot import draw_reached, save_png
     from hydrostat.plot.labels import shorten
     from hydrostat.robot import replace_file

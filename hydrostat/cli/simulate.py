@@ -49,6 +49,9 @@ def simulate(
     Example: hydrostat simulate examples/starfish --contract left=12mm --out build/pose
     """
     from hydrostat import __version__
+    from hydrostat.cli.pictures import load_matplotlib
+
+    load_matplotlib()
     from hydrostat.plot import draw_pose, save_png
     from hydrostat.simulation import write_pose
     from hydrostat.units import TIME

@@ -6,17 +6,27 @@ from itertools import combinations, product
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.sparse import coo_array
 
 from hydrostat.arrays import Elements, Nodes, Points
 from hydrostat.errors import InputError
 
 
 def joined_groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarray, " count"]:
-    """Number of the group to which each of `count` things belongs that are joined in pairs."""
-    from scipy.sparse.csgraph import connected_components  # Imported here: it takes long, as in `crossings.py`.
+    """Number of the group to which each of `count` things belongs that are joined in pairs, by first member.
 
-    return connected_components(coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count)), directed=False)[1]
+    Each thing points to one of its group with a lower number, until all of a group point to its first. As
+    `scipy.sparse.csgraph.connected_components`, which takes 0.06 s to import.
+    """
+    first = np.arange(count)
+    while True:
+        one, two = first[pairs]
+        apart = one != two
+        low, high = np.minimum(one, two)[apart], np.maximum(one, two)[apart]
+        if not high.size:
+            return np.unique(first, return_inverse=True)[1]
+        np.minimum.at(first, high, low)
+        while (first[first] != first).any():
+            first = first[first]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,6 @@ from hydrostat.errors import InputError
 from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.given import check_kind, path_of
-from hydrostat.ik.first_pose import with_first_pose
 from hydrostat.robot import Robot, SurfaceSketch, gallery_folder, load_robot, sketch_mesh, sketch_robot, sketch_surface
 from hydrostat.robot.checks import check_number
 from hydrostat.robot.gallery import GALLERY, is_of_gallery
@@ -189,6 +188,8 @@ def _posed(begun: BegunRobot) -> BegunRobot:
     if len(mesh.nodes) > MOST_POSED:
         note = f"no first pose was looked for, as {len(mesh.nodes)} nodes take long: hydrostat pose finds yours"
         return replace(begun, notes=(*begun.notes, note))
+    from hydrostat.ik.first_pose import with_first_pose  # Imported here: most new robots are not posed.
+
     return replace(begun, robot=with_first_pose(begun.robot))
 
 

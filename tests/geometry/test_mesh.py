@@ -5,11 +5,13 @@ from itertools import combinations
 import numpy as np
 import pytest
 from builders import box_mesh, strip_mesh
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial.transform import Rotation
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.geometry.mesh import dihedral_angles
+from hydrostat.geometry.mesh import dihedral_angles, joined_groups
 
 TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
@@ -122,3 +124,11 @@ def test_flat_and_inverted_tetrahedra_have_none() -> None:
     elements = np.array([[0, 1, 2, 4], [1, 0, 2, 3], [0, 0, 1, 2]])
     assert dihedral_angles(nodes, elements).tolist() == [0.0, 0.0, 0.0]
     assert dihedral_angles(nodes, elements[:0]).shape == (0,)
+
+
+@pytest.mark.parametrize(("count", "joins"), [(1, 0), (7, 0), (40, 25), (300, 250), (300, 2000)])
+def test_groups_are_connected_components(count: int, joins: int) -> None:
+    """Oracle: SciPy's connected components, which are numbered by their first members too."""
+    pairs = np.random.default_rng(count + joins).integers(0, count, (2, joins))
+    graph = coo_array((np.ones(joins), pairs), shape=(count, count))
+    np.testing.assert_array_equal(joined_groups(pairs, count), connected_components(graph, directed=False)[1])

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import minimize
 
 from hydrostat.fabrication.patches.patch import Patch
 
@@ -26,6 +25,8 @@ def evened(patch: Patch, *, ease: float = LOOSE) -> Patch:
     counts less. No triangle turns over, for s grows without bound before. `ease` is the unit of the rim.
     """
     energy = PatchEnergy(patch, ease)
+    from scipy.optimize import minimize  # Imported here: only what is sewn in space needs it.
+
     found = minimize(energy, patch.flat.ravel(), jac=True, method="L-BFGS-B", options={"maxiter": _STEPS, "maxcor": 20})
     flat = found.x.reshape(-1, 2)
     return replace(patch, flat=flat) if np.isfinite(found.fun) and found.fun < _NOWHERE else patch

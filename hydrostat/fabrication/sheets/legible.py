@@ -4,8 +4,6 @@ import re
 from functools import cache
 from typing import Any
 
-import typst
-
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Robot
 from hydrostat.robot.in_words import in_words
@@ -91,6 +89,8 @@ def _drawn(letter: str) -> bool:
     """Whether a letter can be printed: a page for archives (PDF/A) is refused where no font has it."""
     if letter.isascii():
         return letter.isprintable()
+    import typst  # Imported here: few names need it.
+
     try:
         typst.compile(
             _PAGE.encode(), sys_inputs={"letter": letter}, ignore_system_fonts=True, pdf_standards=["a-2b"], timestamp=0

@@ -4,8 +4,6 @@ import json
 from collections.abc import Iterable, Mapping
 from importlib.resources import files
 
-import typst
-
 from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, Shape
@@ -42,6 +40,8 @@ def tiled_pdf(pattern: Pattern, paper: Paper) -> bytes:
 
 def _compile(source: str) -> bytes:
     """The PDF: the same bytes on every run, as neither the clock nor the fonts of the machine have a part in it."""
+    import typst  # Imported here: a check of a robot sets no page.
+
     return typst.compile(source.encode(), format="pdf", ignore_system_fonts=True)
 
 

@@ -139,8 +139,6 @@ class LinearModel:
         Multipliers of the limits that hold are those that leave least of the gradient; 0 at an optimum (Karush, Kuhn
         and Tucker).
         """
-        from scipy.optimize import nnls  # Imported here: not every command needs it.
-
         matrix, right = self._squares(effort)
         length = float(np.linalg.norm(right))
         if length == 0.0 or not self.active.any():
@@ -149,6 +147,8 @@ class LinearModel:
         limits, room = self._limits(1.0)
         rows = limits[room <= _HOLDS * np.abs(limits) @ self.range[self.active]]
         if len(rows):
+            from scipy.optimize import nnls  # Imported here: not every pose is at a limit.
+
             rows = rows / np.linalg.norm(rows, axis=1)[:, None]
             gradient = gradient + rows.T @ nnls(rows.T, -gradient)[0]
         return float(np.abs(gradient).max())
@@ -224,8 +224,6 @@ def _least_distance(
     rows: Float[np.ndarray, "limits size"], room: Float[np.ndarray, " limits"]
 ) -> Float[np.ndarray, " size"] | None:
     """The shortest z with rows z <= room."""
-    from scipy.optimize import nnls  # Imported here: not every command needs it.
-
     lengths = np.linalg.norm(rows, axis=1)
     some = lengths > 0
     if (room[~some] < 0).any():
@@ -234,6 +232,8 @@ def _least_distance(
     far = -room.min(initial=0.0)
     if far <= 0.0:
         return np.zeros(rows.shape[1])
+    from scipy.optimize import nnls  # Imported here: not every step meets a limit.
+
     stacked = np.vstack([-rows.T, -room / far])
     pushes, _ = nnls(stacked, np.eye(len(stacked))[-1])
     left = stacked @ pushes
