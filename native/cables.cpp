@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "spring.hpp"
 
 namespace {
 
@@ -148,19 +149,6 @@ void spread(Counts<2> stencils, Counts<1> cables, Reals<3> gradients, Array<doub
                 columns.data()[(stencils.data()[place] * dim + axis) * count + cables.data()[term]] +=
                     gradients.data()[place * dim + axis];
             }
-}
-
-struct Spring {
-    double energy, tension, slope;
-};
-
-Spring spring(double k, double eps, double elongation) {
-    if (elongation <= 0.0) return {0.0, 0.0, 0.0};
-    if (elongation <= 2.0 * eps)
-        return {k * (elongation * (elongation * elongation)) / (12.0 * eps), k * elongation * elongation / (4.0 * eps),
-                k * elongation / (2.0 * eps)};
-    double beyond = elongation - eps;
-    return {0.5 * k * (beyond * beyond) + k * eps * eps / 6.0, k * beyond, k};
 }
 
 void evaluate(Reals<1> stiffness, Reals<1> smoothing, Reals<1> elongation, Array<double, 2> found) {

@@ -322,4 +322,9 @@ NB_MODULE(_native, module) {
     add_cables(module);
     add_improve(module);
     add_contact(module);
+    add_pictures(module);
+    add_paths(module);
+    add_perceptrons(module);
+    add_chains(module);
+    add_patches(module);
 }

@@ -1,13 +1,13 @@
 """The lines of a solid that a draughtsman draws: sharp edges (creases), and the rims of round sides (silhouettes)."""
 
 from dataclasses import dataclass
-from typing import Self, no_type_check
+from typing import Self
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.geometry.healing.mend import sides_of
-from hydrostat.kernel import KERNEL, njit
+from hydrostat.kernel import native
 
 Segments = Float[np.ndarray, "segments 2 3"]  # straight pieces of lines by both ends [mm]
 
@@ -34,7 +34,8 @@ class Facets:
         crosses, areas = _crosses(vertices[triangles])
         thick = areas > 1e-12 * scale**2
         triangles, normals = triangles[thick], crosses[thick] / areas[thick, None]
-        angles = corner_angles(vertices, triangles)
+        angles = np.empty(triangles.shape)
+        native.corner_angles(np.ascontiguousarray(vertices), np.ascontiguousarray(triangles), angles)
         return cls(
             vertices=vertices,
             triangles=triangles,
@@ -102,46 +103,6 @@ def _mean_normals(
     order = np.argsort(triangles.reshape(-1), kind="stable")
     counts = np.bincount(triangles.reshape(-1))
     starts = np.concatenate([[0], np.cumsum(counts)])
-    return corner_normals(triangles, normals, weights, starts, order, float(np.cos(np.radians(sharp))))
-
-
-@njit(**KERNEL)
-@no_type_check
-def corner_angles(vertices, triangles):
-    """Angle of each triangle at each of its corners [rad], (triangles, 3)."""
-    angles = np.empty((len(triangles), 3))
-    for index in range(len(triangles)):
-        for corner in range(3):
-            here = vertices[triangles[index, corner]]
-            one = vertices[triangles[index, (corner + 1) % 3]] - here
-            two = vertices[triangles[index, (corner + 2) % 3]] - here
-            cosine = (one @ two) / np.sqrt((one @ one) * (two @ two))
-            angles[index, corner] = np.arccos(min(max(cosine, -1.0), 1.0))
-    return angles
-
-
-@njit(**KERNEL)
-@no_type_check
-def corner_normals(triangles, normals, weights, starts, stars, sharpest):
-    """Unit normal at each corner of each triangle, (triangles, 3, 3): the mean over those that are not beyond a crease.
-
-    Args:
-        triangles: their vertices, (triangles, 3).
-        normals: of each, (triangles, 3).
-        weights: of each at each of its corners, (triangles, 3).
-        starts: where the corners at each vertex begin in `stars`, (vertices + 1,).
-        stars: corners at vertex after vertex: three times the triangle, and which of its corners.
-        sharpest: cosine of the sharpest bend that is smooth.
-    """
-    corners = np.empty((len(triangles), 3, 3))
-    for index in range(len(triangles)):
-        for corner in range(3):
-            vertex = triangles[index, corner]
-            mean = np.zeros(3)
-            for place in range(starts[vertex], starts[vertex + 1]):
-                other = stars[place] // 3
-                if normals[index] @ normals[other] > sharpest:
-                    mean += weights[other, stars[place] % 3] * normals[other]
-            length = np.sqrt(mean @ mean)
-            corners[index, corner] = mean / length if length > 0 else normals[index]
+    corners, sharpest = np.empty((*triangles.shape, 3)), float(np.cos(np.radians(sharp)))
+    native.corner_normals(*map(np.ascontiguousarray, (triangles, normals, weights, starts, order)), sharpest, corners)
     return corners

@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self, no_type_check
+from typing import Self
 
 import numpy as np
 import shapely
 from jaxtyping import Float, Int
 
-from hydrostat.kernel import KERNEL, njit
+from hydrostat.kernel import native
 
 Polyline = Float[np.ndarray, "_ 2"]  # a line on a picture: to the right, up [mm]
 _RIM = 4  # pixels of nothing round the picture
@@ -58,7 +58,7 @@ class DepthBuffer:
         shown = np.zeros((*shape, values.shape[2]), dtype=values.dtype)
         spots = corners.copy()
         spots[:, :, :2] = (corners[:, :, :2] - low) / pixel
-        rasterise(np.ascontiguousarray(spots), np.ascontiguousarray(values), inside, depth, shown, owner)
+        native.rasterise(np.ascontiguousarray(spots), np.ascontiguousarray(values), inside, depth, shown, owner)
         return cls(low=low, pixel=pixel, depth=depth, shown=shown, owner=owner)
 
     def coarser(self, step: int) -> "DepthBuffer":
@@ -92,46 +92,3 @@ def level_rings(field: Float[np.ndarray, "rows columns"], level: float, *, toler
     lines = contour_generator(z=field, line_type=LineType.Separate).lines(level)
     smooth = [shapely.simplify(shapely.linestrings(np.asarray(line)), tolerance) for line in lines]
     return [ring for ring in map(shapely.get_coordinates, smooth) if len(ring) > 3]
-
-
-@njit(**KERNEL)
-@no_type_check
-def rasterise(spots, values, inside, depth, shown, owner):
-    """Lay triangles into a depth buffer, the nearest on top.
-
-    Args:
-        spots: corners of the triangles: column, row and depth towards the eye, (triangles, 3, 3); a pixel is seen
-            where its middle is, at whole columns and rows.
-        values: to interpolate over each triangle, (triangles, 3, values).
-        inside: whether triangles that turn clockwise are seen.
-        depth: (rows, columns), changed in place, as are the others.
-        shown: interpolated values, (rows, columns, values).
-        owner: index of the triangle, (rows, columns).
-    """
-    rows, columns = depth.shape
-    for index in range(len(spots)):
-        x0, y0, z0 = spots[index, 0]
-        x1, y1, z1 = spots[index, 1]
-        x2, y2, z2 = spots[index, 2]
-        area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
-        if abs(area) < 1e-9 or (area < 0 and not inside):
-            continue
-        first = max(int(np.ceil(min(y0, y1, y2))), 0)
-        last = min(int(np.floor(max(y0, y1, y2))), rows - 1)
-        left = max(int(np.ceil(min(x0, x1, x2))), 0)
-        right = min(int(np.floor(max(x0, x1, x2))), columns - 1)
-        for row in range(first, last + 1):
-            for column in range(left, right + 1):
-                b = ((column - x0) * (y2 - y0) - (x2 - x0) * (row - y0)) / area
-                c = ((x1 - x0) * (row - y0) - (column - x0) * (y1 - y0)) / area
-                a = 1.0 - b - c
-                if a < -1e-9 or b < -1e-9 or c < -1e-9:
-                    continue
-                z = a * z0 + b * z1 + c * z2
-                if z > depth[row, column]:
-                    depth[row, column] = z
-                    owner[row, column] = index
-                    for k in range(values.shape[2]):
-                        shown[row, column, k] = (
-                            a * values[index, 0, k] + b * values[index, 1, k] + c * values[index, 2, k]
-                        )

@@ -1,16 +1,14 @@
 """`ChainLaw`: the tensions along a cable (tendon) with capstan friction."""
 
-import math
 from dataclasses import dataclass
-from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Bool, Int
 
 from hydrostat.arrays import Vector
-from hydrostat.kernel import INNER, KERNEL, njit
+from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Small
-from hydrostat.mechanics.tension_law import TensionLaw, spring
+from hydrostat.mechanics.tension_law import TensionLaw
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,7 +31,7 @@ class ChainLaw(TensionLaw):
     def slips(self, elongation: Vector) -> Vector:
         """P at the point before each span [m], positive towards the winch; 0 for the first span of a cable."""
         slips = np.zeros_like(elongation)
-        _relax(elongation, self.stiffness, self.smoothing, self.limits, self.starts, slips)
+        native.relax_chains(elongation, self.stiffness, self.smoothing, self.limits, self.starts, slips)
         return slips
 
     def energy(self, elongation: Vector) -> Vector:
@@ -77,114 +75,3 @@ class ChainLaw(TensionLaw):
         weakest = np.minimum.reduceat(springs, np.flatnonzero(~slipping))
         series = np.where(weakest > 0, 1.0 / np.bincount(group, soft), 0.0)
         return same * series[group], soft, same
-
-
-_RELAXATIONS = 500
-"""Most steps towards the slips of a cable; it takes about five, and one more for each span that becomes taut."""
-
-
-_NOISE = 1e-15
-"""An elongation is known to this fraction of the lengths that it is the sum of."""
-
-
-@njit(**KERNEL)
-@no_type_check
-def _relax(elongation, stiffness, smoothing, limits, starts, slips):
-    """Slips of least energy, by Newton's method on those that are free to slip; 0 is a bound for each."""
-    count = len(elongation)
-    tension, tangent = np.empty(count), np.empty(count)
-    force, step, sign = np.empty(count), np.empty(count), np.empty(count)
-    trial, work = np.zeros(count), np.empty(count)
-    for chain in range(len(starts) - 1):
-        start, end = starts[chain], starts[chain + 1]
-        if end - start < 2:
-            continue
-        energy = _tighten(start, end, elongation, stiffness, smoothing, limits, slips, tension, tangent)
-        for _ in range(_RELAXATIONS):
-            worst, noise = 0.0, 0.0
-            for span in range(start, end):
-                lengths = abs(elongation[span]) + abs(slips[span]) + smoothing[span]
-                noise = max(noise, _NOISE * stiffness[span] * lengths)
-            for span in range(start + 1, end):
-                sign[span] = 0.0
-                drop = tension[span - 1] - tension[span]
-                if slips[span] != 0.0:
-                    sign[span] = math.copysign(1.0, slips[span])
-                elif abs(drop) > limits[span]:
-                    sign[span] = math.copysign(1.0, drop)
-                force[span] = drop - sign[span] * limits[span] if sign[span] != 0.0 else 0.0
-                worst = max(worst, abs(force[span]))
-            if worst <= noise:
-                break
-            held = True
-            while held:  # a slip that would turn back at once stays where it is
-                held = False
-                _newton(start, end, stiffness, tangent, force, sign, step, work)
-                for span in range(start + 1, end):
-                    if sign[span] != 0.0 and slips[span] == 0.0 and step[span] * sign[span] < 0.0:
-                        sign[span], force[span], held = 0.0, 0.0, True
-            length, better = 1.0, False
-            for _ in range(60):
-                gain = 0.0
-                for span in range(start + 1, end):
-                    moved = slips[span] + length * step[span]
-                    trial[span] = moved if moved * sign[span] > 0.0 else 0.0
-                    gain += force[span] * (trial[span] - slips[span])
-                reached = _tighten(start, end, elongation, stiffness, smoothing, limits, trial, tension, tangent)
-                if reached <= energy - 1e-4 * gain + 1e-15 * abs(energy):
-                    better = True
-                    break
-                length *= 0.5
-            if not better:
-                break
-            change = 0.0
-            for span in range(start + 1, end):
-                change = max(change, abs(trial[span] - slips[span]))
-                slips[span] = trial[span]
-            energy = reached
-            if change == 0.0:
-                break
-
-
-@njit(**INNER)
-@no_type_check
-def _tighten(start, end, elongation, stiffness, smoothing, limits, slips, tension, tangent):
-    """Tensions and tangents of the spans of one cable; its energy."""
-    energy = 0.0
-    for span in range(start, end):
-        own = elongation[span]
-        if span > start:
-            own += slips[span]
-            energy += limits[span] * abs(slips[span])
-        if span + 1 < end:
-            own -= slips[span + 1]
-        stored, tension[span], tangent[span] = spring(stiffness[span], smoothing[span], own)
-        energy += stored
-    return energy
-
-
-@njit(**INNER)
-@no_type_check
-def _newton(start, end, stiffness, tangent, force, sign, step, work):
-    """Step of the slips that are free: a tridiagonal system, by elimination."""
-    before = 0.0
-    for span in range(start + 1, end):
-        if sign[span] == 0.0:
-            step[span], before = 0.0, 0.0
-            work[span] = 0.0
-            continue
-        pivot = tangent[span - 1] + tangent[span] + 1e-6 * stiffness[span]
-        right = force[span]
-        if before > 0.0:
-            ratio = tangent[span - 1] / before
-            pivot -= ratio * tangent[span - 1]
-            right += ratio * step[span - 1]
-        step[span], before = right, pivot
-        work[span] = pivot
-    for span in range(end - 1, start, -1):
-        if sign[span] == 0.0:
-            continue
-        right = step[span]
-        if span + 1 < end:
-            right += tangent[span] * step[span + 1]
-        step[span] = right / work[span]

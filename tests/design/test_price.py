@@ -12,7 +12,7 @@ from builders import mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import body_region
-from hydrostat.design.routes.path_kernels import next_unlike
+from hydrostat.kernel import native
 from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
 from hydrostat.geometry.anchors import Anchors
@@ -350,7 +350,7 @@ def test_the_next_unlike_path_by_sets_of_edges(seed: int) -> None:
     for alike in (0.3, 1.0):
         for begin in (0, 10, 59, 60):
             expected = next((index for index in range(begin, len(paths)) if unlike(index, alike)), len(paths))
-            assert next_unlike(paths, begin, others, usable, alike) == expected
+            assert native.next_unlike(paths, begin, others, usable, alike) == expected
 
 
 def edge_set(path: np.ndarray) -> set[frozenset[int]]:

@@ -9,16 +9,8 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Vector
-from hydrostat.design.routes.path_kernels import (
-    count_turns,
-    edge_products,
-    first_labels,
-    grow_labels,
-    next_unlike,
-    spread_leads,
-    walk_back,
-)
 from hydrostat.design.routes.route_graph import RouteGraph
+from hydrostat.kernel import native
 
 Moves = Float[np.ndarray, "edges rows"]
 
@@ -112,7 +104,7 @@ class _LeadStarts:
         if limits.leads:
             turns, before = _turns(graph, limits.turn)
             reach = min(self.longest, graph.size / penalty if penalty > 0 else math.inf)
-            spread_leads(turns, before, graph.lengths[graph.edge_of], self.leads, self.origins, reach)
+            native.spread_leads(turns, before, graph.lengths[graph.edge_of], self.leads, self.origins, reach)
         reached = np.isfinite(self.leads)
         lengths = np.where(reached, self.leads, 0.0)
         self.rooms = np.where(reached, self.longest - lengths, -1.0)
@@ -151,7 +143,7 @@ class _PathSearch:
         self.residual = _by_pose(missed.residual[None], missed.pose_of_row, poses)
         self.plain, self.pulls = missed.moves, np.empty((len(missed.moves), poses))
         self.squares = np.empty_like(self.pulls)
-        edge_products(self.moves, self.residual, self.pulls, self.squares)
+        native.edge_products(self.moves, self.residual, self.pulls, self.squares)
 
     def from_winches(self, starts: _LeadStarts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
         """Gains and points of the best path that ends with each directed edge."""
@@ -185,12 +177,12 @@ class _PathSearch:
         given = (self.moves, self.pulls, self.squares, self.ridge, self.most)
         for hop in range(self.hops):
             if hop == 0:
-                first_labels(
+                native.first_labels(
                     graph.sources, graph.targets, edge_of, lengths, begins, rooms, self.moves, self.pulls, self.squares,
                     self.ridge, self.most, longer, longer_sums, longer_marks, values[0], parents[0],
                 )  # fmt: skip
             else:
-                grow_labels(
+                native.grow_labels(
                     self.turns, self.before, graph.sources, graph.targets, edge_of, blocked, lengths, *given, hop,
                     labels, sums, marks, values, parents, longer, longer_sums, longer_marks, best, ranked, chosen,
                 )  # fmt: skip
@@ -203,7 +195,7 @@ class _PathSearch:
         hops, slots = np.divmod(which, self.slots)
         paths = np.empty((len(which), self.hops + 1), dtype=np.int64)
         ends = np.arange(len(which)) * self.slots + slots
-        walk_back(parents, graph.sources, graph.targets, self.slots, hops, ends, paths)
+        native.walk_back(parents, graph.sources, graph.targets, self.slots, hops, ends, paths)
         yield flat[np.arange(len(which)), which], paths
 
     def priced(self, path: Int[np.ndarray, " points"], lead: tuple[int, ...], gain: float) -> PricedPath:
@@ -235,7 +227,7 @@ def _pick(
         index = -1
         while len(picked) < count:
             others = paths[list(picked)]
-            index = next_unlike(paths, index + 1, others, usable & (near < crowd), alike)
+            index = native.next_unlike(paths, index + 1, others, usable & (near < crowd), alike)
             if index == len(paths):
                 break
             path = paths[index]
@@ -282,7 +274,7 @@ def _turns(graph: RouteGraph, turn: float) -> tuple[Int[np.ndarray, " _"], Int[n
     counts = np.empty(len(graph.sources) + 1, dtype=np.int64)
     least = math.cos(math.radians(min(turn, 180.0))) - 1e-9
     given = (graph.points, graph.offsets, graph.sources, graph.targets, graph.reverses, graph.world, least, counts)
-    total = count_turns(*given, np.empty(0, dtype=np.int64))
+    total = native.count_turns(*given, np.empty(0, dtype=np.int64))
     before = np.empty(total, dtype=np.int64)
-    count_turns(*given, before)
+    native.count_turns(*given, before)
     return counts, before

@@ -6,7 +6,6 @@ This is asked of a point just outside the middle of each triangle.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -14,7 +13,7 @@ from manifold3d import Manifold
 
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.solids.printed import TriangleMesh, triangles_of
-from hydrostat.kernel import KERNEL, njit
+from hydrostat.kernel import native
 
 _OUT = 5e-4  # how far outside its triangle a point is, in sizes of the body: shallower overhangs than that are none
 _STEEP = 1e-3  # a wall may lean by this cosine and still count as parallel to the pull: rounding, not an overhang
@@ -72,7 +71,8 @@ def release(surface: FineSurface, direction: Float[np.ndarray, "3"]) -> Release:
     turned = axes_along(direction).T
     facing = surface.normals @ direction
     asked = (surface.middles + _OUT * surface.size * surface.normals) @ turned
-    above, below = _covered(np.ascontiguousarray(asked), np.ascontiguousarray(surface.corners @ turned))
+    above, below = np.empty(len(asked), dtype=bool), np.empty(len(asked), dtype=bool)
+    native.find_covered(np.ascontiguousarray(asked), np.ascontiguousarray(surface.corners @ turned), above, below)
     return Release(
         heights=surface.middles @ direction, upward=(facing > -_STEEP) & ~above, downward=(facing < _STEEP) & ~below
     )
@@ -85,56 +85,3 @@ def axes_along(direction: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     first = np.cross(side, direction)
     first /= np.linalg.norm(first)
     return np.array([first, np.cross(direction, first), direction])
-
-
-@njit(**KERNEL)
-@no_type_check
-def _covered(points, corners):  # pragma: no cover
-    """Tell whether triangles lie straight above and straight below each point; they are found by a grid of cells."""
-    count = len(corners)
-    low = np.array([corners[:, :, 0].min(), corners[:, :, 1].min()])
-    high = np.array([corners[:, :, 0].max(), corners[:, :, 1].max()])
-    cell = np.sqrt((high[0] - low[0]) * (high[1] - low[1]) / count) * 1.5 + 1e-12
-    across = int((high[0] - low[0]) / cell) + 1
-    along = int((high[1] - low[1]) / cell) + 1
-    boxes = np.empty((count, 4), dtype=np.int64)
-    starts = np.zeros(across * along + 1, dtype=np.int64)
-    for triangle in range(count):
-        for axis in range(2):
-            least = min(corners[triangle, 0, axis], corners[triangle, 1, axis], corners[triangle, 2, axis])
-            most = max(corners[triangle, 0, axis], corners[triangle, 1, axis], corners[triangle, 2, axis])
-            cells = across if axis == 0 else along
-            boxes[triangle, axis] = min(int((least - low[axis]) / cell), cells - 1)
-            boxes[triangle, 2 + axis] = min(int((most - low[axis]) / cell), cells - 1)
-        for x in range(boxes[triangle, 0], boxes[triangle, 2] + 1):
-            for y in range(boxes[triangle, 1], boxes[triangle, 3] + 1):
-                starts[x * along + y + 1] += 1
-    starts = np.cumsum(starts)
-    filled = starts[:-1].copy()
-    listed = np.empty(starts[-1], dtype=np.int64)
-    for triangle in range(count):
-        for x in range(boxes[triangle, 0], boxes[triangle, 2] + 1):
-            for y in range(boxes[triangle, 1], boxes[triangle, 3] + 1):
-                listed[filled[x * along + y]] = triangle
-                filled[x * along + y] += 1
-    above = np.zeros(len(points), dtype=np.bool_)
-    below = np.zeros(len(points), dtype=np.bool_)
-    for point in range(len(points)):
-        px, py, pz = points[point]
-        if not (low[0] <= px <= high[0] and low[1] <= py <= high[1]):
-            continue
-        place = min(int((px - low[0]) / cell), across - 1) * along + min(int((py - low[1]) / cell), along - 1)
-        for entry in range(starts[place], starts[place + 1]):
-            a, b, c = corners[listed[entry]]
-            whole = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
-            if whole == 0.0:
-                continue
-            one = ((b[0] - px) * (c[1] - py) - (c[0] - px) * (b[1] - py)) / whole
-            two = ((c[0] - px) * (a[1] - py) - (a[0] - px) * (c[1] - py)) / whole
-            if one < 0.0 or two < 0.0 or one + two > 1.0:
-                continue
-            if one * a[2] + two * b[2] + (1.0 - one - two) * c[2] > pz:
-                above[point] = True
-            else:
-                below[point] = True
-    return above, below
