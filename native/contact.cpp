@@ -1,5 +1,13 @@
-// Parts of a boundary that come near one another: the loops of geometry/boundary_tree.py, geometry/pair_distances.py and
-// mechanics/contact_pairs.py, where they are explained. Operation by operation as there.
+// Parts of a boundary that come near one another: the loops of geometry/boundary_tree.py and mechanics/contact.py.
+//
+// A pair is a node and an edge in the plane, a node and a triangle or two edges in space. Its squared distance is
+// D(x) = min over l of F(x, l), l being where on its features the nearest points lie: F = |c|^2 with c = sum of w(l) x.
+// Two edges that are nearly parallel have no certain nearest points, so that F has soft ((s - 1/2)^2 + (t - 1/2)^2) more
+// where that is asked for.
+//
+// A pair of squared distance D has the energy W h phi(D/h), phi(r) = -(r - 1)^2 ln r below r = 1, 0 above (the barrier of
+// Li et al. 2020), h being the square of the distance at which it begins. By the envelope theorem dD = dF and d2D = F_xx -
+// F_xl F_ll^-1 F_lx, exactly, with the parts of l that are free, none at a corner.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -554,6 +562,9 @@ void barrier_forces(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, 
     }
 }
 
+// Fill in d2E/dx2 of each pair [N/m], with this share of what is negative in it taken out.
+//
+// It is P - N with P and N semidefinite, in closed form: N is what the force, as it pushes, takes away across c.
 void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft, Reals<1> begins,
                      Reals<1> weights, double share, Array<double, 3> blocks) {
     Listed all(x, stencils, edges);

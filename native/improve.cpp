@@ -132,21 +132,37 @@ struct Tetrahedra {
     }
 };
 
-void sweep(Array<double, 2> nodes, Counts<2> elements, Counts<1> start, Counts<1> star, Counts<2> facets,
-           Counts<1> begin, Counts<1> ring, Reals<3> normals, Reals<2> offsets, Reals<2> samples, double power,
-           double pull) {
-    Int count = (Int)nodes.shape(0), samples_each = (Int)samples.shape(0), outer = (Int)facets.shape(0);
+Tetrahedra mesh_of(const Array<double, 2>& nodes, const Counts<2>& elements, const Counts<1>& start, const Counts<1>& star,
+                   const Counts<2>& facets, const Counts<1>& begin, const Counts<1>& ring, const Reals<3>& normals,
+                   const Reals<2>& offsets, const Reals<2>& samples, double power, double pull) {
+    const Int count = (Int)nodes.shape(0), samples_each = (Int)samples.shape(0), outer = (Int)facets.shape(0);
     demand(nodes.shape(1) == 3 && elements.shape(1) == 4 && facets.shape(1) == 3 && (Int)start.shape(0) == count + 1 &&
                (Int)begin.shape(0) == count + 1 && star.shape(0) == elements.size() && ring.shape(0) == facets.size(),
            "shapes of the mesh");
     demand((Int)normals.shape(0) == outer && (Int)normals.shape(1) == samples_each && normals.shape(2) == 3 &&
                (Int)offsets.shape(0) == outer && (Int)offsets.shape(1) == samples_each && samples.shape(1) == 3,
            "shapes of the planes");
-    double regular = std::pow(std::sqrt(2.0) / 12.0, 2.0 / 3.0) / 6.0;
-    Tetrahedra all{nodes.data(), elements.data(), start.data(), star.data(), facets.data(), begin.data(),
-                   ring.data(), normals.data(), offsets.data(), samples.data(), samples_each, power, pull, regular};
-    Free others(1e3 * count);
+    const double regular = std::pow(std::sqrt(2.0) / 12.0, 2.0 / 3.0) / 6.0;
+    return {nodes.data(), elements.data(), start.data(), star.data(), facets.data(), begin.data(),
+            ring.data(), normals.data(), offsets.data(), samples.data(), samples_each, power, pull, regular};
+}
+
+// Move each node once, to where the sum of its own terms is least as far as a step of Newton tells.
+void sweep(Array<double, 2> nodes, Counts<2> elements, Counts<1> start, Counts<1> star, Counts<2> facets, Counts<1> begin,
+           Counts<1> ring, Reals<3> normals, Reals<2> offsets, Reals<2> samples, double power, double pull) {
+    Tetrahedra all = mesh_of(nodes, elements, start, star, facets, begin, ring, normals, offsets, samples, power, pull);
+    const Int count = (Int)nodes.shape(0);
+    Free others(1e3 * (double)count);
     for (Int node = 0; node < count; node++) all.move(node);
+}
+
+// The sum of a node's own terms, its gradient, and its Hessian on and above the diagonal.
+double node_derivatives(int64_t node, Array<double, 1> slope, Array<double, 2> bend, Array<double, 2> nodes, Counts<2> elements,
+                        Counts<1> start, Counts<1> star, Counts<2> facets, Counts<1> begin, Counts<1> ring, Reals<3> normals,
+                        Reals<2> offsets, Reals<2> samples, double power, double pull) {
+    const Tetrahedra all = mesh_of(nodes, elements, start, star, facets, begin, ring, normals, offsets, samples, power, pull);
+    demand(node >= 0 && node < (Int)nodes.shape(0) && slope.shape(0) == 3 && bend.shape(0) == 3 && bend.shape(1) == 3, "a node");
+    return all.derivatives(node, slope.data(), (double(*)[3])bend.data());
 }
 
 }  // namespace
@@ -154,4 +170,6 @@ void sweep(Array<double, 2> nodes, Counts<2> elements, Counts<1> start, Counts<1
 void add_improve(nb::module_& module) {
     module.def("sweep", &sweep, filled(), given(), given(), given(), given(), given(), given(), given(), given(),
                given(), given(), given());
+    module.def("node_derivatives", &node_derivatives, given(), filled(), filled(), filled(), given(), given(), given(), given(),
+               given(), given(), given(), given(), given(), given(), given());
 }

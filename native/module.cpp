@@ -17,28 +17,34 @@
 
 namespace {
 
-// The widest table of kernels that the processor has, or the lower one that HYDROSTAT_LEVEL names.
+// Tables of kernels that the processor can run, the widest last.
+std::vector<const Kernels*> levels() {
+    std::vector<const Kernels*> found{&kernels_base};
+#ifdef WITH_X86_LEVELS
+    if (!(__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))) return found;
+    found.push_back(&kernels_v3);
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512bw"))
+        found.push_back(&kernels_v4);
+#endif
+    return found;
+}
+
+// The widest table, or the lower one that HYDROSTAT_LEVEL names.
 const Kernels& choose_kernels() {
     const char* named = std::getenv("HYDROSTAT_LEVEL");
     const std::string level = named ? named : "";
-    if (!level.empty() && level != "base" && level != "v3" && level != "v4")
-        throw std::invalid_argument("HYDROSTAT_LEVEL: unknown level \"" + level + "\". Available: base, v3, v4.");
-#ifdef WITH_X86_LEVELS
-    const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                    __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
-    if ((level == "v4" && !v4) || (level == "v3" && !v3))
-        throw std::invalid_argument("HYDROSTAT_LEVEL: this processor lacks " + level + ". Choose a lower level.");
-    if (v4 && (level.empty() || level == "v4")) return kernels_v4;
-    if (v3 && level != "base") return kernels_v3;
-#else
-    if (!level.empty() && level != "base")
-        throw std::invalid_argument("HYDROSTAT_LEVEL: this build has only the level base.");
-#endif
-    return kernels_base;
+    std::string names;
+    for (const Kernels* found : levels()) {
+        if (level == found->name) return *found;
+        names += (names.empty() ? "" : ", ") + std::string(found->name);
+    }
+    if (!level.empty())
+        throw std::invalid_argument("HYDROSTAT_LEVEL: unknown level \"" + level + "\". This processor has: " + names + ".");
+    return *levels().back();
 }
 
-const Kernels& kernels = choose_kernels();
+Kernels kernels = kernels_base;  // those that serve; chosen when the module is loaded
 
 // Elements as they come from Python.
 struct Packed {
@@ -308,8 +314,12 @@ void solve(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<co
 
 NB_MODULE(_native, module) {
     nb::set_leak_warnings(false);
+    kernels = choose_kernels();
+    nb::list names;
+    for (const Kernels* found : levels()) names.append(found->name);
+    module.attr("levels") = names;
     module.attr("instructions") = kernels.name;
-    module.attr("interface") = 2;  // kernel.py asks for it: raise both where a function that is not a Kernel changes
+    module.attr("interface") = 3;  // kernel.py asks for it: raise both where the arguments of a function change
     module.def("value", &value);
     module.def("gradient", &gradient);
     module.def("hessian", &hessian);

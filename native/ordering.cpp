@@ -243,6 +243,9 @@ struct Dissection {
     }
 };
 
+// Fill `order`. `lines` are the nodes sorted by each coordinate, at first all of them, in the end part by part.
+//
+// `work` is -1, `sides` 0 everywhere; `todo` and `room` hold anything.
 void dissect(Counts<1> starts, Counts<1> neighbours, Reals<2> points, Array<Int, 2> lines, Int leaf, Reals<1> shares,
              Array<Int, 1> order, Array<Int, 2> work, Array<Int, 2> sides, Array<Int, 2> todo, Array<Int, 2> room) {
     Int nodes = (Int)order.shape(0);

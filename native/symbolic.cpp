@@ -48,6 +48,9 @@ void postorder(Counts<1> parent, Array<Int, 1> child, Counts<1> sibling, Array<I
     }
 }
 
+// Entries of each column of L, the diagonal included: a row of L is a subtree from the row's entries upwards.
+//
+// `count` is 1 and `seen` -1 before.
 void column_counts(Counts<1> starts, Counts<1> neighbours, Counts<1> order, Counts<1> place, Counts<1> parent,
                    Array<Int, 1> count, Array<Int, 1> seen) {
     Int nodes = (Int)order.shape(0);
@@ -93,6 +96,9 @@ void merge(Counts<1> child, Counts<1> sibling, Array<Int, 1> columns, Counts<1> 
     for (Int node = nodes - 1; node >= 0; node--) out[node] = out[out[node]];
 }
 
+// Rows below each supernode: of its nodes' neighbours and of its children, those after its last node.
+//
+// `seen` is -1 before.
 void rows(Counts<1> starts, Counts<1> neighbours, Counts<1> order, Counts<1> place, Counts<1> first, Counts<1> child,
           Counts<1> sibling, Counts<1> begins, Array<Int, 1> found, Array<Int, 1> seen) {
     Int count = (Int)child.shape(0), nodes = (Int)order.shape(0);

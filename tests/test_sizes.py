@@ -80,11 +80,6 @@ def parameters(function: Function) -> int:
     return sum(each.arg not in {"self", "cls"} for each in named)
 
 
-def is_kernel(function: Function) -> bool:
-    """Tell whether numba compiles a function: its arrays come one by one, and calls within it take time to compile."""
-    return any(re.search("njit|Kernel", ast.unparse(decorator)) for decorator in function.decorator_list)
-
-
 def large_files(texts: dict[str, str]) -> dict[str, int]:
     return {path: count for path, text in texts.items() if (count := len(text.splitlines())) > FILE}
 
@@ -94,7 +89,7 @@ def large_functions(texts: dict[str, str]) -> dict[str, int]:
         f"{path}:{name}": count
         for path, text in texts.items()
         for name, function in functions(syntax(text))
-        if not is_kernel(function) and (count := code_lines(text, function)) > FUNCTION
+        if (count := code_lines(text, function)) > FUNCTION
     }
 
 
@@ -103,7 +98,7 @@ def many_parameters(texts: dict[str, str]) -> dict[str, int]:
         f"{path}:{name}": count
         for path, text in texts.items()
         for name, function in functions(syntax(text))
-        if not is_kernel(function) and (count := parameters(function)) > PARAMETERS
+        if (count := parameters(function)) > PARAMETERS
     }
 
 
@@ -191,7 +186,6 @@ def test_the_checks_can_fail() -> None:
     long = 'def long(a):\n    """Told."""\n\n    # why\n' + "    a += 1\n" * FUNCTION
     assert large_functions({"p": long}) == {"p:long": FUNCTION + 1}
     assert large_functions({"p": long.removesuffix("    a += 1\n")}) == {}
-    assert large_functions({"p": "@njit(**KERNEL)\n" + long}) == {}
     assert large_files({"p": "\n" * FILE, "q": "\n" * (FILE + 1)}) == {"q": FILE + 1}
     few = "class A:\n    def f(self, a, b, /, c, d, *, e, f, g, h):\n        pass\n"
     assert many_parameters({"p": few, "q": few.replace("h)", "h, i)")}) == {"q:A.f": PARAMETERS + 1}

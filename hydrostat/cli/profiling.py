@@ -9,7 +9,7 @@ from pathlib import Path
 FILES = {
     "elements": "neo_hookean patch_volume energy",
     "assembly": "assembly",
-    "factorisation": "blas factorisation fronts supernodal stiffness",
+    "factorisation": "factorisation fronts supernodal stiffness",
     "analysis of the pattern": "ordering symbolic",
     "arcs": "warp",
     "cables": "cable friction chain_law loading_path turns",

@@ -40,13 +40,12 @@ def read_robot(path: Path) -> "Robot":
 
 
 def prepared(robot: "Robot") -> "Simulation":
-    """The physics of a robot, after one solve if pins hold it; the first time this compiles the kernels."""
+    """Physics of a robot, after one solve if pins hold it."""
     from hydrostat.simulation import Simulation, rests_at_first
 
-    with patiently("compiling, once for this machine: about 20 s ..."):
-        simulation = Simulation(robot)
-        if rests_at_first(robot):
-            simulation.solve({}, strict=False)
+    simulation = Simulation(robot)
+    if rests_at_first(robot):
+        simulation.solve({}, strict=False)
     return simulation
 
 

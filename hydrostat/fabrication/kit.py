@@ -28,7 +28,7 @@ class Check:
 
 MANIFEST = "manifest.json"  # its file in a kit; written last, so that a kit without it is not whole
 
-_MAKERS = ("hydrostat", "ezdxf", "libigl", "manifold3d", "numba", "numpy", "scipy", "shapely", "typst")
+_MAKERS = ("hydrostat", "ezdxf", "libigl", "manifold3d", "numpy", "scipy", "shapely", "typst")
 """Packages on which the bytes of a kit depend."""
 
 

@@ -1,14 +1,12 @@
 """`CableEnergy`: all cables (tendons) of a robot, taut or slack."""
 
-import math
 from dataclasses import dataclass
-from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.kernel import INNER, Kernel, njit
+from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Coupling, Energy, HessianBlocks, Places, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 
@@ -76,7 +74,7 @@ class CableEnergy(Energy):
     def lengths(self, nodes: Nodes) -> Vector:
         """Length of each cable without its sheathed segments [m]."""
         lengths = np.zeros(len(self.winches))
-        _lengths(nodes, self.stencils, self.weights, self.offsets, self.roundings, self.cables, lengths)
+        native.lengths(nodes, self.stencils, self.weights, self.offsets, self.roundings, self.cables, lengths)
         return lengths
 
     def taken(self, controls: Vector) -> Vector:
@@ -103,7 +101,7 @@ class CableEnergy(Energy):
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
         spans, lengths = self._spans(nodes)
         pulls = self.tensions(nodes, controls)[self.cables] / lengths
-        _add_bends(spans, lengths, self.weights, pulls, self.stencils, *places)
+        native.add_bends(spans, lengths, self.weights, pulls, self.stencils, *places)
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.ratios * self.law.tangent(self.elongations(nodes, controls)))
@@ -119,7 +117,7 @@ class CableEnergy(Energy):
     def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
         """Slopes dl/dx of the length of each cable."""
         columns = np.zeros((nodes.size, len(self.winches)))
-        _spread(self.stencils, self.cables, self.length_gradients(nodes), columns)
+        native.spread(self.stencils, self.cables, self.length_gradients(nodes), columns)
         return columns
 
     def length_gradients(self, nodes: Nodes) -> Blocks:
@@ -131,7 +129,7 @@ class CableEnergy(Energy):
         spans, lengths = self._spans(nodes)
         size = self.weights.shape[1] * nodes.shape[1]
         blocks = np.empty((len(self.cables), size, size))
-        _bends(spans, lengths, self.weights, tensions[self.cables], blocks)
+        native.bends(spans, lengths, self.weights, tensions[self.cables], blocks)
         return blocks
 
     def _pull(self, nodes: Nodes, forces: Vector) -> Blocks:
@@ -142,7 +140,7 @@ class CableEnergy(Energy):
     def _spans(self, nodes: Nodes) -> tuple[Points, Float[np.ndarray, " terms"]]:
         spans = np.empty((len(self.cables), nodes.shape[1]))
         lengths = np.empty(len(self.cables))
-        _measure(nodes, self.stencils, self.weights, self.offsets, self.roundings, spans, lengths)
+        native.measure(nodes, self.stencils, self.weights, self.offsets, self.roundings, spans, lengths)
         return spans, lengths
 
 
@@ -152,85 +150,3 @@ _ROUNDING = 1e-3
 A plain norm has a kink at d = 0, where a winch that pulls hard brings two via points together: the least energy lies in
 the kink, no gradient vanishes there, and Newton stops without a descent.
 """
-
-
-@njit(**INNER)
-@no_type_check
-def _segment(term, nodes, stencils, weights, offsets, roundings, span):
-    """Length of a segment, and its span."""
-    square = roundings[term] * roundings[term]
-    for axis in range(nodes.shape[1]):
-        span[axis] = offsets[term, axis]
-        for corner in range(stencils.shape[1]):
-            span[axis] += weights[term, corner] * nodes[stencils[term, corner], axis]
-        square += span[axis] * span[axis]
-    return math.sqrt(square)
-
-
-@Kernel
-@no_type_check
-def _measure(nodes, stencils, weights, offsets, roundings, spans, lengths):
-    """Span and length of every segment."""
-    for term in range(stencils.shape[0]):
-        lengths[term] = _segment(term, nodes, stencils, weights, offsets, roundings, spans[term])
-
-
-@Kernel
-@no_type_check
-def _lengths(nodes, stencils, weights, offsets, roundings, cables, lengths):
-    """Add up the lengths of the segments of each cable."""
-    span = np.empty(nodes.shape[1])
-    for term in range(stencils.shape[0]):
-        lengths[cables[term]] += _segment(term, nodes, stencils, weights, offsets, roundings, span)
-
-
-@Kernel
-@no_type_check
-def _bends(spans, lengths, weights, tensions, blocks):
-    """T (I - u u^T) / length of every segment, spread to its nodes by the weights."""
-    corners, dim = weights.shape[1], spans.shape[1]
-    for term in range(spans.shape[0]):
-        scale = tensions[term] / lengths[term]
-        square = lengths[term] * lengths[term]
-        for i in range(dim):
-            for j in range(dim):
-                across = -spans[term, i] * spans[term, j] / square
-                if i == j:
-                    across += 1.0
-                across *= scale
-                for a in range(corners):
-                    for b in range(corners):
-                        blocks[term, a * dim + i, b * dim + j] = weights[term, a] * weights[term, b] * across
-
-
-@Kernel
-@no_type_check
-def _add_bends(spans, lengths, weights, pulls, stencils, slots, strides, data):
-    """Add T (I - u u^T) / length of every taut segment, spread to its nodes by the weights, to a sparse matrix."""
-    corners, dim = weights.shape[1], spans.shape[1]
-    across = np.empty((dim, dim))
-    for term in range(spans.shape[0]):
-        if pulls[term] == 0.0:
-            continue
-        square = lengths[term] * lengths[term]
-        for i in range(dim):
-            for j in range(dim):
-                across[i, j] = pulls[term] * ((1.0 if i == j else 0.0) - spans[term, i] * spans[term, j] / square)
-        for b in range(corners):
-            stride = strides[stencils[term, b]]
-            for a in range(corners):
-                weight, start = weights[term, a] * weights[term, b], slots[term, a, b]
-                for j in range(dim):
-                    for i in range(dim):
-                        data[start + j * stride + i] += weight * across[j, i]
-
-
-@Kernel
-@no_type_check
-def _spread(stencils, cables, gradients, columns):
-    """Add up the gradients of the segments of each cable."""
-    dim = gradients.shape[2]
-    for term in range(stencils.shape[0]):
-        for corner in range(stencils.shape[1]):
-            for axis in range(dim):
-                columns[stencils[term, corner] * dim + axis, cables[term]] += gradients[term, corner, axis]

@@ -10,8 +10,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry.boundary_tree import BoundaryTree, Pairs, facet_areas
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.pair_distances import admissible_share, squared_distances
-from hydrostat.mechanics.contact_pairs import barrier_energy, barrier_forces, barrier_hessian
+from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Places, Pressed, Stencils
 
 
@@ -41,7 +40,7 @@ class TouchingSkin:
     def squared(self, nodes: Nodes, pairs: Pairs) -> Vector:
         """Squared distance of each pair [m^2]."""
         squared = np.empty(len(pairs.edges))
-        squared_distances(nodes, *pairs, self.soft, squared)
+        native.squared_distances(nodes, *pairs, self.soft, squared)
         return squared
 
     def begins(self, pairs: Pairs) -> Vector:
@@ -121,11 +120,11 @@ class ContactEnergy(Energy):
         return stencils, edges, self.skin.soft, self._begins, self.skin.weights(self.pairs, self._begins)
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        return float(barrier_energy(nodes, *self._law)[0]) if len(self.stencils) else 0.0
+        return float(native.barrier_energy(nodes, *self._law)[0]) if len(self.stencils) else 0.0
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         blocks = np.empty((*self.stencils.shape, nodes.shape[1]))
-        barrier_forces(nodes, *self._law, blocks)
+        native.barrier_forces(nodes, *self._law, blocks)
         return blocks
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
@@ -134,7 +133,7 @@ class ContactEnergy(Energy):
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         size = self.stencils.shape[1] * nodes.shape[1]
         blocks = np.empty((len(self.stencils), size, size))
-        barrier_hessian(nodes, *self._law, share, blocks)
+        native.barrier_hessian(nodes, *self._law, share, blocks)
         return blocks
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
@@ -148,7 +147,7 @@ class ContactEnergy(Energy):
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         watch, skin = self.watch, self.skin
         if watch is not None and watch.serves(nodes) and watch.serves(nodes + move):
-            share = admissible_share(nodes, move, skin.rest, *watch.pairs, _KEPT)
+            share = native.admissible_share(nodes, move, skin.rest, *watch.pairs, _KEPT)
         else:
             share, pairs = skin.tree.sweep(nodes, move, skin.rest, kept=_KEPT, reach=self._reach)
             self.swept = nodes + share * move, pairs

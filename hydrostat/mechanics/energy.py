@@ -3,13 +3,13 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol, Self, no_type_check, runtime_checkable
+from typing import ClassVar, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.kernel import Kernel
+from hydrostat.kernel import native
 
 Stencils = Int[np.ndarray, "terms corners"]
 Blocks = Float[np.ndarray, "terms corners dim"]
@@ -144,7 +144,7 @@ class Energy(ABC):
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
         """Add dE/dx to the forces of all nodes [N]; to be told anew only where that is faster than by `gradient`."""
-        _add_vectors(self.stencils, self.gradient(nodes, controls), total)
+        native.add_vectors(self.stencils, self.gradient(nodes, controls), total)
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
         """Add d2E/dx2, with a share of what is negative taken out, to the values of a sparse matrix; as above."""
@@ -152,7 +152,7 @@ class Energy(ABC):
             blocks = self.projected_hessian(nodes, controls, share)
         else:
             blocks = self.hessian(nodes, controls)
-        add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
+        native.add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
 
     def coupling(self, nodes: Nodes, controls: Vector) -> Coupling | None:
         """Springs that couple many nodes, whose Hessian G D G^T is kept as the low rank it has. None for most."""
@@ -276,30 +276,3 @@ def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:
     kept = np.maximum(values[bad], 0.0)
     repaired[bad] = (vectors[bad] * kept[:, None, :]) @ np.swapaxes(vectors[bad], 1, 2)
     return repaired
-
-
-@Kernel
-@no_type_check
-def _add_vectors(stencils, vectors, total):
-    """Add the vector of every corner of every term to its node."""
-    for term in range(stencils.shape[0]):
-        for corner in range(stencils.shape[1]):
-            node = stencils[term, corner]
-            for axis in range(total.shape[1]):
-                total[node, axis] += vectors[term, corner, axis]
-
-
-@Kernel
-@no_type_check
-def add_blocks(stencils, slots, strides, blocks, data):
-    """Add every dim x dim block of symmetric blocks to the values of the sparse matrix."""
-    corners = stencils.shape[1]
-    dim = blocks.shape[1] // corners
-    for term in range(stencils.shape[0]):
-        for b in range(corners):
-            stride = strides[stencils[term, b]]
-            for a in range(corners):
-                start = slots[term, a, b]
-                for j in range(dim):
-                    for i in range(dim):
-                        data[start + j * stride + i] += blocks[term, b * dim + j, a * dim + i]

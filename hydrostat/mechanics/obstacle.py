@@ -11,6 +11,7 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.boundary_tree import facet_areas
 from hydrostat.geometry.distance_field import DistanceField, Distances
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.kernel import native
 from hydrostat.mechanics.energy import (
     Blocks,
     Compliance,
@@ -20,7 +21,6 @@ from hydrostat.mechanics.energy import (
     Pressed,
     Response,
     Stencils,
-    add_blocks,
     nearest_semidefinite,
 )
 from hydrostat.mechanics.grip import Grip
@@ -135,7 +135,7 @@ class ObstacleEnergy(Energy):
         some = np.flatnonzero(felt)
         if len(some):
             blocks = self._blocks(nodes, some, where, share)
-            add_blocks(self.stencils[some], places.slots[some], places.strides, blocks, places.data)
+            native.add_blocks(self.stencils[some], places.slots[some], places.strides, blocks, places.data)
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         """By conservative advancement: a sample cannot meet the obstacle before distance / speed."""

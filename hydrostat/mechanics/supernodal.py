@@ -1,16 +1,14 @@
 """Supernodal factors of a symmetric matrix: where their fronts lie, the memory that they work in, and solving by them.
 
-The method stands in fronts.py. The compiled core serves (native/fronts.hpp), or numba's kernels where there is none.
+The method stands in fronts.py, its loops in native/fronts.hpp.
 """
 
 import threading
-from functools import cached_property
-from typing import Any, no_type_check
+from typing import Any
 
 import numpy as np
 
-from hydrostat.kernel import THREADS, Kernel, native
-from hydrostat.mechanics.blas import Scratch, scratch
+from hydrostat.kernel import THREADS, native
 from hydrostat.mechanics.fronts import (
     BELOW,
     BLOCK,
@@ -19,18 +17,13 @@ from hydrostat.mechanics.fronts import (
     ENTRIES,
     FIRST,
     LOWER,
-    OFFSET,
     PANEL,
     RUNS,
     SIBLING,
-    STACK,
     STARTS,
     UPPER,
     WHOLE,
     Fronts,
-    factorise_fronts,
-    solve_matrix,
-    solve_vector,
 )
 from hydrostat.mechanics.symbolic import EliminationTree, children
 
@@ -63,80 +56,11 @@ def plan(
     runs = np.empty((len(rows), 3), np.int64)
     entries = np.empty(((len(indices) + len(place)) // 2 + 1, 2), np.int32)
     diagonal, local = np.full(len(place), -1), np.empty(len(place), np.int64)
-    _stacks(table, tree.parent, np.zeros(2, np.int64), sizes)
-    _runs(table, tree.parent, rows, runs)
-    _entries(table, rows, indptr, indices, place, np.argsort(place), local, entries, diagonal)
+    native.stacks(table, tree.parent, np.zeros(2, np.int64), sizes)
+    native.runs(table, tree.parent, rows, runs)
+    native.entries(table, rows, indptr, indices, place, np.argsort(place), local, entries, diagonal)
     runs, entries = runs[: table[-1, RUNS]].copy(), entries[: table[-1, ENTRIES]].copy()
     return Fronts(table, rows, runs, entries, diagonal), place, sizes
-
-
-@Kernel
-@no_type_check
-def _stacks(table, parent, top, most):
-    """On which stack what a front hands up will lie, where, and how much the stacks hold at most; `top` is 0."""
-    for vertex in range(len(parent) - 1, -1, -1):
-        if parent[vertex] >= 0:
-            table[vertex, STACK] = 1 - table[parent[vertex], STACK]
-    for vertex in range(len(parent)):
-        which = table[vertex, STACK]
-        if table[vertex, CHILD] >= 0:
-            top[1 - which] = table[table[vertex, CHILD], OFFSET]
-        table[vertex, OFFSET] = top[which]
-        top[which] += table[vertex, BELOW] * table[vertex, BELOW]
-        most[which] = max(most[which], top[which])
-
-
-@Kernel
-@no_type_check
-def _runs(table, parent, rows, runs):
-    """Pieces of the rows below each front that are contiguous in the parent's front; none crosses its own columns."""
-    filled = 0
-    for which in range(len(parent)):
-        up = parent[which]
-        if up >= 0:
-            columns, at = table[up, COLUMNS], table[up, STARTS]
-            previous = -2
-            for position in range(table[which, STARTS], table[which + 1, STARTS]):
-                row = rows[position]
-                local = row - table[up, FIRST]
-                if local >= columns:
-                    while rows[at] < row:
-                        at += 1
-                    local = columns + at - table[up, STARTS]
-                if local == previous + 1 and local != columns:
-                    runs[filled - 1, 2] += 1
-                else:
-                    runs[filled, 0] = position - table[which, STARTS]
-                    runs[filled, 1] = local
-                    runs[filled, 2] = 1
-                    filled += 1
-                previous = local
-        table[which + 1, RUNS] = filled
-
-
-@Kernel
-@no_type_check
-def _entries(table, rows, indptr, indices, place, undo, local, entries, diagonal):
-    """For each front the places of its entries of A in the data and in its panel, and the places of the diagonal."""
-    filled = 0
-    for which in range(len(table) - 1):
-        first, columns, start = table[which, FIRST], table[which, COLUMNS], table[which, STARTS]
-        height = columns + table[which, BELOW]
-        for row in range(columns):
-            local[first + row] = row
-        for position in range(table[which, BELOW]):
-            local[rows[start + position]] = columns + position
-        for column in range(columns):
-            old = undo[first + column]
-            for entry in range(indptr[old], indptr[old + 1]):
-                row = place[indices[entry]]
-                if row == first + column:
-                    diagonal[old] = entry
-                if row >= first + column:
-                    entries[filled, 0] = entry
-                    entries[filled, 1] = column * height + local[row]
-                    filled += 1
-        table[which + 1, ENTRIES] = filled
 
 
 class _Workspace(threading.local):
@@ -146,11 +70,6 @@ class _Workspace(threading.local):
         self.sizes = spare, stacks
         self.spare = np.empty(spare)
         self.stacks = np.empty(stacks[0] + SPARE), np.empty(stacks[1] + SPARE)
-
-    @cached_property
-    def call(self) -> Scratch:
-        """What numba's kernels call BLAS with."""
-        return scratch()
 
     def __reduce__(self) -> tuple:
         return _Workspace, self.sizes
@@ -190,20 +109,18 @@ class SupernodalAnalysis:
         self.height = int((table[:, COLUMNS] + table[:, BELOW]).max(initial=1))
         widest = int(table[:, COLUMNS].max(initial=1))
         self.idle = _IdleArrays()
-        self.workspace = _Workspace(max(widest * max(widest, BLOCK), 1), (int(sizes[0]), int(sizes[1])))
+        self.workspace = _Workspace(max(widest * BLOCK, 1), (int(sizes[0]), int(sizes[1])))
 
     def factorise(self, data: np.ndarray, tiny: float) -> "SupernodalFactors":
         """Factors of the matrix with these values."""
         signs = np.ones(len(self.place))
         work = self.workspace
         lower = self.idle.take(self.entries + SPARE)
-        if native is not None and THREADS > 1 and self.seconds >= LARGE:
+        if THREADS > 1 and self.seconds >= LARGE:
             widest = len(work.spare)
             negative = native.factorise_together(*self.fronts, data, lower, signs, widest, tiny, THREADS)
-        elif native is not None:
-            negative = native.factorise(*self.fronts, data, lower, signs, *work.stacks, work.spare, tiny)
         else:
-            negative = factorise_fronts(self.fronts, data, lower, signs, *work.stacks, work.spare, work.call, tiny)
+            negative = native.factorise(*self.fronts, data, lower, signs, *work.stacks, work.spare, tiny)
         return SupernodalFactors(self, lower, signs, int(negative))
 
 
@@ -216,7 +133,7 @@ class SupernodalFactors:
     """
 
     def __init__(self, analysis: SupernodalAnalysis, lower: np.ndarray, signs: np.ndarray, negative: int) -> None:
-        """What `factorise_fronts` filled."""
+        """Numbers that a factorisation filled."""
         self.singular = negative < 0
         self.negative = max(negative, 0)
         self._analysis, self._lower, self._signs = analysis, lower, signs
@@ -255,17 +172,8 @@ class SupernodalFactors:
 
     def _apply(self, right: np.ndarray, way: int) -> np.ndarray:
         analysis = self._analysis
-        if native is not None:
-            given = np.ascontiguousarray(right, dtype=float).reshape(len(right), -1)
-            found = np.empty(given.shape)
-            places = analysis.fronts.table, analysis.fronts.rows, analysis.place
-            native.solve(*places, self._lower, self._signs, given, found, way, analysis.height)
-            return found.reshape(right.shape)
-        values = np.empty(right.shape)
-        values[... if way == UPPER else analysis.place] = right
-        if right.ndim == 1:
-            solve_vector(analysis.fronts, self._lower, self._signs, values, np.empty(analysis.height), way)
-        elif right.shape[1] > 0:
-            work = np.empty((analysis.height, right.shape[1]))
-            solve_matrix(analysis.fronts, self._lower, self._signs, values, work, analysis.workspace.call, way)
-        return values if way == LOWER else values[analysis.place]
+        given = np.ascontiguousarray(right, dtype=float).reshape(len(right), -1)
+        found = np.empty(given.shape)
+        places = analysis.fronts.table, analysis.fronts.rows, analysis.place
+        native.solve(*places, self._lower, self._signs, given, found, way, analysis.height)
+        return found.reshape(right.shape)

@@ -27,7 +27,6 @@ from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.geometry.files.surface_file import read_surface
 from hydrostat.geometry.healing.heal import heal
 from hydrostat.geometry.triangles.triangulate import triangulate
-from hydrostat.kernel import Compiled
 from hydrostat.robot import replace_file
 from hydrostat.robot.commented import commented_text
 from hydrostat.robot.unfinished import clear_unfinished, unfinished
@@ -336,18 +335,6 @@ def test_a_closed_pipe_and_a_full_disk_end_without_a_trace() -> None:
         filled = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False, env=shell)
     assert filled.returncode == 2
     assert filled.stderr == "hydrostat: what was to be written: No space left on device\n"
-
-
-def test_where_no_cache_can_be_written_kernels_are_compiled_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Oracle: numba itself, which finds no place for its cache."""
-    from numba.core import caching
-
-    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
-    assert Compiled(_twice, {"cache": True})(21) == 42
-
-
-def _twice(value: int) -> int:
-    return 2 * value
 
 
 def test_the_files_of_the_benchmark_are_all_there() -> None:

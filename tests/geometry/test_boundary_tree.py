@@ -8,7 +8,7 @@ from touching import fork_mesh
 
 from hydrostat.geometry.boundary_tree import BoundaryTree, facet_areas
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.pair_distances import admissible_share, squared_distances
+from hydrostat.kernel import native
 
 
 def bent(mesh: Mesh, amount: float, seed: int = 0) -> np.ndarray:
@@ -61,7 +61,7 @@ def test_all_pairs_within_reach_are_found(dim: int) -> None:
     nodes, reach = bent(mesh, 0.05), 0.012
     stencils, edges = all_pairs(mesh)
     squared = np.empty(len(edges))
-    squared_distances(nodes, stencils, edges, 0.0, squared)
+    native.squared_distances(nodes, stencils, edges, 0.0, squared)
     wanted = as_set(stencils[squared < reach**2], edges[squared < reach**2])
     found = BoundaryTree(mesh).pairs(nodes, reach)
     assert len(wanted) > 10
@@ -79,9 +79,9 @@ def test_a_sweep_is_that_of_all_pairs(dim: int, amount: float) -> None:
     for seed in range(4):
         nodes, move = bent(mesh, 0.02, 9 + seed), bent(mesh, amount, seed) - mesh.nodes
         share, found = BoundaryTree(mesh).sweep(nodes, move, mesh.nodes, kept=0.1, reach=reach)
-        assert share == pytest.approx(admissible_share(nodes, move, mesh.nodes, stencils, edges, 0.1), rel=1e-12)
+        assert share == pytest.approx(native.admissible_share(nodes, move, mesh.nodes, stencils, edges, 0.1), rel=1e-12)
         squared = np.empty(len(edges))
-        squared_distances(nodes + share * move, stencils, edges, 0.0, squared)
+        native.squared_distances(nodes + share * move, stencils, edges, 0.0, squared)
         assert as_set(*found) == as_set(stencils[squared < reach**2], edges[squared < reach**2])
         least = min(least, share)
     assert (least < 1.0) == (amount == 0.4)
@@ -94,7 +94,7 @@ def test_distances_are_those_of_the_nearest_samples(kind: str) -> None:
     points = np.random.default_rng(random).normal(size=(60, dim + 1, dim))
     stencils = np.arange(60 * (dim + 1)).reshape(60, dim + 1)
     squared = np.empty(60)
-    squared_distances(points.reshape(-1, dim), stencils, np.full(60, first == 2), 0.0, squared)
+    native.squared_distances(points.reshape(-1, dim), stencils, np.full(60, first == 2), 0.0, squared)
     for corners, found in zip(points, squared, strict=True):
         one, other = samples(corners[:first], 201), samples(corners[first:], 201)
         nearest = np.linalg.norm(one[:, None] - other[None], axis=2).min()
@@ -135,8 +135,8 @@ def test_pairs_that_touch_at_rest_may_move() -> None:
     move = np.where(np.arange(6)[:, None] < 3, 0.0, -0.5) * np.ones(2)
     stencils = np.array([[0, 3, 4], [3, 0, 1]])
     still, apart = np.zeros(2, np.bool_), np.repeat([[0.0], [9.0]], 3, axis=0)
-    assert admissible_share(nodes, move, nodes, stencils, still, 0.1) == 1.0
-    assert admissible_share(nodes, -move, nodes + apart, stencils, still, 0.1) < 1e-6
+    assert native.admissible_share(nodes, move, nodes, stencils, still, 0.1) == 1.0
+    assert native.admissible_share(nodes, -move, nodes + apart, stencils, still, 0.1) < 1e-6
 
 
 @pytest.mark.parametrize("dim", [2, 3])

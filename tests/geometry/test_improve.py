@@ -14,6 +14,7 @@ from hydrostat.geometry.tetrahedra import improve as module
 from hydrostat.geometry.tetrahedra.improve import ImproveStage, improve
 from hydrostat.geometry.tetrahedra.stuffing import signed_volumes
 from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+from hydrostat.kernel import native
 
 REGULAR = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])[[0, 2, 1, 3]]
 
@@ -65,52 +66,37 @@ class Case:
         return float((shapes**self.power).sum() + self.pull * (gaps**2).sum())
 
 
-@pytest.fixture
-def plain(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is compiled only for compiled callers, as Python."""
-    for name in ("_shape", "_energy", "_derivatives"):
-        monkeypatch.setattr(module, name, getattr(module, name).py_func)
-
-
-@pytest.mark.usefixtures("plain")
 @pytest.mark.parametrize("power", [1.0, 2.0, 4.0])
 @pytest.mark.parametrize("node", [13, 0, 4], ids=["inside", "at a corner", "on a side"])
 def test_energy_gradient_and_hessian_of_a_node(node: int, power: float) -> None:
     """By the sum itself and by central differences."""
     case = Case.random(node, power)
-    others = np.array(module._OTHERS)
-    slope, bend = np.empty(3), np.empty((3, 3))
 
     def derivatives(x: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-        nodes = case.nodes.copy()
+        nodes, slope, bend = case.nodes.copy(), np.empty(3), np.empty((3, 3))
         nodes[node] = x
-        total = module._derivatives(node, nodes, *case.lists, others, slope, bend)
-        return total, slope.copy(), bend.copy()
+        total = native.node_derivatives(node, slope, bend, nodes, *case.lists)
+        assert total == pytest.approx(case.energy(nodes, node), rel=1e-12)
+        return total, slope, np.triu(bend) + np.triu(bend, 1).T
 
-    x = case.nodes[node]
-    total, gradient, hessian = derivatives(x)
-    assert total == pytest.approx(case.energy(case.nodes, node), rel=1e-12)
-    step = 1e-5
+    x, step = case.nodes[node], 1e-5
+    _, gradient, hessian = derivatives(x)
     for axis in range(3):
-        ends = [x + sign * step * np.eye(3)[axis] for sign in (1, -1)]
-        values = [module._energy(end, node, case.nodes, *case.lists, others) for end in ends]
-        assert values[0] == pytest.approx(derivatives(ends[0])[0], rel=1e-12)
-        assert gradient[axis] == pytest.approx((values[0] - values[1]) / (2 * step), rel=1e-6, abs=1e-6)
-        slopes = [derivatives(end)[1] for end in ends]
-        np.testing.assert_allclose(hessian[axis], (slopes[0] - slopes[1]) / (2 * step), rtol=1e-5, atol=1e-5)
-    np.testing.assert_allclose(hessian, hessian.T, rtol=1e-12)
+        (high, rise, _), (low, fall, _) = (derivatives(x + sign * step * np.eye(3)[axis]) for sign in (1, -1))
+        assert gradient[axis] == pytest.approx((high - low) / (2 * step), rel=1e-6, abs=1e-6)
+        np.testing.assert_allclose(hessian[axis], (rise - fall) / (2 * step), rtol=1e-5, atol=1e-5)
     assert np.linalg.eigvalsh(hessian).min() > 0
 
 
-@pytest.mark.usefixtures("plain")
 def test_shape_is_one_of_a_regular_tetrahedron_and_infinite_of_one_turned_over() -> None:
-    elements = np.array([[0, 1, 2, 3]])
-    others = np.array(module._OTHERS)
     for corner in range(4):
-        for scale in (1.0, 1e-3):
+        for scale, turned in ((1.0, 1.0), (0.1, 1.0), (1.0, -3.0)):
             nodes = scale * REGULAR
-            assert module._shape(nodes[corner], elements, nodes, corner, others)[0] == pytest.approx(1)
-        assert module._shape(-3 * REGULAR[corner], elements, REGULAR, corner, others)[0] == np.inf
+            nodes[corner] *= turned
+            mesh = Mesh(REGULAR, np.array([[0, 1, 2, 3]]))
+            case = Case(nodes, mesh, np.zeros((4, 3, 3)), np.zeros((4, 3)), 1.0, 0.0)
+            total = native.node_derivatives(corner, np.empty(3), np.empty((3, 3)), nodes, *case.lists)
+            assert total == (pytest.approx(1) if turned > 0 else np.inf)
 
 
 @pytest.mark.parametrize("power", [1.0, 4.0])
@@ -122,7 +108,7 @@ def test_a_sweep_lowers_the_energy_and_turns_nothing_over(seed: int, power: floa
     nodes, before = case.nodes.copy(), case.energy(case.nodes)
     first = before
     for _ in range(12):
-        module._sweep(nodes, *case.lists)
+        native.sweep(nodes, *case.lists)
         after = case.energy(nodes)
         assert after <= before * (1 + 1e-12)
         before = after

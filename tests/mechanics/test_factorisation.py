@@ -1,23 +1,16 @@
 """The factorisation. Oracle: dense eigenvalues and dense solves; SuperLU, an independent program."""
 
 import copy
-import os
 import pickle
-import subprocess
-import sys
 
 import numpy as np
 import pytest
-from numba.core.dispatcher import Dispatcher
 from scipy.sparse import block_diag, coo_array, csc_array, eye_array, kron
 from scipy.spatial import Delaunay
 
-from hydrostat.kernel import Compiled, Kernel
-from hydrostat.mechanics import blas, fronts, ordering, supernodal, symbolic
 from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
 from hydrostat.mechanics.supernodal import SupernodalAnalysis
 
-ROOMS = (blas, fronts, ordering, supernodal, symbolic)
 BACKENDS: tuple[Backend, ...] = ("supernodal", "superlu")
 
 
@@ -251,51 +244,6 @@ def test_one_off() -> None:
     matrix = shifted(elastic(graph, 2), 3)
     assert_right(factorise(matrix), matrix, 1e-7)
     assert_right(factorise(matrix), matrix, 1e-7)
-
-
-@pytest.mark.slow
-def test_compiled_code_is_found_again_by_another_process() -> None:
-    """numba counts what it loads from disk; here it has been put there by the tests above."""
-    code = """
-import numpy as np
-from hydrostat.mechanics.factorisation import Analysis
-from hydrostat.mechanics import fronts
-factor = Analysis(np.arange(7, dtype=np.int32), np.arange(6, dtype=np.int32), dim=2).factorise(np.ones(6))
-assert (factor.solve(np.ones(6)) == 1).all()
-stats = fronts.factorise_fronts.now.stats
-assert stats.cache_hits and not stats.cache_misses, stats
-"""
-    for _ in range(2):
-        environment = os.environ | {"HYDROSTAT_NATIVE": "0"}
-        result = subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, check=False, env=environment
-        )
-        if result.returncode == 0:
-            return
-    pytest.fail(result.stderr)
-
-
-def test_nothing_is_compiled_twice(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Oracle: numba's list of signatures, after matrices of every kind; each further one would cost seconds."""
-    monkeypatch.setattr(supernodal, "native", None)
-    monkeypatch.setattr(Kernel, "__call__", lambda self, *arguments: self.by_numba(*arguments))
-    for dim, points in ((1, False), (2, True), (3, True)):
-        places, graph = body(80, max(dim, 2))
-        matrix = shifted(elastic(graph, dim), 0)
-        matrix.sort_indices()
-        for wide in (np.int32, np.int64):
-            indptr, indices, data = matrix.indptr.astype(wide), matrix.indices.astype(wide), matrix.data.copy()
-            for array in (indptr, indices, data, places):
-                array.setflags(write=False)
-            for some in (places, np.asfortranarray(places)):
-                factor = Analysis(indptr, indices, dim=dim, points=some if points else None).factorise(data)
-            for right in (np.ones(80 * dim), np.ones((80 * dim, 3), order="F"), np.ones((80 * dim, 4))[:, ::2]):
-                factor.solve(right)
-    items = {name: getattr(item, "by_numba", item) for room in ROOMS for name, item in vars(room).items()}
-    made = {name: item.now if isinstance(item, Compiled) else item for name, item in items.items()}
-    kernels = {name: item for name, item in made.items() if isinstance(item, Dispatcher)}
-    assert {"factorise_fronts", "solve_vector", "solve_matrix", "_dissect", "_alternate", "_rows"} <= kernels.keys()
-    assert {name: len(item.signatures) for name, item in kernels.items() if len(item.signatures) > 1} == {}
 
 
 def test_ordering_finds_the_separator_of_a_grid() -> None:

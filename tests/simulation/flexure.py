@@ -21,11 +21,11 @@ and stationary in kappa:
     b Integral P_1 r dY + T r(c) = 0.
 
 The first gives the axial force at once: b Integral P_1 dY = -T; the second is the moment about the centre of bending.
-So the beam carries exactly the thrust -T along the cable, and the moment may be taken about any point: about the line of
-radius 1 / kappa, which is as long as at rest, nothing cancels where the bending is small. The state (rho = r - 1 / kappa,
-s = r', M = Integral P_1 rho) obeys ordinary equations, as P_2' = (dP_2/d lambda_2) s' + (dP_2/d lambda_1) kappa s; two
-unknowns, rho at the lower face and kappa, are shot for, both in units of what linear theory gives. Psi is R22, for which
-dP_2/d lambda_1 = lambda / (lambda_1 lambda_2).
+So the beam carries exactly the thrust -T along the cable, and the moment may be taken about any point: about the line
+of radius 1 / kappa, which is as long as at rest, nothing cancels where the bending is small. The state (rho = r - 1 /
+kappa, s = r', M = Integral P_1 rho) obeys ordinary equations, as P_2' = (dP_2/d lambda_2) s' + (dP_2/d lambda_1) kappa
+s; two unknowns, rho at the lower face and kappa, are shot for, both in units of what linear theory gives. Psi is R22,
+for which dP_2/d lambda_1 = lambda / (lambda_1 lambda_2).
 """
 
 import numpy as np

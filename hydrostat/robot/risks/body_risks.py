@@ -8,11 +8,11 @@ from hydrostat.arrays import Points
 from hydrostat.geometry.boundary_tree import BoundaryTree
 from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.mesh import Mesh, dihedral_angles, smallest_angle
-from hydrostat.geometry.pair_distances import squared_distances
 from hydrostat.geometry.surface import Solid
 from hydrostat.geometry.tetrahedra.manifold import euler
 from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, fit
 from hydrostat.geometry.thickness import thin_parts
+from hydrostat.kernel import native
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.risks.words import mm, place
 from hydrostat.robot.robot import Robot
@@ -77,7 +77,7 @@ def _touching(mesh: Mesh) -> Points:
     reach = _TOUCHES * mesh.size
     pairs = BoundaryTree(mesh).pairs(mesh.nodes, reach)
     squared = np.empty(len(pairs.edges))
-    squared_distances(mesh.nodes, *pairs, 0.0, squared)
+    native.squared_distances(mesh.nodes, *pairs, 0.0, squared)
     return mesh.nodes[pairs.stencils[squared < reach**2, 0]]
 
 
