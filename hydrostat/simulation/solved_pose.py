@@ -207,10 +207,12 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
 
 def _check_metres(robot: Robot, contractions: Vector) -> None:
     """Refuse what no winch could do, as where millimetres were given."""
+    size = robot.body.mesh.size
+    if np.abs(contractions).max(initial=0.0) <= _MOST * size:  # no winch has a lower limit
+        return
     bare = {winch.name: 0.0 for winch in robot.winches}
     for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
         bare[cable.winch] = max(bare[cable.winch], cable.length / float(ratio))
-    size = robot.body.mesh.size
     for winch, value in zip(robot.winches, contractions, strict=True):
         if abs(value) > _MOST * (size + bare[winch.name]):
             raise InputError(
