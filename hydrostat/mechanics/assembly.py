@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cached_property
+from math import isfinite
 
 import numpy as np
 from jaxtyping import Float
@@ -154,7 +155,7 @@ class Assembly:
         total = 0.0
         for energy in self.energies:
             total += energy.value(nodes, controls)
-            if not np.isfinite(total):
+            if not isfinite(total):
                 return np.inf
         return total
 

@@ -28,20 +28,22 @@ class PinEnergy(Energy):
         self.stencils = stencils
         self.supports = self._support_of = np.arange(len(stencils)) if supports is None else supports
         self.weights, self.targets, self.stiffness = weights, targets, stiffness
-        pairs = stiffness[:, None, None] * weights[:, :, None] * weights[:, None, :]
         dim = targets.shape[1]
+        self._rows, self._pulls = weights[:, None, :], stiffness[:, None, None] * weights[:, :, None]
+        self._axis_stiffness = np.repeat(stiffness, dim)
+        pairs = self._pulls * self._rows
         blocks = np.einsum("tab,ij->taibj", pairs, np.eye(dim))
         self._blocks = blocks.reshape(len(stencils), weights.shape[1] * dim, weights.shape[1] * dim)
 
     def _offsets(self, nodes: Nodes) -> Points:
-        return np.einsum("tc,tcd->td", self.weights, nodes[self.stencils]) - self.targets
+        return np.matmul(self._rows, nodes.take(self.stencils, axis=0))[:, 0] - self.targets
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        return float(0.5 * self.stiffness @ (self._offsets(nodes) ** 2).sum(axis=1))
+        offsets = self._offsets(nodes).ravel()
+        return 0.5 * float(self._axis_stiffness @ (offsets * offsets))
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        forces = self.stiffness[:, None] * self._offsets(nodes)
-        return self.weights[:, :, None] * forces[:, None, :]
+        return self._pulls * self._offsets(nodes)[:, None, :]
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self._blocks
