@@ -135,20 +135,25 @@ void add_bends(Reals<2> spans, Reals<1> lengths, Reals<2> weights, Reals<1> pull
     }
 }
 
-void spread(Counts<2> stencils, Counts<1> cables, Reals<3> gradients, Array<double, 2> columns) {
-    Int terms = (Int)stencils.shape(0), corners = (Int)stencils.shape(1), dim = (Int)gradients.shape(2);
-    Int count = (Int)columns.shape(1);
-    demand((Int)cables.shape(0) == terms && (Int)gradients.shape(0) == terms && (Int)gradients.shape(1) == corners,
+// Add the slopes of the length of each segment by its nodes, times its factor, to its column of a matrix.
+void add_slopes(Reals<2> nodes, Counts<2> stencils, Reals<2> weights, Reals<2> offsets, Reals<1> roundings,
+                Counts<1> columns, Reals<1> factors, Array<double, 3> total) {
+    Segments all(nodes, stencils, weights, offsets, roundings);
+    Int count = (Int)total.shape(2);
+    double span[3];
+    demand((Int)columns.shape(0) == all.terms && (Int)factors.shape(0) == all.terms && all.dim <= 3,
            "as many segments of each");
-    demand_below(stencils.data(), terms * corners, dim > 0 ? (Int)columns.shape(0) / dim : 0, "a corner is no node");
-    demand_below(cables.data(), terms, count, "a segment of no cable");
-    for (Int term = 0; term < terms; term++)
-        for (Int corner = 0; corner < corners; corner++)
-            for (Int axis = 0; axis < dim; axis++) {
-                Int place = term * corners + corner;
-                columns.data()[(stencils.data()[place] * dim + axis) * count + cables.data()[term]] +=
-                    gradients.data()[place * dim + axis];
-            }
+    demand(total.shape(0) == nodes.shape(0) && total.shape(1) == nodes.shape(1), "as many slopes as nodes");
+    demand_below(columns.data(), all.terms, count, "a segment of no cable");
+    for (Int term = 0; term < all.terms; term++) {
+        double scale = factors.data()[term] / all.measure(term, span);
+        double* column = total.data() + columns.data()[term];
+        for (Int corner = 0; corner < all.corners; corner++) {
+            Int place = term * all.corners + corner, first = all.stencils[place] * all.dim;
+            for (Int axis = 0; axis < all.dim; axis++)
+                column[(first + axis) * count] += all.weights[place] * (span[axis] * scale);
+        }
+    }
 }
 
 void evaluate(Reals<1> stiffness, Reals<1> smoothing, Reals<1> elongation, Array<double, 2> found) {
@@ -307,7 +312,7 @@ void add_cables(nb::module_& module) {
     module.def("lengths", &lengths, given(), given(), given(), given(), given(), given(), filled());
     module.def("bends", &bends, given(), given(), given(), given(), filled());
     module.def("add_bends", &add_bends, given(), given(), given(), given(), given(), given(), given(), filled());
-    module.def("spread", &spread, given(), given(), given(), filled());
+    module.def("add_slopes", &add_slopes, given(), given(), given(), given(), given(), given(), given(), filled());
     module.def("evaluate", &evaluate, given(), given(), given(), filled());
     module.def("balance", &balance, given(), given(), given(), given(), filled());
     module.def("add_vectors", &add_vectors, given(), given(), filled());

@@ -95,6 +95,10 @@ class CableEnergy(Energy):
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.tensions(nodes, controls))
 
+    def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
+        forces = self.tensions(nodes, controls)[self.cables]
+        self._add_slopes(nodes, np.zeros_like(self.cables), forces, total[:, :, None])
+
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.bends(nodes, self.tensions(nodes, controls))
 
@@ -116,9 +120,9 @@ class CableEnergy(Energy):
 
     def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
         """Slopes dl/dx of the length of each cable."""
-        columns = np.zeros((nodes.size, len(self.winches)))
-        native.spread(self.stencils, self.cables, self.length_gradients(nodes), columns)
-        return columns
+        columns = np.zeros((*nodes.shape, len(self.winches)))
+        self._add_slopes(nodes, self.cables, np.ones(len(self.cables)), columns)
+        return columns.reshape(nodes.size, len(self.winches))
 
     def length_gradients(self, nodes: Nodes) -> Blocks:
         """Slopes dl/dx of each segment at its stencil's nodes."""
@@ -136,6 +140,11 @@ class CableEnergy(Energy):
         spans, lengths = self._spans(nodes)
         directions = spans * (forces[self.cables] / lengths)[:, None]
         return self.weights[:, :, None] * directions[:, None, :]
+
+    def _add_slopes(self, nodes: Nodes, columns: np.ndarray, factors: Vector, total: np.ndarray) -> None:
+        """Add the slopes of the length of each segment, times a factor, to its column of (nodes, dim, columns)."""
+        segments = self.stencils, self.weights, self.offsets, self.roundings
+        native.add_slopes(nodes, *segments, columns, factors, total)
 
     def _spans(self, nodes: Nodes) -> tuple[Points, Float[np.ndarray, " terms"]]:
         spans = np.empty((len(self.cables), nodes.shape[1]))

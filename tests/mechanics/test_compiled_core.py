@@ -230,7 +230,7 @@ def test_what_is_no_node_is_refused(wrong: int) -> None:
         lambda at: core.measure(nodes, at, *segment, spans, lengths),
         lambda at: core.lengths(nodes, at, *segment, first, np.zeros(5)),
         lambda at: core.add_bends(spans, lengths, np.ones((1, 2)), lengths, at, slots, strides, data),
-        lambda at: core.spread(at, first, vectors, np.zeros((10, 5))),
+        lambda at: core.add_slopes(nodes, at, *segment, first, lengths, np.zeros((5, 2, 1))),
         lambda at: core.add_vectors(at, vectors, np.zeros((5, 2))),
         lambda at: core.add_blocks(at, slots, strides, blocks, data),
     ]
@@ -243,7 +243,7 @@ def test_what_is_no_node_is_refused(wrong: int) -> None:
     with pytest.raises(ValueError, match="a segment of no cable"):
         core.lengths(nodes, whole, *segment, none, np.zeros(5))
     with pytest.raises(ValueError, match="a segment of no cable"):
-        core.spread(whole, none, vectors, np.zeros((10, 5)))
+        core.add_slopes(nodes, whole, *segment, none, lengths, np.zeros((5, 2, 5)))
     core.add_blocks(whole, np.full((1, 2, 2), 34), strides, blocks, data)  # the last block: 34, 35, 38 and 39
     with pytest.raises(ValueError, match="a block lies outside the matrix"):
         core.add_blocks(whole, far, strides, blocks, data)
