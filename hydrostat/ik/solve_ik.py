@@ -21,8 +21,10 @@ from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_p
 from hydrostat.ik.search.others_stay import others_stayed
 from hydrostat.ik.search.patience import Patience, Tell
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
+from hydrostat.mechanics import Reason
 from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose, check_still, friction_band, smooth_robot
+from hydrostat.simulation.obstacles import not_converged
 
 Targets = Pose | Mapping[str, Sequence[float] | Vector]  # where markers should go [m]: a pose, or points by name
 
@@ -80,7 +82,8 @@ def solve_ik(
             seconds=seconds,
             progress=progress,
         )
-        return _followed(simulation, found, start)
+        return _followed(simulation.until(patience.deadline), found, start)
+    simulation = simulation.until(patience.deadline)
     given = limits or Limits()
     allowed = bounds(simulation, given)
     if given.rate is not None:
@@ -107,7 +110,11 @@ def solve_ik(
 
 def _followed(simulation: Simulation, found: ReachedPose, start: SolvedPose | None) -> ReachedPose:
     """What was found without friction on obstacles, as the way to its contractions ends with it."""
-    pose = simulation.solve(found.pose.contractions, start=start)
+    pose = simulation.solve(found.pose.contractions, start=start, strict=False)
+    if pose.result.reason is Reason.TIME_LIMIT:
+        found = replace(found, reason=InverseReason.TIME_LIMIT)
+    elif not pose.result.converged:
+        raise not_converged(pose.result, simulation.in_the_way(pose))
     targets = {} if found.target is None else found.target.targets
     errors = {
         name: float(np.linalg.norm(pose.markers[name] - targets[name])) if name in targets else error

@@ -120,7 +120,7 @@ class _EnergyDescent:
                 found, reason, self.error = self._leave_saddle(place), Reason.CONVERGED, 0.0
             elif iteration == self.options.iterations:
                 found, reason = None, Reason.ITERATION_LIMIT
-            elif time.monotonic() >= self.options.deadline:
+            elif self._late:
                 found, reason = None, Reason.TIME_LIMIT
             else:
                 self.left = residual / scale if scale else np.inf
@@ -129,9 +129,13 @@ class _EnergyDescent:
             if found is place:
                 return self._result(place, Reason.CONVERGED, allowed, iteration)
             if found is None:
-                return self._result(place, reason, allowed, iteration)
+                return self._result(place, Reason.TIME_LIMIT if self._late else reason, allowed, iteration)
             place = found
         raise AssertionError("count() never ends")
+
+    @property
+    def _late(self) -> bool:
+        return time.monotonic() >= self.options.deadline
 
     def _arrive(self, assembly: Assembly, nodes: Nodes, energy: float, least_volume: float) -> _Iterate:
         return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), least_volume)
@@ -249,7 +253,7 @@ class _EnergyDescent:
                 found = self._arrive(*trial[:4])
                 if abs(found.gradient @ step) <= 0.9 * abs(slope):
                     return found
-            if self.whole:
+            if self.whole or self._late:
                 break
             length *= 0.5 * trial.share
         return None

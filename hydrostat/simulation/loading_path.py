@@ -7,7 +7,7 @@ from math import ceil
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics import Assembly, NewtonResult, Stiffness
+from hydrostat.mechanics import Assembly, NewtonResult, Reason, Stiffness
 from hydrostat.robot import Robot
 from hydrostat.simulation.balanced import balanced
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -50,10 +50,15 @@ class LoadingPath:
 
     def within(self, seconds: float | None) -> "LoadingPath":
         """The same that stops after so many seconds, counted from now; itself if that is None."""
-        if seconds is None:
-            return self
+        return self if seconds is None else self._by(self._solver.within(seconds))
+
+    def until(self, deadline: float) -> "LoadingPath":
+        """The same that stops at a time of `time.monotonic` [s]."""
+        return self._by(self._solver.until(deadline))
+
+    def _by(self, solver: StaticSolver) -> "LoadingPath":
         other = copy(self)
-        other._solver = self._solver.within(seconds)
+        other._solver = solver
         return other
 
     def solve(self, goal: Vector, start: SolvedPose | None) -> tuple[NewtonResult, Vector]:
@@ -101,7 +106,8 @@ class LoadingPath:
     def _advance(self, state: _PathState, goal: Vector, halvings: int = 4) -> _PathState:
         """The next equilibrium, by way of more if it is not found: so often is the increment halved."""
         found = self._solve(state, goal)
-        if found.arrived or not halvings or (goal == state.contractions).all():
+        late = found.result is not None and found.result.reason is Reason.TIME_LIMIT
+        if found.arrived or late or not halvings or (goal == state.contractions).all():
             return found
         middle = self._advance(state, 0.5 * (state.contractions + goal), halvings - 1)
         if not middle.arrived:

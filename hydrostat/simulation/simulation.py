@@ -3,6 +3,7 @@
 # Of the thesis (docs/thesis.md): R17, R23 to R29, E14, R33, E16
 
 from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
 from functools import cached_property, partial
 
 import numpy as np
@@ -374,6 +375,15 @@ class Simulation:
         if self._more:
             return self.assembly.near(nodes).stiffness(nodes, idle)
         return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
+
+    def until(self, deadline: float) -> "Simulation":
+        """The same physics, all solves of which stop at a time of `time.monotonic` [s]; itself if that is infinite."""
+        if np.isinf(deadline):
+            return self
+        other = copy(self)
+        other.solver = self.solver.until(deadline)
+        other.__dict__.pop("path", None)
+        return other
 
     @cached_property
     def path(self) -> LoadingPath:

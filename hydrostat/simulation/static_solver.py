@@ -76,7 +76,11 @@ class StaticSolver:
             return self
         if isinstance(seconds, bool) or not isinstance(seconds, int | float | np.number) or not seconds > 0:
             raise InputError(f"seconds must be above 0, not {seconds!r:.60}")
-        return replace(self, options=replace(self.options, deadline=time.monotonic() + seconds))
+        return self.until(time.monotonic() + seconds)
+
+    def until(self, deadline: float) -> "StaticSolver":
+        """The same that stops at a time of `time.monotonic` [s], or earlier if it did so before."""
+        return replace(self, options=replace(self.options, deadline=min(deadline, self.options.deadline)))
 
     def roughly(self, accuracy: float | None, size: float = np.inf) -> "StaticSolver":
         """The same that stops where nodes of a body so large are so near to equilibrium [m]; itself if that is None.
