@@ -172,11 +172,7 @@ class Simulation:
         return obstacles(self.robot, self.cables, pose.nodes, pose.contractions, forces)
 
     def check_start(self, start: SolvedPose | None) -> None:
-        """Check that a solve can begin from a pose.
-
-        Raises:
-            InputError: no pose of this robot, not finite, without slips where cables rub, or crossing itself.
-        """
+        """Check that a solve can begin there (InputError: another robot, not finite, without slips, crossing itself)."""
         if start is not None:
             history = self.assembly.history if self.assembly.has_history else None
             check_pose(start, self.robot.body.mesh.nodes.shape, len(self.robot.winches), history)
@@ -224,16 +220,9 @@ class Simulation:
             right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
             slopes = self.rubbing_slopes(pose, (right.reshape(1, -1), pulls[None]))
             return rubbing_sensitivity(self.body, self.route_points, pose, slopes)
-        return sensitivity(
-            self.body,
-            self.assembly,
-            self.cables,
-            pose,
-            nodes=nodes,
-            tensions=tensions,
-            points=self.route_points,
-            response=partial(self.response, pose),
-        )
+        points, respond = self.route_points, partial(self.response, pose)
+        given = {"nodes": nodes, "tensions": tensions, "points": points, "response": respond}
+        return sensitivity(self.body, self.assembly, self.cables, pose, **given)
 
     def rubbing_slopes(self, pose: SolvedPose, rows: tuple[np.ndarray, np.ndarray]) -> RubbingSlopes:
         """Slopes of numbers of a pose whose cables rub: `rows` are by its nodes, then by tensions; as for `adjoint`."""
