@@ -7,7 +7,6 @@ trunk 10 mm on one cable (left out if their folder is not there; see sofa_robots
 """
 
 import argparse
-import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,12 +15,9 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from machine import machine
-
-os.environ["NUMBA_NUM_THREADS"] = "1"
-
 import numpy as np
 from hand_body import hand_robot
+from machine import machine
 from robustness import EXAMPLES, reaches
 from sofa_robots import ROBOTS, sofa_robots
 

@@ -97,7 +97,7 @@ LEFT_OUT = (
 def one_thread() -> dict[str, str]:
     """Variables of a process that has one thread and knows no other environment."""
     kept = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
-    threads = ("OMP", "OPENBLAS", "MKL", "NUMBA")
+    threads = ("OMP", "OPENBLAS", "MKL")
     kept |= {f"{name}_NUM_THREADS": "1" for name in threads}
     return kept | {
         "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false",
@@ -153,7 +153,7 @@ def run(peer: Peer, folder: Path, body: Path, budget: float, *, fresh: bool = Fa
     with tempfile.TemporaryDirectory() as empty:
         result = Path(empty) / "trail.npz"
         if fresh:
-            variables |= {name: str(Path(empty) / name) for name in ("NUMBA_CACHE_DIR", "WARP_CACHE_PATH")}
+            variables |= {name: str(Path(empty) / name) for name in ("HYDROSTAT_CACHE", "WARP_CACHE_PATH")}
         command = [str(python), str(FOLDER / peer.file), str(body), peer.variant, str(budget), str(result)]
         try:
             found = subprocess.run(

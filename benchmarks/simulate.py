@@ -23,11 +23,8 @@ from pathlib import Path
 from pstats import Stats
 from typing import Any
 
-from machine import machine
-
-os.environ["NUMBA_NUM_THREADS"] = "1"
-
 import numpy as np
+from machine import machine
 
 ROBOTS = Path(__file__).parents[2] / "shared" / "robots"
 SIZES = {1_000: 11.2e-3, 2_000: 8.5e-3, 5_000: 6.0e-3, 10_000: 4.6e-3, 20_000: 3.55e-3}
@@ -284,11 +281,11 @@ def print_cases(cases: Sequence[Case], folder: Path, *, quick: bool) -> None:
 
 
 def print_first_solve(folder: Path) -> None:
-    """CPU time from a fresh process to the first solve of the hand, without and with what numba has stored."""
+    """CPU time from a fresh process to the first solve of the hand, without and with its body kept in the cache."""
     print_heads("first solve of the hand, s", "import", "robot", "simulation", "solve", "in all")
     with tempfile.TemporaryDirectory() as cache:
-        for what in ("no stored kernels", "stored kernels"):
-            found = in_own_process(folder, "--first", "hand", NUMBA_CACHE_DIR=cache)
+        for what in ("empty cache", "body kept"):
+            found = in_own_process(folder, "--first", "hand", HYDROSTAT_CACHE=cache)
             if found is not None:
                 steps = np.diff([0.0, *found.values()])
                 print(f"| {what} | {' | '.join(f'{step:.2f}' for step in steps)} | {found['solve']:.2f} |", flush=True)

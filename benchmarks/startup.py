@@ -4,15 +4,14 @@
     python benchmarks/startup.py --together 4
     python benchmarks/startup.py --check 3.3
 
-Commands first: cold, with empty caches as after installing, and warm, when the body has been meshed and kernels have
-been compiled. Then a first solve, phase by phase, cold and warm too.
+Commands first: cold, with empty caches as after installing, and warm, when the body has been meshed. Then a first
+solve, phase by phase, cold and warm too.
 
 The flat robot is the gallery's starfish, the one in space the hand of `hand_body.py`, of few nodes; each has its own
 folder. In commands the hand is the example `cupping_hand`.
 
-With `--together` only this: so many processes begin at once on one empty folder, by numba's kernels and by the compiled
-core, and each solves a robot; then as many again, now that all is compiled. It fails unless all of them end well, and
-those that began together give the same bytes.
+With `--together` only this: so many processes begin at once on one empty cache, and each solves a robot; then as many
+again, now that the body is kept. It fails unless all of them end well and give the same bytes.
 
 With `--check` only this: `hydrostat check` of the hand with elements of so many millimetres, in a process of its own,
 once as the gallery's surface, which is meshed, and once as a folder that holds the ready mesh.
@@ -26,12 +25,10 @@ import sys
 import tempfile
 import time
 from dataclasses import replace
-from itertools import product
 from pathlib import Path
 from statistics import median
 
 from machine import machine  # isort: skip  (before NumPy)
-import numpy as np
 
 HYDROSTAT = [sys.executable, "-c", "from hydrostat.cli.main import main; main()"]
 STARFISH = str(Path(__file__).parents[1] / "examples" / "starfish")
@@ -58,7 +55,7 @@ COMMANDS = {
 
 def seconds(command: list[str], kept: str) -> float | None:
     """CPU time of one run whose caches are in the folder `kept`; None if it fails."""
-    environment = os.environ | {"HYDROSTAT_CACHE": f"{kept}/bodies", "NUMBA_CACHE_DIR": f"{kept}/kernels"}
+    environment = os.environ | {"HYDROSTAT_CACHE": kept}
     with tempfile.TemporaryDirectory() as out:
         used = used_by_children()
         words = [word.format(out=out) for word in command]
@@ -90,9 +87,6 @@ ROBOTS = {
 }
 """How to make a robot."""
 
-ROUNDING = 1e-13
-"""Farther apart [m] are no shapes from the same kernels, compiled in this process or loaded from a file."""
-
 PHASES = ("imports", "robot", "simulation", "first solve", "second solve", "together")
 
 SOLVE = """
@@ -118,7 +112,7 @@ def solve_times(robot: str, folder: str) -> list[list[float]]:
     """CPU and wall-clock time [s] of each phase of a first solve."""
     here = str(Path(__file__).parent)
     path = os.pathsep.join((here, os.environ.get("PYTHONPATH", "")))
-    environment = os.environ | {"NUMBA_CACHE_DIR": folder, "HYDROSTAT_CACHE": f"{folder}/bodies", "PYTHONPATH": path}
+    environment = os.environ | {"HYDROSTAT_CACHE": folder, "PYTHONPATH": path}
     code = SOLVE.format(robot=ROBOTS[robot])
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
     return json.loads(ended.stdout)
@@ -163,25 +157,19 @@ def shapes(robot: str, variables: dict[str, str], processes: int) -> list[bytes]
 
 
 def print_together(processes: int) -> None:
-    """A table of processes that share one cold folder, and of as many that find it warm; an error if bytes differ."""
-    print("| robot | kernels | processes | cold, wall s | warm, wall s | files kept | from cold to warm m |")
-    print("|---|---|---|---|---|---|---|")
-    for robot, native in product(ROBOTS, ("1", "0")):
+    """A table of processes that share one cold cache, and of as many that find it warm; an error if bytes differ."""
+    print("| robot | processes | cold, wall s | warm, wall s | files kept |\n|---|---|---|---|---|")
+    for robot in ROBOTS:
         found, taken = [], []
         with tempfile.TemporaryDirectory() as folder:
             for _ in range(2):
                 began = time.perf_counter()
-                each = shapes(robot, {"NUMBA_CACHE_DIR": folder, "HYDROSTAT_NATIVE": native}, processes)
+                found += shapes(robot, {"HYDROSTAT_CACHE": folder}, processes)
                 taken.append(time.perf_counter() - began)
-                if len(set(each)) != 1:
-                    raise RuntimeError(f"{robot}: {processes} processes found {len(set(each))} different shapes")
-                found.append(np.frombuffer(each[0]))
             kept = sum(path.is_file() for path in Path(folder).rglob("*"))
-        apart = float(np.abs(found[0] - found[1]).max())
-        times = f"{taken[0]:.1f} | {taken[1]:.1f}"
-        print(f"| {robot} | {'core' if native == '1' else 'numba'} | {processes} | {times} | {kept} | {apart:.1g} |")
-        if apart > ROUNDING:
-            raise RuntimeError(f"{robot}: shapes are {apart} m apart, cold and warm")
+        print(f"| {robot} | {processes} | {taken[0]:.1f} | {taken[1]:.1f} | {kept} |")
+        if len(set(found)) != 1:
+            raise RuntimeError(f"{robot}: {2 * processes} processes found {len(set(found))} different shapes")
 
 
 def print_check(element_size: float, repeats: int) -> None:

@@ -172,7 +172,7 @@ class Simulation:
         return obstacles(self.robot, self.cables, pose.nodes, pose.contractions, forces)
 
     def check_start(self, start: SolvedPose | None) -> None:
-        """Check that a solve can begin there (InputError: another robot, not finite, without slips, crossing itself)."""
+        """Check that a solve can begin there (InputError: another robot, not finite, no slips, or crossing itself)."""
         if start is not None:
             history = self.assembly.history if self.assembly.has_history else None
             check_pose(start, self.robot.body.mesh.nodes.shape, len(self.robot.winches), history)
