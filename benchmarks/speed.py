@@ -61,7 +61,7 @@ COMMANDS = {
 ROWS = {
     "hand": Row("cupping hand from rest, random poses to 30 %", "ms", "22 / 13", 12, 6),
     "stream": Row("stream, steps of 1 %", "ms", "10 / 7", 60, 20),
-    "columns": Row("ten columns dx/da", "ms", "0.8 / 0.5", 300, 50),
+    "columns": Row("ten columns dx/da", "ms", {"by factors": "0.8 / 0.5"}, 300, 50),
     "sample": Row("sample with contact and Jacobians, hand, full travel", "a second", "12 / 20", 64, 16),
     **{
         f"contact_{name}": Row(
