@@ -252,14 +252,18 @@ void find_covered(Reals<2> points, Reals<3> corners, Array<bool, 1> above, Array
         for (Int x = first[0]; x <= last[0]; x++)
             for (Int y = first[1]; y <= last[1]; y++) call(x * cells[1] + y);
     };
-    std::vector<std::vector<Int>> within(cells[0] * cells[1]);
-    for (Int triangle = 0; triangle < count; triangle++) each_cell(triangle, [&](Int place) { within[place].push_back(triangle); });
+    std::vector<Int> starts(cells[0] * cells[1] + 1);  // of each cell in the list of its triangles
+    for (Int triangle = 0; triangle < count; triangle++) each_cell(triangle, [&](Int place) { starts[place + 1]++; });
+    for (size_t place = 1; place < starts.size(); place++) starts[place] += starts[place - 1];
+    std::vector<Int> listed(starts.back()), filled(starts.begin(), starts.end() - 1);
+    for (Int triangle = 0; triangle < count; triangle++) each_cell(triangle, [&](Int place) { listed[filled[place]++] = triangle; });
     Free others(1e3 * (double)asked);
     for (Int point = 0; point < asked; point++) {
         const double px = points.data()[3 * point], py = points.data()[3 * point + 1], pz = points.data()[3 * point + 2];
         if (!(low[0] <= px && px <= high[0] && low[1] <= py && py <= high[1])) continue;
-        for (Int triangle : within[cell_of(px, 0) * cells[1] + cell_of(py, 1)]) {
-            const double *a = corners.data() + 9 * triangle, *b = a + 3, *c = a + 6;
+        const Int place = cell_of(px, 0) * cells[1] + cell_of(py, 1);
+        for (Int entry = starts[place]; entry < starts[place + 1]; entry++) {
+            const double *a = corners.data() + 9 * listed[entry], *b = a + 3, *c = a + 6;
             const double whole = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
             if (whole == 0.0) continue;
             const double one = ((b[0] - px) * (c[1] - py) - (c[0] - px) * (b[1] - py)) / whole;
