@@ -8,6 +8,7 @@ namespace {
 
 using Int = int64_t;
 const double NONE = std::numeric_limits<double>::infinity();
+// The other corners p, q, r of a tetrahedron, so turned that (x - p) . ((q - p) x (r - p)) = 6 V.
 const Int OTHERS[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
 
 // As std::pow, which takes long for powers that need none.
@@ -142,6 +143,7 @@ Tetrahedra mesh_of(const Array<double, 2>& nodes, const Counts<2>& elements, con
     demand((Int)normals.shape(0) == outer && (Int)normals.shape(1) == samples_each && normals.shape(2) == 3 &&
                (Int)offsets.shape(0) == outer && (Int)offsets.shape(1) == samples_each && samples.shape(1) == 3,
            "shapes of the planes");
+    // This makes the shape of a regular tetrahedron 1.
     const double regular = std::pow(std::sqrt(2.0) / 12.0, 2.0 / 3.0) / 6.0;
     return {nodes.data(), elements.data(), start.data(), star.data(), facets.data(), begin.data(),
             ring.data(), normals.data(), offsets.data(), samples.data(), samples_each, power, pull, regular};

@@ -6,6 +6,8 @@
 
 namespace {
 
+constexpr double LARGEST = 0.4;  // share of the nodes that it separates that a separator may have
+
 using Int = int64_t;
 
 struct Graph {
@@ -130,7 +132,7 @@ struct Dissection {
         }
         for (Int rank = 0; rank < length; rank++) mate[line[rank]] = parent[line[rank]] = -1;
         Int far = length - near - size;
-        if (near == 0 || far == 0 || size > 0.4 * length) return std::numeric_limits<double>::infinity();
+        if (near == 0 || far == 0 || size > LARGEST * length) return std::numeric_limits<double>::infinity();
         return size / ((double)near * far);
     }
 

@@ -17,9 +17,6 @@ from hydrostat.kernel import native
 
 Graph = tuple[np.ndarray, np.ndarray]
 
-_LARGEST = 0.4
-"""A separator may have this share of the nodes that it separates."""
-
 
 def block_graph(indptr: np.ndarray, indices: np.ndarray, dim: int) -> Graph:
     """Which nodes share an entry of a matrix with `dim` degrees of freedom a node."""

@@ -64,7 +64,3 @@ class TensionLaw:
         tensions = np.zeros_like(elongations)
         found = native.balance(self.stiffness, self.smoothing, elongations, compliance, tensions)
         return tensions if found else None
-
-
-_BALANCING = 30
-_HALVINGS = 12

@@ -16,8 +16,6 @@ _SAMPLES = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6
 _FACING = 0.3
 """Cosine of the angle between a facet and the surface near it, below which that is another part of the surface."""
 
-_REGULAR = (np.sqrt(2) / 12) ** (2 / 3) / 6  # makes the shape of a regular tetrahedron 1
-
 
 @dataclass(frozen=True)
 class ImproveStage:
@@ -81,7 +79,3 @@ def _planes(
     normals[(np.abs(along) < _FACING) | (np.einsum("nd,nd->n", own, across) < -_FACING)] = 0.0
     offsets = np.einsum("nd,nd->n", normals, places)
     return normals.reshape(len(facets), -1, 3), offsets.reshape(len(facets), -1)
-
-
-_OTHERS = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
-"""The other corners p, q, r of a tetrahedron, so turned that (x - p) . ((q - p) x (r - p)) = 6 V."""
