@@ -58,6 +58,7 @@ struct Segments {
         demand_below(this->stencils, terms * corners, (Int)nodes.shape(0), "a corner is no node");
     }
 
+    // Length of a segment, and its span.
     double measure(Int term, double* span) const {
         double square = roundings[term] * roundings[term];
         for (Int axis = 0; axis < dim; axis++) {
@@ -79,6 +80,7 @@ void measure(Reals<2> nodes, Counts<2> stencils, Reals<2> weights, Reals<2> offs
         lengths.data()[term] = all.measure(term, spans.data() + term * all.dim);
 }
 
+// Add up the lengths of the segments of each cable.
 void lengths(Reals<2> nodes, Counts<2> stencils, Reals<2> weights, Reals<2> offsets, Reals<1> roundings,
              Counts<1> cables, Array<double, 1> total) {
     Segments all(nodes, stencils, weights, offsets, roundings);
@@ -88,6 +90,7 @@ void lengths(Reals<2> nodes, Counts<2> stencils, Reals<2> weights, Reals<2> offs
     for (Int term = 0; term < all.terms; term++) total.data()[cables.data()[term]] += all.measure(term, span);
 }
 
+// T (I - u u^T) / length of every segment, spread to its nodes by the weights.
 void bends(Reals<2> spans, Reals<1> lengths, Reals<2> weights, Reals<1> tensions, Array<double, 3> blocks) {
     Int terms = (Int)spans.shape(0), dim = (Int)spans.shape(1), corners = (Int)weights.shape(1), size = corners * dim;
     demand((Int)lengths.shape(0) == terms && (Int)weights.shape(0) == terms && (Int)tensions.shape(0) == terms &&
@@ -109,6 +112,7 @@ void bends(Reals<2> spans, Reals<1> lengths, Reals<2> weights, Reals<1> tensions
     }
 }
 
+// Add T (I - u u^T) / length of every taut segment, spread to its nodes by the weights, to a sparse matrix.
 void add_bends(Reals<2> spans, Reals<1> lengths, Reals<2> weights, Reals<1> pulls, Counts<2> stencils,
                Counts<3> slots, Counts<1> strides, Array<double, 1> data) {
     Int terms = (Int)spans.shape(0), dim = (Int)spans.shape(1), corners = (Int)weights.shape(1);
@@ -249,6 +253,7 @@ bool balance(Reals<1> stiffness, Reals<1> smoothing, Reals<1> elongations, Reals
     return false;
 }
 
+// Add the vector of every corner of every term to its node.
 void add_vectors(Counts<2> stencils, Reals<3> vectors, Array<double, 2> total) {
     Int places = (Int)stencils.size(), dim = (Int)total.shape(1);
     demand((Int)vectors.size() == places * dim, "a vector for each corner");
@@ -258,6 +263,7 @@ void add_vectors(Counts<2> stencils, Reals<3> vectors, Array<double, 2> total) {
             total.data()[stencils.data()[place] * dim + axis] += vectors.data()[place * dim + axis];
 }
 
+// Add every dim x dim block of symmetric blocks to the values of the sparse matrix.
 void add_blocks(Counts<2> stencils, Counts<3> slots, Counts<1> strides, Reals<3> blocks, Array<double, 1> data) {
     Int terms = (Int)stencils.shape(0), corners = (Int)stencils.shape(1), size = (Int)blocks.shape(1);
     demand((Int)blocks.shape(0) == terms && (Int)blocks.shape(2) == size && size % (corners > 0 ? corners : 1) == 0 &&

@@ -32,6 +32,7 @@ struct Nearest {
     double w[4], dw[2][4], c[3], squared;
     int free;
 
+    // Weights of the point nearest y[0] between two corners, subtracted; how many parts of l are free.
     void on_edge(const double (*y)[3], int a, int b) {
         double along = 0.0, before = 0.0;
         for (int k = 0; k < 3; k++) {
@@ -45,6 +46,7 @@ struct Nearest {
         free = 0.0 < share && share < 1.0 ? 1 : 0;
     }
 
+    // The same for the point of the triangle y[1:] nearest y[0], by the regions around it (Ericson 2005, 5.1.5).
     void on_triangle(const double (*y)[3]) {
         double u[3], v[3], p[3];
         for (int k = 0; k < 3; k++) u[k] = y[2][k] - y[1][k], v[k] = y[3][k] - y[1][k], p[k] = y[0][k] - y[1][k];
@@ -63,6 +65,7 @@ struct Nearest {
         free = 2;
     }
 
+    // The same for the points of the edges y[:2] and y[2:] that make F least.
     void on_edges(const double (*y)[3], double soft) {
         double u[3], v[3], p[3];
         for (int k = 0; k < 3; k++) u[k] = y[1][k] - y[0][k], v[k] = y[3][k] - y[2][k], p[k] = y[0][k] - y[2][k];
@@ -437,6 +440,7 @@ struct Listed {
         return parted_by<DIM, FIRST>(begin, by, Four{} + near * near, Four{} + kept);
     }
 
+    // D of a pair; fills in w, dw/dl and c. How many parts of l are free, and D.
     Nearest nearest(Int pair, double soft, double (*y)[3]) const {
         Nearest found;
         place(x, dim, stencils + pair * corners, corners, y);
@@ -490,6 +494,7 @@ std::pair<double, Int> sweep_boundary(Counts<2> children, Counts<2> facets, Coun
     return {limit, last};
 }
 
+// Fill in D of each pair [m^2].
 void squared_distances(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft,
                        Array<double, 1> squared) {
     Listed all(x, stencils, edges);
@@ -498,6 +503,7 @@ void squared_distances(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edge
     for (Int pair = 0; pair < all.count; pair++) squared.data()[pair] = all.nearest(pair, soft, y).squared;
 }
 
+// Largest share, at most 1, of a straight move after which each of some pairs keeps a share of its distance.
 double admissible_share(Reals<2> x, Reals<2> move, Reals<2> rest, Counts<2> stencils, Array<const bool, 1> edges,
                         double kept) {
     Listed all(x, stencils, edges);
@@ -546,6 +552,7 @@ std::pair<double, Int> barrier_energy(Reals<2> x, Counts<2> stencils, Array<cons
     return {total, felt};
 }
 
+// Fill in dE/dx of each pair [N].
 void barrier_forces(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft, Reals<1> begins,
                     Reals<1> weights, Array<double, 3> blocks) {
     Listed all(x, stencils, edges);

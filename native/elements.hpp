@@ -85,6 +85,7 @@ template <int D> double value(const Elements& all, const double* displacements) 
     return sum(total);
 }
 
+// P grad N of each element, with P = mu (F - F^-T) + lambda ln J F^-T = mu (G + (I - F^-T)) + ...
 template <int D> void gradient(const Elements& all, const double* displacements, double* total) {
     constexpr int C = D + 1;
     for (int64_t element = 0; element < all.terms; element += LANES) {
@@ -306,6 +307,9 @@ INLINE void arc(Lanes square, Lanes& first, Lanes& second) {
     }
 }
 
+// Sum of volume x (exp(W) (I + S) F - F - dF) grad N over the elements, where dF F^-1 = S + W.
+//
+// The difference is of second order; it is taken as ((exp W - I - W) + (exp W - I) S) F, so nothing cancels.
 template <int D> void turn(const Elements& all, const double* nodes, const double* step, double* right) {
     constexpr int C = D + 1;
     for (int64_t element = 0; element < all.terms; element += LANES) {

@@ -1,4 +1,4 @@
-// One sweep over the nodes of tetrahedra: the loops of geometry/tetrahedra/improve.py, where they are explained.
+// One sweep over the nodes of tetrahedra: the loops of geometry/tetrahedra/improve.py, where the sum is explained.
 #include <cmath>
 #include <limits>
 
@@ -25,6 +25,7 @@ struct Tetrahedra {
     Int count;
     double power, pull, regular;
 
+    // Shape of a tetrahedron with a node at x, and what its derivatives need; infinite if it is turned over.
     Shape shape(const double* x, Int corner) const {
         const Int *element = elements + 4 * (corner / 4), *others = OTHERS[corner % 4];
         const double *p = nodes + 3 * element[others[0]], *q = nodes + 3 * element[others[1]];

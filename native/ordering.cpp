@@ -1,4 +1,4 @@
-// In which order to eliminate nodes: the loops of mechanics/ordering.py, where they are explained.
+// In which order to eliminate nodes: the loops of mechanics/ordering.py, where the method is explained.
 #include <limits>
 #include <vector>
 
@@ -14,6 +14,7 @@ struct Graph {
     const Int *starts, *neighbours;
 };
 
+// Fill `starts` and `neighbours`; `seen` is -1 for every node.
 void block_graph(Counts<1> indptr, Counts<1> indices, Int dim, Array<Int, 1> starts, Array<Int, 1> neighbours,
                  Array<Int, 1> seen) {
     Int nodes = (Int)seen.shape(0), filled = 0;
@@ -34,6 +35,7 @@ void block_graph(Counts<1> indptr, Counts<1> indices, Int dim, Array<Int, 1> sta
     }
 }
 
+// Edges between each node and `root`; left as they are, the number of nodes, where no path leads.
 void distances(Counts<1> starts, Counts<1> neighbours, Int root, Array<double, 1> found, Array<Int, 1> queue) {
     demand(starts.shape(0) == found.shape(0) + 1 && queue.shape(0) == found.shape(0) && root >= 0 &&
                root < (Int)found.shape(0), "sizes of the graph");
@@ -62,6 +64,10 @@ struct Dissection {
     const double* points;
     Int *lines, *order, *mate, *parent, *side, *place, *best, *queue, *touched, *border;
 
+    // Breadth-first search along alternating paths from the nodes in `queue`; how many far nodes it reached.
+    //
+    // A near node without a mate is its own. With `grow` the search ends at the first free far node, and the matching
+    // grows by the path to it.
     Int alternate(Int tail, bool grow) {
         Int head = 0, reached = 0;
         while (head < tail) {
@@ -89,6 +95,10 @@ struct Dissection {
         return reached;
     }
 
+    // Ratio of a separator to the product of the halves, where the first `half` nodes of `line` are cut off.
+    //
+    // It is infinite where a half is empty, or where the separator is too large. `side` becomes 1 and 2, 3 on the
+    // separator; it is 0 before, and `work` is -1 before and after.
     double separator(const Int* line, Int length, Int half) {
         for (Int rank = 0; rank < length; rank++) side[line[rank]] = rank < half ? 1 : 2;
         Int bordering = 0;
@@ -136,6 +146,9 @@ struct Dissection {
         return size / ((double)near * far);
     }
 
+    // Sort each line from `low` to `high` into the two sides and the separator, and order the latter; where they end.
+    //
+    // The separator is ordered along its longest axis, so that what lies together is numbered together.
     void arrange(Int low, Int high, Int& middle, Int& end) {
         double widest = -1.0;
         Int* spare = queue;
@@ -161,6 +174,10 @@ struct Dissection {
         for (Int position = end; position < high; position++) place[order[position]] = position;
     }
 
+    // Order the nodes of `part`, from `low` on, by least degree in what is left, counting neighbors ordered later.
+    //
+    // Neighborhoods are sets of bits: eliminating a node joins its neighborhood to that of each of its neighbors. `bit`
+    // is -1 everywhere before and after.
     void minimum_degree(Int low, Int size, std::vector<uint64_t>& sets) {
         const Int* part = lines + low;
         Int *bit = mate, *degree = queue, bits = size;

@@ -7,6 +7,7 @@ namespace {
 
 using Int = int64_t;
 
+// Fill `parent`; `ancestor` shortens the paths. Both are -1 before.
 void elimination_tree(Counts<1> starts, Counts<1> neighbours, Counts<1> order, Counts<1> place, Array<Int, 1> parent,
                       Array<Int, 1> ancestor) {
     Int nodes = (Int)order.shape(0);
@@ -26,6 +27,7 @@ void elimination_tree(Counts<1> starts, Counts<1> neighbours, Counts<1> order, C
         }
 }
 
+// Fill `result`, and spoil `child`.
 void postorder(Counts<1> parent, Array<Int, 1> child, Counts<1> sibling, Array<Int, 1> result, Array<Int, 1> stack) {
     Int count = (Int)parent.shape(0), written = 0;
     demand((Int)child.shape(0) == count && (Int)sibling.shape(0) == count && (Int)result.shape(0) == count &&
@@ -77,6 +79,7 @@ double front_seconds(double columns, double rows) {
     return 1.5e-6 + 0.6e-9 * columns * rows + 0.5 * 0.8e-9 * below * below + operations / rate;
 }
 
+// Fill in which supernode each is merged into, itself at first; `columns` are those of heads, 0 of other nodes.
 void merge(Counts<1> child, Counts<1> sibling, Array<Int, 1> columns, Counts<1> count, Array<Int, 1> into, Int dim) {
     Int nodes = (Int)into.shape(0);
     demand((Int)child.shape(0) == nodes && (Int)sibling.shape(0) == nodes && (Int)columns.shape(0) == nodes &&
@@ -125,6 +128,7 @@ void rows(Counts<1> starts, Counts<1> neighbours, Counts<1> order, Counts<1> pla
 // Columns of `Fronts.table`.
 enum { COLUMNS, BELOW, FIRST, PANEL, STARTS, CHILD, SIBLING, STACK, OFFSET, RUNS, ENTRIES, WIDTH };
 
+// On which stack what a front hands up will lie, where, and how much the stacks hold at most; `top` is 0.
 void stacks(Array<Int, 2> table, Counts<1> parent, Array<Int, 1> top, Array<Int, 1> most) {
     Int count = (Int)parent.shape(0);
     demand((Int)table.shape(0) == count + 1 && table.shape(1) == WIDTH && top.shape(0) == 2 && most.shape(0) == 2,
@@ -142,6 +146,7 @@ void stacks(Array<Int, 2> table, Counts<1> parent, Array<Int, 1> top, Array<Int,
     }
 }
 
+// Pieces of the rows below each front that are contiguous in the parent's front; none crosses its own columns.
 void runs(Array<Int, 2> table, Counts<1> parent, Counts<1> below, Array<Int, 2> found) {
     Int count = (Int)parent.shape(0), written = 0;
     demand((Int)table.shape(0) == count + 1 && table.shape(1) == WIDTH && found.shape(1) == 3 &&
@@ -174,6 +179,7 @@ void runs(Array<Int, 2> table, Counts<1> parent, Counts<1> below, Array<Int, 2> 
     }
 }
 
+// For each front the places of its entries of A in the data and in its panel, and the places of the diagonal.
 void entries(Array<Int, 2> table, Counts<1> below, Counts<1> indptr, Counts<1> indices, Counts<1> place,
              Counts<1> undo, Array<Int, 1> local, Array<int32_t, 2> found, Array<Int, 1> diagonal) {
     Int count = (Int)table.shape(0) - 1, dofs = (Int)place.shape(0), written = 0;
