@@ -1,5 +1,6 @@
 """`hydrostat simulate`."""
 
+import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
@@ -50,9 +51,6 @@ def simulate(
     """
     from hydrostat import __version__
     from hydrostat.cli.pictures import load_matplotlib
-
-    load_matplotlib()
-    from hydrostat.plot import draw_pose, save_png
     from hydrostat.simulation import write_pose
     from hydrostat.units import TIME
 
@@ -78,11 +76,15 @@ def simulate(
     with profiled(profile, "finding the pose"):
         pose = simulation.solve(given, strict=False, seconds=limit)
     seconds = time.process_time() - began
-    files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
-    files.append(save_png(draw_pose(loaded, pose), out / "pose.png"))
     _print_places(pose, loaded)
     print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
     _print_notes(simulation, pose)
+    sys.stdout.flush()  # the answer is there before the picture is drawn
+    files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
+    load_matplotlib()
+    from hydrostat.plot import draw_pose, save_png
+
+    files.append(save_png(draw_pose(loaded, pose), out / "pose.png"))
     print("Wrote " + ", ".join(str(file) for file in files))
     if not pose.result.converged:
         raise typer.Exit(1)
