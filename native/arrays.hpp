@@ -15,6 +15,12 @@ inline void demand(bool right, const char* what) {
     if (!right) throw std::invalid_argument(what);
 }
 
+// Numbers of a list, each from `low` to below `high`.
+template <class List> const int64_t* demand_range(const List& list, int64_t low, int64_t high, const char* what) {
+    for (size_t place = 0; place < list.size(); place++) demand(list.data()[place] >= low && list.data()[place] < high, what);
+    return list.data();
+}
+
 // Lets other threads run while a call goes on for longer than handing over takes, some tens of microseconds.
 struct Free {
     explicit Free(double nanoseconds) {

@@ -144,6 +144,12 @@ Tetrahedra mesh_of(const Array<double, 2>& nodes, const Counts<2>& elements, con
     demand((Int)normals.shape(0) == outer && (Int)normals.shape(1) == samples_each && normals.shape(2) == 3 &&
                (Int)offsets.shape(0) == outer && (Int)offsets.shape(1) == samples_each && samples.shape(1) == 3,
            "shapes of the planes");
+    demand_range(elements, 0, count, "a corner is no node");
+    demand_range(facets, 0, count, "a corner is no node");
+    demand_range(start, 0, (Int)star.size() + 1, "a list of corners is too long");
+    demand_range(begin, 0, (Int)ring.size() + 1, "a list of corners is too long");
+    demand_range(star, 0, (Int)elements.size(), "no such corner");
+    demand_range(ring, 0, (Int)facets.size(), "no such corner");
     // This makes the shape of a regular tetrahedron 1.
     const double regular = std::pow(std::sqrt(2.0) / 12.0, 2.0 / 3.0) / 6.0;
     return {nodes.data(), elements.data(), start.data(), star.data(), facets.data(), begin.data(),

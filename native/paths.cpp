@@ -14,19 +14,14 @@ void demand_within(const Int* numbers, Int size, Int low, Int high, const char* 
     for (Int place = 0; place < size; place++) demand(numbers[place] >= low && numbers[place] < high, what);
 }
 
-template <class List> const Int* indices(const List& list, Int low, Int high, const char* what) {
-    demand_within(list.data(), (Int)list.size(), low, high, what);
-    return list.data();
-}
-
 // Directed edges after which each one may follow, by the cosine of the turn; counted, and listed if there is room.
 Int count_turns(Reals<2> points, Counts<1> offsets, Counts<1> sources, Counts<1> targets, Counts<1> reverses,
                 Array<const bool, 1> blocked, double least, Array<int64_t, 1> counts, Array<int64_t, 1> before) {
     const Int edges = (Int)sources.shape(0), nodes = (Int)points.shape(0), dim = (Int)points.shape(1);
     demand((Int)targets.shape(0) == edges && (Int)reverses.shape(0) == edges && (Int)counts.shape(0) == edges + 1 &&
                (Int)offsets.shape(0) == nodes + 1 && (Int)blocked.shape(0) == nodes, "edges and points of one graph");
-    const Int *from = indices(sources, 0, nodes, "no such point"), *to = indices(targets, 0, nodes, "no such point");
-    const Int* begin = indices(offsets, 0, edges + 1, "no such edge");
+    const Int *from = demand_range(sources, 0, nodes, "no such point"), *to = demand_range(targets, 0, nodes, "no such point");
+    const Int* begin = demand_range(offsets, 0, edges + 1, "no such edge");
     Int total = 0;
     for (Int edge = 0; edge < edges; edge++) {
         const Int here = from[edge], there = to[edge];
@@ -56,7 +51,7 @@ void spread_leads(Counts<1> turns, Counts<1> before, Reals<1> lengths, Array<dou
     const Int edges = (Int)leads.shape(0);
     demand((Int)turns.shape(0) == edges + 1 && (Int)lengths.shape(0) == edges && (Int)origins.shape(0) == edges,
            "as many edges of each");
-    const Int *begin = indices(turns, 0, (Int)before.shape(0) + 1, "no such turn"), *came = indices(before, 0, edges, "no such edge");
+    const Int *begin = demand_range(turns, 0, (Int)before.shape(0) + 1, "no such turn"), *came = demand_range(before, 0, edges, "no such edge");
     for (bool changed = true; changed;) {
         changed = false;
         for (Int edge = 0; edge < edges; edge++)
@@ -119,7 +114,7 @@ struct Gains {
         : edges((Int)edge_of.shape(0)), poses((Int)ridge.shape(0)), rows((Int)moves.shape(2)),
           slots(edges ? labels / edges : 0), lengths(lengths.data()), moves(moves.data()), pulls(pulls.data()),
           squares(squares.data()), ridge(ridge.data()), most(most),
-          edge_of(indices(edge_of, 0, (Int)lengths.shape(0), "no such edge")) {
+          edge_of(demand_range(edge_of, 0, (Int)lengths.shape(0), "no such edge")) {
         const Int own = (Int)lengths.shape(0);
         demand((Int)moves.shape(0) == own && (Int)moves.shape(1) == poses && (Int)pulls.shape(0) == own &&
                    (Int)pulls.shape(1) == poses && (Int)squares.shape(0) == own && (Int)squares.shape(1) == poses &&
@@ -204,7 +199,7 @@ void grow_labels(Counts<1> turns, Counts<1> before, Counts<1> sources, Counts<1>
     demand((Int)turns.shape(0) == all.edges + 1 && (Int)blocked.shape(0) == all.edges && (Int)sources.shape(0) == all.edges &&
                (Int)targets.shape(0) == all.edges && (Int)best.shape(0) == all.slots && (Int)ranked.shape(0) == all.slots &&
                (Int)chosen.shape(0) == all.slots, "shapes of edges and slots");
-    const Int *begin = indices(turns, 0, (Int)before.shape(0) + 1, "no such turn"), *came = indices(before, 0, all.edges, "no such edge");
+    const Int *begin = demand_range(turns, 0, (Int)before.shape(0) + 1, "no such turn"), *came = demand_range(before, 0, all.edges, "no such edge");
     demand_within(parents.data(), hop * count, -1, count, "no such label");
     const Int *from = sources.data(), *to = targets.data();
     double* gains = values.data();
@@ -267,8 +262,9 @@ void walk_back(Counts<2> parents, Counts<1> sources, Counts<1> targets, int64_t 
     const Int count = (Int)parents.shape(1), most = (Int)paths.shape(1);
     demand(slots > 0 && (Int)sources.shape(0) * slots == count && (Int)targets.shape(0) * slots == count &&
                hops.shape(0) == labels.shape(0) && paths.shape(0) == labels.shape(0) && most > 0, "shapes of the paths");
-    indices(labels, 0, count, "no such label");
-    indices(hops, -1, (Int)parents.shape(0), "no such hop");
+    demand_range(labels, 0, count, "no such label");
+    demand_range(parents, -1, count, "no such label");
+    demand_range(hops, -1, (Int)parents.shape(0), "no such hop");
     for (Int row = 0; row < (Int)labels.shape(0); row++) {
         Int label = labels.data()[row], hop = hops.data()[row];
         Int* path = paths.data() + row * most;

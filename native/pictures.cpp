@@ -16,7 +16,7 @@ struct Offset {
     Int x, y;
 };
 
-double clamp(double value) { return std::min(std::max(value, 0.0), 1.0); }
+double clamp(double value) { return value > 0.0 ? std::min(value, 1.0) : 0.0; }  // 0 where it is no number
 
 // Share of the sky that each pixel sees past its neighbors, 0 to 1 (screen-space ambient occlusion).
 void sky_shares(Reals<2> depths, Reals<3> normals, double reach, Array<float, 2> sky) {
@@ -239,7 +239,10 @@ void find_covered(Reals<2> points, Reals<3> corners, Array<bool, 1> above, Array
             high[axis] = std::max(high[axis], corners.data()[3 * place + axis]);
         }
     }
-    const double cell = std::sqrt((high[0] - low[0]) * (high[1] - low[1]) / (double)count) * 1.5 + 1e-12;
+    const double longest = std::max(high[0] - low[0], high[1] - low[1]);
+    demand(longest < std::numeric_limits<double>::infinity(), "corners must be finite");
+    const double even = std::sqrt((high[0] - low[0]) * (high[1] - low[1]) / (double)count) * 1.5;
+    const double cell = std::max(even, longest / (double)count) + 1e-12;  // also of a surface seen edge-on
     const Int cells[2] = {(Int)((high[0] - low[0]) / cell) + 1, (Int)((high[1] - low[1]) / cell) + 1};
     auto cell_of = [&](double place, int axis) { return std::min((Int)((place - low[axis]) / cell), cells[axis] - 1); };
     auto each_cell = [&](Int triangle, auto&& call) {

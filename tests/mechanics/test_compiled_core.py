@@ -249,6 +249,35 @@ def test_what_is_no_node_is_refused(wrong: int) -> None:
         core.add_blocks(whole, far, strides, blocks, data)
 
 
+@pytest.mark.parametrize("wrong", [-1, 10**12])
+def test_what_reaches_beyond_a_list_is_refused(wrong: int) -> None:
+    """Meshes that are improved, and labels that are walked back."""
+    box, none = box_mesh((1, 1, 1)), np.zeros(0, int)
+    lists = np.zeros(len(box.nodes) + 1, int), np.zeros(box.elements.size, int)
+    facets = np.zeros((0, 3), int), np.zeros(len(box.nodes) + 1, int), none, np.zeros((0, 3, 3)), np.zeros((0, 3))
+    given = np.zeros((3, 3)), 1.0, 1.0
+    native.sweep(box.nodes.copy(), box.elements, *lists, *facets, *given)
+    elements, star = box.elements.copy(), lists[1].copy()
+    elements[0, 0] = star[0] = wrong
+    with pytest.raises(ValueError, match="a corner is no node"):
+        native.sweep(box.nodes.copy(), elements, *lists, *facets, *given)
+    with pytest.raises(ValueError, match="no such corner"):
+        native.sweep(box.nodes.copy(), box.elements, lists[0], star, *facets, *given)
+    ends, parents, paths = np.zeros(2, int), np.full((2, 2), -1), np.zeros((1, 3), int)
+    native.walk_back(parents, ends, ends, 1, np.array([1]), np.array([0]), paths)
+    parents[1, 0] = wrong - 1
+    with pytest.raises(ValueError, match="no such label"):
+        native.walk_back(parents, ends, ends, 1, np.array([1]), np.array([0]), paths)
+
+
+def test_a_surface_seen_edge_on_covers_nothing() -> None:
+    points, corners = np.zeros((1, 3)), np.array([[[-1.0, 0, 0], [1, 0, 0], [0, 0, 5]]])
+    above, below = np.ones(1, bool), np.ones(1, bool)
+    native.find_covered(points, corners, above, below)
+    assert not above.any()
+    assert not below.any()
+
+
 def test_a_tree_that_does_not_fit_its_facets_is_refused() -> None:
     """Two triangles, each a leaf; then two leaves of one, an edge with one end, children before parents."""
     nodes = np.random.default_rng(0).normal(size=(6, 3))
