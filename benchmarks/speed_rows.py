@@ -24,8 +24,8 @@ import numpy as np
 EXAMPLES = Path(__file__).parents[1] / "examples"
 BODIES = ("cupping_hand", "extended_hand", "caging_gripper", "octopus_arm", "starfish", "puppy", "squid", "robot")
 SHARED = Path(__file__).parents[2] / "shared" / "robots"
-DEADLINE = 0.5
-"""Given to each solve of the row of deadlines [s]."""
+DEADLINE = 0.3
+"""Time limit of each search in the row of deadlines [s]."""
 
 
 def cpu(function: Callable[[], Any]) -> tuple[float, Any]:
@@ -88,43 +88,17 @@ def contact(name: str, count: int) -> dict[str, float]:
     return {name: median(found) for name, found in ratios.items() if found}
 
 
-def zigzag(robot: Any, random: np.random.Generator, friction: float) -> Any:
-    """A robot whose via points are moved sideways in turn, as far as the body allows, with friction."""
-    from hydrostat.errors import InputError
-
-    reach = 0.06 * robot.body.mesh.size
-    turned = [
-        np.array(
-            [[*point[:-1], point[-1] + (-1) ** place * reach * random.random()] for place, point in enumerate(route)]
-        )
-        for route in (cable.points for cable in robot.cables)
-    ]
-    for share in (1.0, 0.5, 0.25, 0.1, 0.0):
-        cables = [
-            replace(
-                cable,
-                friction=friction,
-                points=tuple(tuple(map(float, point)) for point in np.array(cable.points) * (1 - share) + share * new),
-            )
-            for cable, new in zip(robot.cables, turned, strict=True)
-        ]
-        with contextlib.suppress(InputError):
-            return robot.with_network(robot.winches, cables)
-    raise ValueError("no route lies in the body")
-
-
 def friction(count: int) -> dict[str, float]:
     """Poses within travel on zigzag routes [%] that converge, and how many take over 20 times the median."""
-    from attack import FLAT, IN_SPACE, commands, gallery_body
+    from attack import commands
+    from deadlines import NAMES, draw_robot
 
     from hydrostat import Simulation
 
     times, good = [], 0
     for number in range(count):
-        random = np.random.default_rng([7, number])
-        robot = zigzag(gallery_body((*FLAT, *IN_SPACE)[number % 12]), random, random.uniform(0.1, 0.5))
-        simulation = Simulation(robot)
-        spent = []
+        robot = draw_robot(NAMES[number % len(NAMES)], np.random.default_rng([7, number]))
+        simulation, spent = Simulation(robot), []
         for within, goal in commands(robot, number, 7):
             if within:
                 taken, pose = cpu(partial(simulation.solve, goal, strict=False, seconds=20))
@@ -137,27 +111,12 @@ def friction(count: int) -> dict[str, float]:
 
 
 def deadlines(count: int) -> float:
-    """Longest overrun of `solve(seconds=)` by random robots with friction and contact [s].
+    """Longest overrun of inverse kinematics with a time limit, by the clock [s]."""
+    from deadlines import NAMES, draw_robot, overrun
 
-    Deadlines are by the clock; of the overrun only the share in which this process ran counts.
-    """
-    from attack import commands, random_robot
-
-    import hydrostat as hs
-
-    longest = 0.0
-    for number in range(count):
-        robot, _ = random_robot(number, 0)
-        friction = np.random.default_rng([3, number]).uniform(0, 0.5)
-        cables = [replace(cable, friction=friction) for cable in robot.cables]
-        robot = replace(robot.with_network(robot.winches, cables), contact=hs.Contact())
-        simulation = hs.Simulation(robot)
-        for _, goal in list(commands(robot, number, 0))[::5]:
-            began = time.perf_counter()
-            taken, _ = cpu(partial(simulation.solve, goal, strict=False, seconds=DEADLINE))
-            wall = time.perf_counter() - began
-            longest = max(longest, (wall - DEADLINE) * taken / wall)
-    return longest
+    random = np.random.default_rng(7)
+    robots = (draw_robot(NAMES[number % len(NAMES)], random) for number in range(count))
+    return max(overrun(robot, DEADLINE, random)[0] for robot in robots)
 
 
 def commands(count: int) -> dict[str, float]:

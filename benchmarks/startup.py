@@ -10,8 +10,8 @@ solve, phase by phase, cold and warm too.
 The flat robot is the gallery's starfish, the one in space the hand of `hand_body.py`, of few nodes; each has its own
 folder. In commands the hand is the example `cupping_hand`.
 
-With `--together` only this: so many processes begin at once on one empty cache, and each solves a robot; then as many
-again, now that the body is kept. It fails unless all of them end well and give the same bytes.
+With `--together N` only this: N processes begin together on one empty cache, and each solves a robot; then N again, now
+that the body is kept. It fails unless all of them end well and give the same bytes.
 
 With `--check` only this: `hydrostat check` of the hand with elements of so many millimetres, in a process of its own,
 once as the gallery's surface, which is meshed, and once as a folder that holds the ready mesh.

@@ -113,7 +113,7 @@ def _write(path: Path, arrays: Arrays) -> None:
 
 
 def _make_room(folder: Path, needed: int) -> None:
-    """Delete the entries that were read longest ago, until another one of so many bytes has room."""
+    """Delete the entries that were read longest ago, until a new one of `needed` bytes fits."""
     entries = []
     for file in folder.glob("*.npz"):
         with suppress(OSError):
