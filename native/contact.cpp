@@ -494,6 +494,23 @@ std::pair<double, Int> sweep_boundary(Counts<2> children, Counts<2> facets, Coun
     return {limit, last};
 }
 
+// Fill in where samples of a boundary are: shares of the nodes at their corners.
+void sample_places(Reals<2> x, Counts<2> corners, Reals<2> shares, Array<double, 2> places) {
+    Int count = (Int)corners.shape(0), width = (Int)corners.shape(1), dim = (Int)x.shape(1);
+    demand((Int)shares.shape(0) == count && (Int)shares.shape(1) == width && (Int)places.shape(0) == count &&
+               (Int)places.shape(1) == dim,
+           "corners, shares and places of the same samples");
+    const Int* nodes = demand_range(corners, 0, (Int)x.shape(0), "a corner is no node");
+    const double *weights = shares.data(), *at = x.data();
+    double* out = places.data();
+    for (Int sample = 0; sample < count; sample++)
+        for (Int k = 0; k < dim; k++) {
+            double sum = 0.0;
+            for (Int i = 0; i < width; i++) sum += weights[sample * width + i] * at[nodes[sample * width + i] * dim + k];
+            out[sample * dim + k] = sum;
+        }
+}
+
 // Fill in D of each pair [m^2].
 void squared_distances(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft,
                        Array<double, 1> squared) {
@@ -622,6 +639,7 @@ void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges,
 void add_contact(nb::module_& module) {
     module.def("sweep_boundary", &sweep_boundary, given(), given(), given(), given(), given(), given(), given(), given(),
                given(), given(), given(), given(), filled(), filled());
+    module.def("sample_places", &sample_places, given(), given(), given(), filled());
     module.def("squared_distances", &squared_distances, given(), given(), given(), given(), filled());
     module.def("admissible_share", &admissible_share);
     module.def("barrier_energy", &barrier_energy);

@@ -1,6 +1,7 @@
 """`DistanceField`: distance of points from a rigid shape, with its first two derivatives."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
@@ -24,40 +25,74 @@ class Distances(NamedTuple):
     curvatures: Float[np.ndarray, "points dim dim"]
 
 
-DistanceField = Callable[[Points], Distances]
-"""Distances of points [m], (points, dim), from one shape; it can be sent to other processes."""
+@dataclass(frozen=True)
+class DistanceField:
+    """Distances of points [m], (points, dim), from one shape; it can be sent to other processes.
+
+    Attributes:
+        whole: distances with their derivatives.
+        lean: distances alone, where they cost less so.
+    """
+
+    whole: Callable[[Points], Distances]
+    lean: Callable[[Points], Vector] | None = None
+
+    def __call__(self, points: Points) -> Distances:
+        """Distances and their derivatives."""
+        return self.whole(points)
+
+    def values(self, points: Points) -> Vector:
+        """Distances alone [m]."""
+        return self.whole(points).values if self.lean is None else self.lean(points)
 
 
 def plane_field(at: Vector, normal: Vector) -> DistanceField:
     """Distance from all that lies behind a plane through a point [m]."""
-    return partial(_from_plane, at, normal / np.linalg.norm(normal))
+    unit = normal / np.linalg.norm(normal)
+    return DistanceField(partial(_from_plane, at, unit), partial(_plane_values, at, unit))
 
 
 def sphere_field(at: Vector, radius: float) -> DistanceField:
     """Distance from a ball; a disc in the plane [m]."""
-    return partial(_from_sphere, at, radius)
+    return DistanceField(partial(_from_sphere, at, radius), partial(_sphere_values, at, radius))
 
 
 def capsule_field(at: Vector, to: Vector, radius: float) -> DistanceField:
     """Distance from all within a radius of a straight way [m]."""
     length = float(np.linalg.norm(to - at))
-    return partial(_from_capsule, at, (to - at) / length, length, radius)
+    axis = (to - at) / length
+    return DistanceField(partial(_from_capsule, at, axis, length, radius))
 
 
 def cylinder_field(at: Vector, to: Vector, radius: float) -> DistanceField:
     """Distance from a cylinder with flat ends, in space [m]."""
     length = float(np.linalg.norm(to - at))
-    return partial(_from_cylinder, 0.5 * (at + to), (to - at) / length, length, radius)
+    return DistanceField(partial(_from_cylinder, 0.5 * (at + to), (to - at) / length, length, radius))
 
 
 def box_field(at: Vector, to: Vector) -> DistanceField:
     """Distance from a box with two opposite corners [m]; a rectangle in the plane."""
-    return partial(_from_box, 0.5 * (at + to), 0.5 * np.abs(to - at))
+    middle, half = 0.5 * (at + to), 0.5 * np.abs(to - at)
+    return DistanceField(partial(_from_box, middle, half), partial(_box_values, middle, half))
 
 
 def _from_plane(at: Vector, unit: Vector, points: Points) -> Distances:
     curvatures = np.zeros((*points.shape, points.shape[1]))
-    return Distances((points - at) @ unit, np.broadcast_to(unit, points.shape).copy(), curvatures)
+    return Distances(_plane_values(at, unit, points), np.broadcast_to(unit, points.shape).copy(), curvatures)
+
+
+def _plane_values(at: Vector, unit: Vector, points: Points) -> Vector:
+    return (points - at) @ unit
+
+
+def _sphere_values(at: Vector, radius: float, points: Points) -> Vector:
+    return lengths_of(points - at) - radius
+
+
+def _box_values(middle: Vector, half: Vector, points: Points) -> Vector:
+    beyond = np.abs(points - middle) - half
+    far = lengths_of(np.maximum(beyond, 0.0))
+    return np.where(far == 0.0, beyond.max(axis=1), far)
 
 
 def _from_sphere(at: Vector, radius: float, points: Points) -> Distances:
@@ -93,7 +128,7 @@ def _from_box(middle: Vector, half: Vector, points: Points) -> Distances:
     beyond = np.abs(points - middle) - half
     signs = np.where(points < middle, -1.0, 1.0)
     out = np.maximum(beyond, 0.0)
-    far = np.linalg.norm(out, axis=1)
+    far = lengths_of(out)
     inside = far == 0.0
     values = np.where(inside, beyond.max(axis=1), far)
     sides = np.eye(points.shape[1])[beyond.argmax(axis=1)]
@@ -105,10 +140,15 @@ def _from_box(middle: Vector, half: Vector, points: Points) -> Distances:
 
 def _around(spans: Points, free: Points, radius: float) -> Distances:
     """Distance beyond a radius from a point or, where `free` is its direction, a line; `spans` lead from there."""
-    far = np.maximum(np.linalg.norm(spans, axis=1), _TINY)
+    far = np.maximum(lengths_of(spans), _TINY)
     normals = spans / far[:, None]
     across = np.eye(spans.shape[1]) - _square(normals) - _square(free)
     return Distances(far - radius, normals, across / far[:, None, None])
+
+
+def lengths_of(vectors: Points) -> Vector:
+    """Length of each vector."""
+    return np.sqrt(np.einsum("pd,pd->p", vectors, vectors))
 
 
 def _square(vectors: Points) -> Float[np.ndarray, "points dim dim"]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.distance_field import DistanceField, Distances, box_field
 from hydrostat.geometry.outline import Outline
 
@@ -146,14 +146,29 @@ class Shell:
 
 def shell_field(shell: Shell) -> DistanceField:
     """Distance from what a closed shell encloses [m]; far away, less than it by up to a quarter of the shell's size."""
-    return partial(_from_shell, Shell(shell.nodes, shell.facets))
+    own = Shell(shell.nodes, shell.facets)
+    return DistanceField(partial(_from_shell, own), partial(_shell_values, own))
+
+
+def _box_about(shell: Shell) -> tuple[DistanceField, float]:
+    """Distance from the box about a shell, and up to which distance from it those from the shell are exact [m]."""
+    low, high = shell.nodes.min(axis=0), shell.nodes.max(axis=0)
+    return box_field(low, high), _ROOM * float(np.linalg.norm(high - low))
+
+
+def _shell_values(shell: Shell, points: Points) -> Vector:
+    box, room = _box_about(shell)
+    values = box.values(points)
+    near = np.flatnonzero(values < room)
+    if len(near):
+        values[near] = shell.nearest(points[near]).distances
+    return values
 
 
 def _from_shell(shell: Shell, points: Points) -> Distances:
     """Exact near the shell; elsewhere the distance from a box about it, which is never more."""
-    low, high = shell.nodes.min(axis=0), shell.nodes.max(axis=0)
-    room = _ROOM * float(np.linalg.norm(high - low))
-    values, normals, curvatures = box_field(low, high)(points)
+    box, room = _box_about(shell)
+    values, normals, curvatures = box(points)
     near = np.flatnonzero(values < room)
     if len(near):
         found = shell.nearest(points[near])

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.boundary_tree import facet_areas
-from hydrostat.geometry.distance_field import DistanceField, Distances
+from hydrostat.geometry.distance_field import DistanceField, Distances, lengths_of
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import (
@@ -73,82 +73,115 @@ class ObstacleEnergy(Energy):
         self.has_history = friction > 0
         self._friction = friction, _STICKS * young / distance * areas
         self.grip: Grip | None = None
+        self._seen: tuple[Nodes, Points, Vector] | None = None
 
     def places(self, nodes: Nodes) -> Points:
         """Where the samples are, in the frame of the obstacle [m]."""
-        points = np.einsum("tc,tcd->td", self.shares, nodes[self._corners])
+        points = self._points(nodes)
         if self.carriage is None:
             return points
         return (points - self.carriage.place(nodes)) @ self.carriage.axes(nodes).T
 
     def gap(self, nodes: Nodes) -> float:
         """Distance of the nearest sample [m]; negative inside the obstacle."""
-        return float(self.field(self.places(nodes)).values.min())
+        return float(self._located(nodes)[1].min())
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        places = self.places(nodes)
-        distances = self.field(places).values
-        if not (distances > 0).all():
+        places, distances = self._located(nodes)
+        if not distances.min() > 0:
             return np.inf
-        r = np.minimum((distances / self.distance) ** 2, 1.0)
-        barrier = float(self.distance**2 * (self.weights * (r - 1.0) ** 2) @ -np.log(r))
-        return barrier + (0.0 if self.grip is None else self.grip.energy(places))
+        some = np.flatnonzero(distances < self.distance)
+        r = (distances[some] / self.distance) ** 2
+        barrier = float(self.distance**2 * (self.weights[some] * (r - 1.0) ** 2) @ -np.log(r))
+        if self.grip is None:
+            return barrier
+        held = np.flatnonzero(self.grip.limits)
+        return barrier + self.grip.only(held).energy(places[held])
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        places = self.places(nodes)
-        forces = self._forces(places)
-        if self.carriage is None:
-            return self.shares[:, :, None] * forces[:, None, :]
-        return np.einsum("tk,tkri->tri", forces, self._slopes(nodes, np.arange(len(places))))
+        blocks = np.zeros((*self.stencils.shape, nodes.shape[1]))
+        some, forces = self._forces(nodes)
+        blocks[some] = self._by_unknowns(nodes, some, forces)
+        return blocks
+
+    def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
+        some, forces = self._forces(nodes)
+        if len(some):
+            native.add_vectors(self.stencils[some], self._by_unknowns(nodes, some, forces), total)
 
     def push(self, nodes: Nodes) -> Vector:
         """Force of the body on the obstacle [N]."""
-        return self._forces_in_world(nodes).sum(axis=0)
+        return self._forces_in_world(nodes)[1].sum(axis=0)
 
     def pressed(self, nodes: Nodes) -> Pressed:
-        forces = -self._forces_in_world(nodes)
-        felt = np.flatnonzero(forces.any(axis=1))
-        places = np.einsum("tc,tcd->td", self.shares[felt], nodes[self._corners[felt]])
-        return Pressed(places, forces[felt], self._corners[felt])
+        some, forces = self._forces_in_world(nodes)
+        felt = forces.any(axis=1)
+        some = some[felt]
+        return Pressed(self._points(nodes)[some], -forces[felt], self._corners[some])
 
-    def _forces_in_world(self, nodes: Nodes) -> Points:
-        forces = self._forces(self.places(nodes))
-        return forces if self.carriage is None else forces @ self.carriage.axes(nodes)
+    def _points(self, nodes: Nodes) -> Points:
+        """Where the samples are [m]."""
+        points = np.empty((len(self._corners), nodes.shape[1]))
+        native.sample_places(nodes, self._corners, self.shares, points)
+        return points
 
-    def _forces(self, places: Points) -> Points:
-        """Slope of the energy by the place of each sample in the frame [N]."""
+    def _located(self, nodes: Nodes) -> tuple[Points, Vector]:
+        """Places of the samples and their distances [m]; those asked for last are kept."""
+        if self._seen is None or not np.array_equal(self._seen[0], nodes):
+            places = self.places(nodes)
+            self._seen = nodes.copy(), places, self.field.values(places)
+        return self._seen[1:]
+
+    def _felt(self, nodes: Nodes) -> np.ndarray:
+        """Samples that feel the obstacle, or that friction holds."""
+        felt = self._located(nodes)[1] < self.distance
+        return np.flatnonzero(felt if self.grip is None else felt | (self.grip.limits > 0))
+
+    def _forces_in_world(self, nodes: Nodes) -> tuple[np.ndarray, Points]:
+        some, forces = self._forces(nodes)
+        return some, forces if self.carriage is None else forces @ self.carriage.axes(nodes)
+
+    def _forces(self, nodes: Nodes) -> tuple[np.ndarray, Points]:
+        """Samples on which forces act, and the slope of the energy by the place of each in the frame [N]."""
+        some = self._felt(nodes)
+        places = self._located(nodes)[0][some]
         found = self.field(places)
-        forces = self._derivatives(found)[0][:, None] * found.normals
-        return forces if self.grip is None else forces + self.grip.forces(places)
+        forces = self._derivatives(found, self.weights[some])[0][:, None] * found.normals
+        return some, forces if self.grip is None else forces + self.grip.only(some).forces(places)
+
+    def _by_unknowns(self, nodes: Nodes, some: np.ndarray, forces: Points) -> Blocks:
+        """Slopes by the unknowns of the stencils of some samples, of slopes by their places."""
+        if self.carriage is None:
+            return self.shares[some, :, None] * forces[:, None, :]
+        return np.einsum("tk,tkri->tri", forces, self._slopes(nodes, some))
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.projected_hessian(nodes, controls, 0.0)
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
-        return self._blocks(nodes, np.arange(len(self.stencils)), self.places(nodes), share)
+        size = self.stencils.shape[1] * nodes.shape[1]
+        blocks, some = np.zeros((len(self.stencils), size, size)), self._felt(nodes)
+        blocks[some] = self._blocks(nodes, some, share)
+        return blocks
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
-        where = self.places(nodes)
-        felt = self.field(where).values < self.distance
-        if self.grip is not None:
-            felt |= self.grip.limits > 0
-        some = np.flatnonzero(felt)
+        some = self._felt(nodes)
         if len(some):
-            blocks = self._blocks(nodes, some, where, share)
+            blocks = self._blocks(nodes, some, share)
             native.add_blocks(self.stencils[some], places.slots[some], places.strides, blocks, places.data)
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         """By conservative advancement: a sample cannot meet the obstacle before distance / speed."""
-        begin = self.places(nodes)
-        distances = self.field(begin).values
-        least, done = _KEPT * distances, np.zeros(len(begin))
+        distances = self._located(nodes)[1]
         speeds = self._speeds(nodes, move)
-        going = np.flatnonzero((distances - least < speeds) & (speeds > 0))
+        some = np.flatnonzero(((1.0 - _KEPT) * distances < speeds) & (speeds > 0))
+        distances, speeds = distances[some], speeds[some]
+        least, done, going = _KEPT * distances, np.zeros(len(some)), np.arange(len(some))
         for _ in range(_ADVANCES):
             if not len(going):
                 break
             done[going] += (distances[going] - least[going]) / speeds[going]
-            distances[going] = self.field(self._on_the_way(nodes, move, going, done[going])).values
+            distances[going] = self.field.values(self._on_the_way(nodes, move, some[going], done[going]))
             going = going[(done[going] < 1.0) & (distances[going] > 1.1 * least[going])]
         near = distances <= 1.1 * least
         near[going] = True
@@ -167,26 +200,28 @@ class ObstacleEnergy(Energy):
         if self.grip is None:
             return self
         still = replace(self.grip, anchors=history.reshape(self.grip.anchors.shape))
-        return self._gripping(still.asked(*self._pushes(self.places(nodes))))
+        return self._gripping(still.asked(*self._pushes(nodes)))
 
     def imbalance(self, nodes: Nodes, controls: Vector) -> float:
         if self.grip is None:
             return 0.0
-        places = self.places(nodes)
-        asked = self.grip.asked(*self._pushes(places))
-        return float(np.abs(asked.forces(places) - self.grip.forces(places)).max(initial=0.0))
+        some = self._felt(nodes)
+        places, grip = self._located(nodes)[0][some], self.grip.only(some)
+        pushes, normals = self._pushes(nodes)
+        asked = grip.asked(pushes[some], normals[some])
+        return float(np.abs(asked.forces(places) - grip.forces(places)).max(initial=0.0))
 
     def corrected(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        places, grip = self.places(nodes), self.grip.judged(self.imbalance(nodes, controls))
+        places, grip = self._located(nodes)[0], self.grip.judged(self.imbalance(nodes, controls))
         slips = np.flatnonzero(grip.slipping(places))
-        pushes, normals = self._pushes(places)
+        pushes, normals = self._pushes(nodes)
         if response is None or not len(slips):
             return self._gripping(grip.corrected(pushes, normals))
-        found = Distances(*(part[slips] for part in self.field(places)))
+        found = self.field(places[slips])
         rises = -self._derivatives(found, self.weights[slips])[1][:, None] * found.normals  # of the pushes
         ways = grip.only(slips).directions(places[slips])
         by_push, by_limit = (self._columns(nodes, slips, rows) for rows in (rises, ways))
@@ -208,24 +243,26 @@ class ObstacleEnergy(Energy):
     def after(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        places = self.places(nodes)
-        return self._gripping(self.grip.asked(*self._pushes(places)).slipped(places))
+        return self._gripping(self.grip.asked(*self._pushes(nodes)).slipped(self._located(nodes)[0]))
 
     def _gripping(self, grip: Grip) -> "ObstacleEnergy":
         other = copy(self)
         other.grip = grip
         return other
 
-    def _pushes(self, places: Points) -> tuple[Vector, Points]:
-        """Normal force on each sample [N], and the normals."""
-        found = self.field(places)
-        return -self._derivatives(found)[0], found.normals
+    def _pushes(self, nodes: Nodes) -> tuple[Vector, Points]:
+        """Normal force on each sample [N], and the normals where forces act."""
+        some, pushes = self._felt(nodes), np.zeros(len(self._corners))
+        normals = np.zeros((len(pushes), nodes.shape[1]))
+        found = self.field(self._located(nodes)[0][some])
+        pushes[some], normals[some] = -self._derivatives(found, self.weights[some])[0], found.normals
+        return pushes, normals
 
     def _slopes(self, nodes: Nodes, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
         """Slopes of the place in the frame by the unknowns of the stencil; only of an obstacle that moves."""
         assert self.carriage is not None
         axes, dim = self.carriage.axes(nodes), self.carriage.dim
-        spans = np.einsum("tc,tcd->td", self.shares[some], nodes[self._corners[some]]) - self.carriage.place(nodes)
+        spans = self._points(nodes)[some] - self.carriage.place(nodes)
         by_corner = np.einsum("tc,ki->tkci", self.shares[some], axes)
         by_place = np.broadcast_to(-axes[:, None, :], (len(some), dim, 1, dim))
         by_axes = np.einsum("km,ti->tkmi", np.eye(dim), spans) / self.carriage.length
@@ -233,15 +270,15 @@ class ObstacleEnergy(Energy):
 
     def _speeds(self, nodes: Nodes, move: Nodes) -> Vector:
         """Bound of how far each sample goes in the frame while the unknowns make a straight move [m]."""
-        way = np.einsum("tc,tcd->td", self.shares, move[self._corners])
+        way = self._points(move)
         if self.carriage is None:
-            return np.linalg.norm(way, axis=1)
+            return lengths_of(way)
         begin, end = self.carriage.axes(nodes), self.carriage.axes(nodes + move)
         largest = max(np.linalg.norm(begin, 2), np.linalg.norm(end, 2))
-        spans = np.einsum("tc,tcd->td", self.shares, nodes[self._corners]) - self.carriage.place(nodes)
+        spans = self._points(nodes) - self.carriage.place(nodes)
         way = way - move[self.carriage.row]
-        reach = np.maximum(np.linalg.norm(spans, axis=1), np.linalg.norm(spans + way, axis=1))
-        return largest * np.linalg.norm(way, axis=1) + np.linalg.norm(end - begin, 2) * reach
+        reach = np.maximum(lengths_of(spans), lengths_of(spans + way))
+        return largest * lengths_of(way) + np.linalg.norm(end - begin, 2) * reach
 
     def _on_the_way(self, nodes: Nodes, move: Nodes, some: np.ndarray, shares: Vector) -> Points:
         """Where some samples are in the frame after a share each of a straight move [m]."""
@@ -254,22 +291,23 @@ class ObstacleEnergy(Energy):
         spans = points - self.carriage.place(nodes) - shares[:, None] * move[self.carriage.row]
         return spans @ begin.T + shares[:, None] * (spans @ (end - begin).T)
 
-    def _derivatives(self, found: Distances, weights: Vector | None = None) -> tuple[Vector, Vector]:
-        """First two derivatives of each term by its distance."""
+    def _derivatives(self, found: Distances, weights: Vector) -> tuple[Vector, Vector]:
+        """First two derivatives of terms of these weights by their distances."""
         d = found.values
         r = (d / self.distance) ** 2
         with np.errstate(divide="ignore", invalid="ignore"):
             log, below = -np.log(r), r - 1.0
             slope = 2.0 * below * log - below**2 / r
             curve = 2.0 * log - 4.0 * below / r + (below / r) ** 2
-        scale = (self.weights if weights is None else weights) * (r < 1.0)
+        scale = weights * (r < 1.0)
         one = np.where(r < 1.0, 2.0 * scale * slope * d, 0.0)
         two = np.where(r < 1.0, scale * (2.0 * slope + 4.0 * r * curve), 0.0)
         return one, two
 
-    def _blocks(self, nodes: Nodes, some: np.ndarray, places: Points, share: float) -> HessianBlocks:
+    def _blocks(self, nodes: Nodes, some: np.ndarray, share: float) -> HessianBlocks:
         """Hessian of some terms, with a share of what is negative taken out."""
-        found = Distances(*(part[some] for part in self.field(places)))
+        places = self._located(nodes)[0][some]
+        found = self.field(places)
         slope, curve = self._derivatives(found, self.weights[some])
         inner = curve[:, None, None] * (found.normals[:, :, None] * found.normals[:, None, :])
         kept = 1.0 - share if self.carriage is None else 1.0
@@ -277,13 +315,13 @@ class ObstacleEnergy(Energy):
         forces = slope[:, None] * found.normals
         if self.grip is not None:
             grip = self.grip.only(some)
-            inner = inner + grip.stiffness(places[some])
-            forces = forces + grip.forces(places[some])
+            inner = inner + grip.stiffness(places)
+            forces = forces + grip.forces(places)
         dim, corners = inner.shape[1], self.shares.shape[1]
         if self.carriage is None:
             blocks = np.einsum("ta,tb,tij->taibj", self.shares[some], self.shares[some], inner)
             return blocks.reshape(len(some), corners * dim, corners * dim)
-        slopes = self._slopes(nodes, some).reshape(len(some), dim, -1)
+        slopes = self._slopes(nodes, some).reshape(len(some), dim, dim * (corners + 1 + dim))
         blocks = np.einsum("tkr,tkl,tls->trs", slopes, inner, slopes)
         bends = blocks.reshape(len(some), corners + 1 + dim, dim, corners + 1 + dim, dim)
         by_point = np.concatenate([self.shares[some], -np.ones((len(some), 1))], axis=1)
