@@ -11,7 +11,7 @@ from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places
+from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places, joined
 from hydrostat.robot import Mount, Robot, Winch, obstacle_lines
 
 SHARES = np.linspace(0.3, 0.9, 13)  # shares of a cable's length where its number may stand
@@ -93,8 +93,9 @@ def _draw_cables(
         colour = colours[index] if colours is not None else by_winch[cable.winch]
         for start, end in cable.sheathed:
             _draw_sheath(sheet, run.points[start : end + 1], colour, width, float(run.fades[start : end + 1].mean()))
-        for part, fade in run.parts:
-            _draw_part(sheet, part, colour, width, fade)
+        for fade in sorted({fade for _, fade in run.parts}):
+            alike = [part for part, own in run.parts if own == fade]
+            _draw_part(sheet, joined(alike), colour, width, fade)
         _draw_beads(sheet, run, colour)
         _draw_stopper(sheet, run, colour, width)
 
@@ -198,7 +199,7 @@ def _draw_sheath(sheet: PictureSheet, pipe: Places, colour: str, width: float, f
 
 
 def _draw_part(sheet: PictureSheet, part: Places, colour: str, width: float, fade: float) -> None:
-    """A piece of a cable: with a pale border where it lies in front, thinner where the body covers it."""
+    """Pieces of a cable: with a pale border where they lie in front, thinner where the body covers them."""
     if fade > 0:
         sheet.curve(part, color=_faded(LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade)
         sheet.curve(part, color=_faded(colour, fade), linewidth=0.8 * width, zorder=7 - fade)

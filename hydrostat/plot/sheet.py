@@ -36,13 +36,12 @@ class PictureSheet:
     def curve(self, points: Places, **style: object) -> None:
         """A line through points [mm]; rows of NaN break it."""
         look: dict[str, object] = {"solid_capstyle": "round", "solid_joinstyle": "round", "clip_on": False, **style}
-        self.axes.add_line(Line2D(points[:, 0], points[:, 1], **look))  # pyright: ignore[reportArgumentType]
+        self.axes.add_artist(Line2D(points[:, 0], points[:, 1], **look))  # pyright: ignore[reportArgumentType]
 
     def segments(self, ends: np.ndarray, **style: object) -> None:
         """Many separate lines [mm], (lines, 2, 2), as one path."""
         if len(ends):
-            gaps = np.full((len(ends), 1, 2), np.nan)
-            self.curve(np.concatenate([ends, gaps], axis=1).reshape(-1, 2), **style)
+            self.curve(joined(list(ends)), **style)
 
     def dots(self, points: Places, size: float, **style: object) -> None:
         """Round dots of a diameter [pt] at points [mm]."""
@@ -51,11 +50,16 @@ class PictureSheet:
     def area(self, rings: list[Places], **style: object) -> None:
         """A filled shape of one or more rings [mm]."""
         closed = [Path(np.concatenate([ring, ring[:1]]), closed=True) for ring in rings]
-        self.axes.add_patch(PathPatch(Path.make_compound_path(*closed), clip_on=False, **style))  # pyright: ignore[reportArgumentType]
+        self.axes.add_artist(PathPatch(Path.make_compound_path(*closed), clip_on=False, **style))  # pyright: ignore[reportArgumentType]
 
     def text(self, place: tuple[float, float], words: str, **style: object) -> None:
         """Words as they are: no formula is read in them."""
         self.axes.text(*place, words, **{"parse_math": False, "clip_on": False, **style})  # pyright: ignore[reportArgumentType]
+
+
+def joined(lines: list[Places]) -> Places:
+    """Separate lines as one, broken by rows of NaN."""
+    return np.concatenate([part for line in lines for part in (line, np.full((1, 2), np.nan))])
 
 
 def new_figure(width: float, height: float) -> Figure:
