@@ -137,13 +137,13 @@ class Assembly:
 
     def corrected(self, nodes: Nodes, controls: Vector, stiffness: Stiffness | None) -> "Assembly":
         """Sum in which that is nearer to what it should be; by Newton's method if the stiffness is given."""
-        energies, end = [], 0
-        for energy, part in zip(self.energies, self.couplings(nodes, controls), strict=True):
-            begin, end = end, end + (0 if part is None else part.columns.shape[1])
-            compliance = None if stiffness is None else stiffness.compliance_of(slice(begin, end))
-            energies.append(
-                energy.corrected(nodes, controls, compliance, None if stiffness is None else stiffness.solve)
-            )
+        if stiffness is None:
+            return self.with_terms([energy.corrected(nodes, controls, None) for energy in self.energies])
+        energies = []
+        for energy in self.energies:
+            spans = energy.span_columns(nodes)
+            compliance = None if spans is None else stiffness.compliance_to(spans)
+            energies.append(energy.corrected(nodes, controls, compliance, stiffness.solve))
         return self.with_terms(energies)
 
     def after(self, nodes: Nodes, controls: Vector) -> "Assembly":

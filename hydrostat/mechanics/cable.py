@@ -118,11 +118,16 @@ class CableEnergy(Energy):
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         return float(self.tensions(nodes, controls).max(initial=0.0))
 
-    def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
-        """Slopes dl/dx of the length of each cable."""
-        columns = np.zeros((*nodes.shape, len(self.winches)))
-        self._add_slopes(nodes, self.cables, np.ones(len(self.cables)), columns)
-        return columns.reshape(nodes.size, len(self.winches))
+    def columns(
+        self, nodes: Nodes, springs: Int[np.ndarray, " cables"] | None = None, count: int = 0
+    ) -> Float[np.ndarray, "dofs springs"]:
+        """Slopes dl/dx of the length of each cable, or of so many springs that cables are parts of; -1 for none."""
+        if springs is None:
+            springs, count = np.arange(len(self.winches)), len(self.winches)
+        columns, owners = np.zeros((*nodes.shape, count)), springs[self.cables]
+        if count:
+            self._add_slopes(nodes, np.maximum(owners, 0), (owners >= 0).astype(float), columns)
+        return columns.reshape(nodes.size, count)
 
     def length_gradients(self, nodes: Nodes) -> Blocks:
         """Slopes dl/dx of each segment at its stencil's nodes."""

@@ -1,6 +1,6 @@
 """`ChainLaw`: the tensions along a cable (tendon) with capstan friction."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Bool, Int
@@ -27,12 +27,19 @@ class ChainLaw(TensionLaw):
 
     starts: Int[np.ndarray, " ends"]
     limits: Vector
+    _known: list[Vector] = field(default_factory=list, init=False, repr=False)
 
     def slips(self, elongation: Vector) -> Vector:
-        """P at the point before each span [m], positive towards the winch; 0 for the first span of a cable."""
-        slips = np.zeros_like(elongation)
-        native.relax_chains(elongation, self.stiffness, self.smoothing, self.limits, self.starts, slips)
-        return slips
+        """P at the point before each span [m], positive towards the winch; 0 for the first span of a cable.
+
+        The last answer is kept: energy, forces and Hessian of one state ask for the same.
+        """
+        known = self._known
+        if not known or not np.array_equal(known[0], elongation):
+            slips = np.zeros_like(elongation)
+            native.relax_chains(elongation, self.stiffness, self.smoothing, self.limits, self.starts, slips)
+            known[:] = elongation.copy(), slips
+        return known[1]
 
     def energy(self, elongation: Vector) -> Vector:
         """Energy of each span and what friction dissipates at the point before it [J]."""
@@ -47,6 +54,16 @@ class ChainLaw(TensionLaw):
         """dT/ds [N/m]: springs joined where cable slips are one spring in series."""
         slips = self.slips(elongation)
         return self._joined(super().tangent(self._own(elongation, slips)), slips != 0)[0]
+
+    def springs(self, elongation: Vector) -> tuple[Int[np.ndarray, " spans"], Vector]:
+        """The spring that each span belongs to, -1 where it is slack, and dT/ds of each [N/m].
+
+        Spans are one spring, in series, between points where cable sticks.
+        """
+        slips = self.slips(elongation)
+        group, series = self._series(super().tangent(self._own(elongation, slips)), slips != 0)
+        taut = series > 0
+        return np.where(taut, np.cumsum(taut) - 1, -1)[group], series[taut]
 
     def locked(self, tensions: Vector, signs: Vector) -> tuple[Small, Small]:
         """dT/ds [N/m] and dT/dlimits while cable goes on slipping where it does.
@@ -69,9 +86,15 @@ class ChainLaw(TensionLaw):
 
     def _joined(self, springs: Vector, slipping: Bool[np.ndarray, " spans"]) -> tuple[Small, Vector, Small]:
         """dT/ds, the compliance of each span, and which spans are joined by points that slip."""
-        group = np.cumsum(~slipping) - 1
+        group, series = self._series(springs, slipping)
         same = (group[:, None] == group).astype(float)
-        soft = 1.0 / np.maximum(springs, 1e-12 * self.stiffness)
-        weakest = np.minimum.reduceat(springs, np.flatnonzero(~slipping))
-        series = np.where(weakest > 0, 1.0 / np.bincount(group, soft), 0.0)
-        return same * series[group], soft, same
+        return same * series[group], 1.0 / np.maximum(springs, 1e-12 * self.stiffness), same
+
+    def _series(
+        self, springs: Vector, slipping: Bool[np.ndarray, " spans"]
+    ) -> tuple[Int[np.ndarray, " spans"], Vector]:
+        """The group of each span that points that slip join, and dT/ds of each group; 0 where a span is slack."""
+        group = np.cumsum(~slipping) - 1
+        weakest = np.minimum.reduceat(springs, np.flatnonzero(~slipping)) if len(springs) else springs
+        soft = np.bincount(group, 1.0 / np.maximum(springs, 1e-12 * self.stiffness))
+        return group, np.where(weakest > 0, 1.0 / soft, 0.0)

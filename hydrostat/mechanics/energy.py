@@ -158,6 +158,10 @@ class Energy(ABC):
         """Springs that couple many nodes, whose Hessian G D G^T is kept as the low rank it has. None for most."""
         return None
 
+    def span_columns(self, nodes: Nodes) -> Columns | None:
+        """Slopes of the elongations along which `corrected` asks how the body gives way; None for most."""
+        return None
+
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         """d2E/dx da of each term, (terms, corners, dim), a being the term's own control."""
         raise NotImplementedError(f"{type(self).__name__} has no controls")

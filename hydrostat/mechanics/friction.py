@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
 from hydrostat.mechanics.chain_law import ChainLaw
-from hydrostat.mechanics.energy import Blocks, Compliance, Coupling, Energy, HessianBlocks, Response, Small
+from hydrostat.mechanics.energy import Blocks, Columns, Compliance, Coupling, Energy, HessianBlocks, Response, Small
 from hydrostat.mechanics.tension_law import TensionLaw
 from hydrostat.mechanics.turns import Turns
 
@@ -134,8 +134,12 @@ class FrictionCableEnergy(Energy):
         return self._spans.bends(nodes, self.span_tensions(nodes, controls))
 
     def coupling(self, nodes: Nodes, controls: Vector) -> Coupling:
-        tangents = self.law.tangents(self.elongations(nodes, controls))
-        return Coupling(columns=self._spans.columns(nodes), weights=tangents)
+        springs, tangents = self.law.springs(self.elongations(nodes, controls))
+        columns = self._spans.columns(nodes, springs, len(tangents))
+        return Coupling(columns=columns, weights=np.diag(tangents))
+
+    def span_columns(self, nodes: Nodes) -> Columns:
+        return self._spans.columns(nodes)
 
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         return float(self.span_tensions(nodes, controls).max(initial=0.0))

@@ -46,7 +46,9 @@ class Stiffness:
         return self.__dict__ | {"source": None}
 
     def with_coupling(self, coupling: Coupling) -> "Stiffness":
-        """The same with the springs as they are now: their D, their elongations and law, but the G that it has."""
+        """The same with the springs as they are now; where their law is known, with the G that it has."""
+        if coupling.law is None or coupling.weights.shape != self.weights.shape:
+            return Stiffness(self.factors, coupling, token=self.token, source=self.source)
         other = self.with_weights(coupling.weights)
         other.coupling = coupling
         return other
@@ -82,9 +84,10 @@ class Stiffness:
         """Z [m/N]: how the nodes move when a cable pulls by 1 N more."""
         return self.factors.expand(self._reduced) if self.columns.size else self.columns
 
-    def compliance_of(self, columns: slice) -> Compliance:
-        """How the body gives way to some of the springs."""
-        return Compliance(self.moves[:, columns], self.compliance[columns, columns])
+    def compliance_to(self, columns: Columns) -> Compliance:
+        """How the body without the springs gives way to forces along some columns."""
+        reduced = self.factors.reduce(columns)
+        return Compliance(self.factors.expand(reduced), self.factors.inner(reduced, reduced))
 
     @property
     def body_definite(self) -> bool:

@@ -193,7 +193,7 @@ class Simulation:
             right = -self.assembly.near(pose.unknowns).control_derivative(pose.unknowns, pose.contractions).toarray()
             return self.response(pose, right).reshape(*self.assembly.shape, -1)[: len(pose.nodes)]
         cables, stiffness = self._rubbing(pose)
-        compliance = stiffness.compliance_of(slice(0, len(pose.history)))
+        compliance = stiffness.compliance_to(cables.span_columns(pose.nodes))
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
 
     def marker_jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "markers dim winches"]:

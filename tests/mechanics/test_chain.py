@@ -24,12 +24,26 @@ def test_neighbouring_tensions_differ_by_no_more_than_the_limit(seed: int) -> No
     assert (np.abs(np.diff(tensions)) <= limits[1:] + 1e-7 * max(tensions.max(), 1e-3)).all()
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_joined_springs_are_the_slope_of_the_tensions(seed: int) -> None:
+    """G D G^T with a column for each taut spring is dT/ds: central differences."""
+    random = np.random.default_rng(seed)
+    spans = int(random.integers(4, 24))
+    elongation = random.uniform(-1e-3, 2e-3, spans)
+    law = _law(np.concatenate([[0.0], random.uniform(0.0, 3.0, spans - 1)]))
+    springs, tangents = law.springs(elongation)
+    columns = (springs[:, None] == np.arange(len(tangents))).astype(float)
+    step = 1e-9 * np.eye(spans)
+    slopes = np.array([law.tension(elongation + one) - law.tension(elongation - one) for one in step]).T / 2e-9
+    assert columns @ np.diag(tangents) @ columns.T == pytest.approx(slopes, abs=1e-5 * 16e3)
+
+
 def _tensions(elongation: np.ndarray, limits: np.ndarray) -> np.ndarray:
-    count = len(elongation)
-    law = ChainLaw(
-        stiffness=np.full(count, 16e3),
-        smoothing=np.full(count, 2.5e-5),
-        starts=np.array([0, count]),
-        limits=limits,
+    return _law(limits).tension(elongation)
+
+
+def _law(limits: np.ndarray) -> ChainLaw:
+    count = len(limits)
+    return ChainLaw(
+        stiffness=np.full(count, 16e3), smoothing=np.full(count, 2.5e-5), starts=np.array([0, count]), limits=limits
     )
-    return law.tension(elongation)

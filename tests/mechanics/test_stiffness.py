@@ -108,6 +108,22 @@ def test_moves_and_compliance_are_what_they_say() -> None:
     expected = np.linalg.solve(matrix, columns)
     assert found.moves == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
     assert found.compliance == pytest.approx(columns.T @ expected, rel=1e-9, abs=1e-9)
+    others = random.standard_normal((SIZE, 5))
+    expected = np.linalg.solve(matrix, others)
+    given = found.compliance_to(others)
+    assert given.moves == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+    assert given.compliance == pytest.approx(others.T @ expected, rel=1e-9, abs=1e-9)
+
+
+def test_springs_that_came_since_count_whole() -> None:
+    """Springs without a law may be others, and more: then it is as if made with them (inverse of the dense sum)."""
+    random = np.random.default_rng(6)
+    matrix, columns = body(0.5), random.standard_normal((SIZE, RANK + 2))
+    found = made(matrix, columns[:, :RANK], np.eye(RANK))
+    other = found.with_coupling(Coupling(columns=columns, weights=2.0 * np.eye(RANK + 2)))
+    right = random.standard_normal(SIZE)
+    expected = np.linalg.solve(matrix + 2.0 * columns @ columns.T, right)
+    assert other.solve(right) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("seed", range(3))

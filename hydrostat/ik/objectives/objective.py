@@ -148,7 +148,7 @@ def rubbing_moves(
     """
     nodes, contractions = posture.nodes, posture.contractions
     cables = friction.resumed(posture.history[: len(friction.history)], nodes, contractions)
-    compliance = stiffness.compliance_of(slice(0, len(friction.history)))
+    compliance = stiffness.compliance_to(cables.span_columns(nodes))
     tensions = cables.tension_slopes(nodes, contractions, compliance, taut)
     moves = -compliance.moves @ tensions
     return Moves(

@@ -265,8 +265,6 @@ def _full_tension(simulation: Simulation) -> float:
     """What the hardest cable would pull at the full travel of its winch, were the body linear [N]."""
     robot, cables = simulation.robot, simulation.cables
     travel = cables.taken(np.array([winch.travel for winch in robot.winches]))
-    springs = simulation.stiffness(simulation.rest).compliance
-    owners = np.arange(len(robot.cables)) if simulation.friction is None else simulation.friction.owners
-    joined = (owners == np.arange(len(robot.cables))[:, None]).astype(float)  # spans of a cable are springs in a row
-    compliance = (joined @ springs @ joined.T).diagonal()
+    rest = simulation.rest
+    compliance = simulation.stiffness(rest).compliance_to(cables.columns(rest.nodes)).compliance.diagonal()
     return float((travel / (1.0 / cables.law.stiffness + compliance)).max())
