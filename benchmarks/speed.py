@@ -73,6 +73,7 @@ ROWS = {
         )
         for name in BODIES
     },
+    "rod": Row("slender rod, nine cables", "ms", "60", 30, 10),
     "friction": Row(
         "friction, zigzag routes, within travel", "", {"converged %": "99.5", "over 20 x median": "0"}, 40, 12
     ),

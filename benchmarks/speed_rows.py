@@ -88,6 +88,22 @@ def contact(name: str, count: int) -> dict[str, float]:
     return {name: median(found) for name, found in ratios.items() if found}
 
 
+def rod(count: int) -> dict[str, float]:
+    """Median over poses of a slender rod with nine cables [ms], by friction coefficient."""
+    from rod_body import rod_commands, rod_robot
+
+    from hydrostat import Simulation
+
+    found = {}
+    for name, rub in (("without friction", 0.0), ("friction 0.2", 0.2)):
+        simulation = Simulation(rod_robot(rub))
+        _ = simulation.rest
+        times = [cpu(partial(simulation.solve, goal, strict=False)) for goal in rod_commands(count)]
+        good = all(pose.result.converged for _, pose in times)
+        found[name] = 1e3 * median(taken for taken, _ in times) if good else float("nan")
+    return found
+
+
 def friction(count: int) -> dict[str, float]:
     """Poses within travel on zigzag routes [%] that converge, and how many take over 20 times the median."""
     from attack import commands
@@ -185,6 +201,7 @@ MEASURES: dict[str, Callable[[int], Any]] = {
     "columns": columns,
     "sample": sample,
     **{f"contact_{name}": lambda count, name=name: contact(name, count) for name in BODIES},
+    "rod": rod,
     "friction": friction,
     "deadlines": deadlines,
     "commands": commands,

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -183,12 +184,12 @@ def test_a_wrong_limit_is_refused_at_once(simulation: Simulation) -> None:
 @pytest.mark.parametrize("threads", [1, 2])
 def test_an_interrupt_ends_it(simulation: Simulation, monkeypatch: pytest.MonkeyPatch, threads: int) -> None:
     """Of ten thousand poses that take a hundredth of a second each only the first few are solved."""
-    solved, solve = [], simulation.solve
+    solved, solve, numbers = [], simulation.solve, count()
 
     def slow(goal: np.ndarray, **options: Any) -> SolvedPose:
         solved.append(goal)
         time.sleep(0.01)
-        if len(solved) == 10:
+        if next(numbers) == 10:  # exactly one of the threads
             threading.Timer(0.0, _thread.interrupt_main).start()
         return solve(goal, **options)
 
