@@ -3,14 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.sparse import csr_array
 
 from hydrostat.arrays import Nodes, Points
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 _HAIR = 1e-9  # a point this little outside counts as inside, in heights of its element
 _AT_ONCE = 3_000_000  # pairs of point and facet whose distances are looked at together
@@ -28,8 +31,10 @@ class Anchors:
         """Positions [m] of the anchors when the nodes are at `nodes` [m]."""
         return np.einsum("pc,pcd->pd", self.weights, nodes[self.stencils])
 
-    def matrix(self, node_count: int) -> csr_array:
+    def matrix(self, node_count: int) -> "csr_array":
         """Sparse interpolation matrix W, (points, nodes): positions = W @ nodes."""
+        from scipy.sparse import csr_array
+
         rows = np.repeat(np.arange(len(self.stencils)), self.stencils.shape[1])
         entries = (self.weights.ravel(), (rows, self.stencils.ravel()))
         return csr_array(entries, shape=(len(self.stencils), node_count))

@@ -3,16 +3,19 @@
 from collections.abc import Sequence
 from functools import cached_property
 from math import isfinite
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
-from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics.energy import Coupling, Energy, Places
 from hydrostat.mechanics.sparsity import SparsityPattern
 from hydrostat.mechanics.stiffness import Stiffness
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 
 class Assembly:
@@ -166,11 +169,13 @@ class Assembly:
             energy.add_gradient(nodes, controls, total)
         return total.ravel()
 
-    def hessian(self, nodes: Nodes, controls: Vector, *, projection: float = 0.0) -> csc_array:
+    def hessian(self, nodes: Nodes, controls: Vector, *, projection: float = 0.0) -> "csc_array":
         """d2E/dx2 [N/m], sparse, less its part of low rank.
 
         `projection` is the share, 0 to 1, of what is negative in the blocks that is taken out (E6).
         """
+        from scipy.sparse import csc_array
+
         values = self._values(nodes, controls, projection)
         return csc_array((values, self.pattern.indices, self.pattern.indptr), shape=(self.size, self.size))
 
@@ -211,8 +216,10 @@ class Assembly:
         factors = self.pattern.analysis.factorise(values)
         return Stiffness(factors, self.coupling(nodes, controls), token=self.token, source=self)
 
-    def control_derivative(self, nodes: Nodes, controls: Vector) -> csc_array:
+    def control_derivative(self, nodes: Nodes, controls: Vector) -> "csc_array":
         """d2E/dx da, sparse, (nodes x dim, controls)."""
+        from scipy.sparse import csc_array
+
         rows, columns, data = [], [], []
         for energy in self.energies:
             if energy.controls is not None:

@@ -15,16 +15,17 @@ Newton, which wants to know whether a matrix is definite, and solves mostly with
 SuperLU does the same from outside: slower, and independent. Figures: docs/decisions/0007-factorisation.md.
 """
 
-from typing import Literal, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Literal, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import spilu, splu
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics import ordering, symbolic
 from hydrostat.mechanics.supernodal import SupernodalAnalysis
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 Backend = Literal["auto", "supernodal", "superlu"]
 
@@ -123,6 +124,8 @@ class Analysis:
         """Factorise the matrix with these values, in the order of `indices`."""
         if self.backend == "supernodal":
             return Factorisation(self._supernodal.factorise(np.require(data, float, ["C", "W"]), TINY))
+        from scipy.sparse import csc_array
+
         matrix = csc_array((data, self._indices, self._indptr), shape=(self._size, self._size))
         return Factorisation(SuperLUFactors(matrix))
 
@@ -163,7 +166,7 @@ class Factorisation:
         return self._factors.expand(reduced)
 
 
-def factorise(matrix: csc_array) -> Factorisation:
+def factorise(matrix: "csc_array") -> Factorisation:
     """Factorise one symmetric matrix whose pattern will not come again."""
     return Factorisation(SuperLUFactors(matrix))
 
@@ -176,8 +179,10 @@ class SuperLUFactors:
         negative: number of negative pivots.
     """
 
-    def __init__(self, matrix: csc_array) -> None:
+    def __init__(self, matrix: "csc_array") -> None:
         """Factorise a symmetric matrix."""
+        from scipy.sparse.linalg import splu
+
         self.singular, self.negative = True, 0
         diagonal = np.abs(matrix.diagonal())
         if not np.isfinite(matrix.data).all():
@@ -238,6 +243,9 @@ def _cheapest_tree(
 
 def _minimum_degree(starts: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
     """SuperLU's multiple minimum degree (Liu 1985), by an incomplete factorisation that drops nearly all it finds."""
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import spilu
+
     nodes = len(starts) - 1
     degrees = np.diff(starts)
     indices = np.concatenate([neighbours, np.arange(nodes)])

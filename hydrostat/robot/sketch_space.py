@@ -6,7 +6,6 @@ from pathlib import Path, PurePath
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.sparse import coo_array
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
@@ -211,6 +210,7 @@ class _Limb:
 
     def part(self, mesh: Mesh, share: float) -> Bool[np.ndarray, " elements"]:
         """The elements across the limb at a share of its length: those that hang together with the way there."""
+        from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components  # Imported here: not every command needs it.
 
         away = self.away[mesh.elements].mean(axis=1)
@@ -239,6 +239,7 @@ class _Limb:
 
 
 def _limb(mesh: Mesh, held: Bool[np.ndarray, " nodes"]) -> _Limb:
+    from scipy.sparse import coo_array
     from scipy.sparse.csgraph import dijkstra  # Imported here: not every command needs it.
 
     one, two = mesh.edges.T

@@ -2,14 +2,17 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
-from scipy.sparse import csr_array
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot import Robot
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 
 def node_strains(robot: Robot, nodes: Nodes) -> Vector:
@@ -40,12 +43,14 @@ class _NodeOperators:
     """What of a mesh does not change."""
 
     dim: int  # of the body
-    slopes: csr_array  # gives F of all elements, a row for each element and coordinate of rest, from the nodes
-    average: csr_array  # gives values of nodes from those of elements
+    slopes: "csr_array"  # gives F of all elements, a row for each element and coordinate of rest, from the nodes
+    average: "csr_array"  # gives values of nodes from those of elements
 
 
 @lru_cache(maxsize=2)
 def _operators(mesh: Mesh) -> _NodeOperators:
+    from scipy.sparse import csr_array
+
     count, corners = mesh.elements.shape
     dim = mesh.dim
     inverse = np.linalg.inv(np.swapaxes(mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]], 1, 2))

@@ -4,8 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from hydrostat.arrays import Vector
 from hydrostat.mechanics.energy import Pressed, Stencils
@@ -78,6 +76,9 @@ def _newtons(force: float) -> str:
 
 def _patches(stencils: Stencils, count: int) -> Iterator[np.ndarray]:
     """Stencils that hang together by their nodes, of so many."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     many = stencils.shape[1] - 1
     links = np.repeat(stencils[:, 0], many), stencils[:, 1:].ravel()
     graph = coo_array((np.ones(len(links[0])), links), shape=(count, count))

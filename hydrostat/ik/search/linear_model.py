@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.linalg import solve_triangular
 
 from hydrostat.arrays import Vector
 from hydrostat.ik.limits import Bounds
@@ -211,6 +210,8 @@ def least_squares(
     By a QR factorisation it becomes the problem of the least distance, and that one of nonnegative least squares
     (Lawson and Hanson 1974, chapter 23). `matrix` must have full column rank.
     """
+    from scipy.linalg import solve_triangular  # Imported here: not every command needs it.
+
     if not matrix.shape[1]:
         return np.zeros(0)
     q, r = np.linalg.qr(matrix)

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 from jaxtyping import Float
-from scipy.sparse import coo_array
 
 from hydrostat.arrays import Points
 from hydrostat.geometry.anchors import locate
@@ -111,6 +110,7 @@ def _stretching(robot: Robot) -> Iterator[Risk]:
 
 def _ways(mesh: Mesh, places: Points) -> Float[np.ndarray, "places nodes"]:
     """Length of the way from each place to each node [m], straight to the nearest node and on along edges."""
+    from scipy.sparse import coo_array
     from scipy.sparse.csgraph import dijkstra
 
     one, two = mesh.edges.T
