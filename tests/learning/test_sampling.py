@@ -371,3 +371,20 @@ def test_a_ray_cluster_that_loses_a_worker_gives_the_same_bytes(once: Path, plan
     (tmp_path / "plan").write_bytes(pickle.dumps(plan))
     subprocess.run([sys.executable, program, tmp_path / "plan", tmp_path / "out"], check=True, timeout=300)
     assert contents(tmp_path / "out") == contents(once)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="the script is for bash")
+def test_an_array_of_jobs_gives_the_same_bytes(tmp_path: Path) -> None:
+    """The script for Slurm, one job after another, the first one twice, as if lost. Oracle: one process."""
+    examples, program = Path(__file__).parents[2] / "examples", tmp_path / "bin" / "hydrostat"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m hydrostat "$@"\n')
+    program.chmod(0o755)
+    paths = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
+    for part in ("1", "2", "1"):
+        variables = {"PATH": paths, "SLURM_ARRAY_TASK_ID": part, "SLURM_ARRAY_TASK_COUNT": "2"}
+        command = ["bash", examples / "sample_array.sh", examples / "letter_s", "100", tmp_path / "array"]
+        subprocess.run(command, env=os.environ | variables, check=True, capture_output=True)
+    alone = sample_robot(plan_samples(hs.load_robot(examples / "letter_s"), 100), tmp_path / "alone", jobs=1)
+    assert contents(tmp_path / "array") == contents(alone.path)
