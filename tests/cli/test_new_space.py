@@ -58,12 +58,12 @@ def test_a_scan_becomes_a_robot_that_can_be_checked_and_pulled(run: Run, tmp_pat
 @pytest.mark.slow
 def test_formats_sizes_and_elements(run: Run, tmp_path: Path, ending: str) -> None:
     source = _exported(tmp_path / f"bar.{ending}")
-    arguments = ("--size", "180 mm", "--element-size", "20 mm", "--material", "polyester fibre")
+    arguments = ("--size", "180 mm", "--element-size", "20 mm", "--material", "polyurethane foam")
     assert run("new", tmp_path / "bar", "--from", source, *arguments)[0] == 0
     robot = hs.load_robot(tmp_path / "bar")
     assert robot.body.element_size == 0.02
     assert robot.body.size == 0.18
-    assert robot.body.material.name == "polyester fibre"
+    assert robot.body.material.name == "polyurethane foam"
     assert _sides(tmp_path / "bar") == pytest.approx([0.18, 0.04, 0.04], abs=0.004)
 
 
