@@ -21,6 +21,7 @@ from typing import Any
 
 from machine import machine
 from speed_rows import BODIES, MEASURES, SHARED
+from startup import COMMANDS
 
 FILE = Path(__file__).with_name("speed_rows.py")
 LEVELS = ("base", "v3", "v4")
@@ -50,13 +51,7 @@ class Row:
 
 
 CONTACT = {"touching": "2", "not": "1.15"}
-COMMANDS = {
-    **{f"hydrostat {name}": goal for name, goal in (("simulate starfish", "0.7"), ("pose starfish", "0.8"))},
-    **{f"hydrostat {name}": goal for name, goal in (("new", "0.8"), ("check starfish", "1.5"))},
-    **{f"hydrostat {name}": goal for name, goal in (("fabricate starfish", "2.5"), ("simulate hand", "1.2"))},
-    **{f"hydrostat {name}": goal for name, goal in (("check hand", "3"), ("fabricate hand", "8"))},
-    "hydrostat grasp gripper": "8",
-}
+GOALS = {name: f"{goal:g}" for name, (_, goal) in COMMANDS.items() if goal is not None}
 
 ROWS = {
     "hand": Row("cupping hand from rest, random poses to 30 %", "ms", "22 / 13", 12, 6),
@@ -78,7 +73,7 @@ ROWS = {
         "friction, zigzag routes, within travel", "", {"converged %": "99.5", "over 20 x median": "0"}, 40, 12
     ),
     "deadlines": Row("longest overrun of a deadline, random robots with friction and contact", "s", "0.3", 500, 24),
-    "commands": Row("command", "s", COMMANDS, 3, 1, levels=False),
+    "commands": Row("command", "s", GOALS, 3, 1, levels=False),
     "first": Row("first pose after installing", "s", {"starfish": "1", "hand": "1.5"}, 3, 1, levels=False),
     "environment": Row("environment of make demo", "MB", "500", 1, 1, levels=False),
     "mujoco": Row("hand under its weight, to 1 %", "ms", "", 1, 1, levels=False),

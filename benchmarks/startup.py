@@ -33,7 +33,7 @@ from machine import machine  # isort: skip  (before NumPy)
 HYDROSTAT = [sys.executable, "-c", "from hydrostat.cli.main import main; main()"]
 STARFISH = str(Path(__file__).parents[1] / "examples" / "starfish")
 
-HAND = str(Path(STARFISH).parent / "cupping_hand")
+HAND, GRIPPER = (str(Path(STARFISH).parent / name) for name in ("cupping_hand", "caging_gripper"))
 
 COMMANDS = {
     "python -c pass": ([sys.executable, "-c", "pass"], None),
@@ -49,6 +49,7 @@ COMMANDS = {
     "simulate hand": ([*HYDROSTAT, "simulate", HAND, "--out", "{out}/a"], 1.2),
     "check hand": ([*HYDROSTAT, "check", HAND], 3.0),
     "fabricate hand": ([*HYDROSTAT, "fabricate", HAND, "--out", "{out}/a"], 8.0),
+    "grasp gripper": ([*HYDROSTAT, "grasp", GRIPPER, "--pose", "close", "--out", "{out}/a"], 8.0),
 }
 """Name, command, and the CPU time [s] that it should stay under."""
 
