@@ -105,25 +105,22 @@ def rod(count: int) -> dict[str, float]:
 
 
 def friction(count: int) -> dict[str, float]:
-    """Poses within travel on zigzag routes [%] that converge, and how many take over 20 times the median."""
-    from attack import commands
-    from deadlines import NAMES, draw_robot
+    """Poses within travel on random zigzags [%] that converge, and how many take over 20 times the median."""
+    from attack import commands, rubbing_robot
 
     from hydrostat import Simulation
 
     times, good = [], 0
     for number in range(count):
-        robot = draw_robot(NAMES[number % len(NAMES)], np.random.default_rng([7, number]))
-        simulation, spent = Simulation(robot), []
-        for within, goal in commands(robot, number, 7):
+        robot, _ = rubbing_robot(number, 31)
+        simulation = Simulation(robot)
+        for within, goal in commands(robot, number, 31):
             if within:
                 taken, pose = cpu(partial(simulation.solve, goal, strict=False, seconds=20))
                 good += pose.result.converged
-                spent.append(taken)
-        times.append(spent)
-    slow = sum(sum(taken > 20 * median(spent) for taken in spent) for spent in times)
-    poses = sum(map(len, times))
-    return {"converged %": 100 * good / poses, "over 20 x median": slow, "poses": poses}
+                times.append(taken)
+    slow = sum(taken > 20 * median(times) for taken in times)
+    return {"converged %": 100 * good / len(times), "over 20 x median": slow, "poses": len(times)}
 
 
 def deadlines(count: int) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 
 from hydrostat.errors import InputError
 
-INTERFACE = 5
+INTERFACE = 6
 """Version of the functions that are called here; `interface` in native/module.cpp is the same."""
 
 

@@ -48,4 +48,5 @@ void add_release(nb::module_& module);
 void add_paths(nb::module_& module);
 void add_perceptrons(nb::module_& module);
 void add_chains(nb::module_& module);
+void add_complement(nb::module_& module);
 void add_patches(nb::module_& module);

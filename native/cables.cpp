@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "eliminate.hpp"
 #include "spring.hpp"
 
 namespace {
@@ -171,35 +172,6 @@ void evaluate(Reals<1> stiffness, Reals<1> smoothing, Reals<1> elongation, Array
         out[count + cable] = one.tension;
         out[2 * count + cable] = one.slope;
     }
-}
-
-// Solve a small system in place, with pivoting; false if it is singular.
-bool eliminate(std::vector<double>& matrix, std::vector<double>& right) {
-    Int size = (Int)right.size();
-    for (Int column = 0; column < size; column++) {
-        Int pivot = column;
-        for (Int row = column + 1; row < size; row++)
-            if (std::fabs(matrix[row * size + column]) > std::fabs(matrix[pivot * size + column])) pivot = row;
-        if (!(std::fabs(matrix[pivot * size + column]) > 0.0)) return false;
-        if (pivot != column) {
-            for (Int other = column; other < size; other++)
-                std::swap(matrix[column * size + other], matrix[pivot * size + other]);
-            std::swap(right[column], right[pivot]);
-        }
-        for (Int row = column + 1; row < size; row++) {
-            double factor = matrix[row * size + column] / matrix[column * size + column];
-            if (factor == 0.0) continue;
-            for (Int other = column + 1; other < size; other++)
-                matrix[row * size + other] -= factor * matrix[column * size + other];
-            right[row] -= factor * right[column];
-        }
-    }
-    for (Int row = size - 1; row >= 0; row--) {
-        double total = right[row];
-        for (Int other = row + 1; other < size; other++) total -= matrix[row * size + other] * right[other];
-        right[row] = total / matrix[row * size + row];
-    }
-    return true;
 }
 
 // Newton with a line search on T M T / 2 + U(elongations - M T); false if it does not arrive.

@@ -319,7 +319,7 @@ NB_MODULE(_native, module) {
     for (const Kernels* found : levels()) names.append(found->name);
     module.attr("levels") = names;
     module.attr("instructions") = kernels.name;
-    module.attr("interface") = 5;  // kernel.py asks for it: raise both where the arguments of a function change
+    module.attr("interface") = 6;  // kernel.py asks for it: raise both where the arguments of a function change
     module.def("value", &value);
     module.def("gradient", &gradient);
     module.def("hessian", &hessian);
@@ -337,5 +337,6 @@ NB_MODULE(_native, module) {
     add_paths(module);
     add_perceptrons(module);
     add_chains(module);
+    add_complement(module);
     add_patches(module);
 }

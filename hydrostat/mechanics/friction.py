@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
+from hydrostat.mechanics.capstan import CapstanChains
 from hydrostat.mechanics.chain_law import ChainLaw
 from hydrostat.mechanics.energy import Blocks, Columns, Compliance, Coupling, Energy, HessianBlocks, Response, Small
 from hydrostat.mechanics.tension_law import TensionLaw
@@ -99,6 +100,7 @@ class FrictionCableEnergy(Energy):
         self.friction = np.where(firsts, 0.0, friction[owners])
         self.slips = np.zeros(len(owners))
         self._firsts, self._owners = firsts, owners
+        self._share, self._missed, self._solves = 1.0, np.inf, False  # of the last correction
         self._turns = Turns(
             stencils=turns.stencils, weights=turns.weights, offsets=turns.offsets, points=spans[turns.points]
         )
@@ -187,12 +189,17 @@ class FrictionCableEnergy(Energy):
     def after(self, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
         """Energy of what follows a state: the cable has slipped, and the limits are those of that state."""
         slips = self.slips + self.law.slips(self.elongations(nodes, controls))
-        return self._with(self.capstan_limits(nodes, controls), slips)
+        other = self._with(self.capstan_limits(nodes, controls), slips)
+        other._share, other._missed, other._solves = 1.0, np.inf, False
+        return other
 
     def corrected(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> "FrictionCableEnergy":
         """Energy with better limits: those of the capstan law here, or where a step of Newton towards it leads.
+
+        Where the last step left too much, those of balance on a body that gives way linearly are taken instead, and a
+        share of that way where these left too much as well.
 
         Args:
             nodes: equilibrium with the limits as they are [m].
@@ -201,16 +208,44 @@ class FrictionCableEnergy(Energy):
             response: not needed.
         """
         del response
+        wanted = self.capstan_limits(nodes, controls)
         if compliance is None:
-            return self.with_limits(self.capstan_limits(nodes, controls))
+            return self.with_limits(wanted)
+        missed = float(np.abs(wanted - self.law.limits).max()) / self.largest_force(nodes, controls)
+        falls = missed <= _FALLS * self._missed
+        limits = None if falls and not self._solves else self._solved_limits(nodes, controls, compliance)
+        solves = limits is not None
+        if limits is None:
+            limits = self.law.limits + self._newton_step(nodes, controls, compliance, wanted - self.law.limits)
+        share = min(2 * self._share, 1.0) if falls or solves > self._solves else max(0.5 * self._share, _LEAST_SHARE)
+        other = self.with_limits(np.maximum(self.law.limits + share * (limits - self.law.limits), 0.0))
+        other._share, other._missed, other._solves = share, missed, solves
+        return other
+
+    def _solved_limits(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Vector | None:
+        """Limits where the capstan law holds on a body that gives way linearly; None if none are found."""
+        elongations = self.elongations(nodes, controls)
+        chains = CapstanChains(
+            law=self.law,
+            friction=self.friction,
+            tensions=self.law.tension(elongations),
+            elongations=elongations,
+            angles=self.angles(nodes),
+            compliance=compliance.compliance,
+            turning=self.turn_gradients(nodes).T @ compliance.moves,
+            stable=_semidefinite(compliance.compliance),
+        )
+        tensions = chains.balance()
+        return None if tensions is None else chains.limits(tensions)
+
+    def _newton_step(self, nodes: Nodes, controls: Vector, compliance: Compliance, miss: Vector) -> Vector:
+        """Newton's step of the limits while cable slips where it does."""
         elongations = self.elongations(nodes, controls)
         tensions = self.law.tension(elongations)
         by_elongation, by_limit = self.law.locked(tensions, np.sign(self.law.slips(elongations)))
         unit = np.eye(len(tensions))
         moved = np.linalg.solve(unit + by_elongation @ compliance.compliance, by_limit)
-        slopes = unit - self._limit_slopes(nodes, tensions, compliance) @ moved
-        miss = self.capstan_limits(nodes, controls) - self.law.limits
-        return self.with_limits(np.maximum(self.law.limits + np.linalg.solve(slopes, miss), 0.0))
+        return np.linalg.solve(unit - self._limit_slopes(nodes, tensions, compliance) @ moved, miss)
 
     def moves(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Float[np.ndarray, "dofs controls"]:
         """D nodes / d controls while the capstan law holds and cable goes on slipping where it is about to.
@@ -320,6 +355,14 @@ class FrictionCableEnergy(Energy):
         return other
 
 
+def _semidefinite(matrix: Small) -> bool:
+    try:
+        np.linalg.cholesky(matrix + np.diag(_SLIGHT * matrix.diagonal()))
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
 _HELD = 1e30
 """Friction that nothing overcomes [N]."""
 
@@ -329,3 +372,12 @@ _JUST_TAUT = 1.0 / 16.0
 
 _AT_THE_LIMIT = 1e-6
 """Tensions that come as near to the capstan's limit, as a share of the largest tension, are at it."""
+
+_SLIGHT = 1e-9
+"""A matrix is semidefinite if it is definite with this share of its diagonal more."""
+
+_FALLS = 0.5
+"""A correction that leaves more than this share of what was off before it was too long."""
+
+_LEAST_SHARE = 1 / 16
+"""No correction goes less than this share of its way."""

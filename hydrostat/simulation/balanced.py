@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics import Assembly, NewtonResult, Reason, Stiffness
 
@@ -28,15 +30,19 @@ def balanced(
         The sum as corrected, and how the last minimisation ended; its iterations are of all.
     """
     nodes, stiffness = start
-    iterations = corrections = 0
+    iterations = corrections = last = 0
+    least = np.inf
     while True:
         result = relax(assembly, nodes, stiffness)
         nodes, stiffness, iterations = result.nodes, result.stiffness, iterations + result.iterations
         assembly = assembly.near(nodes)
         allowed = max(_TOLERANCE * assembly.largest_force(nodes, controls), floor)
-        if not result.converged or assembly.imbalance(nodes, controls) <= allowed:
+        missed = assembly.imbalance(nodes, controls)
+        if not result.converged or missed <= allowed:
             break
-        if corrections == _CORRECTIONS:
+        if missed < _FALLS * least:
+            least, last = missed, corrections
+        if corrections == min(_CORRECTIONS, last + _PATIENCE):
             result = replace(result, reason=Reason.NO_BALANCE)
             break
         sharp = corrections < _NEWTON and stiffness is not None and not stiffness.singular
@@ -49,5 +55,9 @@ _TOLERANCE = 1e-8
 """Forces in balance to this share of the largest one are right."""
 
 _CORRECTIONS = 40
-_NEWTON = 12
+_NEWTON = 16
 """Most corrections of one minimum, and how many of these by Newton's method."""
+
+_FALLS = 0.5
+_PATIENCE = 8
+"""Corrections end after so many of which none leaves less than this share of the least imbalance before."""

@@ -103,28 +103,66 @@ class LoadingPath:
         """Physics that remember how a pose was reached."""
         return self._rest.assembly.near(pose.unknowns).resumed(pose.history, pose.unknowns, pose.contractions)
 
-    def _advance(self, state: _PathState, goal: Vector, halvings: int = 4) -> _PathState:
-        """The next equilibrium, by way of more if it is not found: so often is the increment halved."""
+    def _advance(self, state: _PathState, goal: Vector, halvings: int = 0) -> _PathState:
+        """The next equilibrium: by half increments where it is not found, and by sliding where these fail too."""
         found = self._solve(state, goal)
-        late = found.result is not None and found.result.reason is Reason.TIME_LIMIT
-        if found.arrived or late or not halvings or (goal == state.contractions).all():
+        if found.arrived or _late(found) or (goal == state.contractions).all():
             return found
-        middle = self._advance(state, 0.5 * (state.contractions + goal), halvings - 1)
-        if not middle.arrived:
-            return found
-        return self._advance(middle, goal, halvings - 1)
+        if halvings:
+            slid = self._slide(state, goal)
+            if slid.arrived or _late(slid) or halvings == _HALVINGS:
+                return slid
+        middle = self._advance(state, 0.5 * (state.contractions + goal), halvings + 1)
+        return self._advance(middle, goal, halvings + 1) if middle.arrived else found
+
+    def _slide(self, state: _PathState, goal: Vector) -> _PathState:
+        """The next equilibrium where a body snaps: friction follows behind it, and what has slipped sticks.
+
+        Cable slips against the limits of where it was, a little too far. This is repeated until balance is near.
+        """
+        found, iterations = state, 0
+        for slides in _SLIDES:
+            for _ in range(slides):
+                result = self._relax(state.assembly, state.nodes, goal, _stiffness(state))
+                iterations += result.iterations
+                assembly = state.assembly.near(result.nodes)
+                state = _PathState(result.nodes, goal, assembly.after(result.nodes, goal), result)
+                if not result.converged:
+                    return _counted(state, iterations)
+            found = self._solve(state, goal)
+            assert found.result is not None
+            iterations += found.result.iterations
+            if found.arrived:
+                break
+        return _counted(found, iterations)
 
     def _solve(self, state: _PathState, goal: Vector) -> _PathState:
         """Equilibrium at `goal` after one increment, in balance with what depends on the path."""
-        stiffness = None if state.result is None else state.result.stiffness
 
         def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
-            return replace(self._solver, assembly=assembly).relax(nodes, goal, known)
+            return self._relax(assembly, nodes, goal, known)
 
-        start = state.nodes, stiffness
+        start = state.nodes, _stiffness(state)
         assembly, result = balanced(state.assembly, start, goal, relax, self._solver.round_off.force)
         after = assembly.after(result.nodes, goal)
         return _PathState(result.nodes, goal, after, replace(result, energy=after.value(result.nodes, goal)))
+
+    def _relax(self, assembly: Assembly, nodes: Nodes, goal: Vector, known: Stiffness | None) -> NewtonResult:
+        return replace(self._solver, assembly=assembly).relax(nodes, goal, known)
+
+
+def _late(state: _PathState) -> bool:
+    return state.result is not None and state.result.reason is Reason.TIME_LIMIT
+
+
+def _stiffness(state: _PathState) -> Stiffness | None:
+    return None if state.result is None else state.result.stiffness
+
+
+def _counted(state: _PathState, iterations: int) -> _PathState:
+    """The state with another count of iterations."""
+    assert state.result is not None
+    return replace(state, result=replace(state.result, iterations=iterations))
 
 
 _INCREMENT = 0.05
@@ -132,3 +170,9 @@ _INCREMENT = 0.05
 
 _GUESSES = 5
 """Corrections of a first guess, while nothing moves."""
+
+_HALVINGS = 4
+"""So often at most is an increment halved."""
+
+_SLIDES = (2, 4, 8, 16)
+"""So often cable slides before each trial of balance, where a body snaps."""

@@ -9,6 +9,7 @@ from builders import strip_robot
 
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.mechanics import NewtonOptions, Reason
+from hydrostat.robot import Cable
 from hydrostat.simulation import Simulation
 
 
@@ -56,6 +57,26 @@ def test_friction_keeps_to_a_time_limit() -> None:
     rubbing = replace(robot, cables=tuple(replace(cable, friction=0.3) for cable in robot.cables))
     pose = Simulation(rubbing).solve(np.array([0.03, 0.0]), seconds=1e-9, strict=False)
     assert pose.result.reason is Reason.TIME_LIMIT
+
+
+@pytest.mark.parametrize(
+    ("seed", "share"),
+    [
+        (5, 0.15),  # corrections of the limits of friction went round in circles
+        (23, 0.15),
+        (42, 0.3),  # the body snaps on the way
+    ],
+)
+def test_a_stiff_cable_that_rubs_on_a_zigzag_finds_its_balance(seed: int, share: float) -> None:
+    """Oracle: the judge of random robots, with slips as they are kept and limits by the capstan law."""
+    plain = strip_robot(columns=8, rows=2)
+    centers = plain.body.mesh.nodes[plain.body.mesh.elements].mean(axis=1)
+    points = np.random.default_rng(seed).choice(centers, size=8, replace=False).tolist()
+    cable = Cable(winch="up", points=tuple(map(tuple, points)), stiffness=1e5, friction=0.8)
+    simulation = Simulation(plain.with_network([replace(plain.winches[0], at=cable.points[0])], [cable]))
+    pose = simulation.solve([share * cable.length])
+    assert pose.history.any()
+    assert attack.fault(simulation, pose) == ""
 
 
 @pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan")])

@@ -1,0 +1,111 @@
+"""`CapstanChains`: tensions of cables that slip by the capstan's law, on a body that gives way linearly."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.kernel import native
+from hydrostat.mechanics.chain_law import ChainLaw
+from hydrostat.mechanics.energy import Small
+from hydrostat.mechanics.tension_law import TensionLaw
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CapstanChains:
+    """Spans of cables at an equilibrium of the body, and what changes with their tensions T.
+
+    Elongations are s = elongations - compliance (T - tensions) + slips, angles theta = angles - turning (T - tensions).
+    With rho = exp(-mu theta) a point between spans of tensions before and after slips towards the winch only where
+    after = rho before, away from it only where before = rho after, and a slack span has T = 0. For linear springs this
+    is a linear complementarity problem of a copositive matrix, so Lemke's algorithm ends in a solution (Cottle, Pang,
+    Stone 1992). The springs' curve and the angles follow by Newton's method on such problems (Josephy).
+
+    Attributes:
+        law: of the spans; its limits do not count.
+        friction: coefficient mu at the point before each span; 0 for the first span of a cable.
+        tensions: at the equilibrium [N].
+        elongations: there, if nothing slips [m].
+        angles: by which cable turns at these points [rad].
+        compliance: - d elongations / d T, positive semidefinite if `stable` [m/N].
+        turning: - d angles / d T [rad/N].
+        stable: whether the body is without its cables; else only a solution near these tensions counts.
+    """
+
+    law: ChainLaw
+    friction: Vector
+    tensions: Vector
+    elongations: Vector
+    angles: Vector
+    compliance: Small
+    turning: Small
+    stable: bool
+
+    def balance(self) -> Vector | None:
+        """Tensions where the capstan's law holds [N]; None if these are not found."""
+        tensions = self._solve(turns=True)
+        return self._solve(turns=False) if tensions is None else tensions
+
+    def limits(self, tensions: Vector) -> Vector:
+        """Largest forces of friction by the capstan's law at these tensions [N]."""
+        larger = np.maximum(tensions, np.append(0.0, tensions[:-1]))
+        return -np.expm1(-self.friction * self._turned(tensions)) * larger
+
+    def _solve(self, *, turns: bool) -> Vector | None:
+        """Tensions; without `turns` angles stay as they are within a round."""
+        law, points = self.law, np.setdiff1d(np.arange(len(self.tensions)), self.law.starts)
+        scale = float(np.abs(self.elongations + self.compliance @ self.tensions).max(initial=0.0))
+        tensions, own = self.tensions, law.elongation(self.tensions)
+        slips = law.slips(self.elongations)[points]
+        guess = np.concatenate([self.tensions > 0, slips > 0, slips < 0]).astype(float)
+        for _ in range(_ROUNDS if scale > 0 else 0):
+            matrix, right, unit = self._problem(points, tensions, own, scale, turns)
+            if not native.complement(matrix, right, self.stable, guess):
+                return None
+            found = guess[: len(tensions)] * unit
+            change = float(np.abs(found - tensions).max())
+            slips = (guess[len(tensions) :][: len(points)] - guess[len(tensions) + len(points) :]) * scale
+            stretched = self.elongations - self.compliance @ (found - self.tensions)
+            stretched[points] += slips
+            stretched[points - 1] -= slips
+            tensions = np.where(found > 0, found, TensionLaw.tension(law, stretched))
+            own = np.where(tensions > 0, law.elongation(tensions), 0.0)
+            if change <= _NEAR * tensions.max(initial=0.0):
+                return tensions
+        return None
+
+    def _problem(
+        self, points: np.ndarray, tensions: Vector, own: Vector, scale: float, turns: bool
+    ) -> tuple[Float[np.ndarray, "rows rows"], Vector, float]:
+        """Matrix and right-hand side, in units of T [N] and `scale` [m]; unknowns are T, slips forth, slips back."""
+        law, count, many = self.law, len(tensions), len(points)
+        slopes = np.maximum(TensionLaw.tangent(law, own), 1e-9 * law.stiffness)
+        soft = np.where(tensions > 0, 1.0 / slopes, 1.0 / law.stiffness)
+        unit = scale / float(np.median(soft + self.compliance.diagonal()))
+        rows = np.arange(many)
+        forth, back = slice(count, count + many), slice(count + many, None)
+        kept = np.exp(-self.friction * self._turned(tensions))[points]
+        matrix, right = np.zeros((count + 2 * many,) * 2), np.zeros(count + 2 * many)
+        matrix[:count, :count] = (np.diag(soft) + self.compliance) * (unit / scale)
+        right[:count] = (own - soft * tensions - self.elongations - self.compliance @ self.tensions) / scale
+        for part, sign, larger, smaller in ((forth, 1.0, points - 1, points), (back, -1.0, points, points - 1)):
+            columns = matrix[:count, part]
+            columns[points, rows], columns[points - 1, rows] = -sign, sign
+            limited = matrix[part, :count]
+            limited[rows, smaller], limited[rows, larger] = 1.0, -kept
+            if turns:
+                rises = (tensions[larger] * self.friction[points] * kept)[:, None] * self.turning[points]
+                limited -= rises
+                right[part] = rises @ tensions / unit
+        return matrix, right, unit
+
+    def _turned(self, tensions: Vector) -> Vector:
+        return np.maximum(self.angles - self.turning @ (tensions - self.tensions), 0.0)
+
+
+_ROUNDS = 20
+"""Most linear problems of one answer; it takes two to ten."""
+
+_NEAR = 1e-10
+"""Tensions that change by less than this share of the largest are found."""
