@@ -121,7 +121,7 @@ class CableEnergy(Energy):
     def columns(
         self, nodes: Nodes, springs: Int[np.ndarray, " cables"] | None = None, count: int = 0
     ) -> Float[np.ndarray, "dofs springs"]:
-        """Slopes dl/dx of the length of each cable, or of so many springs that cables are parts of; -1 for none."""
+        """Slopes dl/dx of the length of each cable, or of the `count` springs that cables are part of; -1 for none."""
         if springs is None:
             springs, count = np.arange(len(self.winches)), len(self.winches)
         columns, owners = np.zeros((*nodes.shape, count)), springs[self.cables]

@@ -11,7 +11,7 @@ from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places, joined
+from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places, join_lines
 from hydrostat.robot import Mount, Robot, Winch, obstacle_lines
 
 SHARES = np.linspace(0.3, 0.9, 13)  # shares of a cable's length where its number may stand
@@ -95,7 +95,7 @@ def _draw_cables(
             _draw_sheath(sheet, run.points[start : end + 1], colour, width, float(run.fades[start : end + 1].mean()))
         for fade in sorted({fade for _, fade in run.parts}):
             alike = [part for part, own in run.parts if own == fade]
-            _draw_part(sheet, joined(alike), colour, width, fade)
+            _draw_part(sheet, join_lines(alike), colour, width, fade)
         _draw_beads(sheet, run, colour)
         _draw_stopper(sheet, run, colour, width)
 

@@ -41,7 +41,7 @@ class PictureSheet:
     def segments(self, ends: np.ndarray, **style: object) -> None:
         """Many separate lines [mm], (lines, 2, 2), as one path."""
         if len(ends):
-            self.curve(joined(list(ends)), **style)
+            self.curve(join_lines(list(ends)), **style)
 
     def dots(self, points: Places, size: float, **style: object) -> None:
         """Round dots of a diameter [pt] at points [mm]."""
@@ -57,7 +57,7 @@ class PictureSheet:
         self.axes.text(*place, words, **{"parse_math": False, "clip_on": False, **style})  # pyright: ignore[reportArgumentType]
 
 
-def joined(lines: list[Places]) -> Places:
+def join_lines(lines: list[Places]) -> Places:
     """Separate lines as one, broken by rows of NaN."""
     return np.concatenate([part for line in lines for part in (line, np.full((1, 2), np.nan))])
 

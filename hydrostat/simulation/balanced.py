@@ -60,4 +60,4 @@ _NEWTON = 16
 
 _FALLS = 0.5
 _PATIENCE = 8
-"""Corrections end after so many of which none leaves less than this share of the least imbalance before."""
+"""Corrections end after `_PATIENCE` of them if none leaves less than `_FALLS` of the least imbalance before."""

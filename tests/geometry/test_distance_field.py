@@ -70,3 +70,5 @@ def test_values_are_distances_from_what_is_inside(name: str, dim: int) -> None:
     assert np.all(found <= nearest + 1e-12)
     assert np.all(found >= nearest - 1.5 * dim**0.5 * (axis[1] - axis[0]))
     np.testing.assert_array_equal(FIELDS[name](dim)(grid).values < 0, INSIDE[name](grid, dim))
+    some = np.concatenate([points, grid[::7]])
+    np.testing.assert_allclose(FIELDS[name](dim).values(some), FIELDS[name](dim)(some).values, atol=1e-15)
