@@ -1,6 +1,5 @@
 """The `hydrostat` command."""
 
-import atexit
 import gc
 import logging
 import os
@@ -108,7 +107,6 @@ def main() -> None:
     gc.set_threshold(50_000, *gc.get_threshold()[1:])  # looking for garbage is a tenth of a short command
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as that a home cannot be written to
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
-    atexit.register(gc.freeze)  # else Python looks through all that was loaded as it ends
     try:
         _run()
     except InputError as error:
