@@ -199,7 +199,7 @@ def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
     now, before = (np.linalg.det(x[mesh.elements][:, 1:] - x[mesh.elements][:, :1]) for x in (pose.nodes, mesh.nodes))
     if not (now / before).min() > 0:
         return "an element is inverted"
-    rubs = bool(len(pose.history))
+    rubs = bool(len(pose.history))  # then limits fit to 1e-8 of the largest tension, and these pull at many points
     assembly = simulation.path.resumed(pose) if rubs else simulation.assembly.near(pose.nodes)
     residual = float(np.abs(assembly.gradient(pose.nodes, pose.contractions)).max())
     allowed = max(

@@ -118,12 +118,20 @@ class CableEnergy(Energy):
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         return float(self.tensions(nodes, controls).max(initial=0.0))
 
-    def columns(
-        self, nodes: Nodes, springs: Int[np.ndarray, " cables"] | None = None, count: int = 0
+    def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
+        """Slopes dl/dx of the length of each cable."""
+        return self.spring_columns(nodes, np.arange(len(self.winches)), len(self.winches))
+
+    def spring_columns(
+        self, nodes: Nodes, springs: Int[np.ndarray, " cables"], count: int
     ) -> Float[np.ndarray, "dofs springs"]:
-        """Slopes dl/dx of the length of each cable, or of the `count` springs that cables are part of; -1 for none."""
-        if springs is None:
-            springs, count = np.arange(len(self.winches)), len(self.winches)
+        """Slopes dl/dx of the lengths of springs, each of them of some cables.
+
+        Args:
+            nodes: positions [m].
+            springs: the spring that each cable is part of; -1 for none.
+            count: how many springs there are.
+        """
         columns, owners = np.zeros((*nodes.shape, count)), springs[self.cables]
         if count:
             self._add_slopes(nodes, np.maximum(owners, 0), (owners >= 0).astype(float), columns)

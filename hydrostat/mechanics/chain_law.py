@@ -27,19 +27,21 @@ class ChainLaw(TensionLaw):
 
     starts: Int[np.ndarray, " ends"]
     limits: Vector
-    _known: list[Vector] = field(default_factory=list, init=False, repr=False)
+    _last: list[tuple[Vector, Vector]] = field(default_factory=list, init=False, repr=False)
 
     def slips(self, elongation: Vector) -> Vector:
         """P at the point before each span [m], positive towards the winch; 0 for the first span of a cable.
 
-        The last answer is kept: energy, forces and Hessian of one state ask for the same.
+        The last answer is kept: energy, forces and Hessian of one state ask for the same. Threads may share the law, so
+        question and answer are read and replaced together.
         """
-        known = self._known
-        if not known or not np.array_equal(known[0], elongation):
-            slips = np.zeros_like(elongation)
-            native.relax_chains(elongation, self.stiffness, self.smoothing, self.limits, self.starts, slips)
-            known[:] = elongation.copy(), slips
-        return known[1]
+        for asked, slips in self._last:
+            if np.array_equal(asked, elongation):
+                return slips
+        slips = np.zeros_like(elongation)
+        native.relax_chains(elongation, self.stiffness, self.smoothing, self.limits, self.starts, slips)
+        self._last[:] = [(elongation.copy(), slips)]
+        return slips
 
     def energy(self, elongation: Vector) -> Vector:
         """Energy of each span and what friction dissipates at the point before it [J]."""

@@ -137,7 +137,7 @@ class FrictionCableEnergy(Energy):
 
     def coupling(self, nodes: Nodes, controls: Vector) -> Coupling:
         springs, tangents = self.law.springs(self.elongations(nodes, controls))
-        columns = self._spans.columns(nodes, springs, len(tangents))
+        columns = self._spans.spring_columns(nodes, springs, len(tangents))
         return Coupling(columns=columns, weights=np.diag(tangents))
 
     def span_columns(self, nodes: Nodes) -> Columns:
@@ -211,7 +211,8 @@ class FrictionCableEnergy(Energy):
         wanted = self.capstan_limits(nodes, controls)
         if compliance is None:
             return self.with_limits(wanted)
-        missed = float(np.abs(wanted - self.law.limits).max()) / self.largest_force(nodes, controls)
+        largest = max(self.largest_force(nodes, controls), np.finfo(float).tiny)  # 0 where all cables are slack
+        missed = float(np.abs(wanted - self.law.limits).max()) / largest
         falls = missed <= _FALLS * self._missed
         limits = None if falls and not self._solves else self._solved_limits(nodes, controls, compliance)
         solves = limits is not None

@@ -126,11 +126,15 @@ class ObstacleEnergy(Energy):
         return points
 
     def _located(self, nodes: Nodes) -> tuple[Points, Vector]:
-        """Places of the samples and their distances [m]; those asked for last are kept."""
-        if self._seen is None or not np.array_equal(self._seen[0], nodes):
+        """Places of the samples and their distances [m]; those asked for last are kept.
+
+        Threads may share the energy, so all of what is kept is read and replaced at once.
+        """
+        seen = self._seen
+        if seen is None or not np.array_equal(seen[0], nodes):
             places = self.places(nodes)
-            self._seen = nodes.copy(), places, self.field.values(places)
-        return self._seen[1:]
+            self._seen = seen = nodes.copy(), places, self.field.values(places)
+        return seen[1:]
 
     def _felt(self, nodes: Nodes) -> np.ndarray:
         """Samples that feel the obstacle, or that friction holds."""

@@ -1,5 +1,8 @@
 """Slips of long chains of springs, slack ones among them. Oracle: tensions differ by no more than friction holds."""
 
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -36,6 +39,25 @@ def test_joined_springs_are_the_slope_of_the_tensions(seed: int) -> None:
     step = 1e-9 * np.eye(spans)
     slopes = np.array([law.tension(elongation + one) - law.tension(elongation - one) for one in step]).T / 2e-9
     assert columns @ np.diag(tangents) @ columns.T == pytest.approx(slopes, abs=1e-5 * 16e3)
+
+
+def test_threads_that_share_a_law_get_their_own_slips() -> None:
+    """What is kept for one must not be told to another. Oracle: a law that nobody shares."""
+    random = np.random.default_rng(0)
+    limits = np.concatenate([[0.0], random.uniform(0.0, 3.0, 11)])
+    shared, asked = _law(limits), random.uniform(-1e-3, 2e-3, (4, 12))
+
+    def wrong(elongation: np.ndarray) -> int:
+        alone = _law(limits).slips(elongation)
+        return sum(not np.array_equal(shared.slips(elongation), alone) for _ in range(3000))
+
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(4) as pool:
+            assert sum(pool.map(wrong, asked)) == 0
+    finally:
+        sys.setswitchinterval(before)
 
 
 def _tensions(elongation: np.ndarray, limits: np.ndarray) -> np.ndarray:

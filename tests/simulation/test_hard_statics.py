@@ -79,6 +79,18 @@ def test_a_stiff_cable_that_rubs_on_a_zigzag_finds_its_balance(seed: int, share:
     assert attack.fault(simulation, pose) == ""
 
 
+def test_limits_of_slack_cables_are_corrected_to_none() -> None:
+    """A cable let out keeps limits of when it was taut. Oracle: without tension nothing rubs."""
+    plain = strip_robot(columns=8, rows=2)
+    robot = plain.with_network(plain.winches, [replace(cable, friction=0.3) for cable in plain.cables])
+    simulation, slack = Simulation(robot), np.full(len(robot.winches), -0.01)
+    nodes, cables = simulation.rest.nodes, simulation.friction
+    assert cables is not None
+    held = cables.with_limits(np.ones(len(cables.slips)))
+    compliance = simulation.stiffness(simulation.rest).compliance_to(held.span_columns(nodes))
+    assert not held.corrected(nodes, slack, compliance).law.limits.any()
+
+
 @pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan")])
 def test_a_time_limit_that_is_none_is_refused(seconds: float) -> None:
     with pytest.raises(InputError, match="seconds"):
