@@ -105,6 +105,11 @@ class Assembly:
         """Whether some energy depends on the loading path."""
         return any(energy.has_history for energy in self.energies)
 
+    @property
+    def patience(self) -> int:
+        """Corrections in a row without progress that are worth trying: the most of the energies with a history."""
+        return max((energy.patience for energy in self.energies if energy.has_history), default=0)
+
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         """Largest force that is applied to the body [N]."""
         return max((energy.largest_force(nodes, controls) for energy in self.energies), default=0.0)

@@ -113,6 +113,7 @@ class Energy(ABC):
         lifts_early: whether what is negative in its Hessian is taken out first, and whole, where the sum is indefinite.
         has_history: whether it depends on the loading path, as friction does; then a solve follows the path by
             `imbalance`, `corrected` and `after`, and `history` is kept with the pose.
+        patience: so many corrections in a row without progress are worth trying.
         stiffest: its stiffest spring to a place [N/m]: what rounds positions makes forces of.
     """
 
@@ -123,6 +124,7 @@ class Energy(ABC):
     quadratic: ClassVar[bool] = False
     lifts_early: ClassVar[bool] = False
     has_history: bool = False
+    patience: ClassVar[int] = 40
     stiffest: float = 0.0
 
     @abstractmethod

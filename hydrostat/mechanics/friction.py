@@ -2,7 +2,7 @@
 
 from copy import copy
 from dataclasses import replace
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -56,6 +56,7 @@ class FrictionCableEnergy(Energy):
     """
 
     has_history = True
+    patience: ClassVar[int] = 8
 
     def __init__(
         self,

@@ -42,7 +42,7 @@ def balanced(
             break
         if missed < _FALLS * least:
             least, last = missed, corrections
-        if corrections == min(_CORRECTIONS, last + _PATIENCE):
+        if corrections == min(_CORRECTIONS, last + assembly.patience):
             result = replace(result, reason=Reason.NO_BALANCE)
             break
         sharp = corrections < _NEWTON and stiffness is not None and not stiffness.singular
@@ -55,9 +55,8 @@ _TOLERANCE = 1e-8
 """Forces in balance to this share of the largest one are right."""
 
 _CORRECTIONS = 40
-_NEWTON = 16
+_NEWTON = 12
 """Most corrections of one minimum, and how many of these by Newton's method."""
 
 _FALLS = 0.5
-_PATIENCE = 8
-"""Corrections end after `_PATIENCE` of them if none leaves less than `_FALLS` of the least imbalance before."""
+"""A correction counts as progress if it leaves less than this share of the least imbalance before."""
