@@ -11,7 +11,9 @@ The public names below load their module when they are first used, so that `impo
 
 from typing import TYPE_CHECKING
 
-from hydrostat.lazy import open_package
+from hydrostat.lazy import open_package, use_later
+from hydrostat.painters import register_painters
+from hydrostat.version import __version__
 
 if TYPE_CHECKING:
     from hydrostat.design import Constraints, Network, RouteOptions, TreeOptions, Uncertainty, Zone, design_cables
@@ -73,8 +75,6 @@ if TYPE_CHECKING:
         path_dependence,
         touches,
     )
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Branch",
@@ -150,3 +150,4 @@ __all__ = [
 ]
 
 open_package(__name__)
+register_painters({kind: use_later("hydrostat.plot", f"draw_{kind}") for kind in ("pose", "reached", "rest")})

@@ -6,6 +6,7 @@ same lines are read here at run time.
 
 import ast
 import sys
+from collections.abc import Callable
 from functools import cached_property
 from importlib import import_module
 from types import ModuleType
@@ -15,6 +16,15 @@ from typing import Any
 def open_package(name: str) -> None:
     """Make the imports of a package that stand under `if TYPE_CHECKING:` lazy; call it last in `__init__.py`."""
     sys.modules[name].__class__ = _LazyPackage
+
+
+def use_later(module: str, name: str) -> Callable[..., Any]:
+    """Return a function that imports another at its first call, and calls it."""
+
+    def call(*args: Any, **options: Any) -> Any:
+        return getattr(import_module(module), name)(*args, **options)
+
+    return call
 
 
 class _LazyPackage(ModuleType):

@@ -1,5 +1,6 @@
 """The layers that import-linter proves. Oracles: the figure in ARCHITECTURE.md, and the folders of the house."""
 
+import ast
 import re
 import tomllib
 from pathlib import Path
@@ -39,3 +40,33 @@ def test_every_folder_stands_in_a_layer() -> None:
     named = set().union(*(line for contract in _CONTRACTS for line in _rooms(contract)))
     assert {".".join(folder.parts) for folder in folders} - {"hydrostat"} - named == set()
     assert _CONTRACTS[0]["exhaustive"]
+
+
+_BY_NAME = {"__init__.py", "kernel.py", "lazy.py", "studio/work_process.py"}
+"""Files that may import a module whose name is no constant: what only the top package and the studio decide."""
+
+
+def _hidden_imports(text: str) -> list[str]:
+    """Imports that import-linter cannot see: by a string, and of a name from the top package itself."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in {"import_module", "__import__"}:
+            name = node.args[0]
+            if not isinstance(name, ast.Constant) or str(name.value).startswith("hydrostat"):
+                found.append(ast.unparse(node))
+        if isinstance(node, ast.ImportFrom) and node.module == "hydrostat":
+            modules = {path.stem for path in (_TOP / "hydrostat").iterdir()}
+            found += [alias.name for alias in node.names if alias.name not in modules]
+    return found
+
+
+def test_no_import_is_hidden_from_the_layers() -> None:
+    package = _TOP / "hydrostat"
+    files = {str(path.relative_to(package)): path.read_text() for path in package.rglob("*.py")}
+    assert {
+        name: found for name, text in files.items() if name not in _BY_NAME and (found := _hidden_imports(text))
+    } == {}
+    assert _hidden_imports('import_module("hydrostat.plot")')
+    assert _hidden_imports("import_module(name)")
+    assert _hidden_imports("from hydrostat import __version__")
+    assert not _hidden_imports('from hydrostat import units\nimport_module("nicegui.elements.scene")')

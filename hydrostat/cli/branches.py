@@ -70,9 +70,9 @@ def _follow(simulation: "Simulation", found: "PathDependence") -> "list[tuple[st
 def _write(
     simulation: "Simulation", found: "PathDependence", followed: "list[tuple[str, Branch]]", out: Path
 ) -> list[Path]:
-    from hydrostat import __version__
     from hydrostat.plot import draw_branches, save_png
     from hydrostat.robot import replace_file, robot_hash
+    from hydrostat.version import __version__
 
     out.mkdir(parents=True, exist_ok=True)
     winches = [winch.name for winch in simulation.robot.winches]

@@ -18,10 +18,10 @@ STALE = r"alternatives/\d+_\d+_winches_\d+_cables"  # folders of alternatives of
 
 def write_results(network: "Network", folder: Path) -> None:
     """The robot, score.json, report.html and the alternatives."""
-    from hydrostat import __version__
     from hydrostat.design import score_card
     from hydrostat.plot import write_report
     from hydrostat.robot import replace_file, save_robot
+    from hydrostat.version import __version__
 
     save_robot(network.robot, folder / "robot")
     for number, other in enumerate(network.alternatives, start=1):

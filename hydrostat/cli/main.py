@@ -95,7 +95,7 @@ for command in (
 def version(show: bool = typer.Option(False, "--version", help="Print the version and end.")) -> None:
     """From a shape to a working cable-driven soft robot: design it, simulate it, build it."""
     if show:
-        from hydrostat import __version__
+        from hydrostat.version import __version__
 
         print(f"hydrostat {__version__}")
         raise typer.Exit

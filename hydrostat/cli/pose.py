@@ -109,8 +109,8 @@ def _write(
     outline: "Outline | None",
     jacobian: bool,
 ) -> None:
-    from hydrostat import __version__
     from hydrostat.cli.pictures import load_matplotlib
+    from hydrostat.version import __version__
 
     load_matplotlib()
     from hydrostat.plot import draw_reached, save_png

@@ -49,10 +49,10 @@ def simulate(
 
     Example: hydrostat simulate examples/starfish --contract left=12mm --out build/pose
     """
-    from hydrostat import __version__
     from hydrostat.cli.pictures import load_matplotlib
     from hydrostat.simulation import write_pose
     from hydrostat.units import TIME
+    from hydrostat.version import __version__
 
     require_folder(out)
     with profiled(profile, "reading"):
@@ -124,10 +124,10 @@ def _move(
     play: Path | None,
 ) -> list[Path]:
     """Move a robot from where it rests at first, print how it ended, and write all files; returns their paths."""
-    from hydrostat import __version__
     from hydrostat.plot import draw_motion, draw_pose, save_png
     from hydrostat.simulation import rests_at_first, write_motion, write_pose
     from hydrostat.units import TIME
+    from hydrostat.version import __version__
 
     profile = _profile(simulation, contractions, ramp, play)
     seconds = asked("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)

@@ -136,8 +136,8 @@ def _write(
 
 def _facts(simulation: "Simulation", made: "Trajectory", limits: "Limits", seconds: float) -> dict[str, Any]:
     """Facts of trajectory.json, in SI units: markers and tensions at the samples of trajectory.csv."""
-    from hydrostat import __version__
     from hydrostat.robot import robot_hash
+    from hydrostat.version import __version__
 
     return {
         "version": __version__,

@@ -7,8 +7,9 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.painters import draw_record
 from hydrostat.robot import Pose
-from hydrostat.robot.notebook import notebook_html, picture_of
+from hydrostat.robot.html_repr import html_repr
 from hydrostat.simulation import SolvedPose
 
 
@@ -64,7 +65,7 @@ class ReachedPose:
     def _repr_html_(self) -> str:
         """The line, what is to be minded, and a picture, for a notebook."""
         words = "\n".join([repr(self), *self.held, *self.pose.notes])
-        return notebook_html(words, picture_of("reached", self.pose.robot, self))
+        return html_repr(words, draw_record("reached", self.pose.robot, self))
 
     @property
     def wanted(self) -> Pose:

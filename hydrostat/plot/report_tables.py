@@ -128,7 +128,7 @@ def tension_table(robot: Robot, reached: ReachedPose) -> Html:
 
 def footer(network: Network, facts: Mapping[str, object]) -> Html:
     """How the numbers came about, and what is needed to get them again."""
-    from hydrostat import __version__
+    from hydrostat.version import __version__
 
     known = {
         "hydrostat version": __version__,

@@ -12,15 +12,16 @@ from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.given import check_kind
+from hydrostat.painters import draw_record
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.checks import Point
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
+from hydrostat.robot.html_repr import html_repr
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import Material, find_material
-from hydrostat.robot.notebook import notebook_html, picture_of
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import counted
@@ -173,7 +174,7 @@ class Robot:
 
     def _repr_html_(self) -> str:
         """The robot at rest, for a notebook."""
-        return notebook_html(repr(self), picture_of("rest", self))
+        return html_repr(repr(self), draw_record("rest", self))
 
     def _check_kinds(self) -> None:
         """Refuse parts of another kind, before they are asked for anything."""

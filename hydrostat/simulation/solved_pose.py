@@ -11,8 +11,9 @@ from hydrostat.errors import InputError
 from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics import NewtonResult
+from hydrostat.painters import draw_record
 from hydrostat.robot import Robot
-from hydrostat.robot.notebook import notebook_html, picture_of
+from hydrostat.robot.html_repr import html_repr
 from hydrostat.simulation.strain import node_strains, node_stresses
 from hydrostat.units import counted
 
@@ -82,7 +83,7 @@ class SolvedPose:
         Args:
             options: `title`, `note` and `width` of `hydrostat.plot.draw_pose`.
         """
-        return picture_of("pose", self.robot, self, **options)
+        return draw_record("pose", self.robot, self, **options)
 
     def __repr__(self) -> str:
         """What it is, in one line."""
@@ -98,7 +99,7 @@ class SolvedPose:
 
     def _repr_html_(self) -> str:
         """The line, what is to be minded, and a picture, for a notebook."""
-        return notebook_html("\n".join([repr(self), *self.notes]), self.plot())
+        return html_repr("\n".join([repr(self), *self.notes]), self.plot())
 
     @property
     def unknowns(self) -> Nodes:

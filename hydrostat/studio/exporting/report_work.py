@@ -161,7 +161,7 @@ def _reached(solved: SolvedPoses) -> list[Chapter]:
 
 
 def _footer(robot: Robot) -> Html:
-    from hydrostat import __version__
+    from hydrostat.version import __version__
 
     facts = {"hydrostat version": __version__, "robot hash (SHA-256)": robot_hash(robot)}
     rows = [(name, tag("code", value)) for name, value in facts.items()]
