@@ -27,10 +27,8 @@ import numpy as np  # isort: skip
 import hydrostat as hs
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
-from hydrostat.robot import Cable, Material, Pin, Robot, Winch, gallery_folder
-from hydrostat.robot.body import Volume
+from hydrostat.geometry import Mesh, tetrahedralise
+from hydrostat.robot import Cable, Material, Pin, Robot, Volume, Winch, gallery_folder
 
 FLAT = ("letter_e", "letter_s", "pig", "puppy", "robot", "squid", "starfish")
 IN_SPACE = ("fish_tail", "octopus_arm", "tongue", "trunk", "cupping_hand")

@@ -14,9 +14,8 @@ import numpy as np
 from hand_body import ELEMENT_SIZE, hand_robot
 from machine import machine
 
-from hydrostat.geometry.thickness import measure_thickness, thin_parts
-from hydrostat.robot import Robot, Source, gallery_folder, gallery_names, load_robot, outline_body
-from hydrostat.robot.risks.body_risks import LEAST_ACROSS
+from hydrostat.geometry import measure_thickness, thin_parts
+from hydrostat.robot import LEAST_ACROSS, Robot, Source, gallery_folder, gallery_names, load_robot, outline_body
 from hydrostat.simulation import Simulation
 
 TAKEN_IN = 0.015

@@ -21,7 +21,7 @@ import numpy as np  # isort: skip
 
 import hydrostat as hs
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.geometry.crossings import find_crossings
+from hydrostat.geometry import find_crossings
 from hydrostat.mechanics import ContactEnergy
 from hydrostat.robot import Robot
 

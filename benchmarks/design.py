@@ -26,9 +26,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.design import activate, design_cables, edge_fibres
-from hydrostat.design.buildable import violations
-from hydrostat.design.region import body_region
+from hydrostat.design import activate, body_region, design_cables, edge_fibres, violations
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot
 

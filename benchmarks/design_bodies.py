@@ -10,8 +10,7 @@ import numpy as np  # isort: skip
 from robustness import EXAMPLES
 from scipy.optimize import nnls
 
-from hydrostat.design import Constraints
-from hydrostat.design.network import rms_error
+from hydrostat.design import Constraints, rms_error
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import Limits, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot, load_robot

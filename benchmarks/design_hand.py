@@ -19,8 +19,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.design.buildable import violations
-from hydrostat.design.region import body_region
+from hydrostat.design import body_region, violations
 from hydrostat.robot import Cable, Robot, Winch
 
 

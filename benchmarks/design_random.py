@@ -18,14 +18,21 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.design import Constraints, RouteOptions
-from hydrostat.design.buildable import violations
-from hydrostat.design.network import rms_error
-from hydrostat.design.region import Region, body_region
-from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
-from hydrostat.design.routes.price import PricedPath
-from hydrostat.design.routes.propose import route_along
-from hydrostat.design.routes.route_graph import RouteGraph, route_graph
+from hydrostat.design import (
+    CableRoute,
+    Constraints,
+    Layout,
+    PricedPath,
+    Region,
+    RouteGraph,
+    RouteOptions,
+    WinchSite,
+    body_region,
+    rms_error,
+    route_along,
+    route_graph,
+    violations,
+)
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
 from hydrostat.robot import Mount, Pose, Robot, Winch

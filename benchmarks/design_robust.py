@@ -24,8 +24,16 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.design import DesignMethod, DesignRequest, RouteOptions, Uncertainty, built_errors, find_network
-from hydrostat.design.polyline import nearest_shares, turns
+from hydrostat.design import (
+    DesignMethod,
+    DesignRequest,
+    RouteOptions,
+    Uncertainty,
+    built_errors,
+    find_network,
+    nearest_shares,
+    turns,
+)
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.robot import Pose, Robot

@@ -20,8 +20,7 @@ import numpy as np  # isort: skip
 
 import hydrostat as hs
 from hydrostat.robot import Robot, gallery_folder, gallery_names
-from hydrostat.studio.posing.cable_mover import CableMover
-from hydrostat.studio.posing.held import Held
+from hydrostat.studio import CableMover, Held
 
 ROUND = 60
 """Steps of one round."""

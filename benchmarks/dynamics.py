@@ -19,8 +19,8 @@ from hand_body import hand_robot
 from scipy.linalg import eigh
 
 import hydrostat as hs
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.mechanics.time_scheme import SCHEMES
+from hydrostat.geometry import Mesh
+from hydrostat.mechanics import SCHEMES
 from hydrostat.robot import Body, Material, Pin, Relaxation, Robot, Source
 
 GRAVITY = 9.80665

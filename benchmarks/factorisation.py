@@ -21,7 +21,7 @@ from hand_body import hand_mesh
 from scipy.sparse import coo_array, csc_array, diags_array, eye_array, kron
 
 from hydrostat.arrays import Elements, Nodes
-from hydrostat.mechanics.factorisation import Analysis, Backend
+from hydrostat.mechanics import Analysis, Backend
 from hydrostat.robot import gallery_folder, load_robot
 
 

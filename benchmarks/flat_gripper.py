@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import Body, Cable, Material, Obstacle, Pin, Robot, Source, Winch
 
 DISC = Obstacle(name="disc", shape="sphere", at=(0.0, 0.0), radius=20e-3, mass=0.2, friction=0.8)

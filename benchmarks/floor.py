@@ -22,10 +22,9 @@ import numpy as np
 from machine import machine
 
 import hydrostat as hs
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import NewtonOptions
-from hydrostat.robot import Body, Cable, Material, Pin, Robot, Winch
-from hydrostat.robot.body import Source
+from hydrostat.robot import Body, Cable, Material, Pin, Robot, Source, Winch
 
 TOLERANCE = 1e-8
 """Norm of the forces [N] at which the trial stops: its tips are then as exact as ours, to a tenth of a nanometre."""

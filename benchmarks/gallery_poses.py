@@ -19,8 +19,7 @@ import numpy as np  # isort: skip
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.geometry.crossings import find_crossings
-from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+from hydrostat.geometry import find_crossings, tetrahedralise
 from hydrostat.robot import Robot, gallery_folder, gallery_names
 
 

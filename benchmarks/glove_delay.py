@@ -33,13 +33,24 @@ import machine
 import numpy as np
 
 import hydrostat as hs
-from hydrostat.control import BusLink, DynamixelBus, EmulatedChain, EmulatedLine, EmulatedServo, Motors, open_line
+from hydrostat.control import (
+    GOAL,
+    TICK,
+    BusLink,
+    DynamixelBus,
+    EmulatedChain,
+    EmulatedLine,
+    EmulatedServo,
+    Motors,
+    open_line,
+)
 from hydrostat.control import usual_calibration as usual
-from hydrostat.control.dynamixel_bus import GOAL, TICK
 from hydrostat.errors import HydrostatError
 from hydrostat.learning import load_model
 from hydrostat.robot import Contact, Robot
 from hydrostat.teleop import (
+    BAUD,
+    SENSORS,
     CyberGlove,
     EmulatedPerson,
     FingertipWay,
@@ -52,7 +63,6 @@ from hydrostat.teleop import (
     drive,
     winch_channels,
 )
-from hydrostat.teleop.cyber_glove import BAUD, SENSORS
 
 MEASURES = 90
 """Of a glove in a second."""

@@ -2,9 +2,8 @@
 
 from dataclasses import replace
 
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.robot import Robot, gallery_folder, load_robot
-from hydrostat.robot.body import surface_body
+from hydrostat.geometry import Mesh
+from hydrostat.robot import Robot, gallery_folder, load_robot, surface_body
 
 HAND = "cupping_hand"
 

@@ -151,14 +151,14 @@ def flows(folder: Path) -> dict[str, Flow]:
     starfish = gallery_folder("starfish")
 
     def drag_begun() -> object:
-        from hydrostat.studio.session import Session
+        from hydrostat.studio import Session
 
         session = Session()
         session.open_folder(starfish)
         return session
 
     def drag(session: Any) -> object:
-        from hydrostat.studio.stage import Hit
+        from hydrostat.studio import Hit
 
         at = next(marker.at for marker in session.document.robot.markers if marker.name == "top")
         session.grab("screen", Hit(key="marker:top", world=at))
@@ -175,7 +175,7 @@ def flows(folder: Path) -> dict[str, Flow]:
         return hs.Simulation(hs.load_robot(folder)).solve({"left": 0.012})
 
     def mesh(content: bytes) -> object:
-        from hydrostat.robot.sketch_space import sketch_surface
+        from hydrostat.robot import sketch_surface
 
         return sketch_surface(content, file="scan.stl", name="scan")
 

@@ -28,8 +28,7 @@ from ik_problem import REACHED, Problem, hidden_poses, largest_error, machine, m
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
-from hydrostat.geometry.triangles.triangulate import triangulate
+from hydrostat.geometry import tetrahedralise, triangulate
 from hydrostat.ik import InverseReason
 from hydrostat.robot import Point, Robot, gallery_folder, gallery_names
 

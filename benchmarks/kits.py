@@ -14,7 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import hydrostat as hs
 from hydrostat.fabrication import KitOptions, UnbuildableError, build_kit
-from hydrostat.robot.gallery import gallery_folder, gallery_names
+from hydrostat.robot import gallery_folder, gallery_names
 
 HEAD = (
     f"{'robot':<16}{'method':<7}{'motor':<7}{'files':>6}{'MB':>7}{'checks':>8}{'problems':>9}{'warnings':>9}"

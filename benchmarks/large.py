@@ -24,7 +24,7 @@ import numpy as np  # isort: skip
 
 from hand_body import hand_robot
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import Reason
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation

@@ -23,10 +23,9 @@ from ik_problem import rests
 
 import hydrostat as hs
 from hydrostat.ik import InverseOptions, Tracker
-from hydrostat.learning import LearnedModel, load_model, read_samples
-from hydrostat.learning.compare import targets_of
+from hydrostat.learning import LearnedModel, load_model, read_samples, targets_of
 from hydrostat.simulation import SolvedPose
-from hydrostat.studio.posing.cable_mover import STRIDE
+from hydrostat.studio import STRIDE
 
 MOST = 60
 GOOD = (1e-3, 1e-4)

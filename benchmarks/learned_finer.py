@@ -23,8 +23,7 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import LearnedModel, Samples, correct_model, load_model, read_samples
-from hydrostat.learning.compare import targets_of
+from hydrostat.learning import LearnedModel, Samples, correct_model, load_model, read_samples, targets_of
 
 
 def known(model: LearnedModel, test: Samples) -> np.ndarray:

@@ -18,9 +18,7 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import certify, load_model, read_samples
-from hydrostat.learning.certify import exact_steps
-from hydrostat.learning.compare import targets_of
+from hydrostat.learning import certify, exact_steps, load_model, read_samples, targets_of
 from hydrostat.simulation import SolvedPose
 
 ENOUGH = 1e-5

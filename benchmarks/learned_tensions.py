@@ -15,9 +15,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.learning import LearnOptions, Samples, read_samples
-from hydrostat.learning.lesson import lesson_of
-from hydrostat.learning.train import train_forward
+from hydrostat.learning import LearnOptions, Samples, lesson_of, read_samples, train_forward
 
 HELD_OUT = 200
 

@@ -33,9 +33,7 @@ from scipy.sparse.linalg import splu
 from sofa_robots import ROBOTS, sofa_robots
 
 from hydrostat.geometry import Mesh, Outline, triangulate
-from hydrostat.mechanics import Assembly, Energy, NeoHookean
-from hydrostat.mechanics.patch_volume import PatchVolume
-from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
+from hydrostat.mechanics import PATCH_SIZE, Assembly, Energy, NeoHookean, PatchVolume, grow_patches
 from hydrostat.robot import Material, Robot, Volume, gallery_folder, load_robot
 from hydrostat.simulation import Simulation
 

@@ -19,12 +19,19 @@ from machine import machine
 import numpy as np  # isort: skip
 from shapely import Polygon
 
-from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES, read_surface
-from hydrostat.geometry.healing.heal import heal
-from hydrostat.geometry.mesh import Mesh, dihedral_angles, smallest_angle
-from hydrostat.geometry.sizing import size_for
-from hydrostat.geometry.surface import Solid, Surface
-from hydrostat.geometry.tetrahedra.tetrahedralise import fit, tetrahedralise
+from hydrostat.geometry import (
+    SURFACE_SUFFIXES,
+    Mesh,
+    Solid,
+    Surface,
+    dihedral_angles,
+    fit,
+    heal,
+    read_surface,
+    size_for,
+    smallest_angle,
+    tetrahedralise,
+)
 from hydrostat.robot import Body, gallery_folder, gallery_names, load_robot
 
 HANDS = ("cupping_hand", "extended_hand", "caging_gripper")

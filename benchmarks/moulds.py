@@ -11,8 +11,7 @@ from time import process_time
 
 from machine import machine
 
-from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
-from hydrostat.fabrication.moulds.mould import make_mould
+from hydrostat.fabrication import MouldKind, MouldOptions, make_mould
 from hydrostat.robot import Mount, gallery_folder, gallery_names, load_robot
 
 POCKET = (40.0, 20.0, 16.0)

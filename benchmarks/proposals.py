@@ -17,17 +17,21 @@ from machine import machine
 import numpy as np  # isort: skip
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import BodyPhysics
-from hydrostat.studio.bell import Bell
-from hydrostat.studio.document import Document
-from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.held import Held, Mode
-from hydrostat.studio.posing.mover import MuscleMover
-from hydrostat.studio.posing.poser import Poser
-from hydrostat.studio.posing.poses import held_of
-from hydrostat.studio.posing.propose_work import Moment, sketched
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
-from hydrostat.studio.stage import Hit
+from hydrostat.studio import (
+    Bell,
+    Document,
+    Held,
+    Hit,
+    Jobs,
+    Mode,
+    Moment,
+    MuscleMover,
+    Poser,
+    Wishes,
+    Work,
+    held_of,
+    sketched,
+)
 
 MOVES, PAUSE, START = 60, 0.005, 5.0  # moves of a drag, between two of them [s], until the process has begun [s]
 SHARES = (0.1, 0.3, 0.6, 1.0)  # of the way, where a proposal is timed

@@ -25,7 +25,7 @@ import hydrostat as hs
 from hydrostat.arrays import Vector
 from hydrostat.mechanics import NewtonResult
 from hydrostat.robot import Robot
-from hydrostat.simulation.static_solver import StaticSolver
+from hydrostat.simulation import StaticSolver
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 LARGEST_SHARE = 0.4

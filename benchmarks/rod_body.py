@@ -7,9 +7,8 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.robot import Cable, Marker, Material, Pin, Robot, Winch
-from hydrostat.robot.body import Body, Source
+from hydrostat.geometry import Mesh
+from hydrostat.robot import Body, Cable, Marker, Material, Pin, Robot, Source, Winch
 
 LENGTH, RADIUS, CIRCLE = 0.1865, 5e-3, 4.5e-3
 LAYERS, ENDS = 38, (13, 25, 38)

@@ -24,9 +24,7 @@ from scipy.stats import beta
 import hydrostat as hs
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import find_crossings
-from hydrostat.learning import LearnOptions, Samples, read_samples
-from hydrostat.learning.lesson import Lesson, linear_map
-from hydrostat.learning.train import train_forward
+from hydrostat.learning import LearnOptions, Lesson, Samples, linear_map, read_samples, train_forward
 
 COMPONENTS = 100
 ELSEWHERE = 1e-4

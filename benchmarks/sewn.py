@@ -10,11 +10,8 @@ from drawings import SHARP, SMOOTH, drawing
 from machine import machine  # first: it sets one thread
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import PatternOptions
-from hydrostat.fabrication.patches.sewable import sewing_of
-from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
-from hydrostat.geometry.files.outline_file import read_drawing
-from hydrostat.geometry.inflate import inflate
+from hydrostat.fabrication import PatternOptions, sewing_of, skin_of_surface
+from hydrostat.geometry import inflate, read_drawing
 
 
 def judge(name: str, size: float, height: float) -> tuple[str, bool | None]:

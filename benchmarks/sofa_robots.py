@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.files.mesh_file import read_mesh
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh, locate, read_mesh
 from hydrostat.robot import Body, Cable, Marker, Material, Mount, Pin, Point, Robot, Source, Winch
 
 ROBOTS = Path(__file__).parents[2] / "shared" / "robots"

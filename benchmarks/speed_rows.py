@@ -63,8 +63,7 @@ def sample(count: int) -> float:
     """Samples of the hand with contact and Jacobians, a second; contractions up to full travel."""
     from hand_body import hand_robot
 
-    from hydrostat.learning.sample_plan import plan_samples
-    from hydrostat.learning.sample_shard import sample_shard
+    from hydrostat.learning import plan_samples, sample_shard
 
     plan = plan_samples(hand_robot(), count, contact=True, shard=count)
     return count / cpu(lambda: sample_shard(plan, 0))[0]

@@ -177,8 +177,7 @@ def print_check(element_size: float, repeats: int) -> None:
     """A table of `hydrostat check` of a large body."""
     from hand_body import hand_robot
 
-    from hydrostat.geometry.files.vtu_file import write_vtu
-    from hydrostat.geometry.mesh import Mesh
+    from hydrostat.geometry import Mesh, write_vtu
     from hydrostat.robot import mesh_body, save_robot
 
     robot = hand_robot(element_size)

@@ -26,12 +26,12 @@ from hydrostat.control import (
     DynamixelBus,
     EmulatedChain,
     EmulatedServo,
+    LiveChain,
     TensionGuard,
     WinchMotor,
+    steady,
     tensions_along,
 )
-from hydrostat.control.bus import steady
-from hydrostat.control.emulated_servos import LiveChain
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import Profile, Simulation

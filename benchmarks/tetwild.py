@@ -21,12 +21,7 @@ import numpy as np  # isort: skip
 from meshes import quality
 
 from hydrostat.errors import HydrostatError
-from hydrostat.geometry.contour import contour
-from hydrostat.geometry.healing.heal import heal
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.tetrahedra.stuffing import turned_outward
-from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+from hydrostat.geometry import Mesh, Surface, contour, heal, tetrahedralise, turned_outward
 from hydrostat.robot import gallery_folder, load_robot
 
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "geometry"))

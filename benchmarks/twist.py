@@ -24,7 +24,7 @@ from scipy.spatial.transform import Rotation
 
 import hydrostat as hs
 from hydrostat.arrays import Vector
-from hydrostat.mechanics.rigid import GuideEnergy
+from hydrostat.mechanics import GuideEnergy
 from hydrostat.plot import Frame, save_gif
 from hydrostat.robot import Contact, Obstacle, Robot
 from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions

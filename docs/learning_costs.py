@@ -10,10 +10,8 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 
-from hydrostat.drawing.palette import INK, WINCHES
-from hydrostat.plot import save_png
-from hydrostat.plot.chart import plain_axes
-from hydrostat.plot.sheet import WIDTH, new_figure
+from hydrostat.drawing import INK, WINCHES
+from hydrostat.plot import WIDTH, new_figure, plain_axes, save_png
 
 HERE = Path(__file__).parent
 

@@ -15,9 +15,7 @@ from matplotlib.figure import Figure
 
 import hydrostat as hs
 from hydrostat.design import activate, edge_fibres
-from hydrostat.geometry.contour import contour
-from hydrostat.geometry.healing.heal import heal
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Surface, contour, heal
 from hydrostat.plot import (
     draw_activation,
     draw_healing,

@@ -3,7 +3,7 @@
 import numpy as np
 from builders import mesh_body, strip_mesh
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Winch
 
 LENGTH, RISE = 0.2, 0.02

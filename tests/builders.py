@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import (
     Body,
     Cable,

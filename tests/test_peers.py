@@ -9,8 +9,7 @@ import pytest
 from held_body import HeldBody, at_rest, follow
 from laws import LAWS, Reference
 
-from hydrostat.mechanics import Assembly
-from hydrostat.mechanics.neo_hookean import NeoHookean
+from hydrostat.mechanics import Assembly, NeoHookean
 
 
 def bar(pull: float) -> HeldBody:

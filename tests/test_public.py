@@ -11,8 +11,8 @@ import pytest
 import hydrostat as hs
 from hydrostat.robot import gallery_folder, load_robot
 
-ROOMS = ["control", "design", "fabrication", "geometry", "grasp", "ik", "learning", "mechanics", "plot"]
-ROOMS += ["robot", "shapes", "simulation", "teleop"]
+ROOMS = ["control", "design", "drawing", "fabrication", "geometry", "grasp", "ik", "learning", "mechanics", "plot"]
+ROOMS += ["robot", "shapes", "simulation", "studio", "teleop", "testing"]
 
 
 def test_every_public_name_exists() -> None:

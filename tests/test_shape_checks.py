@@ -9,8 +9,7 @@ from builders import strip_mesh
 from jaxtyping import Float, TypeCheckError
 from shape_checks import CALLS, begin_test, checked, is_public
 
-from hydrostat.geometry import anchors
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh, anchors
 
 
 @checked

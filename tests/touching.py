@@ -3,7 +3,7 @@
 import numpy as np
 from builders import box_mesh, mesh_body, strip_mesh
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import Cable, Contact, Marker, Pin, Robot, Winch
 
 DISTANCE = 1e-3

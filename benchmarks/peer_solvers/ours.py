@@ -13,7 +13,7 @@ import numpy as np
 from held_body import HeldBody, Trail
 
 import hydrostat as hs
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Body, Material, Pin, Robot, Source
 

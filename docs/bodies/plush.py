@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from bodies.sheet import Line, Play, Sheet
-from hydrostat.geometry.files.outline_file import read_outline
-from hydrostat.geometry.inflate import inflate
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Surface, inflate, read_outline
 from hydrostat.shapes import Place
 
 OUTLINE = Path(__file__).with_name("bear.svg")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Surface
 
 
 def decimated(surface: Surface, faces: int) -> Surface:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Surface
 from hydrostat.shapes import Place
 
 POSES = Path(__file__).parent / "poses.json"

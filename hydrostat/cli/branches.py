@@ -53,8 +53,7 @@ def branches(
 
 def _follow(simulation: "Simulation", found: "PathDependence") -> "list[tuple[str, Branch]]":
     """The branch from rest, and of each pose that is not on it the branch back; none with friction."""
-    from hydrostat.simulation import follow_branch
-    from hydrostat.simulation.solved_pose import largest_distance
+    from hydrostat.simulation import follow_branch, largest_distance
 
     if found.friction:
         return []

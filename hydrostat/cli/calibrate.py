@@ -184,7 +184,7 @@ def _tell(
 ) -> None:
     """Compare with the model, in words and on a page."""
     from hydrostat.control import EMULATED
-    from hydrostat.plot.calibration_page import reach, write_calibration_page
+    from hydrostat.plot import reach, write_calibration_page
 
     notes = []
     for taken, pull, constant in zip(found, model, constants.tolist(), strict=True):

@@ -63,7 +63,7 @@ def check(
 def _print_judgement(robot: "Robot") -> None:
     """What is to be said before a robot is built, as the studio says it: whatever its poses ask of motors."""
     from hydrostat.design import Constraints, Finding, Weight, judgement_of
-    from hydrostat.robot.in_words import in_words
+    from hydrostat.robot import in_words
 
     found = [Finding(text=text, weight=Weight.REFUSED, places=()) for text in print_sewing(robot.body)]
     found += judgement_of(robot, constraints=Constraints())

@@ -192,7 +192,7 @@ def design(
 def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) -> "tuple[Network, Kit | None]":
     """Search, and write what is found, with its kit if wanted."""
     from hydrostat.design import find_network
-    from hydrostat.fabrication.kit import forget_files
+    from hydrostat.fabrication import forget_files
 
     with progress_bar() as progress, one_interrupt(STOPPING) as pass_over:
         try:

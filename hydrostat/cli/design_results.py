@@ -63,8 +63,7 @@ def _wished_tension(robot: "Robot", folder: Path) -> float | None:
     home = folder.parent if folder.suffix == ".toml" else folder
     if not (home / "studio.json").is_file():
         return None
-    from hydrostat.studio.records.wished_constraints import wished_constraints
-    from hydrostat.studio.work_folder import read_studio_file
+    from hydrostat.studio import read_studio_file, wished_constraints
 
     try:
         return wished_constraints(robot, read_studio_file(home).wishes).tension_limit
@@ -112,8 +111,8 @@ def _print_findings(network: "Network") -> None:
     """What a kit would be refused for, and what is risky, by the loads that the design found."""
     from hydrostat.cli.check import FINDINGS
     from hydrostat.design import judgement_of
-    from hydrostat.fabrication.demand import demand_of
-    from hydrostat.robot.in_words import in_words
+    from hydrostat.fabrication import demand_of
+    from hydrostat.robot import in_words
 
     for finding in judgement_of(network.robot, demand=demand_of(network.robot, network.reached)):
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
@@ -144,7 +143,7 @@ def print_front(network: "Network") -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design.network import best_errors, on_front, size_of
+    from hydrostat.design import best_errors, on_front, size_of
 
     errors = best_errors(network.alternatives, network)
     table = Table(title="error expected once built, against winches and cables", title_justify="left")

@@ -72,8 +72,7 @@ def _winch_count(text: str | None) -> int | str | None:
 
 def _uncertainty(robot: "Robot", typed: TypedRequest) -> "Uncertainty | None":
     """The tolerances that are asked for; None for the usual ones."""
-    from hydrostat.design import Uncertainty
-    from hydrostat.design.constraints_file import read_uncertainty
+    from hydrostat.design import Uncertainty, read_uncertainty
 
     if typed.as_modelled:
         return Uncertainty.none()
@@ -82,8 +81,7 @@ def _uncertainty(robot: "Robot", typed: TypedRequest) -> "Uncertainty | None":
 
 def _constraints(robot: "Robot", typed: TypedRequest) -> "Constraints":
     """The constraints of a file, with those of the command line before them."""
-    from hydrostat.design import Constraints
-    from hydrostat.design.constraints_file import read_constraints
+    from hydrostat.design import Constraints, read_constraints
     from hydrostat.units import FORCE, LENGTH
 
     constraints = Constraints() if typed.file is None else read_constraints(typed.file, robot)
@@ -146,7 +144,7 @@ def _winch(name: str, robot: "Robot") -> str:
 
 
 def _cable(name: str, robot: "Robot") -> str:
-    from hydrostat.design.constraints_file import cable_name
+    from hydrostat.design import cable_name
 
     try:
         return cable_name(name, robot)

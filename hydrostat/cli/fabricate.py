@@ -105,7 +105,7 @@ def fabricate(
 def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
     """The kit; the reasons are printed why there is none (InputError: it cannot be built well)."""
     from hydrostat.fabrication import UnbuildableError, build_kit
-    from hydrostat.robot.in_words import in_words
+    from hydrostat.robot import in_words
 
     try:
         with progress_bar() as progress:
@@ -120,7 +120,7 @@ def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
 
 def print_kit(kit: "Kit") -> None:
     """Print what is in a kit, what to mind, and whether it is true to the robot."""
-    from hydrostat.robot.in_words import in_words
+    from hydrostat.robot import in_words
 
     for problem in kit.problems:
         print(f"cannot be built well: {in_words(problem)}")

@@ -102,8 +102,8 @@ def _meant(known: "Mapping[str, Motor]", calibration: "Calibration") -> str:
 
 def _boards(asked: str | None, calibration: "Calibration") -> list[str]:
     """Kinds of boards as asked for, the last again and again while motors are left; else the smallest that fit."""
-    from hydrostat.control.firmware_build import board_kind
-    from hydrostat.fabrication.parts.board import board_for
+    from hydrostat.control import board_kind
+    from hydrostat.fabrication import board_for
 
     found, motors = [each.strip() for each in asked.split(",")] if asked else [], len(calibration.motors)
     if not asked and calibration.boards > 1:
@@ -115,7 +115,7 @@ def _boards(asked: str | None, calibration: "Calibration") -> list[str]:
 
 def _tell(kind: str, number: int, given: "Calibration") -> None:
     """Say which motor is wired to which pins of a board."""
-    from hydrostat.control.firmware_build import board_kind
+    from hydrostat.control import board_kind
 
     motors = sorted((given.motors[place] for place in given.places(number)), key=lambda one: one.number)
     name = kind if given.boards == 1 else f"board {number}, {kind}"

@@ -17,7 +17,7 @@ def found_folder(robot: Path) -> Path:
     """The folder that is meant, also of a robot of the gallery (InputError: it has none of this name)."""
     if not str(robot).startswith("gallery:"):
         return robot
-    from hydrostat.robot.gallery import GALLERY, gallery_folder
+    from hydrostat.robot import GALLERY, gallery_folder
 
     return gallery_folder(str(robot).removeprefix(GALLERY))
 
@@ -52,7 +52,7 @@ def require_folder(out: Path) -> None:
     Raises:
         InputError: something that is no folder is in the way, or nothing can be written there.
     """
-    from hydrostat.robot.unfinished import clear_unfinished
+    from hydrostat.robot import clear_unfinished
 
     for folder in (out, out.parent):
         clear_unfinished(folder)
@@ -78,7 +78,7 @@ def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
     A new folder is renamed as a whole. In one that exists each file takes the place of the one of its name, and others
     stay, but for folders of earlier results that match the pattern `stale`.
     """
-    from hydrostat.robot.unfinished import unfinished
+    from hydrostat.robot import unfinished
 
     out = out.resolve()
     beside = out if out.exists() else out.parent

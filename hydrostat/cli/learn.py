@@ -42,7 +42,7 @@ def learn(
     Example: hydrostat learn build/samples --out build/starfish.model
     """
     from hydrostat.learning import LearnOptions, correct_model, learn_model, load_model, read_samples, save_model
-    from hydrostat.robot.unfinished import clear_unfinished
+    from hydrostat.robot import clear_unfinished
 
     if out.is_dir() or not out.parent.is_dir():
         raise InputError(f"--out {out}: {'is a folder' if out.is_dir() else 'its folder is not there'}; name a file")

@@ -19,7 +19,7 @@ from hydrostat.errors import InputError
 from hydrostat.units import counted
 
 if TYPE_CHECKING:
-    from hydrostat.geometry.files.drawn_lines import Inner
+    from hydrostat.geometry import Inner
     from hydrostat.ik import BegunRobot, NewRobotWish
     from hydrostat.robot import Robot
 
@@ -104,14 +104,14 @@ def _of_option(error: InputError) -> InputError:
 
 def _inner(given: str | None) -> "Inner | None":
     from hydrostat.closed_set import member
-    from hydrostat.geometry.files.drawn_lines import Inner
+    from hydrostat.geometry import Inner
 
     return None if given is None else member(Inner, given, what="--inner")
 
 
 def _robot_name(folder: Path) -> str:
     """Name of a robot after its folder (InputError: no robot may be called so)."""
-    from hydrostat.robot.checks import check_name
+    from hydrostat.robot import check_name
 
     return check_name(folder.resolve().name)
 
@@ -131,7 +131,7 @@ def _length(key: str, text: str | None) -> float | None:
 @contextmanager
 def _made_whole(name: Path) -> Iterator[Path]:
     """A folder to fill beside where it will stand; it gets its name when all is well, else it is gone."""
-    from hydrostat.robot.unfinished import clear_unfinished, unfinished
+    from hydrostat.robot import clear_unfinished, unfinished
 
     made = [parent for parent in name.resolve().parents if not parent.exists()]
     try:
@@ -162,13 +162,12 @@ def _made_whole(name: Path) -> Iterator[Path]:
 
 def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> list[str]:
     """Make the robot; returns what there is to tell."""
-    from hydrostat.robot.gallery import is_of_gallery
+    from hydrostat.robot import is_of_gallery
 
     if is_of_gallery(source):
         return _from_gallery(source, folder, wish)
     from hydrostat.ik import begin_robot
-    from hydrostat.robot import replace_file, save_robot
-    from hydrostat.robot.commented import commented_text
+    from hydrostat.robot import commented_text, replace_file, save_robot
 
     wish = _asked_about_holes(source, wish, seconds)
 
@@ -191,9 +190,7 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
 
 def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "NewRobotWish":
     """The wish with what a person at the terminal says of closed shapes in a drawing, if there are any to ask about."""
-    from hydrostat.geometry.files.drawn_lines import Inner
-    from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES, read_drawing
-    from hydrostat.geometry.files.stranger import read_stranger
+    from hydrostat.geometry import OUTLINE_SUFFIXES, Inner, read_drawing, read_stranger
 
     path = Path(source)
     if wish.inner is not None or path.suffix.lower() not in OUTLINE_SUFFIXES or not path.is_file():
@@ -215,9 +212,7 @@ def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "Ne
 
 def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
     """Copy a robot under its new name, if asked with other elements."""
-    from hydrostat.robot import gallery_folder, load_robot, replace_file
-    from hydrostat.robot.gallery import GALLERY
-    from hydrostat.robot.write import with_values
+    from hydrostat.robot import GALLERY, gallery_folder, load_robot, replace_file, with_values
 
     wish.refuse("a gallery robot has its own; edit robot.toml", "size", "thickness", "inflate", "material")
     shelf = gallery_folder(source.removeprefix(GALLERY))
@@ -244,8 +239,7 @@ def _draw(folder: Path) -> "Robot":
 
 def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) -> None:
     """Say what there is now, and what to do next."""
-    from hydrostat.robot import find_risks
-    from hydrostat.robot.in_words import in_words
+    from hydrostat.robot import find_risks, in_words
 
     mesh, flat = made.body.mesh, made.body.mesh.dim == 2
     kind = "triangles" if flat else "tetrahedra"

@@ -68,7 +68,7 @@ def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
 
 def check_width(width: int) -> None:
     """Refuse pictures of an animation that are too narrow or too wide (InputError: they are)."""
-    from hydrostat.plot.animation import WIDTHS
+    from hydrostat.plot import WIDTHS
 
     if not WIDTHS[0] <= width <= WIDTHS[1]:
         raise InputError(f"--width {width}: must be {WIDTHS[0]} to {WIDTHS[1]}")

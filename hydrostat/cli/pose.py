@@ -113,8 +113,7 @@ def _write(
     from hydrostat.version import __version__
 
     load_matplotlib()
-    from hydrostat.plot import draw_reached, save_png
-    from hydrostat.plot.labels import shorten
+    from hydrostat.plot import draw_reached, save_png, shorten
     from hydrostat.robot import replace_file
     from hydrostat.simulation import write_pose
 
@@ -152,7 +151,7 @@ def _print_reached(loaded: "Robot", reached: "ReachedPose", title: str, seconds:
 
 def _note_other_pose(simulation: "Simulation", reached: "ReachedPose") -> None:
     """Say it if the contractions alone do not decide the pose (E20): at once from rest they may lead to another."""
-    from hydrostat.simulation.solved_pose import largest_distance
+    from hydrostat.simulation import largest_distance
 
     pose = simulation.solve(reached.pose.contractions, strict=False)
     away = largest_distance(pose.nodes, reached.pose.nodes)

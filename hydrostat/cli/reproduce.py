@@ -127,7 +127,7 @@ def _study(
 
 
 def _numbers(text: str) -> list[int]:
-    from hydrostat.learning.lesson import LEAST
+    from hydrostat.learning import LEAST
 
     parts = [part.strip() for part in text.split(",")]
     if not all(part.isdecimal() and int(part) for part in parts):
@@ -140,8 +140,7 @@ def _numbers(text: str) -> list[int]:
 
 def _robot(name: str) -> "Robot":
     """A robot of the gallery or of a folder, which feels itself."""
-    from hydrostat.robot import Contact, load_robot
-    from hydrostat.robot.gallery import GALLERY, gallery_folder
+    from hydrostat.robot import GALLERY, Contact, gallery_folder, load_robot
 
     robot = load_robot(Path(name) if Path(name).is_dir() else gallery_folder(name.removeprefix(GALLERY)))
     return robot if robot.contact is not None else replace(robot, contact=Contact())

@@ -24,10 +24,7 @@ def scale(
 
     Example: hydrostat scale my_starfish 1.5
     """
-    from hydrostat.robot import save_robot
-    from hydrostat.robot.merge import merged_text
-    from hydrostat.robot.scaled import scaled_robot
-    from hydrostat.robot.tables_file import read_text
+    from hydrostat.robot import merged_text, read_text, save_robot, scaled_robot
 
     if out is not None and out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise InputError(f"{out}: exists already; choose another name or remove it")

@@ -37,14 +37,12 @@ def studio(
     Example: hydrostat studio examples/starfish --rooms --host 192.168.1.20
     """
     try:
-        from hydrostat.studio.face.rooms import Rooms
-        from hydrostat.studio.face.serve import serve
+        from hydrostat.studio import Rooms, serve
     except ModuleNotFoundError as error:
         if error.name != "nicegui":
             raise
         raise InputError('the studio needs the extra `studio`: pip install "hydrostat[studio]"') from None
-    from hydrostat.studio.session import Session
-    from hydrostat.studio.starting.shelf import state_folder
+    from hydrostat.studio import Session, state_folder
 
     if model is not None and (robot is None or rooms):
         raise InputError("--model needs the ROBOT that it was learned of, and no --rooms")

@@ -6,7 +6,7 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.control.arm_motors import arm_motors
-    from hydrostat.control.bus import Bus, MotorFacts, Port, Reading
+    from hydrostat.control.bus import Bus, MotorFacts, Port, Reading, steady
     from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
     from hydrostat.control.calibration import (
         CALIBRATION,
@@ -18,11 +18,12 @@ if TYPE_CHECKING:
         usual_calibration,
         write_calibration,
     )
-    from hydrostat.control.dynamixel_bus import DynamixelBus
+    from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
     from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
     from hydrostat.control.emulated_line import EmulatedLine
-    from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+    from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo, LiveChain
     from hydrostat.control.feetech_bus import FeetechBus
+    from hydrostat.control.firmware_build import board_kind
     from hydrostat.control.firmware_bus import FirmwareBus
     from hydrostat.control.guard import GuardLimits, TensionGuard, not_judged
     from hydrostat.control.link import SILENCE, Link, SimulatedLink
@@ -32,14 +33,17 @@ if TYPE_CHECKING:
     from hydrostat.control.player import Player, play
     from hydrostat.control.spool_curve import SpoolCurve, fit_spool, measure_spool
     from hydrostat.control.take_up import TakenUp, take_up_slack
-    from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_table
+    from hydrostat.control.timeline import LONGEST, Key, Timeline, read_timeline, timeline_table
 
 __all__ = [
     "CALIBRATION",
     "EMULATED",
     "EMULATED_CALIBRATION",
     "FASTEST",
+    "GOAL",
+    "LONGEST",
     "SILENCE",
+    "TICK",
     "Ails",
     "Bus",
     "BusLink",
@@ -58,6 +62,7 @@ __all__ = [
     "Link",
     "LinkLimits",
     "LinkState",
+    "LiveChain",
     "MotorFacts",
     "Motors",
     "Player",
@@ -71,6 +76,7 @@ __all__ = [
     "WinchMotor",
     "WinchPull",
     "arm_motors",
+    "board_kind",
     "check_port",
     "emulated_calibration",
     "fit_spool",
@@ -82,6 +88,7 @@ __all__ = [
     "play",
     "read_calibration",
     "read_timeline",
+    "steady",
     "take_up_slack",
     "tensions_along",
     "timeline_table",

@@ -12,7 +12,7 @@ import numpy as np
 from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import read_stranger
 from hydrostat.robot import Robot, replace_file
 
 CALIBRATION = "motors.toml"

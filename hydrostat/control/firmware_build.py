@@ -13,7 +13,7 @@ from pathlib import Path
 from hydrostat.control.bus_link import LinkLimits
 from hydrostat.control.calibration import CALIBRATION, Calibration, WinchMotor
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.fabrication.parts.board import BOARDS, BoardKind
+from hydrostat.fabrication import BOARDS, BoardKind
 from hydrostat.robot import Robot, replace_file
 
 SPARE = 0.025

@@ -5,26 +5,61 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
+    from hydrostat.design.buildable import violations
     from hydrostat.design.built_error import BuiltErrors, built_errors, expected_error
-    from hydrostat.design.constraints import Constraints
-    from hydrostat.design.craft import Craft, SewingTimes, craft_of
+    from hydrostat.design.constraints import RANGES, Constraints
+    from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
+    from hydrostat.design.craft import Craft, SewingTimes, craft_of, front, sewing_minutes
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.faced import faced
-    from hydrostat.design.filled_reach import FilledReach
-    from hydrostat.design.finding import Finding, Weight
+    from hydrostat.design.filled_reach import FilledReach, out_of_plane
+    from hydrostat.design.finding import Finding, Weight, places_in
     from hydrostat.design.judgement import judgement_of
     from hydrostat.design.muscles.activation import Activation, FibreKind, Fibres, activate, edge_fibres, element_fibres
-    from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace, TreeTrace
-    from hydrostat.design.request import AUTO, DesignMethod, DesignRequest, RouteOptions, TreeOptions
+    from hydrostat.design.muscles.free_posing import FreePosing
+    from hydrostat.design.network import (
+        Alternative,
+        Certificate,
+        DesignStage,
+        Network,
+        RouteTrace,
+        TreeTrace,
+        best_errors,
+        on_front,
+        rms_error,
+        size_of,
+    )
+    from hydrostat.design.polyline import nearest_shares, turns
+    from hydrostat.design.region import Region, body_region
+    from hydrostat.design.request import (
+        AUTO,
+        COUNTS,
+        ROUTE_RANGES,
+        TREE_RANGES,
+        DesignMethod,
+        DesignRequest,
+        RouteOptions,
+        TreeOptions,
+    )
+    from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
+    from hydrostat.design.routes.price import PricedPath
+    from hydrostat.design.routes.propose import route_along
+    from hydrostat.design.routes.route_graph import RouteGraph, route_graph
     from hydrostat.design.score_card import rest_error, score_card
+    from hydrostat.design.trees.design_trees import propose_trees
     from hydrostat.design.uncertainty import Uncertainty
     from hydrostat.design.zone import Zone
 
 __all__ = [
     "AUTO",
+    "COUNTS",
+    "RANGES",
+    "ROUTE_RANGES",
+    "TREE_RANGES",
     "Activation",
     "Alternative",
     "BuiltErrors",
+    "CableRoute",
     "Certificate",
     "Constraints",
     "Craft",
@@ -35,7 +70,12 @@ __all__ = [
     "Fibres",
     "FilledReach",
     "Finding",
+    "FreePosing",
+    "Layout",
     "Network",
+    "PricedPath",
+    "Region",
+    "RouteGraph",
     "RouteOptions",
     "RouteTrace",
     "SewingTimes",
@@ -43,9 +83,13 @@ __all__ = [
     "TreeTrace",
     "Uncertainty",
     "Weight",
+    "WinchSite",
     "Zone",
     "activate",
+    "best_errors",
+    "body_region",
     "built_errors",
+    "cable_name",
     "craft_of",
     "design_cables",
     "edge_fibres",
@@ -53,9 +97,24 @@ __all__ = [
     "expected_error",
     "faced",
     "find_network",
+    "front",
     "judgement_of",
+    "nearest_shares",
+    "on_front",
+    "out_of_plane",
+    "places_in",
+    "propose_trees",
+    "read_constraints",
+    "read_uncertainty",
     "rest_error",
+    "rms_error",
+    "route_along",
+    "route_graph",
     "score_card",
+    "sewing_minutes",
+    "size_of",
+    "turns",
+    "violations",
 ]
 
 open_package(__name__)

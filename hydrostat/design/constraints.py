@@ -14,8 +14,7 @@ from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
-from hydrostat.robot import Cable, Mount, Robot, Winch
-from hydrostat.robot.robot import LARGEST_STEP
+from hydrostat.robot import LARGEST_STEP, Cable, Mount, Robot, Winch
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,9 +13,20 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
-from hydrostat.robot import Mount, Robot
-from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
-from hydrostat.robot.tables_file import TablesFile, read_text
+from hydrostat.robot import (
+    Angle,
+    Coordinates,
+    Force,
+    Length,
+    Mount,
+    Name,
+    Number,
+    Robot,
+    TablesFile,
+    TomlTable,
+    Torque,
+    read_text,
+)
 
 Count = Annotated[int, Strict()]
 Choice = Annotated[bool, Strict()]

@@ -7,11 +7,7 @@ import numpy as np
 
 from hydrostat.design.checks.cables import SAME
 from hydrostat.design.polyline import nearest_shares, turns
-from hydrostat.fabrication.demand import shaft_torques
-from hydrostat.fabrication.lists.bill import PRICES
-from hydrostat.fabrication.lists.needs import control_needs
-from hydrostat.fabrication.lists.power import power_plan
-from hydrostat.fabrication.parts.motor import choose_motor
+from hydrostat.fabrication import PRICES, choose_motor, control_needs, power_plan, shaft_torques
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Mount, Robot, sewn_sides
 from hydrostat.units import counted

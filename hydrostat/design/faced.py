@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from hydrostat.fabrication.kit_options import STUFFINGS
+from hydrostat.fabrication import STUFFINGS
 from hydrostat.robot import Face, Robot
 
 

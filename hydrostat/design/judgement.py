@@ -8,9 +8,7 @@ from hydrostat.design.checks.winches import standing_violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.finding import Finding, Weight, places_in
 from hydrostat.design.skin_region import cable_region
-from hydrostat.fabrication import KitOptions
-from hydrostat.fabrication.demand import Demand
-from hydrostat.fabrication.refusals import find_refusals
+from hydrostat.fabrication import Demand, KitOptions, find_refusals
 from hydrostat.robot import Robot, find_risks
 
 

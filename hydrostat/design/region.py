@@ -13,7 +13,7 @@ from shapely.ops import nearest_points
 from hydrostat.arrays import Points, Vector
 from hydrostat.design.polyline import Route, least_along
 from hydrostat.errors import InputError
-from hydrostat.geometry.shell import Nearest, Shell, outline_shell
+from hydrostat.geometry import Nearest, Shell, outline_shell
 from hydrostat.robot import Body
 
 MARGIN = 1.02  # points are pushed so many clearances deep, so that rounding takes none out again

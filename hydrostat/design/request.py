@@ -11,7 +11,7 @@ from hydrostat.design.constraints import Constraints, Range
 from hydrostat.design.muscles.activation import FibreKind
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import InputError
-from hydrostat.ik.objectives.objective import place
+from hydrostat.ik import place
 from hydrostat.robot import Pose, Robot
 
 AUTO = "auto"  # as many winches as are needed

@@ -10,11 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.zone import Zone
-from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.motor import MOTORS, Motor, largest_torque
-from hydrostat.fabrication.parts.places import GIVES, seam_of
-from hydrostat.fabrication.parts.winch_unit import unit_room
-from hydrostat.fabrication.solids.construct import Cuboid
+from hydrostat.fabrication import GIVES, MOTORS, Cuboid, Motor, PartOptions, largest_torque, seam_of, unit_room
 from hydrostat.robot import Body, Cable, Robot, Winch, sewn_robot
 
 

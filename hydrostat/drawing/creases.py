@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float, Int
 
-from hydrostat.geometry.healing.mend import sides_of
+from hydrostat.geometry import sides_of
 from hydrostat.kernel import native
 
 Segments = Float[np.ndarray, "segments 2 3"]  # straight pieces of lines by both ends [mm]

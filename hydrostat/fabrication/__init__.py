@@ -6,9 +6,10 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.fabrication.build_kit import build_kit, export_kit
-    from hydrostat.fabrication.demand import Demand, find_demand
-    from hydrostat.fabrication.kit import Check, Kit, UnbuildableError
+    from hydrostat.fabrication.demand import Demand, demand_of, find_demand, shaft_torques
+    from hydrostat.fabrication.kit import Check, Kit, UnbuildableError, forget_files, write_files
     from hydrostat.fabrication.kit_options import (
+        STUFFINGS,
         Corner,
         KitOptions,
         Method,
@@ -18,21 +19,43 @@ if TYPE_CHECKING:
         PartOptions,
         PatternOptions,
     )
+    from hydrostat.fabrication.lists.bill import PRICES
+    from hydrostat.fabrication.lists.needs import control_needs
+    from hydrostat.fabrication.lists.power import power_plan
+    from hydrostat.fabrication.lists.stitching import depth_table
     from hydrostat.fabrication.moulds.mould import Mould, make_mould
-    from hydrostat.fabrication.parts.motor import MOTORS, Motor
-    from hydrostat.fabrication.patches.sewable import Sewing, find_sewing
+    from hydrostat.fabrication.parts.board import BOARDS, BoardKind, board_for
+    from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
+    from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
+    from hydrostat.fabrication.parts.winch_unit import unit_room
+    from hydrostat.fabrication.patches.sewable import Sewing, find_sewing, sewing_of
+    from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
+    from hydrostat.fabrication.patches.space_pattern import space_pattern
     from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
+    from hydrostat.fabrication.patterns.marks import winch_marks
     from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
     from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart, Shape
     from hydrostat.fabrication.patterns.svg_writer import pattern_svg
     from hydrostat.fabrication.refusals import find_refusals
+    from hydrostat.fabrication.sheets.solid_pictures import drawn_solid
+    from hydrostat.fabrication.solids.construct import Box, Cuboid, Cylinder, solid_of
     from hydrostat.fabrication.solids.printed import Printed
+    from hydrostat.fabrication.winch_marks import winch_marks_of
 
 __all__ = [
+    "BOARDS",
+    "GIVES",
     "MOTORS",
+    "PRICES",
+    "STUFFINGS",
+    "TOUCHES",
+    "BoardKind",
+    "Box",
     "Check",
     "Circle",
     "Corner",
+    "Cuboid",
+    "Cylinder",
     "Demand",
     "Kit",
     "KitOptions",
@@ -53,15 +76,36 @@ __all__ = [
     "Sewing",
     "Shape",
     "UnbuildableError",
+    "UnitBox",
+    "board_for",
     "build_kit",
+    "choose_motor",
+    "control_needs",
+    "demand_of",
+    "depth_table",
+    "drawn_solid",
     "export_kit",
     "find_demand",
     "find_refusals",
     "find_sewing",
+    "forget_files",
+    "largest_torque",
     "make_mould",
     "pattern_dxf",
     "pattern_svg",
     "plush_pattern",
+    "power_plan",
+    "seam_of",
+    "sewing_of",
+    "shaft_torques",
+    "skin_of_surface",
+    "solid_of",
+    "space_pattern",
+    "unit_room",
+    "ways_to_lie",
+    "winch_marks",
+    "winch_marks_of",
+    "write_files",
 ]
 
 open_package(__name__)

@@ -7,8 +7,7 @@ from typing import Any
 
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.robot import Body
-from hydrostat.robot.checks import check_number
+from hydrostat.robot import Body, check_number
 
 STUFFINGS = ("polyester fibre",)  # materials that are stuffed into cloth: a body of them is plush, in space too
 _SHORTEST = 50.0  # a piece of the gusset that is still worth sewing [mm]

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.grasp.thing import moved_thing
-from hydrostat.mechanics.rigid import GuideEnergy
+from hydrostat.mechanics import GuideEnergy
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import (
     BodyPhysics,

@@ -7,9 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.files.stranger import read_stranger
-from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
+from hydrostat.geometry import SURFACE_SUFFIXES, locate, read_stranger
 from hydrostat.robot import Obstacle, Robot, closed_mesh
 from hydrostat.units import LENGTH, parse_quantity
 

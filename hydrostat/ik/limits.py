@@ -12,8 +12,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.objectives.objective import above_zero, by_name, describe, numbers
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation
-from hydrostat.simulation.solved_pose import contraction_values
+from hydrostat.simulation import Simulation, contraction_values
 
 
 @dataclass(frozen=True, kw_only=True)

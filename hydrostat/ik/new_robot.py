@@ -8,12 +8,20 @@ from typing import TypedDict, Unpack
 
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.drawn_lines import Inner
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import Inner, read_stranger
 from hydrostat.given import check_kind, path_of
-from hydrostat.robot import Robot, SurfaceSketch, gallery_folder, load_robot, sketch_mesh, sketch_robot, sketch_surface
-from hydrostat.robot.checks import check_number
-from hydrostat.robot.gallery import GALLERY, is_of_gallery
+from hydrostat.robot import (
+    GALLERY,
+    Robot,
+    SurfaceSketch,
+    check_number,
+    gallery_folder,
+    is_of_gallery,
+    load_robot,
+    sketch_mesh,
+    sketch_robot,
+    sketch_surface,
+)
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
 LONGEST = 20.0  # nothing of a robot is longer [m]
@@ -103,8 +111,7 @@ def begin_robot(
 
     `run` does the part that reads, heals and meshes what may be a stranger's file, perhaps within limits.
     """
-    from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
-    from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
+    from hydrostat.geometry import OUTLINE_SUFFIXES, SURFACE_SUFFIXES
 
     if is_of_gallery(source):
         return BegunRobot(_of_gallery(source, wish))
@@ -133,8 +140,8 @@ def _of_gallery(source: str, wish: NewRobotWish) -> Robot:
 
 
 def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
-    from hydrostat.geometry.files.outline_file import read_drawing
-    from hydrostat.robot.sketch_space import inflated
+    from hydrostat.geometry import read_drawing
+    from hydrostat.robot import inflated
 
     content, file = read_stranger(path), _file_name(path.name)
     inner = member(Inner, wish.inner or Inner.HOLES, what="inner")

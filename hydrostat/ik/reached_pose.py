@@ -8,8 +8,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.painters import draw_record
-from hydrostat.robot import Pose
-from hydrostat.robot.html_repr import html_repr
+from hydrostat.robot import Pose, html_repr
 from hydrostat.simulation import SolvedPose
 
 

@@ -23,8 +23,7 @@ from hydrostat.ik.search.patience import Patience, Tell
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
 from hydrostat.mechanics import Reason
 from hydrostat.robot import Pose
-from hydrostat.simulation import Simulation, SolvedPose, check_still, friction_band, smooth_robot
-from hydrostat.simulation.obstacles import not_converged
+from hydrostat.simulation import Simulation, SolvedPose, check_still, friction_band, not_converged, smooth_robot
 
 Targets = Pose | Mapping[str, Sequence[float] | Vector]  # where markers should go [m]: a pose, or points by name
 

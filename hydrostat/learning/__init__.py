@@ -5,16 +5,18 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.learning.certify import certify, solve_exactly
-    from hydrostat.learning.compare import METHODS, Compared, compare
+    from hydrostat.learning.certify import certify, exact_steps, solve_exactly
+    from hydrostat.learning.compare import METHODS, STEP, Compared, compare, targets_of, way_of
     from hydrostat.learning.correct_model import correct_model
-    from hydrostat.learning.draw import Draw
+    from hydrostat.learning.draw import Draw, antagonists
     from hydrostat.learning.export import EXPORTS, check_export, export_samples
     from hydrostat.learning.learn_model import learn_model
     from hydrostat.learning.learn_options import LearnOptions
     from hydrostat.learning.learned_model import LearnedModel
     from hydrostat.learning.learned_pose import LearnedPose, Tier
+    from hydrostat.learning.lesson import LEAST, Lesson, lesson_of, linear_map
     from hydrostat.learning.model_file import load_model, save_model
+    from hydrostat.learning.perceptrons import Perceptrons
     from hydrostat.learning.portable_policy import PortablePolicy, load_policy
     from hydrostat.learning.sample_folder import SampleFolder
     from hydrostat.learning.sample_plan import SamplePlan, physics_hash, plan_samples
@@ -22,16 +24,22 @@ if TYPE_CHECKING:
     from hydrostat.learning.sample_shard import sample_shard
     from hydrostat.learning.samples import Samples, read_samples
     from hydrostat.learning.study import Study, StudyRow, run_study
+    from hydrostat.learning.thesis_network import train_thesis_network
+    from hydrostat.learning.train import answer, tensors_of, train_forward
 
 __all__ = [
     "BACKENDS",
     "EXPORTS",
+    "LEAST",
     "METHODS",
+    "STEP",
     "Compared",
     "Draw",
     "LearnOptions",
     "LearnedModel",
     "LearnedPose",
+    "Lesson",
+    "Perceptrons",
     "PortablePolicy",
     "SampleFolder",
     "SamplePlan",
@@ -39,12 +47,17 @@ __all__ = [
     "Study",
     "StudyRow",
     "Tier",
+    "answer",
+    "antagonists",
     "certify",
     "check_export",
     "compare",
     "correct_model",
+    "exact_steps",
     "export_samples",
     "learn_model",
+    "lesson_of",
+    "linear_map",
     "load_model",
     "load_policy",
     "physics_hash",
@@ -55,6 +68,11 @@ __all__ = [
     "sample_shard",
     "save_model",
     "solve_exactly",
+    "targets_of",
+    "tensors_of",
+    "train_forward",
+    "train_thesis_network",
+    "way_of",
 ]
 
 open_package(__name__)

@@ -7,8 +7,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.given import check_kind
-from hydrostat.ik import InverseOptions, InverseReason, Limits, Targets, Tracker, solve_ik
-from hydrostat.ik.objectives.marker_goal import named_targets
+from hydrostat.ik import InverseOptions, InverseReason, Limits, Targets, Tracker, named_targets, solve_ik
 from hydrostat.learning.known_contact import contact_facts
 from hydrostat.learning.learned_model import LearnedModel
 from hydrostat.learning.learned_pose import LearnedPose, Tier

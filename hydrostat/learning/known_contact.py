@@ -5,8 +5,7 @@ from math import isclose
 from typing import Any
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot
-from hydrostat.robot.contact import DISTANCE
+from hydrostat.robot import DISTANCE, Robot
 
 ContactFacts = dict[str, bool | float | None]
 """contact, contact_distance [m] and contact_friction; None where there is no contact."""

@@ -11,8 +11,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.ik import Targets
-from hydrostat.ik.objectives.marker_goal import named_targets
+from hydrostat.ik import Targets, named_targets
 from hydrostat.learning.known_contact import check_contact, told_contact
 from hydrostat.learning.learned_pose import LearnedPose, Tier
 from hydrostat.learning.perceptrons import Perceptrons

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import read_stranger
 from hydrostat.given import path_of
 from hydrostat.robot import replace_file
 

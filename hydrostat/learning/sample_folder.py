@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import read_stranger
 from hydrostat.given import path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import sample_type
-from hydrostat.robot.unfinished import clear_unfinished, unfinished
+from hydrostat.robot import clear_unfinished, unfinished
 
 FORMAT = 1
 """Version of what lies in a folder of samples."""

@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import read_stranger
 from hydrostat.learning.sample_folder import read_manifest
 from hydrostat.learning.sample_shard import REASONS
 

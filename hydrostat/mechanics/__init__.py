@@ -9,28 +9,40 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.cable import CableEnergy, CableSegments
     from hydrostat.mechanics.chain_law import ChainLaw
     from hydrostat.mechanics.contact import ContactEnergy
-    from hydrostat.mechanics.energy import Compliance, Coupling, Energy, Law, nearest_semidefinite
-    from hydrostat.mechanics.factorisation import Analysis, Factorisation, factorise
+    from hydrostat.mechanics.energy import Compliance, Coupling, Energy, Law, Pressed, Stencils, nearest_semidefinite
+    from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
     from hydrostat.mechanics.fibre import FibreEnergy
     from hydrostat.mechanics.friction import FrictionCableEnergy
+    from hydrostat.mechanics.inertia import InertiaEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimise
     from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
     from hydrostat.mechanics.newton_result import NewtonResult
     from hydrostat.mechanics.obstacle import ObstacleEnergy
+    from hydrostat.mechanics.patch_volume import PatchVolume
+    from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
     from hydrostat.mechanics.pin import PinEnergy
+    from hydrostat.mechanics.rigid import Carriage, CarriedWarp, GuideEnergy, RigidEnergy
     from hydrostat.mechanics.rubbing import RubbingEnergy
     from hydrostat.mechanics.stiffness import Stiffness
     from hydrostat.mechanics.tension_law import TensionLaw
+    from hydrostat.mechanics.time_scheme import SCHEMES
     from hydrostat.mechanics.turns import Turns
-    from hydrostat.mechanics.warp import Warp
+    from hydrostat.mechanics.viscous import Memory, Metrics
+    from hydrostat.mechanics.warp import Bend, Warp
     from hydrostat.mechanics.weight import WeightEnergy
 
 __all__ = [
+    "PATCH_SIZE",
+    "SCHEMES",
     "Analysis",
     "Assembly",
+    "Backend",
+    "Bend",
     "CableEnergy",
     "CableSegments",
+    "Carriage",
+    "CarriedWarp",
     "ChainLaw",
     "Compliance",
     "ContactEnergy",
@@ -39,21 +51,30 @@ __all__ = [
     "Factorisation",
     "FibreEnergy",
     "FrictionCableEnergy",
+    "GuideEnergy",
+    "InertiaEnergy",
     "Law",
+    "Memory",
+    "Metrics",
     "NeoHookean",
     "NewtonOptions",
     "NewtonResult",
     "ObstacleEnergy",
+    "PatchVolume",
     "PinEnergy",
+    "Pressed",
     "Reason",
+    "RigidEnergy",
     "RoundOff",
     "RubbingEnergy",
+    "Stencils",
     "Stiffness",
     "TensionLaw",
     "Turns",
     "Warp",
     "WeightEnergy",
     "factorise",
+    "grow_patches",
     "minimise",
     "nearest_semidefinite",
 ]

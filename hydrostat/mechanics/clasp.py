@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.geometry.boundary_tree import Pairs
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh, Pairs
 from hydrostat.mechanics.energy import Stencils
 from hydrostat.mechanics.grip import Grip
 

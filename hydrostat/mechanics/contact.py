@@ -8,8 +8,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.geometry.boundary_tree import BoundaryTree, Pairs, facet_areas
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import BoundaryTree, Mesh, Pairs, facet_areas
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Places, Pressed, Stencils
 

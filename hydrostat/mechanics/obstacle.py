@@ -8,9 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.geometry.boundary_tree import facet_areas
-from hydrostat.geometry.distance_field import DistanceField, Distances, lengths_of
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import DistanceField, Distances, Mesh, facet_areas, lengths_of
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import (
     Blocks,

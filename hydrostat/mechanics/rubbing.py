@@ -7,8 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.geometry.boundary_tree import Pairs
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh, Pairs
 from hydrostat.mechanics.clasp import Clasp, ClaspingSkin, FacetPoints
 from hydrostat.mechanics.contact import ContactEnergy
 from hydrostat.mechanics.energy import Blocks, Compliance, Energy, HessianBlocks, Pressed, Response

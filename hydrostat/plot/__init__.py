@@ -6,13 +6,18 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
-    from hydrostat.plot.animation import find_ffmpeg, save_gif, save_mp4
+    from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
     from hydrostat.plot.branch_figure import draw_branches
+    from hydrostat.plot.calibration_page import reach, write_calibration_page
+    from hydrostat.plot.chart import plain_axes
     from hydrostat.plot.design_charts import draw_front, draw_growth
-    from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, winch_stops
+    from hydrostat.plot.drawn_body import DrawnBody
+    from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, upright, winch_stops
     from hydrostat.plot.frame import Frame
+    from hydrostat.plot.frame_pictures import FramePictures, Picture
     from hydrostat.plot.grasp_figure import draw_pull, pull_frames
     from hydrostat.plot.healing_figure import draw_healing
+    from hydrostat.plot.labels import shorten
     from hydrostat.plot.learning_figures import (
         draw_calibration,
         draw_costs,
@@ -21,11 +26,14 @@ if TYPE_CHECKING:
         draw_losses,
         draw_side_by_side,
     )
+    from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion import motion_frames, motion_svg
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
-    from hydrostat.plot.picture_file import inline_svg, save_png
+    from hydrostat.plot.picture_file import drawing, inline_svg, save_png
     from hydrostat.plot.reach_figure import draw_reach
     from hydrostat.plot.report import report_text, write_report
+    from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
+    from hydrostat.plot.report_tables import Chapter, cable_table, fact, page, section, table
     from hydrostat.plot.robot_figures import (
         draw_network,
         draw_portrait,
@@ -35,11 +43,25 @@ if TYPE_CHECKING:
         draw_target,
     )
     from hydrostat.plot.scene import save_glb
+    from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
+    from hydrostat.plot.skin import FlatSkin
 
 __all__ = [
+    "MILLIMETRES",
+    "REACHED",
+    "WIDTH",
+    "WIDTHS",
+    "Chapter",
+    "DrawnBody",
     "Film",
+    "FlatSkin",
     "Frame",
+    "FramePictures",
+    "LivePage",
+    "Picture",
     "Stop",
+    "body_part",
+    "cable_table",
     "draw_activation",
     "draw_branches",
     "draw_calibration",
@@ -63,20 +85,34 @@ __all__ = [
     "draw_target",
     "draw_trajectory",
     "draw_trees",
+    "drawing",
+    "fact",
     "film",
     "find_ffmpeg",
     "inline_svg",
     "motion_frames",
     "motion_svg",
+    "network_part",
+    "new_figure",
+    "page",
+    "plain_axes",
     "pose_stops",
     "pull_frames",
+    "reach",
+    "reached_part",
     "report_text",
     "save_gif",
     "save_glb",
     "save_mp4",
     "save_png",
+    "section",
+    "shorten",
+    "table",
+    "target_chapter",
     "trajectory_frames",
+    "upright",
     "winch_stops",
+    "write_calibration_page",
     "write_report",
 ]
 

@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
 from hydrostat.design import Activation
-from hydrostat.drawing.palette import LIGHT, WINCHES
+from hydrostat.drawing import LIGHT, WINCHES
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
@@ -97,7 +97,7 @@ def _flat(pane: Pane, ends: Float[np.ndarray, "lines 2 dim"]) -> Float[np.ndarra
 def _draw_markers(
     sheet: PictureSheet, robot: Robot, activation: Activation, panes: list[Pane], surface: DrawnBody
 ) -> None:
-    from hydrostat.geometry.anchors import locate
+    from hydrostat.geometry import locate
 
     goals = target_places(activation.target)
     named = [marker for marker in robot.markers if marker.name in goals]

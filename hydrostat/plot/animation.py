@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
-from hydrostat.drawing.palette import DARK, ERROR, INK, MUTED, PAPER, channels, winch_colours
+from hydrostat.drawing import DARK, ERROR, INK, MUTED, PAPER, channels, winch_colours
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.frame_pictures import FramePictures, Picture

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from hydrostat.arrays import Nodes, Points
-from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry import Anchors, locate
 from hydrostat.plot.sheet import Spread
 from hydrostat.robot import Mount, Robot
 

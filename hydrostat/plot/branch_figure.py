@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing.palette import ERROR, INK, PAPER, WINCHES, mix
+from hydrostat.drawing import ERROR, INK, PAPER, WINCHES, mix
 from hydrostat.errors import InputError
 from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.labels import Labels, shorten

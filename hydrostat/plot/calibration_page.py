@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
 from hydrostat.control import SpoolCurve, TakenUp, WinchPull
-from hydrostat.drawing.palette import MUTED, WINCHES
-from hydrostat.drawing.svg import Html, tag
+from hydrostat.drawing import MUTED, WINCHES, Html, tag
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
 from hydrostat.plot.sheet import MILLIMETRES

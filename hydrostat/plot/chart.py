@@ -4,7 +4,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from hydrostat.drawing.palette import GRID, INK, MUTED
+from hydrostat.drawing import GRID, INK, MUTED
 from hydrostat.plot.sheet import WIDTH, new_figure
 
 EDGES = (0.62, 0.2, 0.5, 0.16)  # left, right, lower and upper border [inch]

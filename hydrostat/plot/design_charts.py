@@ -7,9 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from hydrostat.design.craft import front, sewing_minutes
-from hydrostat.design.network import Alternative, DesignStage, Network
-from hydrostat.drawing.palette import ERROR, GHOST, INK, SEAM, WINCHES
+from hydrostat.design import Alternative, DesignStage, Network, front, sewing_minutes
+from hydrostat.drawing import ERROR, GHOST, INK, SEAM, WINCHES
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.report_tables import millimetres

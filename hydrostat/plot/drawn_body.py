@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.drawing.camera import Camera
-from hydrostat.drawing.render import Render
+from hydrostat.drawing import Camera, Render
 from hydrostat.plot.sheet import MILLIMETRES, Place, Places, Spread
 
 STEP = 1.0  # length of the pieces into which a run is cut to see which of them are covered, in pixels

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import UInt8
 from matplotlib.artist import Artist
 
-from hydrostat.drawing.palette import PAPER
+from hydrostat.drawing import PAPER
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.hardware import draw_hardware

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.drawing.palette import ERROR, INK, MUTED, WINCHES
+from hydrostat.drawing import ERROR, INK, MUTED, WINCHES
 from hydrostat.grasp import PullCase, PullOut
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.chart import plain_axes

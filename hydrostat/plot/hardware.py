@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing.palette import DARK, FELT, LIGHT, MUTED, mix, winch_colours
+from hydrostat.drawing import DARK, FELT, LIGHT, MUTED, mix, winch_colours
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.labels import Labels, shorten

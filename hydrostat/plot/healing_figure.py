@@ -9,11 +9,8 @@ from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Points
-from hydrostat.drawing.camera import Camera, Spots, three_quarter
-from hydrostat.drawing.palette import ERROR, INK, LIGHT, MUTED, channels
-from hydrostat.drawing.render import Render, render
-from hydrostat.geometry.healing.mend import sides_of
-from hydrostat.geometry.surface import Surface
+from hydrostat.drawing import ERROR, INK, LIGHT, MUTED, Camera, Render, Spots, channels, render, three_quarter
+from hydrostat.geometry import Surface, sides_of
 from hydrostat.plot.pane import fit_pixel, lay_image
 from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
 

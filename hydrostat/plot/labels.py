@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from hydrostat.drawing.palette import INK, LIGHT
+from hydrostat.drawing import INK, LIGHT
 from hydrostat.plot.sheet import PictureSheet, Place, Places
 
 LONGEST = 26  # most letters of a name that a picture shows

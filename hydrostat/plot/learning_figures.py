@@ -11,9 +11,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from scipy.stats import trim_mean
 
 from hydrostat.arrays import Nodes
-from hydrostat.drawing.palette import INK, MUTED, WINCHES
-from hydrostat.learning.compare import STEP, way_of
-from hydrostat.learning.study import StudyRow
+from hydrostat.drawing import INK, MUTED, WINCHES
+from hydrostat.learning import STEP, StudyRow, way_of
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.chart import new_chart, plain_axes
 from hydrostat.plot.robot_figures import SMALL, draw_portrait

@@ -5,8 +5,20 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing.palette import FELT, FELT_LIGHT, LIGHT, SEAM, STITCH, mix, winch_colours
-from hydrostat.drawing.svg import NAMESPACE, Html, path, shape, tag
+from hydrostat.drawing import (
+    FELT,
+    FELT_LIGHT,
+    LIGHT,
+    NAMESPACE,
+    SEAM,
+    STITCH,
+    Html,
+    mix,
+    path,
+    shape,
+    tag,
+    winch_colours,
+)
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.hardware import spool_size, stopper_bar
 from hydrostat.plot.sheet import MILLIMETRES, Places, framed

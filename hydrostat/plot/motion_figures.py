@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing.palette import ERROR, GHOST, INK, MUTED, WINCHES, winch_colours
+from hydrostat.drawing import ERROR, GHOST, INK, MUTED, WINCHES, winch_colours
 from hydrostat.ik import KeyPose, Trajectory
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.chart import DASHES, plain_axes

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing.camera import Camera, along_an_axis, three_quarter
-from hydrostat.drawing.palette import GRID, INK, MUTED
+from hydrostat.drawing import GRID, INK, MUTED, Camera, along_an_axis, three_quarter
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
 from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
 from hydrostat.plot.skin import FlatSkin

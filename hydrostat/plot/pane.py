@@ -8,9 +8,24 @@ import numpy as np
 import shapely
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.drawing.camera import Camera, Spots
-from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, GHOST, GHOST_FILL, INK, MESH, PAPER, SEAM, STITCH, mix
-from hydrostat.drawing.render import Render, render, silhouette
+from hydrostat.drawing import (
+    DARK,
+    FELT,
+    FELT_LIGHT,
+    GHOST,
+    GHOST_FILL,
+    INK,
+    MESH,
+    PAPER,
+    SEAM,
+    STITCH,
+    Camera,
+    Render,
+    Spots,
+    mix,
+    render,
+    silhouette,
+)
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.sheet import BODY, MILLIMETRES, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin

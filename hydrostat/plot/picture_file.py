@@ -18,7 +18,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 
-from hydrostat.drawing.palette import PAGE_COLOURS, PAPER
+from hydrostat.drawing import PAGE_COLOURS, PAPER
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.sheet import BODY
 from hydrostat.robot import replace_file

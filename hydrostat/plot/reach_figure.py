@@ -6,8 +6,8 @@ import numpy as np
 import shapely
 from matplotlib.figure import Figure
 
-from hydrostat.drawing.palette import WINCHES
-from hydrostat.ik.reach import FoundReach
+from hydrostat.drawing import WINCHES
+from hydrostat.ik import FoundReach
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.sheet import WIDTH, PictureSheet, Places

@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.arrays import Nodes
-from hydrostat.design.network import Network, TreeTrace
-from hydrostat.design.score_card import rest_error
-from hydrostat.drawing.svg import Html, tag
+from hydrostat.design import Network, TreeTrace, rest_error
+from hydrostat.drawing import Html, tag
 from hydrostat.errors import InputError
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.motion import motion_frames, motion_svg
@@ -29,7 +28,7 @@ def write_report(
 
     The title is the robot's name if left out; facts are more lines for the end, such as options and seed.
     """
-    from hydrostat.robot.write import replace_file
+    from hydrostat.robot import replace_file
 
     return replace_file(Path(path), report_text(network, title=title, facts=facts).encode(errors="replace"))
 

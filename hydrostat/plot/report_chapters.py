@@ -4,10 +4,17 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from hydrostat.design.craft import craft_of, sewing_minutes
-from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, TreeTrace
-from hydrostat.design.score_card import rest_error
-from hydrostat.drawing.svg import Html, tag
+from hydrostat.design import (
+    Alternative,
+    Certificate,
+    Network,
+    RouteTrace,
+    TreeTrace,
+    craft_of,
+    rest_error,
+    sewing_minutes,
+)
+from hydrostat.drawing import Html, tag
 from hydrostat.ik import ReachedPose, find_reach, left_free
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs

@@ -1,8 +1,7 @@
 """`filled_chapters`: where the cables of a flat robot run, and how far it leaves its plane once it is filled."""
 
-from hydrostat.design.filled_reach import FilledReach, out_of_plane
-from hydrostat.design.network import Network
-from hydrostat.drawing.svg import Html, tag
+from hydrostat.design import FilledReach, Network, out_of_plane
+from hydrostat.drawing import Html, tag
 from hydrostat.errors import HydrostatError
 from hydrostat.plot.report_tables import Chapter, millimetres, table
 from hydrostat.robot import face_words

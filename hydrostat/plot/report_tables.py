@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.design.network import Network, TreeTrace
-from hydrostat.drawing.palette import winch_colours
-from hydrostat.drawing.svg import Html, tag
+from hydrostat.design import Network, TreeTrace
+from hydrostat.drawing import Html, tag, winch_colours
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.sheet import MILLIMETRES

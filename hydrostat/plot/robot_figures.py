@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing.palette import ERROR, LIGHT, winch_colours
-from hydrostat.geometry.outline import Outline, Ring
+from hydrostat.drawing import ERROR, LIGHT, winch_colours
+from hydrostat.geometry import Outline, Ring
 from hydrostat.given import check_kind
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.attachments import Attachments
@@ -28,10 +28,8 @@ from hydrostat.plot.targets import (
     target_points,
 )
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Obstacle, Pose, Robot
-from hydrostat.robot.checks import check_positive
-from hydrostat.simulation import SolvedPose, as_posed
-from hydrostat.simulation.solved_pose import check_pose
+from hydrostat.robot import Obstacle, Pose, Robot, check_positive
+from hydrostat.simulation import SolvedPose, as_posed, check_pose
 from hydrostat.units import counted
 
 

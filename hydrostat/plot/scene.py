@@ -9,8 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.drawing.camera import Spots, upright
-from hydrostat.drawing.palette import DARK, FELT, LIGHT, channels, winch_colours
+from hydrostat.drawing import DARK, FELT, LIGHT, Spots, channels, upright, winch_colours
 from hydrostat.errors import InputError
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.frame import Frame, check_frames

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from hydrostat.drawing.palette import GRID, INK, MUTED
+from hydrostat.drawing import GRID, INK, MUTED
 
 Place = Float[np.ndarray, " 2"]  # one place, in millimetres unless its function says otherwise
 Places = Float[np.ndarray, "_ 2"]  # places, one row each, in millimetres unless their function says otherwise

@@ -11,8 +11,7 @@ from shapely import MultiPolygon, Polygon
 
 from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import Anchors
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Anchors, Mesh
 from hydrostat.plot.sheet import Places, Spread
 from hydrostat.robot import Body
 

@@ -5,9 +5,8 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Float, Int
 
-from hydrostat.drawing.creases import smooth_normals
-from hydrostat.drawing.render import CREASE
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.drawing import CREASE, smooth_normals
+from hydrostat.geometry import Mesh
 
 Places = Float[np.ndarray, "_ _ 3"]  # places of points in every key [m]
 Triangles = Int[np.ndarray, "_ 3"]

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.drawing.palette import DARK, ERROR, LIGHT
+from hydrostat.drawing import DARK, ERROR, LIGHT
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import PictureSheet, Place
 from hydrostat.robot import Pose, Robot

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, to_hex
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing.palette import INK, MUTED, TENSION
+from hydrostat.drawing import INK, MUTED, TENSION
 from hydrostat.plot.sheet import PictureSheet
 
 LEVELS = 16  # lines are drawn in so many steps of tension; the eye tells no more

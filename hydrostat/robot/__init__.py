@@ -5,39 +5,61 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body
+    from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body, surface_body
     from hydrostat.robot.cable import Cable
-    from hydrostat.robot.checks import Point
+    from hydrostat.robot.checks import Point, check_name, check_not_negative, check_number, check_positive
     from hydrostat.robot.closed_mesh import ClosedMesh, closed_mesh
-    from hydrostat.robot.contact import Contact, Obstacle, ObstacleShape
+    from hydrostat.robot.commented import commented_text
+    from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
     from hydrostat.robot.face import Face
-    from hydrostat.robot.gallery import gallery_folder, gallery_names
-    from hydrostat.robot.gravity import STANDARD_GRAVITY
+    from hydrostat.robot.gallery import GALLERY, gallery_folder, gallery_names, is_of_gallery
+    from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
+    from hydrostat.robot.html_repr import html_repr
+    from hydrostat.robot.in_words import in_words
     from hydrostat.robot.inflated import inflated_robot
     from hydrostat.robot.marker import Marker, Pose
     from hydrostat.robot.materials import MATERIALS, Material, Relaxation, find_material
+    from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.pin import Pin
-    from hydrostat.robot.read import load_robot
+    from hydrostat.robot.read import FILE, RobotReader, load_robot
     from hydrostat.robot.risks import find_risks
-    from hydrostat.robot.robot import Robot
+    from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
+    from hydrostat.robot.robot import LARGEST_STEP, Robot
+    from hydrostat.robot.scaled import scaled_robot
+    from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
     from hydrostat.robot.sewn import face_words, sewn_robot, sewn_sides
     from hydrostat.robot.sketch import sketch_robot
-    from hydrostat.robot.sketch_space import SurfaceSketch, sketch_mesh, sketch_surface
+    from hydrostat.robot.sketch_space import SurfaceSketch, inflated, sketch_mesh, sketch_surface
+    from hydrostat.robot.tables_file import TablesFile, read_text
+    from hydrostat.robot.unfinished import clear_unfinished, unfinished
     from hydrostat.robot.winch import Mount, Winch
-    from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_robot
+    from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_robot, with_values
 
 __all__ = [
+    "DIRECTIONS",
+    "DISTANCE",
+    "FILE",
+    "GALLERY",
+    "LARGEST_STEP",
+    "LEAST_ACROSS",
+    "LOCKING",
     "MATERIALS",
     "STANDARD_GRAVITY",
+    "Angle",
     "Body",
     "Cable",
     "ClosedMesh",
     "Contact",
+    "Coordinates",
     "Face",
+    "Force",
+    "Length",
     "Marker",
     "Material",
     "Mount",
+    "Name",
+    "Number",
     "Obstacle",
     "ObstacleShape",
     "Pin",
@@ -45,31 +67,55 @@ __all__ = [
     "Pose",
     "Relaxation",
     "Robot",
+    "RobotReader",
     "Source",
     "SurfaceSketch",
+    "TablesFile",
+    "TomlTable",
+    "Torque",
     "Volume",
     "Winch",
+    "check_name",
+    "check_not_negative",
+    "check_number",
+    "check_positive",
+    "clear_unfinished",
     "closed_mesh",
+    "commented_text",
+    "comments",
+    "direction_of",
     "face_words",
     "find_material",
     "find_risks",
     "gallery_folder",
     "gallery_names",
+    "gravity_along",
+    "html_repr",
+    "in_words",
+    "inflated",
     "inflated_robot",
+    "is_of_gallery",
     "load_robot",
+    "lost_comments",
+    "merged_text",
     "mesh_body",
     "obstacle_lines",
     "outline_body",
+    "read_text",
     "replace_file",
     "rims",
     "robot_hash",
     "robot_text",
     "save_robot",
+    "scaled_robot",
     "sewn_robot",
     "sewn_sides",
     "sketch_mesh",
     "sketch_robot",
     "sketch_surface",
+    "surface_body",
+    "unfinished",
+    "with_values",
 ]
 
 open_package(__name__)

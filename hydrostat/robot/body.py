@@ -13,13 +13,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Points
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, OutlineError, SurfaceError
-from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.geometry.files.drawn_lines import Inner
-from hydrostat.geometry.healing.healing import Healing
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.surface import Solid
-from hydrostat.geometry.thickness import Thickness, measure_thickness
+from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Thickness, locate, measure_thickness
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.checks import check_positive
 from hydrostat.robot.materials import Material, find_material
@@ -85,9 +79,7 @@ class Body:
 
     def element_size_for(self, nodes: int) -> float:
         """Element size [m] for about so many nodes (InputError: a ready mesh, or no mesh has so few or so many)."""
-        from hydrostat.geometry.sizing import size_for
-        from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
-        from hydrostat.geometry.triangles.triangulate import triangulate
+        from hydrostat.geometry import size_for, tetrahedralise, triangulate
 
         if self.outline is not None:
             outline = self.outline
@@ -168,8 +160,7 @@ def outline_body(
     inner = Inner(inner)
 
     def make() -> Arrays:
-        from hydrostat.geometry.files.outline_file import read_drawing
-        from hydrostat.geometry.triangles.triangulate import triangulate
+        from hydrostat.geometry import read_drawing, triangulate
 
         drawing = read_drawing(content, name=file, size=size, inner=inner)
         with _blaming_the_element_size():
@@ -238,9 +229,7 @@ def surface_body(
     _check_lengths(size=size, element_size=element_size, thickness=thickness)
 
     def make() -> Arrays:
-        from hydrostat.geometry.files.surface_file import read_surface
-        from hydrostat.geometry.healing.heal import heal
-        from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+        from hydrostat.geometry import heal, read_surface, tetrahedralise
 
         healing = heal(read_surface(content, name=file, unit=unit, size=size), resolution=element_size / 4)
         with _blaming_the_element_size():
@@ -272,8 +261,7 @@ def mesh_body(
     volume: Volume = Volume.ELEMENT,
 ) -> Body:
     """Body from a ready mesh, in units of `unit` metres (InputError: the file cannot be read or holds no such mesh)."""
-    from hydrostat.geometry.files.mesh_file import read_mesh
-    from hydrostat.geometry.files.stranger import read_stranger
+    from hydrostat.geometry import read_mesh, read_stranger
 
     _check_lengths(size=size, thickness=thickness)
     return Body(

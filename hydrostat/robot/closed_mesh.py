@@ -7,9 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.surface_file import read_surface
-from hydrostat.geometry.shell import Shell
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Shell, Surface, read_surface
 
 MOST_TRIANGLES = 20_000
 """No thing may have more."""
@@ -57,9 +55,7 @@ def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
     Raises:
         InputError: no surface, an open one, one that is inside out or runs through itself, or too many triangles.
     """
-    from hydrostat.geometry.healing.faults import (
-        crossing_pairs,
-    )  # only here: a robot without such a thing starts sooner
+    from hydrostat.geometry import crossing_pairs  # only here: a robot without such a thing starts sooner
 
     surface = read_surface(content, name=file, unit=unit)
     if len(surface.triangles) > MOST_TRIANGLES:

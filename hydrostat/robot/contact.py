@@ -8,15 +8,15 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.distance_field import (
+from hydrostat.geometry import (
     DistanceField,
     box_field,
     capsule_field,
     cylinder_field,
     plane_field,
+    shell_field,
     sphere_field,
 )
-from hydrostat.geometry.shell import shell_field
 from hydrostat.robot.checks import Point, check_name, check_number, check_point, check_positive
 from hydrostat.robot.closed_mesh import ClosedMesh
 

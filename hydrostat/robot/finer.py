@@ -1,6 +1,6 @@
 """`finer_size`: smaller elements for a body some of whose limbs have too few of them across."""
 
-from hydrostat.geometry.thickness import thin_parts
+from hydrostat.geometry import thin_parts
 from hydrostat.robot.body import Body
 from hydrostat.robot.risks.body_risks import LEAST_ACROSS
 

@@ -51,8 +51,7 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
 
 
 def _blown_up(body: Body, element_size: float | None) -> Body:
-    from hydrostat.geometry.files.ply_file import write_ply
-    from hydrostat.geometry.inflate import inflate
+    from hydrostat.geometry import inflate, write_ply
 
     if body.outline is None or body.thickness is None:
         raise InputError("only a flat robot with a drawing can be inflated")

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import Anchors, anchor_nodes, locate
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Anchors, Mesh, anchor_nodes, locate
 from hydrostat.robot.checks import Point, check_not_negative, check_point, check_positive
 
 DEFAULT_STIFFNESS = 100e3  # stiffness of a pin [N/m] (M2): about a hundred times that of a plush body

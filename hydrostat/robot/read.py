@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import read_stranger
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.closed_mesh import closed_mesh

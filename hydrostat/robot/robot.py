@@ -10,7 +10,7 @@ from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry import locate
 from hydrostat.given import check_kind
 from hydrostat.painters import draw_record
 from hydrostat.robot.body import Body

@@ -117,7 +117,7 @@ def _drawn_size(body: Body) -> float:
     if body.outline is not None:
         return body.outline.size
     if body.source is Source.SURFACE:
-        from hydrostat.geometry.files.surface_file import read_surface
+        from hydrostat.geometry import read_surface
 
         return read_surface(body.content, name=body.file).size
     return body.mesh.size

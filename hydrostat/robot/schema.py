@@ -19,7 +19,7 @@ from pydantic import (
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.drawn_lines import Inner
+from hydrostat.geometry import Inner
 from hydrostat.robot.body import Volume
 from hydrostat.robot.checks import check_name
 from hydrostat.robot.contact import ObstacleShape

@@ -4,11 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from hydrostat.geometry.files.drawn_lines import Inner
-from hydrostat.geometry.files.outline_file import read_outline
-from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.sizing import size_for
-from hydrostat.geometry.triangles.triangulate import triangulate
+from hydrostat.geometry import Inner, Outline, read_outline, size_for, triangulate
 from hydrostat.robot.body import outline_body
 from hydrostat.robot.finer import finer_size
 from hydrostat.robot.marker import Marker, Pose

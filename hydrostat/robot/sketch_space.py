@@ -9,13 +9,7 @@ from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import clearance, locate
-from hydrostat.geometry.healing.heal import heal
-from hydrostat.geometry.healing.healing import Healing
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.sizing import size_for
-from hydrostat.geometry.surface import Solid, Surface
+from hydrostat.geometry import Healing, Mesh, Outline, Solid, Surface, clearance, heal, locate, size_for
 from hydrostat.robot.body import Body, Source, mesh_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
@@ -66,9 +60,7 @@ def sketch_surface(
     Raises:
         InputError: the file is no body.
     """
-    from hydrostat.geometry.files.ply_file import write_ply
-    from hydrostat.geometry.files.surface_file import read_surface
-    from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+    from hydrostat.geometry import read_surface, tetrahedralise, write_ply
 
     known, nodes = find_material(material), NODES if nodes is None else nodes
     before = read_surface(content, name=file, size=size)
@@ -110,8 +102,7 @@ def inflated(outline: Outline, height: float) -> bytes:
     Raises:
         InputError: the height does not fit the outline, or that is too thin somewhere.
     """
-    from hydrostat.geometry.files.ply_file import write_ply
-    from hydrostat.geometry.inflate import inflate
+    from hydrostat.geometry import inflate, write_ply
 
     return write_ply(inflate(outline, height, spacing=outline.size / 80))
 

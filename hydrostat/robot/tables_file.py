@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import read_stranger
 
 if TYPE_CHECKING:
     from hydrostat.robot.schema import TomlTable

@@ -10,7 +10,7 @@ from typing import Any
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.drawn_lines import Inner
+from hydrostat.geometry import Inner
 from hydrostat.given import check_kind, path_of
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.cable import Cable

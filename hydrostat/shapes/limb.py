@@ -9,8 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.geometry.contour import contour
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Surface, contour
 from hydrostat.shapes.field import Field, Place, ellipsoidal
 
 _SPACING = 4e-3  # stations along the spine of a limb are about this far apart [m]

@@ -10,22 +10,26 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.given import check_kind
 from hydrostat.mechanics import (
+    PATCH_SIZE,
     Assembly,
+    Bend,
+    Carriage,
+    CarriedWarp,
     ContactEnergy,
     Energy,
     Factorisation,
+    GuideEnergy,
     NeoHookean,
     ObstacleEnergy,
+    PatchVolume,
     PinEnergy,
+    RigidEnergy,
     RoundOff,
     RubbingEnergy,
     Warp,
     WeightEnergy,
+    grow_patches,
 )
-from hydrostat.mechanics.patch_volume import PatchVolume
-from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
-from hydrostat.mechanics.rigid import Carriage, CarriedWarp, GuideEnergy, RigidEnergy
-from hydrostat.mechanics.warp import Bend
 from hydrostat.robot import Obstacle, Robot, Volume
 
 

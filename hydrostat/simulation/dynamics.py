@@ -8,22 +8,22 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.geometry.anchors import Anchors
+from hydrostat.geometry import Anchors
 from hydrostat.given import check_kind
 from hydrostat.mechanics import (
+    SCHEMES,
     Assembly,
     Energy,
+    InertiaEnergy,
+    Memory,
+    Metrics,
     NewtonOptions,
     NewtonResult,
     RoundOff,
     Stiffness,
     minimise,
 )
-from hydrostat.mechanics.inertia import InertiaEnergy
-from hydrostat.mechanics.time_scheme import SCHEMES
-from hydrostat.mechanics.viscous import Memory, Metrics
-from hydrostat.robot import Robot
-from hydrostat.robot.checks import check_not_negative, check_number
+from hydrostat.robot import Robot, check_not_negative, check_number
 from hydrostat.simulation.balanced import balanced
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.motion import Motion

@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.geometry.anchors import Anchors
+from hydrostat.geometry import Anchors
 from hydrostat.mechanics import Reason
 from hydrostat.robot import Robot
 from hydrostat.simulation.solved_pose import SolvedPose

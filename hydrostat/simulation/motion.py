@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.mechanics import NewtonResult
-from hydrostat.mechanics.viscous import Metrics
+from hydrostat.mechanics import Metrics, NewtonResult
 from hydrostat.robot import Robot
 from hydrostat.simulation.solved_pose import SolvedPose
 

@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import NotConvergedError
-from hydrostat.geometry.files.vtu_file import write_vtu
+from hydrostat.geometry import write_vtu
 from hydrostat.robot import Robot, replace_file
 from hydrostat.simulation.meeting import carried_frames
 from hydrostat.simulation.motion import Motion

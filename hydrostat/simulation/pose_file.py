@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.geometry.files.vtu_file import write_vtu
+from hydrostat.geometry import write_vtu
 from hydrostat.robot import Robot, replace_file, robot_hash
 from hydrostat.simulation.meeting import carried_frames
 from hydrostat.simulation.simulation import Simulation

@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import read_stranger
 from hydrostat.robot import Robot, replace_file
 from hydrostat.simulation.solved_pose import contraction_values
 from hydrostat.units import quote

@@ -7,8 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Nodes, Points
-from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.robot import Mount, Robot
 
 RouteSlopes = Float[np.ndarray, "_ dim"]

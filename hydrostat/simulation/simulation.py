@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry import Anchors, locate
 from hydrostat.given import check_kind
 from hydrostat.mechanics import Assembly, Energy, FrictionCableEnergy, NewtonOptions, NewtonResult, Stiffness
 from hydrostat.robot import Robot

@@ -8,12 +8,10 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.crossings import find_crossings
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import NewtonResult
 from hydrostat.painters import draw_record
-from hydrostat.robot import Robot
-from hydrostat.robot.html_repr import html_repr
+from hydrostat.robot import Robot, html_repr
 from hydrostat.simulation.strain import node_strains, node_stresses
 from hydrostat.units import counted
 

@@ -7,8 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Reason, RoundOff, Stiffness, minimise
-from hydrostat.mechanics.warp import Bend
+from hydrostat.mechanics import Assembly, Bend, NewtonOptions, NewtonResult, Reason, RoundOff, Stiffness, minimise
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.mechanics.energy import Pressed, Stencils
+from hydrostat.mechanics import Pressed, Stencils
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import SolvedPose, check_pose
 

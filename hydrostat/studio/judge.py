@@ -3,12 +3,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from hydrostat.design.finding import Finding, Weight, places_in
-from hydrostat.design.judgement import judgement_of
+from hydrostat.design import Finding, Weight, judgement_of, places_in
 from hydrostat.errors import HydrostatError
-from hydrostat.fabrication import KitOptions
-from hydrostat.fabrication.demand import Demand
-from hydrostat.fabrication.refusals import find_refusals
+from hydrostat.fabrication import Demand, KitOptions, find_refusals
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Slots

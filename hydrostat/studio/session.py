@@ -11,8 +11,7 @@ from typing import Any
 from hydrostat.closed_set import member
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import load_model
-from hydrostat.robot import Contact
-from hydrostat.robot.in_words import in_words
+from hydrostat.robot import Contact, in_words
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
 from hydrostat.studio.document import Document

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from threading import Lock
 
-from hydrostat.design.finding import Finding, Weight
+from hydrostat.design import Finding, Weight
 from hydrostat.errors import InputError
 from hydrostat.fabrication import KitOptions, PatternOptions, Sewing, find_sewing
 from hydrostat.robot import Body

@@ -12,11 +12,18 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from hydrostat import units
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.stranger import read_stranger
-from hydrostat.robot import Source, load_robot, replace_file, robot_text, save_robot
-from hydrostat.robot.merge import lost_comments, merged_text
-from hydrostat.robot.read import FILE
-from hydrostat.robot.tables_file import read_text
+from hydrostat.geometry import read_stranger
+from hydrostat.robot import (
+    FILE,
+    Source,
+    load_robot,
+    lost_comments,
+    merged_text,
+    read_text,
+    replace_file,
+    robot_text,
+    save_robot,
+)
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 

@@ -7,12 +7,12 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.control import EMULATED
     from hydrostat.teleop.camera_hand import CameraHand
-    from hydrostat.teleop.cyber_glove import CyberGlove, EmulatedGlove, EmulatedPerson
+    from hydrostat.teleop.cyber_glove import BAUD, SENSORS, CyberGlove, EmulatedGlove, EmulatedPerson
     from hydrostat.teleop.drive import DriveLoop, drive
     from hydrostat.teleop.gamepad import Gamepad
     from hydrostat.teleop.hand_map import HandMap
     from hydrostat.teleop.hand_source import HandReading, HandSource
-    from hydrostat.teleop.keys import Keys
+    from hydrostat.teleop.keys import HELP, Keys
     from hydrostat.teleop.landmarks import HandLandmarks
     from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold_still, pose_pool
     from hydrostat.teleop.mapped_hand import MappedHand
@@ -26,7 +26,10 @@ if TYPE_CHECKING:
     from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, marker_channels, winch_channels
 
 __all__ = [
+    "BAUD",
     "EMULATED",
+    "HELP",
+    "SENSORS",
     "CameraHand",
     "CyberGlove",
     "DriveChannels",

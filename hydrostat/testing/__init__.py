@@ -3,5 +3,11 @@
 from hydrostat.testing.check_energy import check_energy
 from hydrostat.testing.check_objective import check_objective
 from hydrostat.testing.conformance_error import ConformanceError
+from hydrostat.testing.differences import central_differences
 
-__all__ = ["ConformanceError", "check_energy", "check_objective"]
+__all__ = [
+    "ConformanceError",
+    "central_differences",
+    "check_energy",
+    "check_objective",
+]

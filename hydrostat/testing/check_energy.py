@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics.energy import Energy
+from hydrostat.mechanics import Energy
 from hydrostat.testing.check_solver_contract import check_history, check_law, check_loads, check_steps, check_supports
 from hydrostat.testing.conformance_error import ConformanceError
 from hydrostat.testing.differences import central_differences, steps

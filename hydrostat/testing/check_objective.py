@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
-from hydrostat.ik.objectives.objective import Objective, Posture, Term, moves_at, posture_at
+from hydrostat.ik import Objective, Posture, Term, moves_at, posture_at
 from hydrostat.simulation import Contractions, Simulation, SolvedPose
 from hydrostat.testing.conformance_error import ConformanceError
 from hydrostat.testing.differences import central_differences, steps

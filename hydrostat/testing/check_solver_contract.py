@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics.energy import Coupling, Energy
+from hydrostat.mechanics import Coupling, Energy
 from hydrostat.testing.conformance_error import ConformanceError
 
 _TINY = np.finfo(float).tiny

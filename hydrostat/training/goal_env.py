@@ -14,7 +14,7 @@ from hydrostat.learning import LearnedModel
 from hydrostat.robot import Contact, Obstacle, Robot, load_robot
 
 if TYPE_CHECKING:
-    from hydrostat.plot.live_page import LivePage
+    from hydrostat.plot import LivePage
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +139,7 @@ class GoalEnv(gymnasium.Env, ABC):
     @property
     def page(self) -> "LivePage":
         """The page of this machine on which a human sees it; the first picture opens the browser."""
-        from hydrostat.plot.live_page import LivePage
+        from hydrostat.plot import LivePage
 
         if self._page is None:
             self._page = LivePage(f"{self.robot.name}: {type(self).__name__}")

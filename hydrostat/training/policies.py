@@ -19,7 +19,7 @@ try:
 except ModuleNotFoundError as error:
     raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
 
-from hydrostat.learning.train import answer
+from hydrostat.learning import answer
 
 Act = Callable[[Tensor, Tensor], Tensor]
 """Actions of states and goals, (seeds, many, size) each."""

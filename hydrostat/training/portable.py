@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.learning import LearnedModel, PortablePolicy, physics_hash
-from hydrostat.learning.perceptrons import Perceptrons
+from hydrostat.learning import LearnedModel, Perceptrons, PortablePolicy, physics_hash
 from hydrostat.training.goal_env import GoalEnv
 from hydrostat.training.reach_env import ReachEnv
 

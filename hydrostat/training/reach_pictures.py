@@ -3,8 +3,7 @@
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.plot.frame import Frame
-from hydrostat.plot.frame_pictures import FramePictures, Picture
+from hydrostat.plot import Frame, FramePictures, Picture
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation, SolvedPose
 

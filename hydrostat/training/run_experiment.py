@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from hydrostat.learning import LearnedModel, certify
-from hydrostat.learning.draw import antagonists
+from hydrostat.learning import LearnedModel, antagonists, certify
 from hydrostat.simulation import Simulation
 from hydrostat.training.experiments import Experiment, Ran
 from hydrostat.training.hindsight_ddpg import HindsightDdpg

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrostat.plot.frame import Frame
-from hydrostat.plot.frame_pictures import FramePictures, Picture
+from hydrostat.plot import Frame, FramePictures, Picture
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import Simulation
 from hydrostat.training.thing_world import ThingWorld

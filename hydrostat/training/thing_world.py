@@ -8,8 +8,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.grasp import moved_thing
-from hydrostat.mechanics import NewtonOptions
-from hydrostat.mechanics.rigid import GuideEnergy
+from hydrostat.mechanics import GuideEnergy, NewtonOptions
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
 
@@ -160,7 +159,7 @@ def as_drawn(thing: Obstacle, state: ThingState) -> Obstacle:
 
 def is_clear(robot: Robot, thing: Obstacle) -> bool:
     """Whether a body at rest leaves half of the contact distance or more to a thing, and has none of it inside."""
-    from hydrostat.geometry.anchors import locate
+    from hydrostat.geometry import locate
 
     mesh = robot.body.mesh
     gaps = thing.field()(mesh.nodes[np.unique(mesh.boundary)]).values

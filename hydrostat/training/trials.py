@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import HydrostatError
-from hydrostat.learning import LearnedModel
-from hydrostat.learning.train import answer, tensors_of
+from hydrostat.learning import LearnedModel, answer, tensors_of
 
 try:
     import torch

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from hydrostat.plot.frame import Frame
-from hydrostat.plot.frame_pictures import FramePictures, Picture
+from hydrostat.plot import Frame, FramePictures, Picture
 from hydrostat.robot import Obstacle, ObstacleShape, Robot
 from hydrostat.simulation import Motion, Simulation
 

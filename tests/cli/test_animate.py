@@ -56,7 +56,7 @@ def test_without_poses_one_winch_after_the_other(run: Run, tmp_path: Path) -> No
 def save_strip(folder: Path) -> None:
     from dataclasses import replace
 
-    from hydrostat.geometry.files.vtu_file import write_vtu
+    from hydrostat.geometry import write_vtu
 
     folder.mkdir()
     robot = strip_robot(columns=8, rows=2)

@@ -11,7 +11,7 @@ import pytest
 from builders import box_mesh
 
 from hydrostat.cli.main import main
-from hydrostat.geometry.files.vtu_file import write_vtu
+from hydrostat.geometry import write_vtu
 from hydrostat.robot import Face, gallery_folder, load_robot, save_robot
 from hydrostat.simulation import quickly_filled
 

@@ -24,7 +24,7 @@ from hydrostat.design import (
     TreeOptions,
     Zone,
 )
-from hydrostat.fabrication.kit import write_files
+from hydrostat.fabrication import write_files
 from hydrostat.robot import robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]

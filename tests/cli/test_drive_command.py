@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from own_time import PROGRAM
 
-from hydrostat.teleop.keys import HELP
+from hydrostat.teleop import HELP
 
 Run = Callable[..., tuple[int, str, str]]
 

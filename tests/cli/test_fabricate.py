@@ -12,9 +12,7 @@ from plush import near_the_edge
 from hydrostat.cli.design_results import designed_tension
 from hydrostat.errors import InputError
 from hydrostat.robot import load_robot, robot_hash, save_robot
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
-from hydrostat.studio.work_folder import save_work
+from hydrostat.studio import Wishes, Work, save_work
 
 Run = Callable[..., tuple[int, str, str]]
 

@@ -6,9 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hydrostat.robot import find_risks, load_robot
-from hydrostat.robot.in_words import in_words
-from hydrostat.robot.merge import comments
+from hydrostat.robot import comments, find_risks, in_words, load_robot
 
 Run = Callable[..., tuple[int, str, str]]
 WHALE = (

@@ -12,8 +12,8 @@ from builders import strip_robot
 
 import hydrostat as hs
 from hydrostat.cli.pose import _note_other_pose
-from hydrostat.geometry.files.outline_file import read_drawing
-from hydrostat.plot.skin import FlatSkin
+from hydrostat.geometry import read_drawing
+from hydrostat.plot import FlatSkin
 
 Run = Callable[..., tuple[int, str, str]]
 

@@ -22,14 +22,8 @@ from builders import gallery_robot
 from hydrostat.cli.bounded import bounded
 from hydrostat.cli.folders import require_folder, result_folder
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.outline_file import read_drawing
-from hydrostat.geometry.files.stranger import read_stranger
-from hydrostat.geometry.files.surface_file import read_surface
-from hydrostat.geometry.healing.heal import heal
-from hydrostat.geometry.triangles.triangulate import triangulate
-from hydrostat.robot import replace_file
-from hydrostat.robot.commented import commented_text
-from hydrostat.robot.unfinished import clear_unfinished, unfinished
+from hydrostat.geometry import heal, read_drawing, read_stranger, read_surface, triangulate
+from hydrostat.robot import clear_unfinished, commented_text, replace_file, unfinished
 
 Run = Callable[..., tuple[int, str, str]]
 START = "from hydrostat.cli.main import main; main()"

@@ -7,9 +7,8 @@ import pytest
 
 from hydrostat.design import SewingTimes, craft_of
 from hydrostat.design.craft import front
-from hydrostat.fabrication.parts.motor import MOTORS
-from hydrostat.robot import Cable, Robot, load_robot
-from hydrostat.robot.gallery import gallery_folder
+from hydrostat.fabrication import MOTORS
+from hydrostat.robot import Cable, Robot, gallery_folder, load_robot
 
 
 @pytest.fixture(scope="module")

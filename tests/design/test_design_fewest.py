@@ -10,8 +10,7 @@ from test_design_routes import DOWN, SMALL, UP, Stopped, bare, broken
 from hydrostat.design import Constraints, Network, design_cables
 from hydrostat.design.request import RouteOptions
 from hydrostat.errors import HydrostatError
-from hydrostat.fabrication import find_refusals
-from hydrostat.fabrication.demand import demand_of
+from hydrostat.fabrication import demand_of, find_refusals
 
 TOLERANCE = 8e-3
 

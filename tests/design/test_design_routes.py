@@ -15,8 +15,7 @@ from hydrostat.design.region import body_region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.fabrication import find_refusals
-from hydrostat.fabrication.demand import demand_of
+from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.robot import Marker, Mount, Pin, Pose, Robot, Winch, robot_hash
 from hydrostat.simulation import BodyPhysics, Simulation

@@ -10,7 +10,7 @@ from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.finding import places_in
 from hydrostat.design.region import body_region
-from hydrostat.fabrication.refusals import find_refusals
+from hydrostat.fabrication import find_refusals
 from hydrostat.robot import Robot, find_risks
 
 

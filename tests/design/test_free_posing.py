@@ -7,7 +7,7 @@ from scipy.optimize import lsq_linear
 
 from hydrostat.design.muscles.activation import activate, edge_fibres, least_effort
 from hydrostat.design.muscles.free_posing import FreePosing
-from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry import Anchors, locate
 from hydrostat.robot import Pose
 
 ROBOT = strip_robot(columns=14, rows=3)

@@ -9,9 +9,7 @@ from builders import gallery_robot
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.finding import Weight
 from hydrostat.design.judgement import judgement_of
-from hydrostat.fabrication import KitOptions, build_kit
-from hydrostat.fabrication.demand import demand_of, find_demand
-from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.fabrication import MOTORS, KitOptions, build_kit, demand_of, find_demand
 from hydrostat.robot import Robot, find_risks, robot_hash
 
 SMALL = RouteOptions(starts=1, exchanges=0, polish=2, trials=2, steps=2, hops=6)

@@ -14,7 +14,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import body_region
 from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
-from hydrostat.geometry.anchors import Anchors
+from hydrostat.geometry import Anchors
 from hydrostat.kernel import native
 from hydrostat.robot import Marker
 from hydrostat.simulation import Simulation

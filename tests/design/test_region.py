@@ -10,8 +10,7 @@ from builders import box_mesh, mesh_body, strip_mesh
 from hydrostat.design.polyline import least_along
 from hydrostat.design.region import FlatRegion, Region, body_region
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.surface import Solid
+from hydrostat.geometry import Mesh, Solid
 from hydrostat.robot import Body, load_robot
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

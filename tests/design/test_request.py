@@ -14,8 +14,7 @@ from hydrostat.design.request import COUNTS, ROUTE_RANGES
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
-from hydrostat.studio.designing.run import wished_request
-from hydrostat.studio.records.wishes import Wishes
+from hydrostat.studio import Wishes, wished_request
 
 UP = Pose(name="up", targets={"tip": (0.18, 0.06)})
 

@@ -12,7 +12,7 @@ from hydrostat.design.region import body_region
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Cable, Marker, Mount, Robot, Winch
 from hydrostat.simulation import Simulation, SolvedPose

@@ -13,11 +13,8 @@ from hydrostat.design.judgement import judgement_of
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.skin_region import SINK, STITCH, SkinRegion, cable_region
 from hydrostat.errors import InputError
-from hydrostat.fabrication.kit_options import PatternOptions
-from hydrostat.fabrication.lists.stitching import depth_table
-from hydrostat.fabrication.patches.space_pattern import space_pattern
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.surface import Solid
+from hydrostat.fabrication import PatternOptions, depth_table, space_pattern
+from hydrostat.geometry import Mesh, Solid
 from hydrostat.robot import Body, Mount, Robot
 
 DEPTHS = [0.0, 0.003]

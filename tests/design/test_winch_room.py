@@ -9,10 +9,17 @@ from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.winch_room import _example, built_in, winch_room
 from hydrostat.design.zone import Zone
-from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.motor import MOTORS, choose_motor
-from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
-from hydrostat.fabrication.parts.winch_unit import unit_room
+from hydrostat.fabrication import (
+    GIVES,
+    MOTORS,
+    TOUCHES,
+    PartOptions,
+    UnitBox,
+    choose_motor,
+    seam_of,
+    unit_room,
+    ways_to_lie,
+)
 
 
 @pytest.mark.parametrize("name", ["starfish", "letter_e"])

@@ -11,7 +11,7 @@ from hydrostat.design.region import body_region
 from hydrostat.design.trees.design_trees import _apart, _shares
 from hydrostat.design.trees.lead_ways import LeadWays, lead_ways
 from hydrostat.design.trees.winch_trees import WinchTrees, tree_score
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import Body, Pin, Robot
 
 OPTIONS, LIMITS = TreeOptions(), Constraints()

@@ -11,8 +11,8 @@ from hydrostat.drawing.depth import DepthBuffer
 from hydrostat.drawing.palette import FELT
 from hydrostat.drawing.render import render, silhouette
 from hydrostat.drawing.shades import sky_shares
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.plot.drawn_body import DrawnBody
+from hydrostat.geometry import Mesh
+from hydrostat.plot import DrawnBody
 
 SIDES = (0.1, 0.05, 0.03)
 EYES = ([1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.5, -0.8, 0.4], [-0.3, 0.2, 0.9], [0.1, 1.0, -0.2])

@@ -27,8 +27,7 @@ from hydrostat.fabrication import (
     export_kit,
 )
 from hydrostat.fabrication.sheets.legible import typeset
-from hydrostat.robot import MATERIALS, robot_hash
-from hydrostat.robot.gallery import gallery_folder
+from hydrostat.robot import MATERIALS, gallery_folder, robot_hash
 
 TOO_NEAR = [(-20, -10), (5, 12), (49.5, 22)]
 """A route [mm] whose last hole would be half a millimetre from the seam of the square."""

@@ -7,7 +7,7 @@ from plush_robots import HOLED, SQUARE, crossed, disc_path, drawn_body, plush_ro
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Circle, Corner, LaserLine, Layer, Panel, PatternOptions, PatternPart, plush_pattern
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import MATERIALS, Body, Cable, Mount, Pin, Robot, Source
 
 

@@ -7,13 +7,11 @@ import pytest
 import shapely
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.patterns.pattern import plush_pattern
-from hydrostat.fabrication.patterns.shape import PatternPart
+from hydrostat.fabrication import PatternPart, plush_pattern
 from hydrostat.geometry.files.drawn_lines import Inner
 from hydrostat.geometry.files.outline_file import read_drawing
 from hydrostat.ik import new_robot
-from hydrostat.robot import load_robot, save_robot
-from hydrostat.robot.scaled import scaled_robot
+from hydrostat.robot import load_robot, save_robot, scaled_robot
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="100mm" viewBox="0 0 200 100">'
 BODY = '<ellipse cx="100" cy="50" rx="90" ry="40"/>'

@@ -8,11 +8,10 @@ from builders import FOAM, strip_robot
 from scipy.optimize import least_squares
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.outline import Outline
+from hydrostat.geometry import Outline
 from hydrostat.ik.objectives.objective import moves_at, posture_at
 from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
-from hydrostat.robot import Pin, Robot
-from hydrostat.robot.body import outline_body
+from hydrostat.robot import Pin, Robot, outline_body
 from hydrostat.simulation import Simulation
 
 

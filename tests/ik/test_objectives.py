@@ -10,8 +10,7 @@ import pytest
 from wishes import BEFORE, BENT, BODIES, FLAT, PLANE, SPACE, arc, box
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Outline, Surface
 from hydrostat.ik.objectives.centre_goal import CentreGoal
 from hydrostat.ik.objectives.closeness import Closeness
 from hydrostat.ik.objectives.effort import Effort

@@ -9,7 +9,7 @@ from robustness import example_folders
 from scipy.optimize import least_squares, minimize
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.crossings import find_crossings
+from hydrostat.geometry import find_crossings
 from hydrostat.ik import InverseOptions, InverseReason, ReachedPose, solve_ik
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.marker_goal import MarkerGoal

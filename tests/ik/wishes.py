@@ -7,8 +7,7 @@ import numpy as np
 import trimesh
 from builders import box_robot, strip_robot
 
-from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Outline, Surface
 from hydrostat.ik.objectives.centre_goal import CentreGoal
 from hydrostat.ik.objectives.closeness import Closeness
 from hydrostat.ik.objectives.effort import Effort

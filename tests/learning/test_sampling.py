@@ -24,7 +24,7 @@ from hydrostat.learning.draw import contractions as drawn
 from hydrostat.learning.draw import shared_numbers
 from hydrostat.learning.sample_folder import SampleFolder
 from hydrostat.learning.sample_shard import REASONS
-from hydrostat.robot.unfinished import unfinished
+from hydrostat.robot import unfinished
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 

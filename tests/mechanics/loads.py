@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import Energy
 
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from builders import box_mesh, strip_mesh
 
-from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh, locate
 from hydrostat.mechanics import (
     CableEnergy,
     CableSegments,

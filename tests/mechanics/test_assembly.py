@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from states import CONTROLS, LAW, deform, rough_mesh
 
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry import locate
 from hydrostat.mechanics import (
     Assembly,
     CableEnergy,

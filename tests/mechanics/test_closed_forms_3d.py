@@ -8,7 +8,7 @@ from builders import box_mesh
 from loads import Rollers, outward_areas
 from scipy.optimize import root_scalar
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, NewtonResult, RoundOff, WeightEnergy, minimise
 
 MU, LAME = 11e3, 17e3

@@ -7,7 +7,7 @@ from scipy.linalg import expm
 
 from hydrostat import kernel
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.kernel import native
 from hydrostat.mechanics import Assembly, NeoHookean, PinEnergy, supernodal
 from hydrostat.mechanics.energy import element_groups

@@ -8,8 +8,7 @@ import pytest
 from builders import box_mesh, strip_mesh
 from touching import DISTANCE, fork_robot
 
-from hydrostat.geometry.boundary_tree import Pairs
-from hydrostat.geometry.distance_field import plane_field, sphere_field
+from hydrostat.geometry import Pairs, plane_field, sphere_field
 from hydrostat.mechanics import (
     Assembly,
     ContactEnergy,

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from states import SIZE, State, deform, rough_mesh
 
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry import locate
 from hydrostat.mechanics import CableEnergy, CableSegments, ChainLaw, FrictionCableEnergy, TensionLaw, Turns
-from hydrostat.testing import check_energy
-from hydrostat.testing.differences import central_differences
+from hydrostat.testing import central_differences, check_energy
 
 LAW = TensionLaw(stiffness=np.array([4e3, 2e3]), smoothing=np.array([0.5e-3, 0.2e-3]))
 MU = np.array([0.3, 0.0])

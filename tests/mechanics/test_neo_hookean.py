@@ -7,7 +7,7 @@ from loads import Rollers
 from scipy.optimize import root, root_scalar
 from states import CONTROLS, deform, rough_mesh
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, RoundOff, WeightEnergy, minimise
 
 MU, LAME, THICKNESS = 11e3, 17e3, 0.03

@@ -5,7 +5,7 @@ import pytest
 from builders import box_mesh, strip_mesh
 from states import CONTROLS, deform, rough_mesh
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import Assembly, NeoHookean
 from hydrostat.mechanics.patch_volume import PatchVolume
 from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches

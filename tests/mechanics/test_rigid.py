@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from builders import box_mesh, strip_mesh
 
-from hydrostat.geometry.distance_field import DistanceField, box_field, sphere_field
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import DistanceField, Mesh, box_field, sphere_field
 from hydrostat.mechanics import ObstacleEnergy
 from hydrostat.mechanics.rigid import Carriage, CarriedWarp, GuideEnergy, RigidEnergy
 from hydrostat.testing import check_energy

@@ -9,7 +9,7 @@ from touching import DISTANCE, fork_robot
 
 from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import (
     Assembly,
@@ -24,8 +24,7 @@ from hydrostat.mechanics import (
     minimise,
 )
 from hydrostat.robot import Contact
-from hydrostat.simulation import Simulation, touches
-from hydrostat.simulation.balanced import balanced
+from hydrostat.simulation import Simulation, balanced, touches
 from hydrostat.testing import check_energy
 
 IDLE, FRICTION, YOUNG, PRESS = np.zeros(0), 0.4, 1e5, 1.4e-3

@@ -6,7 +6,7 @@ from builders import box_mesh, strip_mesh
 from scipy.linalg import expm
 from states import deform, rough_mesh
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import NeoHookean, Warp
 
 

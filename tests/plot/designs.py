@@ -19,8 +19,8 @@ from hydrostat.design import (
     Network,
     RouteTrace,
     TreeTrace,
+    edge_fibres,
 )
-from hydrostat.design.muscles.activation import edge_fibres
 from hydrostat.ik import InverseReason, ReachedPose
 from hydrostat.robot import Cable, Marker, Mount, Pin, Pose, Robot, Winch, mesh_body
 from hydrostat.simulation import Simulation

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 from plot.films import flat_film, frames_of, space_film
 
-from hydrostat.drawing.palette import ERROR
+from hydrostat.drawing import ERROR
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot import Frame, film, save_gif, save_mp4, winch_stops
 from hydrostat.plot.animation import gif_bytes

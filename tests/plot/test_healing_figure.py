@@ -10,8 +10,8 @@ from matplotlib.text import Text
 from PIL import Image
 
 from hydrostat import plot
-from hydrostat.drawing.palette import ERROR
-from hydrostat.geometry.surface import Surface
+from hydrostat.drawing import ERROR
+from hydrostat.geometry import Surface
 from hydrostat.plot.healing_figure import _bad_edges, _welded
 
 

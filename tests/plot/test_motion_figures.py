@@ -5,7 +5,7 @@ import pytest
 from builders import strip_robot
 from matplotlib.colors import to_hex
 
-from hydrostat.drawing.palette import winch_colours
+from hydrostat.drawing import winch_colours
 from hydrostat.plot import draw_motion
 from hydrostat.simulation import MotionTable
 

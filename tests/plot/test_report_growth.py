@@ -7,10 +7,8 @@ import pytest
 from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_network
 from plot.test_report import Page
 
-from hydrostat.design import Alternative, Certificate, DesignStage, Network
-from hydrostat.design.craft import sewing_minutes
-from hydrostat.design.network import best_errors, on_front
-from hydrostat.drawing.palette import WINCHES
+from hydrostat.design import Alternative, Certificate, DesignStage, Network, best_errors, on_front, sewing_minutes
+from hydrostat.drawing import WINCHES
 from hydrostat.plot import draw_front, draw_growth, inline_svg, report_text
 from hydrostat.plot.design_charts import stage_runs
 from hydrostat.plot.report_chapters import alternative_chapters, certificate_words, evenly

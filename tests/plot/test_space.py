@@ -13,7 +13,7 @@ from PIL import Image
 from plot.designs import space_network, space_trace
 
 from hydrostat import plot
-from hydrostat.drawing.palette import FELT, mix
+from hydrostat.drawing import FELT, mix
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Winch
@@ -111,7 +111,7 @@ def test_a_wire_in_front_is_drawn_over_one_behind() -> None:
 
 def test_a_sheath_inside_the_body_does_not_hide_its_cable() -> None:
     """Oracle: the sheathed cable runs inside all the way, so all of its pipe lies beneath all of its line."""
-    from hydrostat.drawing.palette import LIGHT
+    from hydrostat.drawing import LIGHT
 
     robot = space_network().robot
     lines = plot.draw_network(robot).axes[0].lines
@@ -147,7 +147,7 @@ def test_one_view_where_there_are_no_rules() -> None:
 @pytest.mark.slow
 def test_the_ghost_is_there_only_where_the_body_moved() -> None:
     """Oracle: the rest pose itself covers its ghost; a bent one leaves pixels of the ghost's fill."""
-    from hydrostat.drawing.palette import GHOST_FILL
+    from hydrostat.drawing import GHOST_FILL
 
     network = space_network()
     robot, pose = network.robot, network.reached[0].pose

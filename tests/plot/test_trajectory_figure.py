@@ -8,7 +8,7 @@ import pytest
 from builders import strip_robot
 from matplotlib.colors import to_hex
 
-from hydrostat.drawing.palette import ERROR, winch_colours
+from hydrostat.drawing import ERROR, winch_colours
 from hydrostat.geometry import Outline
 from hydrostat.ik import CentreGoal, ShapeGoal, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
 from hydrostat.plot import draw_reached, draw_trajectory, inline_svg, trajectory_frames

@@ -8,8 +8,8 @@ from builders import box_mesh, box_robot
 from scipy.spatial.transform import Rotation
 
 from hydrostat import plot
-from hydrostat.drawing.camera import Camera, along_an_axis, three_quarter, upright
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.drawing import Camera, along_an_axis, three_quarter, upright
+from hydrostat.geometry import Mesh
 from hydrostat.plot.open_sheet import open_sheet, way_up
 from hydrostat.robot import Pose, Robot
 

@@ -11,7 +11,7 @@ import pytest
 from builders import gallery_robot
 
 import hydrostat as hs
-from hydrostat.geometry.crossings import find_crossings
+from hydrostat.geometry import find_crossings
 from hydrostat.robot import Mount, Robot, find_risks, gallery_folder
 
 TOP = Path(__file__).parents[2]

@@ -7,10 +7,7 @@ import numpy as np
 import pytest
 from builders import box_mesh, mesh_body
 
-from hydrostat.geometry import Mesh
-from hydrostat.geometry.contour import contour
-from hydrostat.geometry.files.ply_file import write_ply
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Mesh, Surface, contour, write_ply
 from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Winch, find_risks, sketch_surface
 
 LENGTH, SIDE = 0.12, 0.04

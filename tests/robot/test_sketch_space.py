@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError, SurfaceError
-from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.files.ply_file import write_ply
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Surface, locate, write_ply
 from hydrostat.robot import find_risks, load_robot, robot_text, save_robot, sketch_surface
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 0.12) for y in (0.0, 0.03) for z in (0.0, 0.02)])

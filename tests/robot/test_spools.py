@@ -7,10 +7,8 @@ from builders import strip_robot
 
 from hydrostat.cli.options import check_contraction
 from hydrostat.errors import InputError
-from hydrostat.fabrication.patterns.marks import winch_marks
-from hydrostat.fabrication.patterns.shape import Circle
-from hydrostat.plot import winch_stops
-from hydrostat.plot.report_tables import cable_table
+from hydrostat.fabrication import Circle, winch_marks
+from hydrostat.plot import cable_table, winch_stops
 from hydrostat.robot import Robot, find_risks
 
 

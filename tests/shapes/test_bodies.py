@@ -5,8 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from hydrostat.geometry.contour import contour
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Surface, contour
 from hydrostat.shapes import (
     Shape,
     caging_gripper,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.contour import contour
+from hydrostat.geometry import contour
 from hydrostat.shapes import (
     chain,
     ellipsoid,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrostat.geometry.contour import contour
+from hydrostat.geometry import contour
 from hydrostat.shapes import limb, round_cone
 
 STRAIGHT = [(0, 0, 0), (0, 0, 0.04), (0, 0, 0.1)]

@@ -10,8 +10,7 @@ import pytest
 from builders import FOAM, box_mesh, mesh_body, strip_mesh
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.outline import Outline
+from hydrostat.geometry import Outline, locate
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Volume, Winch
 from hydrostat.simulation import Sensitivity, Simulation

@@ -10,7 +10,7 @@ import pytest
 from builders import FOAM, box_mesh, box_robot, mesh_body, strip_mesh, strip_robot
 
 import hydrostat as hs
-from hydrostat.mechanics.time_scheme import SCHEMES
+from hydrostat.mechanics import SCHEMES
 from hydrostat.robot import Body, Material, Pin, Relaxation, Robot, Volume
 
 GRAVITY = 9.80665

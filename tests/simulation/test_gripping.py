@@ -9,9 +9,8 @@ from builders import FOAM, box_mesh, box_robot, mesh_body, strip_mesh, strip_rob
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.mechanics import WeightEnergy
-from hydrostat.mechanics.rigid import Carriage, GuideEnergy
+from hydrostat.geometry import Mesh
+from hydrostat.mechanics import Carriage, GuideEnergy, WeightEnergy
 from hydrostat.robot import Contact, Marker, Obstacle, Pin, Robot
 from hydrostat.simulation import (
     BodyPhysics,

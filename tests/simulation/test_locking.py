@@ -15,11 +15,8 @@ from flexure import curvature
 from scipy.sparse.linalg import splu
 
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import Assembly, Energy, NeoHookean
-from hydrostat.mechanics.patch_volume import PatchVolume
-from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
-from hydrostat.robot import Cable, Pin, Robot, Volume, Winch
-from hydrostat.robot.risks.body_risks import LOCKING
+from hydrostat.mechanics import PATCH_SIZE, Assembly, Energy, NeoHookean, PatchVolume, grow_patches
+from hydrostat.robot import LOCKING, Cable, Pin, Robot, Volume, Winch
 from hydrostat.simulation import BodyPhysics, Simulation
 
 HEIGHT, LENGTH, OFFSET, THICKNESS = 0.02, 0.12, 0.005, 0.03

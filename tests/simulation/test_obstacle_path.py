@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from builders import FOAM, mesh_body, strip_mesh
 
-from hydrostat.mechanics.rigid import GuideEnergy
+from hydrostat.mechanics import GuideEnergy
 from hydrostat.robot import Contact, Marker, Obstacle, Pin, Robot
 from hydrostat.simulation import BodyPhysics, Profile, Simulation, StepOptions, carried_frames, replacing, write_motion
 

@@ -7,7 +7,7 @@ import pytest
 from builders import strip_robot
 
 import hydrostat as hs
-from hydrostat.mechanics.time_scheme import SCHEMES
+from hydrostat.mechanics import SCHEMES
 from hydrostat.robot import Robot
 
 pytestmark = pytest.mark.usefixtures("unchecked")

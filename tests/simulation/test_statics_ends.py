@@ -9,7 +9,7 @@ from robustness import fault  # pyright: ignore[reportMissingImports]
 from test_buckling import column, hessian  # pyright: ignore[reportMissingImports]
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Material, Pin, Robot
 from hydrostat.simulation import Simulation

@@ -9,7 +9,7 @@ from builders import gallery_robot
 from touching import DISTANCE, fork_robot
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.crossings import find_crossings
+from hydrostat.geometry import find_crossings
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import Assembly, ContactEnergy, NewtonOptions
 from hydrostat.robot import Contact, Obstacle, Pose, Robot

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from builders import FOAM, mesh_body, strip_mesh
 
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.mechanics import PinEnergy
-from hydrostat.mechanics.rigid import GuideEnergy
+from hydrostat.geometry import Mesh
+from hydrostat.mechanics import GuideEnergy, PinEnergy
 from hydrostat.robot import Contact, Obstacle, Pin, Robot
 from hydrostat.simulation import BodyPhysics, Simulation, replacing
 

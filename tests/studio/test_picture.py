@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.drawing.palette import winch_colours
-from hydrostat.fabrication.winch_marks import winch_marks_of
-from hydrostat.geometry.anchors import locate
+from hydrostat.drawing import winch_colours
+from hydrostat.fabrication import winch_marks_of
+from hydrostat.geometry import locate
 from hydrostat.robot import Robot
 from hydrostat.studio.view.picture import Picture, opened, packet
 from hydrostat.studio.view.robot_things import DETAIL, robot_things, target_things, winch_bars

@@ -8,7 +8,7 @@ import pytest
 from builders import box_mesh, gallery_robot, mesh_body
 
 from hydrostat.cli.check import print_sewing
-from hydrostat.design.finding import Weight
+from hydrostat.design import Weight
 from hydrostat.fabrication import KitOptions, find_sewing
 from hydrostat.geometry import Mesh
 from hydrostat.robot import MATERIALS, Pin, Robot

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.design.finding import Weight
-from hydrostat.design.judgement import judgement_of
-from hydrostat.fabrication import KitOptions
-from hydrostat.fabrication.demand import find_demand
+from hydrostat.design import Weight, judgement_of
+from hydrostat.fabrication import KitOptions, find_demand
 from hydrostat.robot import Mount, Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.judge import QUIET, Judge

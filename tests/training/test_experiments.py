@@ -11,8 +11,15 @@ from builders import strip_robot
 torch = pytest.importorskip("torch")
 
 from hydrostat.cli import reproduce_trials as command  # noqa: E402
-from hydrostat.learning import LearnOptions, learn_model, plan_samples, read_samples, sample_robot, save_model  # noqa: E402
-from hydrostat.learning.learned_model import LearnedModel  # noqa: E402
+from hydrostat.learning import (  # noqa: E402
+    LearnedModel,
+    LearnOptions,
+    learn_model,
+    plan_samples,
+    read_samples,
+    sample_robot,
+    save_model,
+)
 from hydrostat.robot import Robot  # noqa: E402
 from hydrostat.simulation import Simulation  # noqa: E402
 from hydrostat.training import experiments as room  # noqa: E402

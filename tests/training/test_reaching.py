@@ -297,8 +297,7 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
 def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Goals, tmp_path: Path) -> None:
     name = "sb3_contrib" if method == "TQC" else "stable_baselines3"
     library = pytest.importorskip(name, reason=f"{name} is not installed")
-    from hydrostat.learning import LearnedModel, load_policy, physics_hash
-    from hydrostat.learning.perceptrons import Perceptrons
+    from hydrostat.learning import LearnedModel, Perceptrons, load_policy, physics_hash
 
     env, random = straight(), np.random.default_rng(5)
     count = len(env.seen)

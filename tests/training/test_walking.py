@@ -9,7 +9,7 @@ from builders import FOAM, gallery_robot, mesh_body, strip_mesh
 from PIL import Image
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.learning import physics_hash
 from hydrostat.robot import Cable, Marker, Obstacle, Robot, Winch
 from hydrostat.simulation import Simulation, StepOptions

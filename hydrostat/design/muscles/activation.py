@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.mechanics import FibreEnergy, NewtonOptions, NewtonResult, minimise
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import BodyPhysics

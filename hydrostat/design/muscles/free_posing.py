@@ -8,7 +8,7 @@ from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.design.muscles.activation import Fibres, edge_fibres, least_effort, place_slopes
-from hydrostat.geometry.anchors import Anchors
+from hydrostat.geometry import Anchors
 from hydrostat.mechanics import NewtonOptions, NewtonResult, minimise
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics

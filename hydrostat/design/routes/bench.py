@@ -13,8 +13,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
-from hydrostat.ik.image_length import image_length, usable_spans
+from hydrostat.ik import InverseOptions, Limits, ReachedPose, image_length, solve_ik, usable_spans
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import BodyPhysics, RigSlopes, Simulation, SolvedPose, rig_slopes
 

@@ -28,8 +28,7 @@ from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
-from hydrostat.fabrication.demand import demand_of
-from hydrostat.fabrication.refusals import find_refusals
+from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import InverseOptions, Limits
 from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import BodyPhysics, Simulation, rig_slopes

@@ -8,8 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.design.constraints import Constraints
-from hydrostat.robot import Cable, Mount, Robot, Winch
-from hydrostat.robot.robot import LARGEST_STEP
+from hydrostat.robot import LARGEST_STEP, Cable, Mount, Robot, Winch
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from hydrostat.design.region import Region
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.margins import margins
-from hydrostat.ik.search.linear_model import least_squares
+from hydrostat.ik import least_squares
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry import Anchors, locate
 from hydrostat.robot import Mount, Robot
 
 Pairs = Int[np.ndarray, "_ 2"]

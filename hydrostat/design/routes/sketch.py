@@ -20,7 +20,7 @@ from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry import locate
 from hydrostat.robot import Cable
 
 

@@ -11,8 +11,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import Route, length
 from hydrostat.design.request import TreeOptions
 from hydrostat.design.trees.lead_ways import LeadWays
-from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh, locate
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.fabrication.lists.cuts import point_name
 from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
-from hydrostat.geometry.surface import Solid, Surface
+from hydrostat.geometry import Solid, Surface
 from hydrostat.robot import Body, Cable, Robot
 
 SKIN = 4.0  # A point at most so deep [mm] is sewn to the skin: the needle only dips into the foam. Assumed.

@@ -14,7 +14,7 @@ from hydrostat.fabrication.moulds.solids import joined, rod
 from hydrostat.fabrication.moulds.stance import Stance
 from hydrostat.fabrication.solids.body_solid import MILLIMETRES
 from hydrostat.fabrication.solids.construct import Cuboid, Sides, sides_text
-from hydrostat.geometry.surface import Solid, Surface
+from hydrostat.geometry import Solid, Surface
 from hydrostat.robot import Mount, Robot
 
 

@@ -13,7 +13,7 @@ from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import Seam
 from hydrostat.fabrication.patterns.shape import Place
 from hydrostat.fabrication.patterns.stitches import Side, runs_of
-from hydrostat.geometry.surface import Solid, Surface
+from hydrostat.geometry import Solid, Surface
 from hydrostat.robot import Cable, Mount, Robot
 from hydrostat.units import counted
 

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float, Int
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.solids.printed import TriangleMesh, connected
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Surface
 from hydrostat.robot import Body
 
 _SIDES = ((0, 1), (1, 2), (2, 0))

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from xml.sax.saxutils import escape
 
-from hydrostat.drawing.svg import NAMESPACE, Html, number, path, shape, tag
+from hydrostat.drawing import NAMESPACE, Html, number, path, shape, tag
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 

@@ -4,8 +4,7 @@ import json
 import math
 from importlib.resources import files
 
-from hydrostat.drawing.camera import Camera
-from hydrostat.drawing.canvas import Canvas
+from hydrostat.drawing import Camera, Canvas
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.sheets.cable_map import body_solid, flat_map, space_map
 from hydrostat.fabrication.sheets.legible import Legible, minds

@@ -7,22 +7,24 @@ import numpy as np
 import shapely
 from jaxtyping import Float
 
-from hydrostat.drawing.camera import Camera
-from hydrostat.drawing.canvas import (
+from hydrostat.drawing import (
     MIDDLE,
     PIXELS,
     THICK,
     THIN,
+    WINCHES,
     Box,
+    Camera,
     Canvas,
     CanvasFrame,
+    DrawnSolid,
+    LineDrawing,
     Spot,
     balloon_radius,
+    line_drawing,
     snug,
     text_size,
 )
-from hydrostat.drawing.line_drawing import DrawnSolid, LineDrawing, line_drawing
-from hydrostat.drawing.palette import WINCHES
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.fabrication.sheets.label_places import LabelPlaces, box_round
 from hydrostat.fabrication.sheets.sight import Sight

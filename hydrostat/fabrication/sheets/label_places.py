@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from hydrostat.drawing.canvas import Box, Spot
+from hydrostat.drawing import Box, Spot
 
 _WAYS = [(np.cos(turn), np.sin(turn)) for turn in np.radians(np.arange(0, 360, 30))]
 """Directions that are tried, to the right first."""

@@ -5,8 +5,7 @@ from functools import cache
 from typing import Any
 
 from hydrostat.fabrication.winch_marks import winch_marks_of
-from hydrostat.robot import Robot
-from hydrostat.robot.in_words import in_words
+from hydrostat.robot import Robot, in_words
 
 FONTS = ("Libertinus Serif", "DejaVu Sans Mono")
 """Come with typst: Latin, Greek, Cyrillic, Hebrew, signs of mathematics."""

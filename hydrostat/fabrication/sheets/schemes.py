@@ -1,6 +1,6 @@
 """Schemes: how a cable is stitched through cloth, and how its stopper is set."""
 
-from hydrostat.drawing.canvas import MIDDLE, THICK, THIN, Canvas, Spot
+from hydrostat.drawing import MIDDLE, THICK, THIN, Canvas, Spot
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 
 _CLOTH = 1.5  # thickness of drawn cloth [mm]

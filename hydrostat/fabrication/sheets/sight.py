@@ -6,9 +6,7 @@ from typing import Self
 import numpy as np
 from jaxtyping import Bool, Float
 
-from hydrostat.drawing.camera import Camera
-from hydrostat.drawing.depth import DepthBuffer
-from hydrostat.drawing.line_drawing import DrawnSolid
+from hydrostat.drawing import Camera, DepthBuffer, DrawnSolid
 from hydrostat.robot import Robot
 
 _COARSE = 160  # pixels along a body: enough to know its near and its far side

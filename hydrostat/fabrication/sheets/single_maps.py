@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.drawing.camera import Camera
-from hydrostat.drawing.canvas import THIN, Box, Canvas, CanvasFrame, snug
+from hydrostat.drawing import THIN, Box, Camera, Canvas, CanvasFrame, snug
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets.cable_map import (
     CableRun,

@@ -8,10 +8,23 @@ from jaxtyping import Bool, Float, Int
 from manifold3d import Manifold
 from scipy.ndimage import distance_transform_edt, gaussian_filter
 
-from hydrostat.drawing.camera import Camera
-from hydrostat.drawing.canvas import MIDDLE, PIXELS, THIN, Box, Canvas, CanvasFrame, Spot, balloon_radius, snug
-from hydrostat.drawing.depth import Polyline, level_rings
-from hydrostat.drawing.line_drawing import DrawnSolid, LineDrawing, line_drawing
+from hydrostat.drawing import (
+    MIDDLE,
+    PIXELS,
+    THIN,
+    Box,
+    Camera,
+    Canvas,
+    CanvasFrame,
+    DrawnSolid,
+    LineDrawing,
+    Polyline,
+    Spot,
+    balloon_radius,
+    level_rings,
+    line_drawing,
+    snug,
+)
 from hydrostat.fabrication.sheets.cable_map import body_solid, flat_marks, flat_rings
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import triangles_of

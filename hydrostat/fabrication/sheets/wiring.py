@@ -1,6 +1,6 @@
 """`wiring_scheme`: how supply, board and motors are joined, for servos on a bus and for motors on boards."""
 
-from hydrostat.drawing.canvas import MIDDLE, THICK, THIN, Canvas, Spot
+from hydrostat.drawing import MIDDLE, THICK, THIN, Canvas, Spot
 from hydrostat.fabrication.lists.power import PowerPlan
 
 _MOST = 6  # motors that are drawn; of more the last are told in words

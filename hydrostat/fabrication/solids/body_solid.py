@@ -5,7 +5,7 @@ from jaxtyping import Float, Int
 from manifold3d import CrossSection, Error, Manifold, Mesh64
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import Body
 
 MILLIMETRES = 1e3  # in a metre

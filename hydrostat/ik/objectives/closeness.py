@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import Anchors
+from hydrostat.geometry import Anchors
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term, describe, not_negative
 from hydrostat.simulation import Simulation, SolvedPose
 

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import Anchors
+from hydrostat.geometry import Anchors
 from hydrostat.ik.objectives.objective import (
     Moves,
     Objective,

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import FrictionCableEnergy, Stiffness
 from hydrostat.simulation import Simulation, SolvedPose
 

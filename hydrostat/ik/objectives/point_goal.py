@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry import locate
 from hydrostat.ik.objectives.marker_goal import MarkerTerm
 from hydrostat.ik.objectives.objective import Objective, Term, by_name, not_negative, place
 from hydrostat.robot import Point

@@ -9,12 +9,18 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.outline_file import read_drawing, read_outline
-from hydrostat.geometry.files.stranger import read_stranger
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.outline import Curve, Outline
-from hydrostat.geometry.shell import Nearest, Shell, outline_shell
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import (
+    Curve,
+    Mesh,
+    Nearest,
+    Outline,
+    Shell,
+    Surface,
+    outline_shell,
+    read_drawing,
+    read_outline,
+    read_stranger,
+)
 from hydrostat.given import path_of
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term, describe, not_negative
 from hydrostat.robot import Robot, Source

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.ik.trajectory.course import Samples
-from hydrostat.simulation import Simulation, SolvedPose
-from hydrostat.simulation.solved_pose import largest_distance
+from hydrostat.simulation import Simulation, SolvedPose, largest_distance
 
 Tell = Callable[[str, int, int], None]  # is told the stage, how much of it is done, and how much there is
 

@@ -5,13 +5,18 @@ from collections.abc import Iterator
 import numpy as np
 
 from hydrostat.arrays import Points
-from hydrostat.geometry.boundary_tree import BoundaryTree
-from hydrostat.geometry.crossings import find_crossings
-from hydrostat.geometry.mesh import Mesh, dihedral_angles, smallest_angle
-from hydrostat.geometry.surface import Solid
-from hydrostat.geometry.tetrahedra.manifold import euler
-from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, fit
-from hydrostat.geometry.thickness import thin_parts
+from hydrostat.geometry import (
+    CLOSE,
+    BoundaryTree,
+    Mesh,
+    Solid,
+    dihedral_angles,
+    euler,
+    find_crossings,
+    fit,
+    smallest_angle,
+    thin_parts,
+)
 from hydrostat.kernel import native
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.risks.words import mm, place

@@ -7,8 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.geometry.anchors import clearance, locate
-from hydrostat.geometry.thickness import spacings
+from hydrostat.geometry import clearance, locate, spacings
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.risks.words import Risk, known_up_to, mm, place, told_together

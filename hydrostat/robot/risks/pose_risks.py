@@ -6,9 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.thickness import spacings
+from hydrostat.geometry import Mesh, locate, spacings
 from hydrostat.robot.risks.words import Risk, known_up_to, mm, told_together
 from hydrostat.robot.robot import Robot
 from hydrostat.units import counted

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 from hydrostat.design import Craft
 from hydrostat.errors import InputError
-from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication import Demand
 from hydrostat.robot import Body, Cable, Face, Pose, Robot, Winch
 from hydrostat.studio.designing.design_work import Candidate, Reach
 

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from hydrostat.design.craft import front
-from hydrostat.drawing.palette import WINCHES
+from hydrostat.design import front
+from hydrostat.drawing import WINCHES
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.run import DesignRun, Mark
 from hydrostat.units import counted

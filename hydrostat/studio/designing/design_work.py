@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.design import Craft, DesignRequest, DesignStage, craft_of, find_network
-from hydrostat.design.network import Alternative, Network, rms_error
-from hydrostat.fabrication.demand import Demand, demand_of
+from hydrostat.design import Alternative, Craft, DesignRequest, DesignStage, Network, craft_of, find_network, rms_error
+from hydrostat.fabrication import Demand, demand_of
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Pose, Robot, Winch
 from hydrostat.studio.jobs import Report

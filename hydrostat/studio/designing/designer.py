@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design import DesignRequest, RouteOptions, faced
-from hydrostat.design.craft import sewing_minutes
-from hydrostat.drawing.palette import INK, pose_colours
+from hydrostat.design import DesignRequest, RouteOptions, faced, sewing_minutes
+from hydrostat.drawing import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.drawing.palette import winch_colours
+from hydrostat.drawing import winch_colours
 from hydrostat.robot import Body, Robot
 
 EDGE = 200.0  # longest side of a picture, in units of its drawing

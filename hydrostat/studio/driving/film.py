@@ -9,9 +9,7 @@ from tempfile import TemporaryDirectory
 
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
-from hydrostat.plot import find_ffmpeg, save_gif, save_glb, save_mp4
-from hydrostat.plot.film import upright
-from hydrostat.plot.frame import Frame
+from hydrostat.plot import Frame, find_ffmpeg, save_gif, save_glb, save_mp4, upright
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Topic

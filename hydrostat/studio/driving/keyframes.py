@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isfinite
 
-from hydrostat.control import Key, Timeline
-from hydrostat.control.timeline import LONGEST
+from hydrostat.control import LONGEST, Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.document import Document

@@ -3,7 +3,7 @@
 import math
 
 from hydrostat.control import FASTEST
-from hydrostat.fabrication.parts.motor import choose_motor
+from hydrostat.fabrication import choose_motor
 from hydrostat.robot import Mount, Robot
 
 

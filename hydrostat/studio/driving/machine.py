@@ -10,7 +10,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import Link, Motors, Player, Timeline
 from hydrostat.errors import HydrostatError
-from hydrostat.plot.film import upright
+from hydrostat.plot import upright
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.document import Document

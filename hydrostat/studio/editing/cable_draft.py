@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from hydrostat.drawing.palette import INK, MUTED, WINCHES, winch_colours
+from hydrostat.drawing import INK, MUTED, WINCHES, winch_colours
 from hydrostat.errors import InputError
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.editing.part import Mirror

@@ -8,10 +8,19 @@ import numpy as np
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.robot import Cable, Contact, Mount, Robot, Source, find_material, outline_body
-from hydrostat.robot.body import Body, surface_body
-from hydrostat.robot.checks import check_name
-from hydrostat.robot.gravity import gravity_along
+from hydrostat.robot import (
+    Body,
+    Cable,
+    Contact,
+    Mount,
+    Robot,
+    Source,
+    check_name,
+    find_material,
+    gravity_along,
+    outline_body,
+    surface_body,
+)
 from hydrostat.studio.editing.part import Kind, find_part
 
 FIELDS = {  # what can be changed of a part

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrostat.drawing.palette import INK
+from hydrostat.drawing import INK
 from hydrostat.robot import Point
 from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
 

@@ -8,15 +8,28 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.drawing.palette import PAPER
-from hydrostat.drawing.svg import Html, tag
+from hydrostat.drawing import PAPER, Html, tag
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import ReachedPose, solve_ik
-from hydrostat.plot import draw_network, draw_portrait, draw_reached, draw_rest, save_png
-from hydrostat.plot.picture_file import drawing
-from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
-from hydrostat.plot.report_tables import Chapter, fact, page, section, table
-from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot import (
+    MILLIMETRES,
+    REACHED,
+    Chapter,
+    body_part,
+    draw_network,
+    draw_portrait,
+    draw_reached,
+    draw_rest,
+    drawing,
+    fact,
+    network_part,
+    page,
+    reached_part,
+    save_png,
+    section,
+    table,
+    target_chapter,
+)
 from hydrostat.robot import Robot, find_risks, robot_hash
 from hydrostat.simulation import Simulation
 from hydrostat.studio.exporting.download import Download, file_name

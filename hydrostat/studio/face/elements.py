@@ -6,9 +6,8 @@ from typing import Any
 
 from nicegui import events, ui
 
-from hydrostat.control import Timeline
-from hydrostat.control.player import Player
-from hydrostat.drawing.palette import winch_colours
+from hydrostat.control import Player, Timeline
+from hydrostat.drawing import winch_colours
 from hydrostat.robot import Robot
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.ik import Targets
-from hydrostat.ik.objectives.marker_goal import named_targets
+from hydrostat.ik import Targets, named_targets
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Point, Robot
 from hydrostat.simulation import SolvedPose

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry import locate
 from hydrostat.studio.posing.held import Held, Now
 from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.stage import Hit

@@ -7,8 +7,7 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points
-from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.view.things import Ghost, RobotShape
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.design.muscles.free_posing import FreePosing
-from hydrostat.geometry.anchors import locate
+from hydrostat.design import FreePosing
+from hydrostat.geometry import locate
 from hydrostat.robot import Marker, Robot
 from hydrostat.studio.posing.held import Anchored, Held
 from hydrostat.studio.view.things import RobotShape

@@ -7,7 +7,7 @@ from threading import RLock
 import numpy as np
 
 from hydrostat.closed_set import member
-from hydrostat.drawing.palette import GHOST
+from hydrostat.drawing import GHOST
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic

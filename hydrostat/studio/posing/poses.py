@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Marker, Pose, Robot
-from hydrostat.robot.checks import check_name
+from hydrostat.robot import Marker, Pose, Robot, check_name
 from hydrostat.studio.posing.held import Held
 from hydrostat.studio.records.wishes import Wishes
 

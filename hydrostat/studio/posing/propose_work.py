@@ -7,8 +7,15 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.design import Activation, Constraints, DesignMethod, DesignRequest, TreeOptions, edge_fibres
-from hydrostat.design.trees.design_trees import propose_trees
+from hydrostat.design import (
+    Activation,
+    Constraints,
+    DesignMethod,
+    DesignRequest,
+    TreeOptions,
+    edge_fibres,
+    propose_trees,
+)
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import InverseOptions, solve_ik
 from hydrostat.robot import Cable, Robot, Winch

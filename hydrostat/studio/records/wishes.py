@@ -5,9 +5,18 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from hydrostat.closed_set import make_member
-from hydrostat.design import Constraints, DesignMethod, DesignRequest, RouteOptions, TreeOptions, Zone
-from hydrostat.design.constraints import RANGES
-from hydrostat.design.request import COUNTS, ROUTE_RANGES, TREE_RANGES
+from hydrostat.design import (
+    COUNTS,
+    RANGES,
+    ROUTE_RANGES,
+    TREE_RANGES,
+    Constraints,
+    DesignMethod,
+    DesignRequest,
+    RouteOptions,
+    TreeOptions,
+    Zone,
+)
 from hydrostat.errors import InputError
 from hydrostat.robot import Point
 from hydrostat.units import quote

@@ -17,7 +17,7 @@ from threading import Lock, Thread
 from typing import IO
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.geometry.files.stranger import read_stranger
+from hydrostat.geometry import read_stranger
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import open_work, save_work, text_of

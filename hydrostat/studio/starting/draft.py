@@ -5,11 +5,8 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.drawn_lines import Inner
-from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
-from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
-from hydrostat.robot import Material, find_material
-from hydrostat.robot.checks import check_name
+from hydrostat.geometry import OUTLINE_SUFFIXES, SURFACE_SUFFIXES, Inner
+from hydrostat.robot import Material, check_name, find_material
 from hydrostat.units import quote
 
 UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)  # endings of files that may be brought

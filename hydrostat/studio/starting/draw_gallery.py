@@ -5,8 +5,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from hydrostat.plot import draw_portrait
-from hydrostat.plot.picture_file import drawing
+from hydrostat.plot import draw_portrait, drawing
 from hydrostat.robot import Robot, gallery_folder, gallery_names, load_robot, replace_file
 
 PICTURES = Path(__file__).parent / "pictures"  # where the pictures are, as NAME.webp

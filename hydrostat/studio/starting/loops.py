@@ -10,7 +10,7 @@ from shapely import LinearRing, Polygon, distance, get_coordinates
 from shapely import points as shapely_points
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.outline import Outline, Ring
+from hydrostat.geometry import Outline, Ring
 
 HANDLE = 0.35
 """Length of the handles of a curve, in distances of its ends: the one that fits circles of four to eight corners best.

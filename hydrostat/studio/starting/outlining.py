@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.geometry.files.outline_file import read_drawing
+from hydrostat.geometry import read_drawing
 from hydrostat.robot import Body, Cable, Mount, Pin, Point, Pose, Robot, outline_body
 from hydrostat.studio.records.wishes import moved_zone
 from hydrostat.studio.records.work import Work, followed

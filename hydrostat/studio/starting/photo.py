@@ -8,9 +8,7 @@ import numpy as np
 from PIL import Image, ImageOps
 from scipy.ndimage import gaussian_filter
 
-from hydrostat.geometry.files.outline_file import read_drawing
-from hydrostat.geometry.files.silhouette import contrast
-from hydrostat.geometry.outline import Outline
+from hydrostat.geometry import Outline, contrast, read_drawing
 from hydrostat.studio.starting.draft import PhotoReading
 
 LONGEST = 1600  # a picture is read with so many pixels along its longer side, as `read_image` does

@@ -4,9 +4,8 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.rings import DRAWN_HINT
-from hydrostat.robot import Robot, SurfaceSketch, sketch_robot, sketch_surface
-from hydrostat.robot.sketch_space import inflated
+from hydrostat.geometry import DRAWN_HINT
+from hydrostat.robot import Robot, SurfaceSketch, inflated, sketch_robot, sketch_surface
 from hydrostat.studio.jobs import Report
 from hydrostat.studio.starting.draft import BodyDraft
 from hydrostat.studio.starting.photo import Backdrop, backdrop, cut_out
@@ -42,7 +41,7 @@ def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
 
 
 def _sketch(report: Report, draft: BodyDraft) -> Sketch:
-    from hydrostat.geometry.files.outline_file import read_drawing
+    from hydrostat.geometry import read_drawing
 
     report.progress("reading", 0, 2)
     file, content, size, lines = draft.file, draft.content, draft.size, ()

@@ -7,8 +7,7 @@ from threading import RLock
 from typing import Any
 
 from hydrostat.errors import InputError
-from hydrostat.robot import find_material, gallery_folder, load_robot
-from hydrostat.robot.gallery import GALLERY, is_of_gallery
+from hydrostat.robot import GALLERY, find_material, gallery_folder, is_of_gallery, load_robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs

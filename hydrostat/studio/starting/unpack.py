@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from zipfile import BadZipFile, ZipFile, ZipInfo
 
 from hydrostat.errors import InputError
-from hydrostat.robot.read import FILE
+from hydrostat.robot import FILE
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import open_note, open_work, text_of
 from hydrostat.units import quote

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterable
 
-from hydrostat.design.finding import Finding, Weight
-from hydrostat.drawing.palette import SEAM
-from hydrostat.robot import Mount, Robot
-from hydrostat.robot.in_words import in_words
+from hydrostat.design import Finding, Weight
+from hydrostat.drawing import SEAM
+from hydrostat.robot import Mount, Robot, in_words
 from hydrostat.studio.view.things import Dot, Look, Thing
 
 TONES = {Weight.REFUSED: "#c8243f", Weight.LIMIT: "#6d6875", Weight.MIND: SEAM}  # colour of each weight

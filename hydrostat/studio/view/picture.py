@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry import Anchors, locate
 from hydrostat.robot import Robot
 from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, RobotShape, Strand, Thing
 

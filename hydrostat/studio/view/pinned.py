@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from hydrostat.arrays import Points
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import Pin, Robot
 
 PARTS = 4  # a triangle is dotted with so many points along each side

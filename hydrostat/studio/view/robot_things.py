@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.drawing.palette import DARK, INK, MUTED, winch_colours
-from hydrostat.fabrication.winch_marks import winch_marks_of
+from hydrostat.drawing import DARK, INK, MUTED, winch_colours
+from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Cable, Mount, Point, Robot, obstacle_lines
 from hydrostat.simulation import as_posed
 from hydrostat.studio.view.pinned import pinned_points

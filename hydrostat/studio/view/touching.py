@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrostat.drawing.palette import ERROR
-from hydrostat.geometry.crossings import find_crossings
+from hydrostat.drawing import ERROR
+from hydrostat.geometry import find_crossings
 from hydrostat.simulation import Simulation, SolvedPose, touches
 from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
 

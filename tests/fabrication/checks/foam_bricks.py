@@ -3,8 +3,7 @@
 import trimesh
 
 import hydrostat as hs
-from hydrostat.robot import MATERIALS, Mount
-from hydrostat.robot.body import surface_body
+from hydrostat.robot import MATERIALS, Mount, surface_body
 
 
 def foam_brick(*routes: list[tuple[float, float, float]], sheathed: tuple[tuple[int, int], ...] = ()) -> hs.Robot:

@@ -14,8 +14,7 @@ from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds
 from hydrostat.fabrication.lists.lists import make_lists
 from hydrostat.fabrication.patterns.stitches import cable_stitches
-from hydrostat.robot import Robot
-from hydrostat.robot.gallery import gallery_names
+from hydrostat.robot import Robot, gallery_names
 
 
 def stitches(robot: Robot) -> tuple:

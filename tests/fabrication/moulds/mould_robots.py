@@ -3,7 +3,7 @@
 import numpy as np
 from builders import box_mesh, mesh_body
 
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import MATERIALS, Body, Cable, Pin, Robot, Winch
 
 CELLS = (5, 4, 3)

@@ -5,7 +5,7 @@ from builders import box_mesh, mesh_body
 
 from hydrostat.fabrication.patches.patch import Disc, rim_of
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import MATERIALS, Body, Cable, Pin, Robot, Winch
 
 

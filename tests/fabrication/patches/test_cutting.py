@@ -13,9 +13,7 @@ from hydrostat.fabrication.patches.flatten import distortion, flatten
 from hydrostat.fabrication.patches.patch import disc_of
 from hydrostat.fabrication.patches.seams import Seam, find_seams
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh, skin_of_surface
-from hydrostat.geometry.inflate import inflate
-from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry import Outline, Surface, inflate
 
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -14,7 +14,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication import Panel, Pattern, PatternOptions, PatternPart, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.fabrication.patterns.gusset import stuffed_thickness
 from hydrostat.fabrication.patterns.skin import find_notches, flat_skin
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry import Mesh
 from hydrostat.robot import MATERIALS, Body, Source
 
 GUSSET = PatternOptions(gusset=True)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.drawing.palette import WINCHES
+from hydrostat.drawing import WINCHES
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.skin import flat_skin
 from hydrostat.fabrication.patterns.stitches import cable_stitches

@@ -8,7 +8,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.design import DesignRequest, craft_of
-from hydrostat.fabrication.demand import demand_of
+from hydrostat.fabrication import demand_of
 from hydrostat.robot import Pose, Robot
 from hydrostat.studio.designing.charts import BOTTOM, FRONT_HEIGHT, LEFT, Chart, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate

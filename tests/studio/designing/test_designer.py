@@ -10,7 +10,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design import RouteOptions, design_cables
-from hydrostat.drawing.palette import INK, pose_colours
+from hydrostat.drawing import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.robot import Pose, Robot

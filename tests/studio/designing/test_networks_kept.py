@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrostat.design.network import Alternative
+from hydrostat.design import Alternative
 from hydrostat.errors import InputError
 from hydrostat.ik import InverseOptions, solve_ik
 from hydrostat.robot import Robot, save_robot

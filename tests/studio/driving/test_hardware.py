@@ -8,10 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrostat.control import Bus, LinkState
-from hydrostat.control.open_bus import open_bus
+from hydrostat.control import Bus, LinkState, open_bus
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot.gallery import gallery_folder
+from hydrostat.robot import gallery_folder
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.driving.kit_speed import kit_speed
 from hydrostat.studio.posing.held import Mode

@@ -8,9 +8,8 @@ from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import locate
-from hydrostat.robot import Contact, Mount, Robot, find_risks
-from hydrostat.robot.in_words import in_words
+from hydrostat.geometry import locate
+from hydrostat.robot import Contact, Mount, Robot, find_risks, in_words
 from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity, sheathed_segments, sheaths
 from hydrostat.studio.editing.hold import below_skin, inside

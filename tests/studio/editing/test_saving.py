@@ -11,9 +11,17 @@ from hypothesis import strategies as st
 
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, Winch, gallery_folder, load_robot, robot_text
-from hydrostat.robot.merge import comments, lost_comments, merged_text
-from hydrostat.robot.read import RobotReader
+from hydrostat.robot import (
+    Robot,
+    RobotReader,
+    Winch,
+    comments,
+    gallery_folder,
+    load_robot,
+    lost_comments,
+    merged_text,
+    robot_text,
+)
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.change import change, rename, set_gravity

@@ -7,9 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrostat.design import Constraints, TreeOptions
-from hydrostat.design.buildable import violations
-from hydrostat.design.region import body_region
+from hydrostat.design import Constraints, TreeOptions, body_region, violations
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
 from hydrostat.robot import Robot

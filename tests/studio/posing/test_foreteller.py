@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.learning import LearnedModel, plan_samples, save_model
-from hydrostat.learning.perceptrons import Perceptrons
+from hydrostat.learning import LearnedModel, Perceptrons, plan_samples, save_model
 from hydrostat.robot import Point, Robot, load_robot, save_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document

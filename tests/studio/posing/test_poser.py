@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry import locate
 from hydrostat.ik import solve_ik
 from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Simulation

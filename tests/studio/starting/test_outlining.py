@@ -12,7 +12,7 @@ from shapely import LinearRing
 
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.outline_file import read_outline
+from hydrostat.geometry import read_outline
 from hydrostat.robot import load_robot, save_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document

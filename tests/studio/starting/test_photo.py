@@ -8,8 +8,7 @@ import pytest
 from PIL import Image, ImageDraw, ImageFilter
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.drawn_lines import Inner
-from hydrostat.geometry.files.outline_file import read_outline
+from hydrostat.geometry import Inner, read_outline
 from hydrostat.robot import Robot
 from hydrostat.studio.session import Session
 from hydrostat.studio.starting.draft import BodyDraft, PhotoReading, new_draft

@@ -4,7 +4,7 @@ from nicegui import ui
 from nicegui.client import Client
 from nicegui.dependencies import esm_modules
 
-from hydrostat.drawing.palette import FELT, TENSION
+from hydrostat.drawing import FELT, TENSION
 from hydrostat.studio.face.viewport import MODULES, STATIC, Viewport
 
 

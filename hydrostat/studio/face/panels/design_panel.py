@@ -5,7 +5,7 @@ from functools import partial
 from nicegui import ui
 
 from hydrostat.design import DesignMethod
-from hydrostat.drawing.palette import pose_colours
+from hydrostat.drawing import pose_colours
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
 from hydrostat.studio.designing.design_work import Candidate

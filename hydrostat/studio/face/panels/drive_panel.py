@@ -2,8 +2,8 @@
 
 from nicegui import events, ui
 
-from hydrostat.drawing.palette import ERROR, winch_colours
-from hydrostat.fabrication.winch_marks import winch_marks_of
+from hydrostat.drawing import ERROR, winch_colours
+from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Winch
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import Knob, winch_badge

@@ -4,8 +4,7 @@ from functools import partial
 
 from nicegui import ui
 
-from hydrostat.robot import MATERIALS, Source
-from hydrostat.robot.gravity import DIRECTIONS, direction_of
+from hydrostat.robot import DIRECTIONS, MATERIALS, Source, direction_of
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.findings import Findings
 from hydrostat.studio.face.page import WindowPage

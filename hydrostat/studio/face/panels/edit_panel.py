@@ -5,8 +5,8 @@ from typing import Any
 
 from nicegui import events, ui
 
-from hydrostat.drawing.palette import winch_colours
-from hydrostat.fabrication.winch_marks import winch_marks_of
+from hydrostat.drawing import winch_colours
+from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.part import Kind, find_part, keys_of

@@ -4,9 +4,8 @@ from collections.abc import Callable
 
 from nicegui import ui
 
-from hydrostat.design.finding import Finding, Weight
-from hydrostat.robot import Robot
-from hydrostat.robot.in_words import in_words
+from hydrostat.design import Finding, Weight
+from hydrostat.robot import Robot, in_words
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.skins import SewnSkin

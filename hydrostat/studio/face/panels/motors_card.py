@@ -5,7 +5,7 @@ from math import isnan
 from nicegui import ui
 
 from hydrostat.control import EMULATED, LinkState
-from hydrostat.drawing.palette import ERROR
+from hydrostat.drawing import ERROR
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
 

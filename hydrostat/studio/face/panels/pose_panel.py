@@ -2,7 +2,7 @@
 
 from nicegui import ui
 
-from hydrostat.drawing.palette import ERROR
+from hydrostat.drawing import ERROR
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import winch_badge
 from hydrostat.studio.face.page import WindowPage, icon_button

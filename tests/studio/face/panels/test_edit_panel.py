@@ -3,8 +3,7 @@
 import pytest
 from desk import Desk, at_desk
 
-from hydrostat.robot import Point, Robot
-from hydrostat.robot.in_words import in_words
+from hydrostat.robot import Point, Robot, in_words
 from hydrostat.studio.editing.editor import Tool
 from hydrostat.studio.editing.part import keys_of
 from hydrostat.studio.judge import QUIET
