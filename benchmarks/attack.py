@@ -189,7 +189,7 @@ def commands(robot: Robot, number: int, seed: int) -> Iterator[tuple[bool, Vecto
         yield within, np.where(out, least, most) * random.random(len(lengths)) * lengths
 
 
-def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
+def fault(simulation: hs.Simulation, pose: hs.Equilibrium) -> str:
     """What is wrong with a pose, in words; empty if nothing is."""
     if not (np.isfinite(pose.nodes).all() and np.isfinite(pose.tensions).all()):
         return "a number is not finite"
@@ -198,11 +198,11 @@ def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
     if not (now / before).min() > 0:
         return "an element is inverted"
     rubs = bool(len(pose.history))  # then limits fit to 1e-8 of the largest tension, and these pull at many points
-    assembly = simulation.path.resumed(pose) if rubs else simulation.assembly.near(pose.nodes)
+    assembly = simulation.path.with_history(pose) if rubs else simulation.assembly.with_active_terms(pose.nodes)
     residual = float(np.abs(assembly.gradient(pose.nodes, pose.contractions)).max())
     allowed = max(
         (1e-7 if rubs else 1e-8) * float(pose.tensions.max(initial=0.0)),
-        1.01 * simulation.solver.allowed(pose.nodes, pose.contractions),
+        1.01 * simulation.solver.force_tolerance(pose.nodes, pose.contractions),
     )
     return "" if residual <= allowed else f"residual {residual:.2g} N, allowed {allowed:.2g} N"
 
@@ -210,7 +210,7 @@ def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
 def attack(
     number: int,
     seed: int,
-    solve: Callable[[hs.Simulation, Vector], hs.SolvedPose],
+    solve: Callable[[hs.Simulation, Vector], hs.Equilibrium],
     draw: Callable[[int, int], tuple[Robot, str]] = random_robot,
 ) -> Iterator[Outcome]:
     """Give one robot its commands."""
@@ -223,7 +223,7 @@ def attack(
         except hs.NotConvergedError as error:
             message = str(error)
             result: Any = error.result
-            pose = simulation.posed(contractions, result)
+            pose = simulation.make_pose(contractions, result)
         spent = time.process_time() - began
         wrong = fault(simulation, pose)
         yield Outcome(
@@ -288,7 +288,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     print(f"{machine()}\n{options.robots} robots, seed {options.seed}, at most {options.seconds:g} s for a solve\n")
 
-    def solve(simulation: hs.Simulation, contractions: Vector) -> hs.SolvedPose:
+    def solve(simulation: hs.Simulation, contractions: Vector) -> hs.Equilibrium:
         return simulation.solve(contractions, seconds=options.seconds)
 
     outcomes: list[Outcome] = []

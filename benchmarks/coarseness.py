@@ -15,7 +15,7 @@ from hand_body import ELEMENT_SIZE, hand_robot
 from machine import machine
 
 from hydrostat.geometry import measure_thickness, thin_parts
-from hydrostat.robot import LEAST_ACROSS, Robot, Source, gallery_folder, gallery_names, load_robot, outline_body
+from hydrostat.robot import LEAST_ACROSS, Robot, Source, gallery_folder, list_gallery, load_robot, outline_body
 from hydrostat.simulation import Simulation
 
 TAKEN_IN = 0.015
@@ -41,7 +41,7 @@ def drawn(name: str, finer: float) -> Robot:
 
 def cases() -> Iterator[tuple[str, Callable[[float], Robot], tuple[float, ...]]]:
     """Name, maker and how many times as fine."""
-    for name in gallery_names():
+    for name in list_gallery():
         if load_robot(gallery_folder(name)).body.source is Source.OUTLINE:
             yield name, lambda finer, name=name: drawn(name, finer), (1, 2, 4)
     yield "hand", lambda finer: hand_robot(ELEMENT_SIZE / finer), (1, 1.5, 2.2)

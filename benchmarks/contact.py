@@ -45,13 +45,13 @@ def crosses(robot: Robot, nodes: Nodes) -> bool:
 
 def gaps(energy: ContactEnergy, nodes: Nodes) -> np.ndarray:
     """Gap of each pair that is felt, as a share of the distance at which it is."""
-    near = energy.near(nodes)
+    near = energy.with_active_terms(nodes)
     squared, begins = energy.skin.squared(nodes, near.pairs), energy.skin.begins(near.pairs)
     return np.sqrt(squared / begins)[squared < begins]
 
 
 def warm(
-    free: hs.Simulation, other: hs.SolvedPose, touching: hs.Simulation, pose: hs.SolvedPose, step: Vector
+    free: hs.Simulation, other: hs.Equilibrium, touching: hs.Simulation, pose: hs.Equilibrium, step: Vector
 ) -> float:
     """How many times longer than without contact a small step takes from a pose; NaN where one does not arrive."""
     times = []

@@ -54,7 +54,7 @@ def overrun(robot: Robot, limit: float, random: np.random.Generator) -> tuple[fl
     targets = {marker.name: np.array(marker.at) + 0.15 * size * random.normal(size=dim) for marker in some}
     began = time.monotonic()
     try:
-        reason = str(solve_ik(simulation, targets, seconds=limit).reason)
+        reason = str(solve_ik(simulation, targets, seconds=limit).status)
     except HydrostatError as error:
         reason = type(error).__name__
     return time.monotonic() - began - limit, reason

@@ -12,8 +12,8 @@ from scipy.optimize import nnls
 
 from hydrostat.design import Constraints, rms_error
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import Limits, ReachedPose, solve_ik
-from hydrostat.robot import Pose, Robot, load_robot
+from hydrostat.ik import IKResult, Limits, solve_ik
+from hydrostat.robot import PoseTarget, Robot, load_robot
 from hydrostat.simulation import Simulation
 
 FLAT = Constraints()
@@ -82,20 +82,20 @@ def body_robot(name: str) -> Robot:
     body = BODIES[name]
     robot = load_robot(EXAMPLES / (body.example or name))
     more = {
-        called: Pose(name=called, targets={m: tuple(1e-3 * x for x in place) for m, place in targets.items()})
+        called: PoseTarget(name=called, targets={m: tuple(1e-3 * x for x in place) for m, place in targets.items()})
         for called, targets in body.more.items()
     }
     return replace(robot, poses={**robot.poses, **more})
 
 
-def judged(robot: Robot, poses: Sequence[Pose], constraints: Constraints) -> float:
+def judged(robot: Robot, poses: Sequence[PoseTarget], constraints: Constraints) -> float:
     """Rms error of a network over markers and poses [m], by `solve_ik` with its own options.
 
     The same for every method: each pose from rest, within travel and release of the winches and the tension that the
     constraints allow. Infinite where no equilibrium is found.
     """
     simulation, limits = Simulation(robot), Limits(tension=constraints.tension_limit)
-    reached: list[ReachedPose] = []
+    reached: list[IKResult] = []
     for pose in poses:
         try:
             reached.append(solve_ik(simulation, pose, limits=limits))
@@ -123,7 +123,7 @@ def sharing_error(robot: Robot, winches: int) -> float:
     return min(_shared(poses, winches, draw) for _ in range(40))
 
 
-def _shared(poses: list[tuple[Pose, np.ndarray]], winches: int, draw: np.random.Generator) -> float:
+def _shared(poses: list[tuple[PoseTarget, np.ndarray]], winches: int, draw: np.random.Generator) -> float:
     wanted = np.array([moves for _, moves in poses])
     asked = np.array([np.repeat(_asked(moves), moves.shape[1]) for _, moves in poses])
     wanted = np.nan_to_num(wanted).reshape(len(poses), -1)
@@ -148,7 +148,7 @@ def _asked(moves: np.ndarray) -> np.ndarray:
     return np.asarray(~np.isnan(moves).any(axis=1))
 
 
-def _moves(robot: Robot) -> list[tuple[Pose, np.ndarray]]:
+def _moves(robot: Robot) -> list[tuple[PoseTarget, np.ndarray]]:
     """Each pose, and how far each marker should go in it [m]; NaN where it has no target."""
     nowhere = (np.nan,) * robot.body.mesh.dim
     return [

@@ -22,7 +22,7 @@ import numpy as np  # isort: skip
 
 from hydrostat.design import design_cables
 from hydrostat.errors import HydrostatError
-from hydrostat.robot import Mount, Pose, Robot
+from hydrostat.robot import Mount, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 POSES = 8
@@ -56,8 +56,8 @@ class Family:
     """
 
     robot: Robot
-    training: tuple[Pose, ...]
-    held_out: tuple[Pose, ...]
+    training: tuple[PoseTarget, ...]
+    held_out: tuple[PoseTarget, ...]
 
 
 def family(name: str, seed: int) -> Family:
@@ -67,13 +67,13 @@ def family(name: str, seed: int) -> Family:
     hidden = _hidden(robot, BODIES[name], HIDDEN[name], draw)
     simulation = Simulation(hidden)
     lengths = np.array([cable.segments[cable.bare].sum() for cable in hidden.cables])
-    poses: list[Pose] = []
+    poses: list[PoseTarget] = []
     while len(poses) < 2 * POSES:
         pulled = draw.random(len(lengths)) < PULLED
         solved = simulation.solve(pulled * draw.uniform(0.0, SHARE, len(lengths)) * lengths, strict=False)
         if solved.result.converged and pulled.any():
             targets = {marker: tuple(map(float, at)) for marker, at in solved.markers.items()}
-            poses.append(Pose(name=f"pose {len(poses) + 1}", targets=targets))
+            poses.append(PoseTarget(name=f"pose {len(poses) + 1}", targets=targets))
     return Family(robot, tuple(poses[:POSES]), tuple(poses[POSES:]))
 
 
@@ -91,7 +91,7 @@ def _hidden(robot: Robot, body: Body, cables: int, draw: np.random.Generator) ->
     return found
 
 
-def network(poses: Sequence[Pose], of: Family, body: Body, method: str, count: int, seed: int) -> Robot | None:
+def network(poses: Sequence[PoseTarget], of: Family, body: Body, method: str, count: int, seed: int) -> Robot | None:
     """What a method makes of some poses; None if nothing."""
     if method == "random":
         best = best_of(of.robot, poses, body, count=count, seed=seed)
@@ -118,7 +118,7 @@ def cases(quick: bool) -> Iterator[tuple[int, int]]:
     yield from ((FIXED[0], training) for training in TRAINING if training != FIXED[1])
 
 
-def _posed(robot: Robot, poses: Sequence[Pose]) -> Robot:
+def _posed(robot: Robot, poses: Sequence[PoseTarget]) -> Robot:
     return replace(robot, poses={pose.name: pose for pose in poses})
 
 

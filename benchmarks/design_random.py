@@ -34,8 +34,8 @@ from hydrostat.design import (
     violations,
 )
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
-from hydrostat.robot import Mount, Pose, Robot, Winch
+from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik
+from hydrostat.robot import Mount, PoseTarget, Robot, Winch
 from hydrostat.simulation import Simulation
 
 TRIES = 60
@@ -204,7 +204,7 @@ class Best:
 
 def best_of(
     robot: Robot,
-    poses: Sequence[Pose],
+    poses: Sequence[PoseTarget],
     body: Body,
     *,
     count: int = 500,
@@ -234,11 +234,11 @@ def best_of(
     return Best(best, error, tuple(errors), time.process_time() - began)
 
 
-def _rough(robot: Robot, poses: Sequence[Pose], constraints: Constraints, iterations: int) -> float:
+def _rough(robot: Robot, poses: Sequence[PoseTarget], constraints: Constraints, iterations: int) -> float:
     """Rms error over markers and poses [m] after so many steps from rest."""
     simulation, limits = Simulation(robot), Limits(tension=constraints.tension_limit)
-    options = InverseOptions(iterations=iterations, restarts=0, unique=False)
-    reached: list[ReachedPose] = []
+    options = IKOptions(iterations=iterations, restarts=0, min_tension=False)
+    reached: list[IKResult] = []
     for pose in poses:
         try:
             reached.append(solve_ik(simulation, pose, limits=limits, options=options))

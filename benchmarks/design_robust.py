@@ -25,10 +25,10 @@ from machine import machine
 import numpy as np  # isort: skip
 
 from hydrostat.design import (
+    BuildTolerances,
     DesignMethod,
     DesignRequest,
     RouteOptions,
-    Uncertainty,
     built_errors,
     find_network,
     nearest_shares,
@@ -36,7 +36,7 @@ from hydrostat.design import (
 )
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import Limits, solve_ik
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 METHODS = ("hand", "trees", "exact", "routes")
@@ -56,14 +56,14 @@ EVERY = (
 )
 
 
-def network(method: str, robot: Robot, body: Body, poses: Sequence[Pose]) -> Robot | None:
+def network(method: str, robot: Robot, body: Body, poses: Sequence[PoseTarget]) -> Robot | None:
     """The robot with the network that a method finds; None if it finds none."""
     if method == "hand":
         return robot
     constraints, uncertainty = body.constraints, None
     if method == "exact":
         constraints = replace(constraints, cable_gap=0.0, turn=75.0, built_in=False)
-        uncertainty = Uncertainty.none()
+        uncertainty = BuildTolerances.none()
     if method == "family":
         poses = [*poses, *(half_way(robot, pose) for pose in poses)]
     request = DesignRequest(
@@ -78,14 +78,14 @@ def network(method: str, robot: Robot, body: Body, poses: Sequence[Pose]) -> Rob
         return None
 
 
-def half_way(robot: Robot, pose: Pose) -> Pose:
+def half_way(robot: Robot, pose: PoseTarget) -> PoseTarget:
     """The pose with each target half as far from where its marker rests."""
     rest = {marker.name: np.array(marker.at) for marker in robot.markers}
     targets = {name: tuple((0.5 * (rest[name] + np.array(to))).tolist()) for name, to in pose.targets.items()}
-    return Pose(name=f"{pose.name}, half way", targets=targets)
+    return PoseTarget(name=f"{pose.name}, half way", targets=targets)
 
 
-def row(name: str, method: str, draws: int, held_out: Sequence[Pose]) -> str:
+def row(name: str, method: str, draws: int, held_out: Sequence[PoseTarget]) -> str:
     """One line of the table."""
     robot, body = body_robot(name), BODIES[name]
     poses = list(robot.poses.values())
@@ -97,7 +97,7 @@ def row(name: str, method: str, draws: int, held_out: Sequence[Pose]) -> str:
     simulation, limits = Simulation(found), Limits(tension=body.constraints.tension_limit)
     reached = [solve_ik(simulation, pose, limits=limits) for pose in poses]
     commands = [one.pose.contractions for one in reached]
-    uncertainty = Uncertainty.of(robot.body)
+    uncertainty = BuildTolerances.of(robot.body)
     built = built_errors(found, poses, commands, uncertainty, draws=draws, seed=1)
     rough = built_errors(found, poses, commands, replace(uncertainty, friction=(0.3, 0.3)), draws=draws, seed=1)
     unseen = [solve_ik(simulation, pose, limits=limits).rms_error for pose in held_out]
@@ -140,7 +140,7 @@ def crossed(robot: Robot) -> int:
     return found
 
 
-def poses_of_others(name: str, count: int, seeds: int) -> list[Pose]:
+def poses_of_others(name: str, count: int, seeds: int) -> list[PoseTarget]:
     """Poses that dense hidden networks reach, some for each seed."""
     from design_held_out import HIDDEN, family
 

@@ -19,8 +19,8 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.robot import Robot, gallery_folder, gallery_names
-from hydrostat.studio import CableMover, Held
+from hydrostat.robot import Robot, gallery_folder, list_gallery
+from hydrostat.studio import CableMover, HeldPoint
 
 ROUND = 60
 """Steps of one round."""
@@ -34,7 +34,7 @@ def drag(robot: Robot, steps: int) -> tuple[np.ndarray, float]:
     for step in range(steps + 5):
         turn = 2 * pi * step / ROUND
         move = 0.125 * size * np.array([cos(turn) - 1, sin(turn), 0.0][: robot.body.mesh.dim])
-        held = {marker.name: Held(at=marker.at, target=tuple((np.array(marker.at) + move).tolist()))}
+        held = {marker.name: HeldPoint(at=marker.at, target=tuple((np.array(marker.at) + move).tolist()))}
         begin = time.process_time()
         shape, _ = mover.update(held)
         spent.append(1e3 * (time.process_time() - begin))
@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help="robots; all flat ones of the gallery if left out")
     parser.add_argument("--steps", type=int, default=200)
     options = parser.parse_args(arguments)
-    robots = [hs.load_robot(gallery_folder(name)) for name in options.names or gallery_names()]
+    robots = [hs.load_robot(gallery_folder(name)) for name in options.names or list_gallery()]
     print(machine())
     print("| robot | nodes | contact | median ms | 95 % ms | touching |")
     print("|---|---|---|---|---|---|")

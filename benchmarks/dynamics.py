@@ -51,7 +51,7 @@ def costs(quick: bool) -> Iterator[str]:
 
 def cost(simulation: hs.Simulation, name: str, kind: str, reach: np.ndarray, scheme: str, dt: float, count: int) -> str:
     options = hs.StepOptions(scheme=scheme)
-    motions = simulation.play(hs.Profile.ramp(reach, 0.2), count * dt, dt, options=options)
+    motions = simulation.play(hs.ContractionProfile.ramp(reach, 0.2), count * dt, dt, options=options)
     next(motions)
     next(motions)
     began, iterations = time.process_time(), 0
@@ -82,14 +82,14 @@ def jumps(quick: bool) -> Iterator[str]:
         shortest = [min(c.length for c in robot.cables if c.winch == winch.name) for winch in robot.winches]
         for kind, chosen in (("elastic", robot), ("viscous", viscous(robot))):
             simulation = hs.Simulation(chosen, options=hs.NewtonOptions())
-            motion, done, cut = simulation.still(), 0, 0
+            motion, done, cut = simulation.motion_at_rest(), 0, 0
             for _ in range(5 if quick else 40):
                 goal, dt = random.uniform(0, 0.4, len(shortest)) * shortest, 10 ** random.uniform(-3, -0.7)
                 for _ in range(2):
                     try:
                         motion = simulation.step(motion, goal, dt, options=hs.StepOptions(halvings=0))
                     except hs.NotConvergedError:
-                        motion, cut = simulation.still(), cut + 1
+                        motion, cut = simulation.motion_at_rest(), cut + 1
                     done += 1
             yield f"| {name} | {kind} | {done} | {cut} |"
 
@@ -115,7 +115,7 @@ def errors(quick: bool) -> Iterator[str]:
     simulation = hs.Simulation(robot)
 
     def end(count: int, scheme: str) -> hs.Motion:
-        motion = simulation.still()
+        motion = simulation.motion_at_rest()
         for _ in range(count):
             motion = simulation.step(motion, np.zeros(0), 0.1 / count, options=hs.StepOptions(scheme=scheme))
         return motion

@@ -27,8 +27,8 @@ import numpy as np  # isort: skip
 
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.mechanics import Energy
-from hydrostat.robot import STANDARD_GRAVITY, Face, Pose, inflated_robot
-from hydrostat.simulation import Simulation, SolvedPose, filled_motion
+from hydrostat.robot import STANDARD_GRAVITY, Face, PoseTarget, inflated_robot
+from hydrostat.simulation import Equilibrium, Simulation, filled_motion
 
 EVERY = ("starfish", "robot", "pig", "letter_e", "letter_s", "puppy", "squid")
 
@@ -94,7 +94,7 @@ def table_rows(name: str, element_size: float | None) -> Iterator[str]:
         yield f"| {name} | {lies} | {1e3 * out(air):.1f} | {1e3 * out(lying):.1f} | {1e3 * sunk:.1f} |"
 
 
-def out(poses: Sequence[SolvedPose]) -> float:
+def out(poses: Sequence[Equilibrium]) -> float:
     """How far the farthest marker leaves the plane [m]."""
     return max(abs(float(place[2])) for pose in poses for place in pose.markers.values())
 
@@ -126,7 +126,7 @@ def along_rows(name: str, element_size: float | None) -> Iterator[str]:
 PATCH = 0.025  # the push is spread over all nodes so near to the marker [m]
 
 
-def rms(poses: Sequence[SolvedPose], targets: Sequence[Pose]) -> float:
+def rms(poses: Sequence[Equilibrium], targets: Sequence[PoseTarget]) -> float:
     """Root of the mean squared distance of the markers from their targets over all poses [m]."""
     squares = [
         np.mean([np.sum(np.subtract(pose.markers[name], place) ** 2) for name, place in target.targets.items()])

@@ -14,14 +14,14 @@ import numpy as np  # isort: skip
 from robustness import EXAMPLES, example_folders
 
 from hydrostat.robot import Robot, load_robot
-from hydrostat.simulation import Simulation, SolvedPose, loading_path
+from hydrostat.simulation import Equilibrium, Simulation, loading_path
 
 REPEATS = 5
 COMMANDS = 4
 INCREMENTS = (0.01, 0.05, 0.2, 1.0)
 
 
-def timed(robot: Robot, goal: np.ndarray) -> tuple[float, Simulation, SolvedPose]:
+def timed(robot: Robot, goal: np.ndarray) -> tuple[float, Simulation, Equilibrium]:
     """Least CPU time of a solve from rest [s], and its pose."""
     simulation, least, pose = Simulation(robot), np.inf, None
     simulation.solve(0.1 * goal)
@@ -45,7 +45,7 @@ def row(name: str, friction: float) -> str:
     assert simulation.friction is not None
     back = simulation.solve(0.5 * goal, start=held, strict=False)
     there = simulation.solve(0.5 * goal, strict=False)
-    ends = simulation.friction.resumed(held.history, held.nodes, goal).span_tensions(held.nodes, goal)
+    ends = simulation.friction.with_history(held.history, held.nodes, goal).span_tensions(held.nodes, goal)
     apart = max(float(np.linalg.norm(held.markers[marker] - free.markers[marker])) for marker in free.markers)
     loop = max(float(np.linalg.norm(back.markers[marker] - there.markers[marker])) for marker in free.markers)
     failed = sum(not pose.result.converged for pose in (free, held, back, there))

@@ -20,7 +20,7 @@ import numpy as np  # isort: skip
 import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.geometry import find_crossings, tetrahedralise
-from hydrostat.robot import Robot, gallery_folder, gallery_names
+from hydrostat.robot import Robot, gallery_folder, list_gallery
 
 
 def in_space(names: Sequence[str]) -> list[Robot]:
@@ -37,7 +37,7 @@ def meshed(robot: Robot, element_size: float) -> Robot:
     return replace(robot, body=replace(robot.body, mesh=tetrahedralise(healing.surface, element_size)))
 
 
-def rest_error(robot: Robot, pose: hs.Pose) -> float:
+def rest_error(robot: Robot, pose: hs.PoseTarget) -> float:
     """Distance of the markers from the targets of a pose while nothing pulls [m], root of the mean square."""
     places = {marker.name: marker.at for marker in robot.markers}
     squares = [np.sum(np.subtract(places[name], target) ** 2) for name, target in pose.targets.items()]
@@ -53,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     print(machine())
     print("| robot | nodes | elements | pose | at rest mm | reached mm | crosses itself | largest tension N | CPU s |")
     print("|---|---|---|---|---|---|---|---|---|")
-    for kept in in_space(options.names or gallery_names()):
+    for kept in in_space(options.names or list_gallery()):
         robot = meshed(kept, 1e-3 * options.element_size) if options.element_size else kept
         robot = replace(robot, contact=hs.Contact() if options.contact else None)
         simulation = hs.Simulation(robot)

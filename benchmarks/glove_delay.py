@@ -51,15 +51,15 @@ from hydrostat.robot import Contact, Robot
 from hydrostat.teleop import (
     BAUD,
     SENSORS,
+    CommandMapper,
     CyberGlove,
     EmulatedPerson,
-    FingertipWay,
     HandMap,
     MappedHand,
+    MarkerMapper,
     Mimicry,
     Smoothing,
-    Way,
-    WinchWay,
+    WinchMapper,
     drive,
     winch_channels,
 )
@@ -210,7 +210,7 @@ def again(ask: Callable[[], object]) -> None:
                 raise
 
 
-def measure(robot: Robot, way: Way, known: HandMap, given: argparse.Namespace) -> Told:
+def measure(robot: Robot, way: CommandMapper, known: HandMap, given: argparse.Namespace) -> Told:
     """Drive, and let the other end measure."""
     winches, random, moves, baud = winch_channels(robot), np.random.default_rng(2), given.moves, given.baud
     flexors = np.array(["flexor" in name for name in winches.names])
@@ -287,9 +287,9 @@ def main() -> None:
         known = learned(robot, simulation, tips=number > 0)
         rest = np.zeros(len(robot.winches))
         if number == 0:
-            way: Way = WinchWay(simulation, rest)
+            way: CommandMapper = WinchMapper(simulation, rest)
         else:
-            way = FingertipWay(simulation, rest, model=model, rate=0.06)
+            way = MarkerMapper(simulation, rest, model=model, rate=0.06)
         hearts = heartbeat.Hearts(first=given.first)
         told = measure(robot, way, known, given)
         stood = hearts.stop()

@@ -13,24 +13,24 @@ import numpy as np  # isort: skip
 from robustness import EXAMPLES, example_folders
 
 from hydrostat.ik import solve_ik
-from hydrostat.robot import Pose, Robot, load_robot
+from hydrostat.robot import PoseTarget, Robot, load_robot
 from hydrostat.simulation import Simulation
 
 
-def rest_error(robot: Robot, pose: Pose) -> float:
+def rest_error(robot: Robot, pose: PoseTarget) -> float:
     """Root of the mean squared distance of the targeted markers from their targets at rest [m]."""
     places = {marker.name: np.array(marker.at) for marker in robot.markers}
     return float(np.sqrt(np.mean([np.sum((places[name] - at) ** 2) for name, at in pose.targets.items()])))
 
 
-def row(folder: str, simulation: Simulation, pose: Pose) -> str:
+def row(folder: str, simulation: Simulation, pose: PoseTarget) -> str:
     """One line of the table."""
     began = time.process_time()
     reached = solve_ik(simulation, pose)
     spent = time.process_time() - began
     return (
         f"| {folder} | {pose.name} | {1e3 * rest_error(simulation.robot, pose):.2f} | {1e3 * reached.rms_error:.3f} "
-        f"| {reached.reason.name} | {reached.optimality:.0e} | {reached.iterations} | {reached.solves} "
+        f"| {reached.status.name} | {reached.optimality:.0e} | {reached.iterations} | {reached.solves} "
         f"| {1e3 * spent:.0f} |"
     )
 

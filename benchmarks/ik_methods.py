@@ -26,7 +26,7 @@ from hydrostat.robot import Point, Robot, gallery_folder
 BEGIN = 0.02
 """Share of its travel that each winch has taken in where SciPy's solvers begin."""
 
-Method = Callable[[hs.Simulation, Mapping[str, Point]], tuple[hs.SolvedPose, int]]
+Method = Callable[[hs.Simulation, Mapping[str, Point]], tuple[hs.Equilibrium, int]]
 """From physics and targets to the pose found, and how many equilibria that took."""
 
 
@@ -47,24 +47,24 @@ class Score:
     errors: list[float] = field(default_factory=list)
 
 
-def ours(simulation: hs.Simulation, targets: Mapping[str, Point]) -> tuple[hs.SolvedPose, int]:
-    found = hs.solve_ik(simulation, targets, options=hs.InverseOptions(restarts=0))
+def ours(simulation: hs.Simulation, targets: Mapping[str, Point]) -> tuple[hs.Equilibrium, int]:
+    found = hs.solve_ik(simulation, targets, options=hs.IKOptions(restarts=0))
     return found.pose, found.solves
 
 
-def least_squares(simulation: hs.Simulation, targets: Mapping[str, Point]) -> tuple[hs.SolvedPose, int]:
+def least_squares(simulation: hs.Simulation, targets: Mapping[str, Point]) -> tuple[hs.Equilibrium, int]:
     problem = Problem(simulation, targets)
     problem.least_squares(BEGIN * problem.high)
     return problem.best, problem.solves
 
 
-def differences(simulation: hs.Simulation, targets: Mapping[str, Point]) -> tuple[hs.SolvedPose, int]:
+def differences(simulation: hs.Simulation, targets: Mapping[str, Point]) -> tuple[hs.Equilibrium, int]:
     problem = Problem(simulation, targets)
     problem.least_squares(BEGIN * problem.high, differences=True)
     return problem.best, problem.solves
 
 
-def quasi_newton(simulation: hs.Simulation, targets: Mapping[str, Point]) -> tuple[hs.SolvedPose, int]:
+def quasi_newton(simulation: hs.Simulation, targets: Mapping[str, Point]) -> tuple[hs.Equilibrium, int]:
     problem = Problem(simulation, targets)
     problem.quasi_newton(BEGIN * problem.high)
     return problem.best, problem.solves

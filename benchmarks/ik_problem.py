@@ -11,9 +11,9 @@ import numpy as np  # isort: skip
 from scipy.optimize import least_squares, minimize
 
 from hydrostat.arrays import Vector
-from hydrostat.ik import MarkerGoal, moves_at, posture_at
+from hydrostat.ik import MarkerTarget, state_at, state_jacobian_at
 from hydrostat.robot import Point, Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 Answer = TypeVar("Answer")
 
@@ -33,23 +33,23 @@ def hidden_contractions(robot: Robot, count: int, seed: int) -> Iterator[Vector]
     return (draw.uniform(low, high) for _ in range(count))
 
 
-def rests(pose: SolvedPose) -> bool:
+def rests(pose: Equilibrium) -> bool:
     """Whether it is a stable equilibrium."""
     return pose.result.converged and pose.result.stable
 
 
-def hidden_poses(simulation: Simulation, count: int, seed: int) -> list[SolvedPose]:
+def hidden_poses(simulation: Simulation, count: int, seed: int) -> list[Equilibrium]:
     """The poses to which hidden contractions lead from rest; those without a stable equilibrium are left out."""
     poses = (simulation.solve(drawn, strict=False) for drawn in hidden_contractions(simulation.robot, count, seed))
     return [pose for pose in poses if rests(pose)]
 
 
-def places(pose: SolvedPose) -> dict[str, Point]:
+def places(pose: Equilibrium) -> dict[str, Point]:
     """Where all markers are [m], as targets."""
     return {name: tuple(map(float, place)) for name, place in pose.markers.items()}
 
 
-def largest_error(pose: SolvedPose, targets: Mapping[str, Point]) -> float:
+def largest_error(pose: Equilibrium, targets: Mapping[str, Point]) -> float:
     """Largest distance of a marker from its target [m], measured afresh."""
     return max(float(np.linalg.norm(pose.markers[name] - target)) for name, target in targets.items())
 
@@ -83,7 +83,7 @@ class Problem:
         simulation: Simulation,
         targets: Mapping[str, Point],
         *,
-        start: SolvedPose | None = None,
+        start: Equilibrium | None = None,
         effort: float = 0.0,
         stop: bool = True,
     ) -> None:
@@ -99,14 +99,14 @@ class Problem:
         size = simulation.robot.body.mesh.size
         self.simulation, self.targets = simulation, dict(targets)
         self.low, self.high = ranges(simulation.robot)
-        self._term = MarkerGoal(targets=self.targets).on(simulation)
+        self._term = MarkerTarget(targets=self.targets).bind(simulation)
         self._effort = effort * size / self.high
         self._size, self._enough = size, REACHED * size if stop else -1.0
         self._pose, self._lost = start or simulation.rest, False
         self._shares: Vector | None = None
         self.best, self.least, self.solves = self._pose, np.inf, 0
 
-    def objective(self, pose: SolvedPose) -> float:
+    def objective(self, pose: Equilibrium) -> float:
         """Half the squares of residual and effort in a pose [m^2]."""
         residual = self._rows_at(pose)
         return 0.5 * float(residual @ residual)
@@ -155,13 +155,15 @@ class Problem:
     def _rows(self) -> int:
         return len(self.targets) * self.simulation.robot.body.mesh.dim + len(self.low)
 
-    def _rows_at(self, pose: SolvedPose) -> Vector:
-        missed = self._term.residual(posture_at(self.simulation, pose))
+    def _rows_at(self, pose: Equilibrium) -> Vector:
+        missed = self._term.residual(state_at(self.simulation, pose))
         return np.concatenate([missed, self._effort * pose.contractions])
 
     def _matrix(self, shares: Vector) -> np.ndarray:
         self._residual(shares)
-        slopes = self._term.slopes(posture_at(self.simulation, self._pose), moves_at(self.simulation, self._pose))
+        slopes = self._term.jacobian(
+            state_at(self.simulation, self._pose), state_jacobian_at(self.simulation, self._pose)
+        )
         return np.vstack([slopes, np.diag(self._effort)]) * (self.high - self.low)
 
     def _differences(self, shares: Vector) -> np.ndarray:

@@ -22,7 +22,7 @@ import numpy as np  # isort: skip
 from sofa_robots import sofa_robots
 
 import hydrostat as hs
-from hydrostat.ik import InverseOptions, Limits
+from hydrostat.ik import IKOptions, Limits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +42,7 @@ class Task:
     left: str = "-"
 
 
-ONE, ANY = InverseOptions(), InverseOptions(unique=False)
+ONE, ANY = IKOptions(), IKOptions(min_tension=False)
 """The answer of least effort where cables are redundant, or any."""
 
 TASKS = {
@@ -92,7 +92,7 @@ def rows(name: str, task: Task, repeats: int) -> list[str]:
                 least, most = task.sofa
                 sofa = f"{least:.0f} to {most:.0f} | {task.left}"
             lines.append(
-                f"| {name} | {', '.join(f'{value:g}' for value in goal)} | {kind} | {found.reason.name} "
+                f"| {name} | {', '.join(f'{value:g}' for value in goal)} | {kind} | {found.status.name} "
                 f"| {1e3 * error:.1e} | {found.iterations} | {found.solves} | {pulls[0]:.2f} / {pulls[1]:.2f} "
                 f"| {spent:.1f} | {sofa} |"
             )

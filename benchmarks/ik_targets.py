@@ -29,8 +29,8 @@ import numpy as np  # isort: skip
 
 import hydrostat as hs
 from hydrostat.geometry import tetrahedralise, triangulate
-from hydrostat.ik import InverseReason
-from hydrostat.robot import Point, Robot, gallery_folder, gallery_names
+from hydrostat.ik import IKStatus
+from hydrostat.robot import Point, Robot, gallery_folder, list_gallery
 
 HEADS = {
     "hidden": "robot | nodes | winches | markers | poses | reached | without restarts | CPU ms | error mm | iterations "
@@ -52,12 +52,12 @@ def hidden(robot: Robot, count: int, seed: int, restarts: int) -> str:
     spent, found, first = [], [], 0
     for number, pose in enumerate(poses):
         reached, milliseconds = inverse(simulation, places(pose), 0)
-        first += reached.reason is InverseReason.REACHED
-        if restarts and reached.reason is not InverseReason.REACHED:
+        first += reached.status is IKStatus.REACHED
+        if restarts and reached.status is not IKStatus.REACHED:
             reached, milliseconds = inverse(simulation, places(pose), restarts)
-        if reached.reason is not InverseReason.REACHED:
+        if reached.status is not IKStatus.REACHED:
             error = 1e3 * max(reached.errors.values())
-            print(f"  {robot.name} {number}: {error:.3g} mm left, {reached.reason.name}", file=sys.stderr, flush=True)
+            print(f"  {robot.name} {number}: {error:.3g} mm left, {reached.status.name}", file=sys.stderr, flush=True)
         spent.append(milliseconds)
         found.append(reached)
     errors = [largest_error(each.pose, places(pose)) for each, pose in zip(found, poses, strict=True)]
@@ -86,7 +86,7 @@ def unreachable(robot: Robot, count: int, seed: int, restarts: int, compared: in
             near[_verdict(gains[0])] += 1
             far[_verdict(gains[1])] += 1
             gain = max(gain, *gains)
-    reasons = ", ".join(f"{name} {times}" for name, times in Counter(each.reason.name for each in found).items())
+    reasons = ", ".join(f"{name} {times}" for name, times in Counter(each.status.name for each in found).items())
     errors = middle([1e3 * max(each.errors.values()) for each in found], ".1f")
     return (
         f"{robot.name} | {len(found)} of {count} | {reasons} | {middle([each.optimality for each in found], '.1e')} "
@@ -118,9 +118,9 @@ def other(robot: Robot, truth: Robot, count: int, seed: int, restarts: int) -> s
     )
 
 
-def inverse(simulation: hs.Simulation, targets: Mapping[str, Point], restarts: int) -> tuple[hs.ReachedPose, float]:
+def inverse(simulation: hs.Simulation, targets: Mapping[str, Point], restarts: int) -> tuple[hs.IKResult, float]:
     """What inverse kinematics finds, and its CPU time [ms]."""
-    options = hs.InverseOptions(restarts=restarts)
+    options = hs.IKOptions(restarts=restarts)
     return timed(lambda: hs.solve_ik(simulation, targets, options=options))
 
 
@@ -132,11 +132,11 @@ def moved(targets: Mapping[str, Point], size: float, draw: np.random.Generator) 
 
 
 def gained(
-    simulation: hs.Simulation, targets: Mapping[str, Point], reached: hs.ReachedPose, begin: hs.SolvedPose | None
+    simulation: hs.Simulation, targets: Mapping[str, Point], reached: hs.IKResult, begin: hs.Equilibrium | None
 ) -> float:
     """By which share SciPy's objective is lower than ours, from a pose, or from near rest; negative if it is higher."""
     missed = float(np.sqrt(np.sum(np.square(list(reached.errors.values())))))
-    effort = min(hs.InverseOptions().effort, 0.1 * missed / simulation.robot.body.mesh.size)
+    effort = min(hs.IKOptions().effort, 0.1 * missed / simulation.robot.body.mesh.size)
     problem = Problem(simulation, targets, start=begin, effort=effort, stop=False)
     ours = problem.objective(reached.pose)
     problem.least_squares(0.02 * problem.high if begin is None else begin.contractions)
@@ -173,10 +173,10 @@ def truth(robot: Robot, kind: str) -> Robot:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("robots", nargs="*", default=gallery_names(), metavar="ROBOT")
+    parser.add_argument("robots", nargs="*", default=list_gallery(), metavar="ROBOT")
     parser.add_argument("--kind", choices=["hidden", "unreachable", "finer", "stiffer", "poisson"], default="hidden")
     parser.add_argument("--count", type=int, default=200, help="hidden contractions of each robot")
-    parser.add_argument("--restarts", type=int, default=hs.InverseOptions().restarts)
+    parser.add_argument("--restarts", type=int, default=hs.IKOptions().restarts)
     parser.add_argument("--compare", type=int, default=20, help="unreachable poses that SciPy is given too")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args(arguments)

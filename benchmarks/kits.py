@@ -14,7 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import hydrostat as hs
 from hydrostat.fabrication import KitOptions, UnbuildableError, build_kit
-from hydrostat.robot import gallery_folder, gallery_names
+from hydrostat.robot import gallery_folder, list_gallery
 
 HEAD = (
     f"{'robot':<16}{'method':<7}{'motor':<7}{'files':>6}{'MB':>7}{'checks':>8}{'problems':>9}{'warnings':>9}"
@@ -24,7 +24,7 @@ HEAD = (
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--robots", default=",".join(gallery_names()))
+    parser.add_argument("--robots", default=",".join(list_gallery()))
     parser.add_argument("--out", type=Path, help="also write the kits there")
     given = parser.parse_args()
     build_kit(hs.load_robot(gallery_folder("starfish")))

@@ -59,7 +59,7 @@ def main() -> None:
     for kind, markers in kinds_of(test.markers, finer).items():
         answers = [model.solve(dict(zip(names, map(tuple, places), strict=True))) for places in markers]
         rows = np.array([answer.contractions for answer in answers])
-        reached = simulation.solve_many(rows, jacobians=False, threads=1).markers
+        reached = simulation.solve_batch(rows, jacobians=False, threads=1).markers
         found = np.linalg.norm(reached.reshape(markers.shape) - markers, axis=-1)
         expected = np.array([list(answer.errors.values()) for answer in answers])
         doubt = np.array([list(answer.spread.values()) for answer in answers])

@@ -22,9 +22,9 @@ import numpy as np  # isort: skip
 from ik_problem import rests
 
 import hydrostat as hs
-from hydrostat.ik import InverseOptions, Tracker
+from hydrostat.ik import IKOptions, Tracker
 from hydrostat.learning import LearnedModel, load_model, read_samples, targets_of
-from hydrostat.simulation import SolvedPose
+from hydrostat.simulation import Equilibrium
 from hydrostat.studio import STRIDE
 
 MOST = 60
@@ -45,7 +45,7 @@ class Found:
     wrong: int = 0
 
 
-def missed(pose: SolvedPose, targets: Targets) -> float:
+def missed(pose: Equilibrium, targets: Targets) -> float:
     """Mean distance of markers from targets [m]."""
     return float(np.mean([np.linalg.norm(pose.markers[name] - np.array(place)) for name, place in targets.items()]))
 
@@ -128,7 +128,7 @@ def main() -> None:
     )
     print(f"{'wrong':>6}")
     Tracker(simulation).update(ways[0], seconds=1.0)  # what is compiled or made once is not counted
-    for strides, options in (("free", None), ("studio", InverseOptions(largest_step=STRIDE))):
+    for strides, options in (("free", None), ("studio", IKOptions(largest_step=STRIDE))):
         for way, known in (("alone", None), ("by networks", model)):
             print(
                 row(f"{strides}, {way}", measured(simulation, ways, given.seconds, options, known), len(ways)),
@@ -140,7 +140,7 @@ def measured(
     simulation: hs.Simulation,
     ways: Sequence[Targets],
     seconds: float,
-    options: InverseOptions | None,
+    options: IKOptions | None,
     model: LearnedModel | None,
 ) -> Found:
     """Jumps to all targets, and a drag through them."""

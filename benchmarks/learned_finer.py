@@ -28,14 +28,14 @@ from hydrostat.learning import LearnedModel, Samples, correct_model, load_model,
 
 def known(model: LearnedModel, test: Samples) -> np.ndarray:
     """How far markers are from where they are expected [m]."""
-    expected = np.array([model.expect(taken)[0][: test.markers[0].size] for taken in test.contractions])
+    expected = np.array([model.predict(taken)[0][: test.markers[0].size] for taken in test.contractions])
     return np.linalg.norm(expected.reshape(test.markers.shape) - test.markers, axis=-1)
 
 
 def rolled(model: LearnedModel, test: Samples, simulation: hs.Simulation) -> np.ndarray:
     """How far markers are from their targets in the simulator [m], at what the model answers."""
     rows = np.array([model.solve(target).contractions for target in targets_of(test)])
-    found = simulation.solve_many(rows, jacobians=False, threads=1).markers
+    found = simulation.solve_batch(rows, jacobians=False, threads=1).markers
     return np.linalg.norm(found.reshape(test.markers.shape) - test.markers, axis=-1)
 
 

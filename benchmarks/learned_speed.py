@@ -3,7 +3,7 @@
     python benchmarks/learned_speed.py build/hand.model build/test [--targets 1000] [--rounds 5]
 
 Targets are the places of all markers in samples. CPU time of this process, one thread, mean over all targets and rounds
-after one that is not counted. Rows: `model.inverted(markers)`, which gives contractions only;
+after one that is not counted. Rows: `model.predict_inverse(markers)`, which gives contractions only;
 `model.solve(targets, search=False)`, which also gives the error that the networks predict and their doubt for each
 marker; `model.solve(targets)`.
 """
@@ -42,7 +42,7 @@ def main() -> None:
     words = f"{len(model.forward)} networks; {len(test)} targets, {given.rounds} rounds"
     print(f"{model.facts['robot']}, {words}; CPU us a target")
     for name, answer, asked in (
-        ("inverse network alone", model.inverted, markers),
+        ("inverse network alone", model.predict_inverse, markers),
         ("with predicted error and doubt", lambda target: model.solve(target, search=False), targets),
         ("search on the networks", model.solve, targets),
     ):

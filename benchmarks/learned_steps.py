@@ -18,8 +18,8 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import certify, exact_steps, load_model, read_samples, targets_of
-from hydrostat.simulation import SolvedPose
+from hydrostat.learning import exact_steps, load_model, read_samples, targets_of, verify
+from hydrostat.simulation import Equilibrium
 
 ENOUGH = 1e-5
 AGAIN = "one step, rest"
@@ -46,7 +46,7 @@ def main() -> None:
     seconds, taken = dict.fromkeys(ways, 0.0), dict.fromkeys(ways, 0)
     for target in targets:
         began = time.process_time()
-        begun = certify(simulation, model, model.solve(target)).pose
+        begun = verify(simulation, model, model.solve(target)).pose
         seconds["from rest"] += time.process_time() - began
         assert begun is not None
         for name, (most, enough) in ways.items():
@@ -72,7 +72,7 @@ def main() -> None:
         print(f"{int(away.sum())} of {len(test)} answers of one step are elsewhere from rest")
 
 
-def missed(pose: SolvedPose, target: dict[str, tuple[float, ...]]) -> list[float]:
+def missed(pose: Equilibrium, target: dict[str, tuple[float, ...]]) -> list[float]:
     """Distances of markers from targets [m]; NaN where there is no equilibrium."""
     if not pose.result.converged:
         return [np.nan] * len(target)

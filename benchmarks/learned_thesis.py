@@ -25,7 +25,7 @@ def drawn(model: LearnedModel, like: Samples, count: int) -> Samples:
     """So many samples, evenly drawn, whose markers are where the networks expect them."""
     share = np.random.default_rng(0).uniform(size=(count, len(model.low)))
     rows = model.low + share * (model.high - model.low)
-    markers = np.array([model.expect(row)[0][: like.markers[0].size] for row in rows])
+    markers = np.array([model.predict(row)[0][: like.markers[0].size] for row in rows])
     return replace(like, contractions=rows, markers=markers.reshape(count, *like.markers.shape[1:]))
 
 

@@ -28,14 +28,14 @@ def prepared(body: str, poses: int) -> tuple[Simulation, np.ndarray]:
     lengths = np.zeros(len(robot.winches))
     np.maximum.at(lengths, simulation.cables.winches, simulation.cables.rest_lengths)
     goals = np.random.default_rng(0).uniform(0.0, 0.1, (poses, len(lengths))) * lengths
-    simulation.solve_many(goals[:4], threads=2)
+    simulation.solve_batch(goals[:4], threads=2)
     return simulation, goals
 
 
 def seconds(simulation: Simulation, goals: np.ndarray, threads: int) -> float:
     """Wall clock of all poses [s]."""
     began = time.perf_counter()
-    found = simulation.solve_many(goals, threads=threads)
+    found = simulation.solve_batch(goals, threads=threads)
     taken = time.perf_counter() - began
     lost = len(found) - int(found.converged.sum())
     if lost:

@@ -32,7 +32,7 @@ from hydrostat.geometry import (
     smallest_angle,
     tetrahedralise,
 )
-from hydrostat.robot import Body, gallery_folder, gallery_names, load_robot
+from hydrostat.robot import Body, gallery_folder, list_gallery, load_robot
 
 HANDS = ("cupping_hand", "extended_hand", "caging_gripper")
 
@@ -103,7 +103,7 @@ def _ring(mesh: Mesh) -> list[int]:
 
 def bodies(fine: bool) -> Iterator[tuple[str, Quality, float]]:
     """Name, quality and CPU seconds of every gallery body."""
-    for name in gallery_names():
+    for name in list_gallery():
         start = process_time()
         body = load_robot(gallery_folder(name)).body
         seconds = process_time() - start

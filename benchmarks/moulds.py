@@ -12,7 +12,7 @@ from time import process_time
 from machine import machine
 
 from hydrostat.fabrication import MouldKind, MouldOptions, make_mould
-from hydrostat.robot import Mount, gallery_folder, gallery_names, load_robot
+from hydrostat.robot import Mount, gallery_folder, list_gallery, load_robot
 
 POCKET = (40.0, 20.0, 16.0)
 
@@ -25,7 +25,7 @@ def main() -> None:
     options = MouldOptions(kind=MouldKind.SILICONE if args.silicone else MouldKind.PRINTED)
     print(machine())
     print("robot           pull                undercut  closed mould [mm]  pieces  vents  foam [cm^3]  [g]  CPU [s]")
-    for name in args.robots or gallery_names():
+    for name in args.robots or list_gallery():
         robot = load_robot(gallery_folder(name))
         pockets = {winch.name: POCKET for winch in robot.winches if winch.mount is Mount.BODY}
         start = process_time()

@@ -1,6 +1,6 @@
 """Whether contractions alone decide the pose: every example at full travel and at random contractions (E20).
 
-    python benchmarks/path_dependence.py [--branches | --random 2] [--count 12] [--seed 0] [EXAMPLE ...]
+    python benchmarks/find_equilibria.py [--branches | --random 2] [--count 12] [--seed 0] [EXAMPLE ...]
 
 Each is approached in `count` ways; a way on which no stable equilibrium was found is counted as lost. With --branches
 the branch from rest to full travel is followed instead, around its folds, and back again.
@@ -17,13 +17,13 @@ from robustness import EXAMPLES, example_folders
 
 from hydrostat.arrays import Vector
 from hydrostat.robot import load_robot
-from hydrostat.simulation import Simulation, follow_branch, path_dependence
+from hydrostat.simulation import Simulation, continue_branch, find_equilibria
 
 
 def row(folder: str, simulation: Simulation, name: str, contractions: Vector, count: int, seed: int) -> str:
     """One line of the table."""
     began = time.process_time()
-    found = path_dependence(simulation, contractions, count=count, seed=seed)
+    found = find_equilibria(simulation, contractions, count=count, seed=seed)
     spent = time.process_time() - began
     apart = "" if found.unique or not found.poses else f"{1e3 * found.largest[1]:.2f} at {found.largest[0]}"
     shares = " + ".join(str(len(pose.ways)) for pose in found.poses)
@@ -38,9 +38,9 @@ def branch_row(folder: str, simulation: Simulation) -> str:
     """One line of the table of branches."""
     rest = simulation.solve({})
     began = time.process_time()
-    there = follow_branch(simulation, rest, travels(simulation), around_folds=True)
+    there = continue_branch(simulation, rest, travels(simulation), around_folds=True)
     spent = time.process_time() - began
-    back = follow_branch(simulation, there.end, {}, around_folds=True)
+    back = continue_branch(simulation, there.end, {}, around_folds=True)
     missed = np.abs(back.end.nodes - rest.nodes).max() / simulation.robot.body.mesh.size
     folds = ", ".join(f"{100 * share:.1f}" for share in there.folds) or "none"
     again = all(abs(1 - one - other) < 1e-6 for one, other in zip(back.folds[::-1], there.folds, strict=False))

@@ -20,13 +20,13 @@ from hydrostat.simulation import BodyPhysics
 from hydrostat.studio import (
     Bell,
     Document,
-    Held,
+    HeldPoint,
     Hit,
     Jobs,
     Mode,
-    Moment,
     MuscleMover,
     Poser,
+    ProposalInput,
     Wishes,
     Work,
     held_of,
@@ -37,12 +37,12 @@ MOVES, PAUSE, START = 60, 0.005, 5.0  # moves of a drag, between two of them [s]
 SHARES = (0.1, 0.3, 0.6, 1.0)  # of the way, where a proposal is timed
 
 
-def wanted(robot: Robot) -> dict[str, Held]:
+def wanted(robot: Robot) -> dict[str, HeldPoint]:
     """What the robot's first pose holds."""
     return held_of(robot, next(iter(robot.poses)))
 
 
-def part_way(held: dict[str, Held], share: float) -> dict[str, Held]:
+def part_way(held: dict[str, HeldPoint], share: float) -> dict[str, HeldPoint]:
     """The same targets, so far on the way to them."""
     return {
         name: replace(point, target=tuple((np.array(point.at) * (1 - share) + np.array(point.target) * share).tolist()))
@@ -50,7 +50,7 @@ def part_way(held: dict[str, Held], share: float) -> dict[str, Held]:
     }
 
 
-def drag(poser: Poser, held: dict[str, Held]) -> list[tuple[float, float]]:
+def drag(poser: Poser, held: dict[str, HeldPoint]) -> list[tuple[float, float]]:
     """Wall and CPU time of each step [s], of the marker that goes farthest."""
     name = max(held, key=lambda one: float(np.linalg.norm(np.subtract(held[one].at, held[one].target))))
     poser.rest()
@@ -95,7 +95,7 @@ def proposals(robot: Robot) -> list[float]:
                 break
         nodes, tensions = mover.pulls
         began = time.perf_counter()
-        sketched(robot, Moment(held=held, nodes=nodes, tensions=tensions, wishes=Wishes()), body)
+        sketched(robot, ProposalInput(held=held, nodes=nodes, tensions=tensions, wishes=Wishes()), body)
         times.append(time.perf_counter() - began)
     return times
 

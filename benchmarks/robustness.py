@@ -128,7 +128,7 @@ def sweep(robot: Robot, count: int, *, seed: int = 0) -> Sweep:
     return result
 
 
-def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
+def fault(simulation: hs.Simulation, pose: hs.Equilibrium) -> str:
     """What is wrong with a pose, in words; empty if nothing is."""
     if not (np.isfinite(pose.nodes).all() and np.isfinite(pose.tensions).all() and np.isfinite(pose.energy)):
         return "a number is not finite"

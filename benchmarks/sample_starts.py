@@ -24,7 +24,7 @@ from scipy.stats import beta
 import hydrostat as hs
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import find_crossings
-from hydrostat.learning import LearnOptions, Lesson, Samples, linear_map, read_samples, train_forward
+from hydrostat.learning import LearnOptions, Samples, TrainingSet, linear_map, read_samples, train_forward
 
 COMPONENTS = 100
 ELSEWHERE = 1e-4
@@ -43,7 +43,7 @@ def learned(samples: Samples, nodes: np.ndarray, slopes: np.ndarray, steps: int)
     axes = np.linalg.eigh(seen.T @ seen)[1][:, -COMPONENTS:]
     unit = float(np.sqrt(np.square(moved @ axes).sum(axis=1).mean()))
     outputs = moved @ axes / unit
-    lesson = Lesson(
+    lesson = TrainingSet(
         low=low,
         high=high,
         middle=np.zeros(COMPONENTS),
@@ -70,7 +70,7 @@ def tried(simulation: hs.Simulation, samples: Samples, begin: Begin | None) -> n
         began, pose, spent = time.process_time(), None, 0
         if begin is not None:
             result = simulation.solver.relax(begin(contractions), contractions)
-            pose, spent = simulation.posed(contractions, result), result.iterations
+            pose, spent = simulation.make_pose(contractions, result), result.iterations
         if pose is None or not (pose.result.converged and pose.result.stable):
             pose = simulation.solve(contractions)
             spent += pose.result.iterations

@@ -83,7 +83,7 @@ def contact(name: str, count: int) -> dict[str, float]:
         goal = random.uniform(0, 1, len(travel)) * travel
         without, _ = cpu(lambda goal=goal: free.solve(goal, strict=False))
         taken, pose = cpu(lambda goal=goal: touching.solve(goal, strict=False))
-        ratios["touching" if hs.touches(touching, pose) else "not"].append(taken / without)
+        ratios["touching" if hs.find_contacts(touching, pose) else "not"].append(taken / without)
     return {name: median(found) for name, found in ratios.items() if found}
 
 

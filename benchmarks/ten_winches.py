@@ -34,7 +34,7 @@ from hydrostat.control import (
 )
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot, gallery_folder, load_robot
-from hydrostat.simulation import Profile, Simulation
+from hydrostat.simulation import ContractionProfile, Simulation
 
 FRAME = 0.02  # [s]
 CLOSED = 0.012  # that flexors take in [m]
@@ -47,7 +47,7 @@ LATE = 5e-3
 class TenWinches:
     """Emulated motors on a link, with the load of the cables of a robot."""
 
-    def __init__(self, robot: Robot, profile: Profile, *, live: bool = False) -> None:
+    def __init__(self, robot: Robot, profile: ContractionProfile, *, live: bool = False) -> None:
         self.pulls, self.cut = tensions_along(robot, profile), -1
         radii = [winch.spool_radius for winch in robot.winches]
         self.servos = [EmulatedServo(n, model=1240) for n in range(1, len(radii) + 1)]
@@ -93,14 +93,14 @@ class TenWinches:
         return heard, took
 
 
-def moves(robot: Robot) -> Profile:
+def moves(robot: Robot) -> ContractionProfile:
     """Open, fist, open, a finger that points, open: a key in two seconds, held for a half."""
     flexors = np.array([CLOSED * ("flexor" in winch.name) for winch in robot.winches])
     points = flexors * [winch.name != CUT for winch in robot.winches]
     keys = [0 * flexors, flexors, 0 * flexors, points, 0 * flexors]
     values = [value for key in keys for value in (key, key)]
     times = [time for count in range(len(keys)) for time in (2.0 * count, 2.0 * count + 0.5)]
-    return Profile(times=np.array(times), values=np.array(values))
+    return ContractionProfile(times=np.array(times), values=np.array(values))
 
 
 def apart(simulation: Simulation, first: np.ndarray, second: np.ndarray) -> float:
@@ -109,7 +109,7 @@ def apart(simulation: Simulation, first: np.ndarray, second: np.ndarray) -> floa
     return float(np.linalg.norm(one.nodes - two.nodes, axis=1).max())
 
 
-def by_the_clock(robot: Robot, profile: Profile, seconds: float) -> None:
+def by_the_clock(robot: Robot, profile: ContractionProfile, seconds: float) -> None:
     """Play for so long by the clock of this computer, and tell what was late, lost or stopped."""
     winches, length = TenWinches(robot, profile, live=True), float(profile.times[-1])
     winches.link.watch()

@@ -53,7 +53,7 @@ class Log:
     wrong: list[str] = field(default_factory=list)
 
 
-def curve(simulation: hs.Simulation, seconds: float, seed: int) -> list[hs.SolvedPose]:
+def curve(simulation: hs.Simulation, seconds: float, seed: int) -> list[hs.Equilibrium]:
     """The pose of every update, each begun at the one before, so that the curve does not jump."""
     low, high = ranges(simulation.robot)
     hidden = [np.zeros(len(low)), *hidden_contractions(simulation.robot, WAYPOINTS - 1, seed)]
@@ -78,7 +78,7 @@ def update(tracker: Tracker, simulation: hs.Simulation, targets: Targets, limits
         log.wrong.append(word)
 
 
-def broken(simulation: hs.Simulation, pose: hs.SolvedPose, before: Vector, limits: Limits) -> str:
+def broken(simulation: hs.Simulation, pose: hs.Equilibrium, before: Vector, limits: Limits) -> str:
     """What a pose breaks, in words; empty if nothing."""
     low, high = ranges(simulation.robot)
     if not rests(pose):
@@ -92,7 +92,7 @@ def broken(simulation: hs.Simulation, pose: hs.SolvedPose, before: Vector, limit
     return fault(simulation, pose)
 
 
-def follow(simulation: hs.Simulation, poses: Sequence[hs.SolvedPose], limits: Limits) -> tuple[Log, Log, list[float]]:
+def follow(simulation: hs.Simulation, poses: Sequence[hs.Equilibrium], limits: Limits) -> tuple[Log, Log, list[float]]:
     """Updates on the way, updates after stops, and the error that each stop ends with [m]."""
     tracker = Tracker(simulation, limits=limits)
     moving, stopped, left = Log(), Log(), []

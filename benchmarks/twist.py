@@ -130,7 +130,7 @@ class Held:
         self.carriage = physics.carriages[0]
         guide = GuideEnergy(self.carriage, place=self.begun, axes=self.begin, along=HOLD * np.eye(3), turning=0.0)
         self.simulation = Simulation(self.robot, body=physics, energies=[guide])
-        self.motion = self.simulation.still()
+        self.motion = self.simulation.motion_at_rest()
 
     def go(self, goal: Vector, step: float) -> Motion:
         """The motion one step [s] later."""

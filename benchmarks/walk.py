@@ -65,7 +65,7 @@ def puppy(friction: float) -> Robot:
 
 def walk(simulation: Simulation, gait: Gait, cycles: int, step: float = STEP) -> list[Motion]:
     """The motion at the end of every step; it ends early where the puppy has fallen."""
-    motion, motions = simulation.still(), []
+    motion, motions = simulation.motion_at_rest(), []
     count = max(1, round(gait.period / step))
     for number in range(1, cycles * count + 1):
         goal = gait.at(number * gait.period / count, len(simulation.robot.winches))
@@ -79,7 +79,9 @@ def walk(simulation: Simulation, gait: Gait, cycles: int, step: float = STEP) ->
 def tilt(simulation: Simulation, motion: Motion) -> float:
     """How far the body as a whole has turned [rad]."""
     masses = simulation.body.masses[:, None]
-    rest, now = (nodes - (masses * nodes).sum(axis=0) / masses.sum() for nodes in (simulation.body.begin, motion.nodes))
+    rest, now = (
+        nodes - (masses * nodes).sum(axis=0) / masses.sum() for nodes in (simulation.body.rest_unknowns, motion.nodes)
+    )
     spread = (masses * rest).T @ now
     return float(np.arctan2(spread[0, 1] - spread[1, 0], spread[0, 0] + spread[1, 1]))
 

@@ -26,7 +26,7 @@ from hydrostat.plot import (
     draw_trajectory,
     save_png,
 )
-from hydrostat.robot import gallery_folder, gallery_names
+from hydrostat.robot import gallery_folder, list_gallery
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 from hand_body import hand_robot
@@ -136,7 +136,7 @@ def draw_bodies() -> None:
 
 def _gallery(*, dim: int) -> list[hs.Robot]:
     """The robots of the gallery that are flat (2) or in space (3)."""
-    robots = [hs.load_robot(gallery_folder(name)) for name in gallery_names()]
+    robots = [hs.load_robot(gallery_folder(name)) for name in list_gallery()]
     return [robot for robot in robots if robot.body.mesh.dim == dim]
 
 

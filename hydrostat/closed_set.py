@@ -1,4 +1,4 @@
-"""`member`, `make_member`: texts that name one thing of a closed set, such as how a body's volume is measured."""
+"""`parse_choice`, `make_member`: texts that name one thing of a closed set, such as how a body's volume is measured."""
 
 from enum import StrEnum
 from typing import TypeVar
@@ -9,7 +9,7 @@ from hydrostat.units import quote
 _Member = TypeVar("_Member", bound=StrEnum)
 
 
-def member(kind: type[_Member], given: object, *, what: str) -> _Member:
+def parse_choice(kind: type[_Member], given: object, *, what: str) -> _Member:
     """Find the member of an enumeration that a text names; a member gives itself.
 
     Args:
@@ -38,4 +38,4 @@ def make_member(record: object, field: str, kind: type[StrEnum], *, what: str = 
     Raises:
         InputError: the text names none.
     """
-    object.__setattr__(record, field, member(kind, getattr(record, field), what=what or field))
+    object.__setattr__(record, field, parse_choice(kind, getattr(record, field), what=what or field))

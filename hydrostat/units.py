@@ -178,7 +178,7 @@ def _si(number: Decimal, factor: Decimal) -> float:
     return float(number * factor) + 0.0  # no -0.0
 
 
-def counted(number: int, noun: str) -> str:
+def plural(number: int, noun: str) -> str:
     """A number with its noun: "1 winch", "2 winches"."""
     plural = noun + ("es" if noun.endswith("ch") else "s")
     return f"{number} {noun if number == 1 else plural}"

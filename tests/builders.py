@@ -19,7 +19,7 @@ from hydrostat.robot import (
     Source,
     Winch,
     gallery_folder,
-    gallery_names,
+    list_gallery,
     load_robot,
 )
 
@@ -116,7 +116,7 @@ def box_robot() -> Robot:
 @cache
 def gallery_texts() -> dict[str, dict[str, Any]]:
     """What is written in robot.toml of each robot of the gallery; nothing is meshed."""
-    return {name: tomllib.loads((gallery_folder(name) / "robot.toml").read_text("utf-8")) for name in gallery_names()}
+    return {name: tomllib.loads((gallery_folder(name) / "robot.toml").read_text("utf-8")) for name in list_gallery()}
 
 
 @cache

@@ -17,7 +17,7 @@ def simulation() -> hs.Simulation:
 
 
 @pytest.fixture(scope="module")
-def pose(simulation: hs.Simulation) -> hs.SolvedPose:
+def pose(simulation: hs.Simulation) -> hs.Equilibrium:
     return simulation.solve({"left": 0.012})
 
 
@@ -36,7 +36,7 @@ def test_the_gallery_is_at_the_door() -> None:
 def test_another_material_keeps_the_mesh() -> None:
     robot = gallery_robot("starfish")
     soft = robot.with_material("flexfoam-it x")
-    assert soft.body.material == hs.find_material("flexfoam-it x")
+    assert soft.body.material == hs.get_material("flexfoam-it x")
     assert soft.body.mesh is robot.body.mesh
     assert robot.with_material(young=50e3).body.material.young == 50e3
     assert robot.with_material(young=50e3).body.material.name == ""
@@ -61,7 +61,7 @@ def test_a_robot_from_a_file(tmp_path: Path) -> None:
         hs.new_robot(drawing, siez=0.1)  # type: ignore[call-arg]
 
 
-def test_slopes_of_markers_are_those_of_finite_differences(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+def test_slopes_of_markers_are_those_of_finite_differences(simulation: hs.Simulation, pose: hs.Equilibrium) -> None:
     """Central differences of the markers themselves."""
     step, winch = 1e-5, 1
     ends = [simulation.solve(pose.contractions + sign * step * np.eye(3)[winch], start=pose) for sign in (1, -1)]
@@ -70,7 +70,7 @@ def test_slopes_of_markers_are_those_of_finite_differences(simulation: hs.Simula
         assert row[:, winch] == pytest.approx(measured, abs=1e-5)
 
 
-def test_strain_and_stress_of_a_pose(pose: hs.SolvedPose) -> None:
+def test_strain_and_stress_of_a_pose(pose: hs.Equilibrium) -> None:
     """Oracle: every node moved apart by a tenth along x. The closed forms of the fields are in test_colouring."""
     stretched = replace(pose, nodes=pose.robot.body.mesh.nodes * [1.1, 1.0])
     assert stretched.strains == pytest.approx(0.1, rel=1e-9)
@@ -78,30 +78,30 @@ def test_strain_and_stress_of_a_pose(pose: hs.SolvedPose) -> None:
     assert stretched.stresses == pytest.approx(mu / 1.1 * (1.1**2 - 1), rel=1e-9)
 
 
-def test_what_is_to_be_minded_is_told(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
-    assert pose.notes == ()
+def test_what_is_to_be_minded_is_told(simulation: hs.Simulation, pose: hs.Equilibrium) -> None:
+    assert pose.warnings == ()
     far = simulation.solve({"left": 0.0601, "right": -0.0101}, strict=False)
-    assert "winch right can take in from -10 to 60 mm, -10.1 mm is beyond it" in far.notes
-    assert "winch left can take in from -10 to 60 mm, 60.1 mm is beyond it" in far.notes
+    assert "winch right can take in from -10 to 60 mm, -10.1 mm is beyond it" in far.warnings
+    assert "winch left can take in from -10 to 60 mm, 60.1 mm is beyond it" in far.warnings
     nodes = pose.nodes.copy()
     nodes[np.argmin(nodes[:, 0])] = [0.2, 0.0]  # the tip of the left arm, through all of the body
-    assert any("passes through itself" in note for note in replace(pose, nodes=nodes).notes)
+    assert any("passes through itself" in note for note in replace(pose, nodes=nodes).warnings)
 
 
-def test_representations_are_short(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+def test_representations_are_short(simulation: hs.Simulation, pose: hs.Equilibrium) -> None:
     assert "left 12 mm" in repr(pose)
-    shown = [repr(pose), repr(simulation.robot), repr(simulation.still(pose))]
+    shown = [repr(pose), repr(simulation.robot), repr(simulation.motion_at_rest(pose))]
     reached = hs.solve_ik(simulation, simulation.robot.poses["wave"])
-    shown += [repr(reached), repr(simulation), repr(hs.Tracker(simulation)), repr(simulation.solve_many([{}, {}]))]
-    shown.append(repr(hs.path_dependence(simulation, {"left": 0.01}, count=2)))
-    shown.append(repr(hs.follow_branch(simulation, pose, {"left": 0.013})))
+    shown += [repr(reached), repr(simulation), repr(hs.Tracker(simulation)), repr(simulation.solve_batch([{}, {}]))]
+    shown.append(repr(hs.find_equilibria(simulation, {"left": 0.01}, count=2)))
+    shown.append(repr(hs.continue_branch(simulation, pose, {"left": 0.013})))
     shown.append(repr(hs.solve_ik_trajectory(simulation, [pose])))
     assert max(map(len, shown)) < 400
     assert all("array" not in words and "\n" not in words for words in shown)
 
 
 @pytest.mark.slow
-def test_pictures_for_notebooks(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+def test_pictures_for_notebooks(simulation: hs.Simulation, pose: hs.Equilibrium) -> None:
     assert pose.plot(title="mine").axes
     for record in (pose, simulation.robot, hs.solve_ik(simulation, simulation.robot.poses["wave"])):
         assert 'src="data:image/png;base64,iVBOR' in record._repr_html_()
@@ -132,7 +132,7 @@ MILLIMETRES = {
         "the contraction of winch .left., 20 m, is far more than the body",
     ),
     "profile": (
-        lambda s: next(s.play(hs.Profile(times=np.arange(3.0), values=np.diag([0.0, 12.0, 0.0])), 1.0, 0.1)),
+        lambda s: next(s.play(hs.ContractionProfile(times=np.arange(3.0), values=np.diag([0.0, 12.0, 0.0])), 1.0, 0.1)),
         "the contraction of winch .left., 12 m, is far more than the body",
     ),
     "travel": (
@@ -141,7 +141,7 @@ MILLIMETRES = {
     ),
     "size of a drawing": (lambda _: hs.new_robot("a.svg", size=200), "size must be at most 20 m, not 200; in metres"),
     "design": (
-        lambda s: hs.design_cables(s.robot, [hs.Pose(name="far", targets={"left": (100.0, 60.0)})]),
+        lambda s: hs.design_cables(s.robot, [hs.PoseTarget(name="far", targets={"left": (100.0, 60.0)})]),
         "the target of left is 116.4 m away from a body of 0.279 m; targets are in metres",
     ),
 }
@@ -162,7 +162,7 @@ ASTRAY = {
         lambda s: s.jacobian(hs.Simulation(gallery_robot("pig")).solve({})),
         "must be a pose of this robot",
     ),
-    "step from a pose": (lambda s: s.step(s.rest, {}, 0.01), "goes on from a motion, not from SolvedPose"),
+    "step from a pose": (lambda s: s.step(s.rest, {}, 0.01), "goes on from a motion, not from Equilibrium"),
     "play of a dict": (lambda s: s.play({"left": 0.01}, 1.0, 0.01), "by a Profile, such as Profile.ramp"),
     "design of a name": (lambda s: hs.design_cables("starfish", s.robot.poses.values()), "for a Robot, such as"),
     "design of one pose": (lambda s: hs.design_cables(s.robot, s.robot.poses["wave"]), "must be several"),
@@ -176,18 +176,21 @@ ASTRAY = {
     "nodes to start from": (lambda s: s.solve({}, start=s.rest.nodes), "start must be a solved pose, .*not ndarray"),
     "a time with a unit": (lambda s: s.solve({}, seconds="1 s"), "seconds must be above 0, not '1 s'"),
     "one number": (lambda s: s.solve(0.01), "a number for each of right, left, feet, not 0.01"),
-    "a branch from nothing": (lambda s: hs.follow_branch(s, None, {}), "must be a solved pose"),
-    "touches of nothing": (lambda s: hs.touches(s, None), "must be a solved pose"),
-    "ways": (lambda s: hs.path_dependence(s, {}, count="two"), "count must be a whole number"),
+    "a branch from nothing": (lambda s: hs.continue_branch(s, None, {}), "must be a solved pose"),
+    "touches of nothing": (lambda s: hs.find_contacts(s, None), "must be a solved pose"),
+    "ways": (lambda s: hs.find_equilibria(s, {}, count="two"), "count must be a whole number"),
     "drag": (lambda _: hs.StepOptions(drag="much"), "drag must be a number"),
-    "a profile of nothing": (lambda _: hs.Profile(times=None, values=None), "a profile needs times and a row for each"),
-    "options": (lambda s: hs.solve_ik(s, {"left": (0.0, 0.0)}, options=3), "must be InverseOptions"),
+    "a profile of nothing": (
+        lambda _: hs.ContractionProfile(times=None, values=None),
+        "a profile needs times and a row for each",
+    ),
+    "options": (lambda s: hs.solve_ik(s, {"left": (0.0, 0.0)}, options=3), "must be IKOptions"),
     "a search without physics": (lambda _: hs.solve_ik(None, {}), r"by a Simulation\(robot\), not None"),
     "a tracker without physics": (lambda _: hs.Tracker(None), r"by a Simulation\(robot\), not None"),
     "limits of a tracker": (lambda s: hs.Tracker(s, limits=3), r"limits must be Limits\(...\)"),
     "a model of a tracker": (lambda s: hs.Tracker(s, model="a.model"), "one that load_model gives, not 'a.model'"),
     "steps of a tracker": (lambda s: hs.Tracker(s).update({"left": (0.0, 0.0)}, seconds="1"), "above 0, not '1'"),
-    "no material": (lambda _: hs.find_material(None), "found by its name"),
+    "no material": (lambda _: hs.get_material(None), "found by its name"),
     "points of a cable": (lambda _: hs.Cable(winch="a", points=None), "points must hold at least 2 points"),
     "a winch without a name": (lambda _: hs.Winch(name=3, at=(0.0, 0.0)), "name must be a text, not 3"),
     "friction": (lambda _: hs.Contact(friction="a"), "friction must be a number"),
@@ -196,7 +199,7 @@ ASTRAY = {
     "gravity": (lambda s: replace(s.robot, gravity=9.81), "gravity must be"),
     "where to save": (lambda s: hs.save_robot(s.robot, None), "kept in a folder, not None"),
     "what to save": (lambda _: hs.save_robot(None, "x"), "of a Robot, such as load_robot gives, not None"),
-    "where to build": (lambda s: hs.export_kit(s.robot, None), "a kit is written into a folder, not None"),
+    "where to build": (lambda s: hs.write_kit(s.robot, None), "a kit is written into a folder, not None"),
     "options of a kit": (lambda s: hs.build_kit(s.robot, options=3), "options must be KitOptions"),
     "cloth": (lambda _: hs.PatternOptions(seam_allowance="8 mm"), "seam_allowance must be a number in mm"),
     "another's pose": (
@@ -231,7 +234,7 @@ def test_a_search_ends_in_time_and_tells_how_it_goes(simulation: hs.Simulation) 
     assert [step for step, _ in told] == list(range(1, len(told) + 1))
     assert told[0][1] > told[-1][1] > 0.3
     cut = hs.solve_ik(simulation, away, seconds=1e-9)
-    assert cut.reason == "time limit reached"
+    assert cut.status == "time limit reached"
     assert cut.iterations < whole.iterations
     assert cut.pose.result.converged
     with pytest.raises(hs.InputError, match="seconds must be above 0, not 0"):
@@ -246,10 +249,10 @@ def test_what_progress_raises_ends_the_search(simulation: hs.Simulation) -> None
         hs.solve_ik(simulation, {"left": (0.5, 0.5)}, progress=enough)
 
 
-def test_places_may_be_arrays(simulation: hs.Simulation, pose: hs.SolvedPose) -> None:
+def test_places_may_be_arrays(simulation: hs.Simulation, pose: hs.Equilibrium) -> None:
     """As markers of a pose are; a tracker compares the targets of one update with those of the last."""
     reached = hs.solve_ik(simulation, {"left": pose.markers["left"]}, start=pose)
     assert reached.errors["left"] < 1e-6
     assert reached.target is not None
-    assert reached.target == hs.Pose(name="target", targets={"left": tuple(pose.markers["left"].tolist())})
+    assert reached.target == hs.PoseTarget(name="target", targets={"left": tuple(pose.markers["left"].tolist())})
     assert simulation.solve([0.0, 0.012, 0.0]).contractions.tolist() == pose.contractions.tolist()

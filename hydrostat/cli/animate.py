@@ -11,7 +11,7 @@ from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result
 from hydrostat.cli.options import PictureWidth, check_width
 from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.plot import Film, Stop
@@ -72,10 +72,10 @@ def animate(
         made = film(simulation, stops, seconds=length, tell=tell)
         with result_folder(out) as folder:
             files = [out / _write(simulation, made, folder, kind, width, tell).name for kind in formats]
-    print(f"{counted(len(made.frames), 'frame')}, {length:g} s: rest, {', '.join(stop.name for stop in stops)}, rest")
+    print(f"{plural(len(made.frames), 'frame')}, {length:g} s: rest, {', '.join(stop.name for stop in stops)}, rest")
     if made.missing:
         print(
-            f"note: {counted(len(made.missing), 'frame')} without an equilibrium, the first after "
+            f"note: {plural(len(made.missing), 'frame')} without an equilibrium, the first after "
             f"{made.missing[0] * made.step:.1f} s; the frame before stands in their place"
         )
     print("Wrote " + ", ".join(str(file) for file in files))

@@ -12,7 +12,7 @@ from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.simulation import Branch, PathDependence, Simulation
+    from hydrostat.simulation import Branch, Multistability, Simulation
 
 
 def branches(
@@ -29,7 +29,7 @@ def branches(
 
     Example: hydrostat branches examples/robot --contract left=60mm --contract right=60mm --out build/branches
     """
-    from hydrostat.simulation import path_dependence
+    from hydrostat.simulation import find_equilibria
 
     require_folder(out)
     loaded = read_robot(robot)
@@ -40,7 +40,7 @@ def branches(
         raise InputError(f"--starts {starts}: must be at least 1; 16 are enough for most robots")
     simulation = prepared(loaded)
     with progress_bar() as tell:
-        found = path_dependence(simulation, given, count=starts, seed=seed, progress=tell)
+        found = find_equilibria(simulation, given, count=starts, seed=seed, progress=tell)
     followed = _follow(simulation, found)
     files = _write(simulation, found, followed, out)
     print(*found.lines(), sep="\n")
@@ -51,23 +51,23 @@ def branches(
         raise typer.Exit(1)
 
 
-def _follow(simulation: "Simulation", found: "PathDependence") -> "list[tuple[str, Branch]]":
+def _follow(simulation: "Simulation", found: "Multistability") -> "list[tuple[str, Branch]]":
     """The branch from rest, and of each pose that is not on it the branch back; none with friction."""
-    from hydrostat.simulation import follow_branch, largest_distance
+    from hydrostat.simulation import continue_branch, largest_distance
 
     if found.friction:
         return []
-    first = follow_branch(simulation, simulation.solve({}), found.contractions, around_folds=True)
+    first = continue_branch(simulation, simulation.solve({}), found.contractions, around_folds=True)
     followed = [("from rest", first)]
     for number, one in enumerate(found.poses, 1):
         if not first.arrived or largest_distance(first.end.nodes, one.pose.nodes) > found.near:
-            back = follow_branch(simulation, one.pose, {}, around_folds=True)
+            back = continue_branch(simulation, one.pose, {}, around_folds=True)
             followed.append((f"back from pose {number}", back))
     return followed
 
 
 def _write(
-    simulation: "Simulation", found: "PathDependence", followed: "list[tuple[str, Branch]]", out: Path
+    simulation: "Simulation", found: "Multistability", followed: "list[tuple[str, Branch]]", out: Path
 ) -> list[Path]:
     from hydrostat.plot import draw_branches, save_png
     from hydrostat.robot import replace_file, robot_hash

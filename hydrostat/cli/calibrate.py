@@ -9,13 +9,13 @@ import typer
 from hydrostat.cli.folders import OwnRobotFolder, folder_of, require_writable
 from hydrostat.cli.waiting import one_interrupt, patiently, read_robot
 from hydrostat.errors import InputError
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from hydrostat.arrays import Vector
-    from hydrostat.control import Bus, Calibration, SpoolCurve, TakenUp, WinchPull
+    from hydrostat.control import Bus, Calibration, SlackCalibration, SpoolCurve, WinchPull
     from hydrostat.robot import Robot
 
 PAGE = "calibration.html"
@@ -93,7 +93,7 @@ def _chosen(spools: str, robot: "Robot") -> list[int]:
 
 def _take_up(
     kind: str, bus: "Bus", file: Path, calibration: "Calibration", model: "Sequence[WinchPull]"
-) -> "tuple[tuple[TakenUp, ...], Vector]":
+) -> "tuple[tuple[SlackCalibration, ...], Vector]":
     """What is found on each winch, saved as soon as it is, and the constants of the motors."""
     import numpy as np
 
@@ -101,9 +101,9 @@ def _take_up(
 
     known = {motor.winch: motor for motor in calibration.motors}
     facts = bus.identify()
-    print(f"{kind}: {counted(len(facts), 'motor')} answered; they turn now, one after the other", flush=True)
+    print(f"{kind}: {plural(len(facts), 'motor')} answered; they turn now, one after the other", flush=True)
 
-    def save(taken: "TakenUp") -> None:
+    def save(taken: "SlackCalibration") -> None:
         before, known[taken.motor.winch] = known[taken.motor.winch], taken.motor
         control.write_calibration(file.parent, control.Calibration(tuple(known.values())), name=file.name)
         words = f"{1e3 * taken.slack:z.1f} mm taken up, measured {1e3 * taken.apart:.2f} mm apart"
@@ -177,7 +177,7 @@ def _tell(
     kind: str,
     file: Path,
     robot: "Robot",
-    found: "Sequence[TakenUp]",
+    found: "Sequence[SlackCalibration]",
     model: "Sequence[WinchPull]",
     constants: "Vector",
     curves: "Sequence[SpoolCurve]",

@@ -7,7 +7,7 @@ import typer
 from hydrostat.cli.folders import RobotFolder
 from hydrostat.cli.waiting import patiently, read_robot
 from hydrostat.errors import InputError
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.robot import Body, Robot
@@ -39,14 +39,14 @@ def check(
     for line in _body_lines(found.body):
         print(line)
     parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}
-    counts = ", ".join(counted(len(entries), noun) for noun, entries in parts.items())
+    counts = ", ".join(plural(len(entries), noun) for noun, entries in parts.items())
     print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
     if words := face_words(found):
         print(f"cables: {words}")
     if found.cables:
-        from hydrostat.design import craft_of
+        from hydrostat.design import build_effort
 
-        print(f"to build its network: {craft_of(found, ())}; more if poses ask for stronger ones")
+        print(f"to build its network: {build_effort(found, ())}; more if poses ask for stronger ones")
     if filled:
         _print_filled(found)
     elif words and thorough:
@@ -62,16 +62,16 @@ def check(
 
 def _print_judgement(robot: "Robot") -> None:
     """What is to be said before a robot is built, as the studio says it: whatever its poses ask of motors."""
-    from hydrostat.design import Constraints, Finding, Weight, judgement_of
+    from hydrostat.design import Constraints, Diagnostic, Severity, review_robot
     from hydrostat.robot import in_words
 
-    found = [Finding(text=text, weight=Weight.REFUSED, places=()) for text in print_sewing(robot.body)]
-    found += judgement_of(robot, constraints=Constraints())
+    found = [Diagnostic(text=text, weight=Severity.REFUSED, places=()) for text in print_sewing(robot.body)]
+    found += review_robot(robot, constraints=Constraints())
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
-    refused, risky = (sum(one.weight is weight for one in found) for weight in (Weight.REFUSED, Weight.MIND))
+    refused, risky = (sum(one.weight is weight for one in found) for weight in (Severity.REFUSED, Severity.MIND))
     good = "Nothing is wrong" if robot.cables else "Nothing is wrong with the body"
-    wrong = f"{counted(refused, 'thing')} cannot be built" if refused else good
+    wrong = f"{plural(refused, 'thing')} cannot be built" if refused else good
     minded = f", {risky} risky" if risky else ""
     missing = "" if robot.cables else "; there are no cables yet"
     print(f"{wrong}{minded}{missing}.")
@@ -154,10 +154,10 @@ def _print_filled(robot: "Robot") -> None:
 
 def _pulled(robot: "Robot") -> list[Any]:
     """Contractions of all winches, for each pose."""
-    from hydrostat.ik import InverseOptions, solve_ik
+    from hydrostat.ik import IKOptions, solve_ik
     from hydrostat.simulation import Simulation
 
-    simulation, once = Simulation(robot), InverseOptions(restarts=0)
+    simulation, once = Simulation(robot), IKOptions(restarts=0)
     return [solve_ik(simulation, pose, options=once).pose.contractions for pose in robot.poses.values()]
 
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
-from hydrostat.cli.design_wishes import TypedRequest, asked_of
+from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.design import DesignRequest, Network
@@ -151,7 +151,7 @@ def design(
     Example: hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """
     require_folder(out)
-    typed = TypedRequest(
+    typed = DesignArguments(
         poses=pose or [],
         winches=winches,
         cables=cables,
@@ -177,7 +177,7 @@ def design(
     )
     began = time.perf_counter()
     source = read_robot(robot)
-    request = asked_of(source, typed)
+    request = parse_request(source, typed)
     network, made = _search(source, request, out, kit=kit)
     print_poses(network, time.perf_counter() - began)
     _tell_count(network, request)
@@ -216,7 +216,7 @@ def _tell_count(network: "Network", request: "DesignRequest") -> None:
 
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
-        words = f"{counted(request.winches, 'winch')} and {counted(request.cables, 'cable')}"
+        words = f"{plural(request.winches, 'winch')} and {plural(request.cables, 'cable')}"
         print(f"of at most {words}: more would not help, or could not be built")
     if request.winches == AUTO:
         print_front(network)

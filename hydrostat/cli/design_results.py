@@ -10,7 +10,7 @@ from hydrostat.errors import InputError
 if TYPE_CHECKING:
     from hydrostat.design import Constraints, Network
     from hydrostat.fabrication import Kit
-    from hydrostat.ik import ReachedPose
+    from hydrostat.ik import IKResult
     from hydrostat.robot import Robot
 
 STALE = r"alternatives/\d+_\d+_winches_\d+_cables"  # folders of alternatives of an earlier design
@@ -34,10 +34,10 @@ def write_results(network: "Network", folder: Path) -> None:
 
 def write_kit(network: "Network", folder: Path) -> "Kit":
     """The fabrication kit, in which what cannot be built well is told; its poses keep to the design's tension."""
-    from hydrostat.fabrication import KitOptions, export_kit
+    from hydrostat.fabrication import KitOptions, write_kit
 
     options = KitOptions(force=True, tension=network.constraints.tension_limit)
-    return export_kit(network.robot, folder, options=options)
+    return write_kit(network.robot, folder, options=options)
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:
@@ -76,14 +76,14 @@ def print_poses(network: "Network", seconds: float) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import craft_of, rest_error
+    from hydrostat.design import build_effort, rest_error
     from hydrostat.geometry import find_crossings
-    from hydrostat.ik import left_free
+    from hydrostat.ik import unconstrained_motion
     from hydrostat.robot import face_words
-    from hydrostat.units import counted
+    from hydrostat.units import plural
 
     robot = network.robot
-    size = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
+    size = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
     table = Table(title=f"{robot.name}: {size}", title_justify="left")
     for name, justify in (("pose", "left"), ("rms error", "right"), ("worst marker", "left"), ("contractions", "left")):
         table.add_column(name, justify=justify)  # type: ignore[arg-type]
@@ -93,14 +93,14 @@ def print_poses(network: "Network", seconds: float) -> None:
     for reached in network.reached:
         if words := str(find_crossings(robot.body.mesh, reached.pose.nodes)):
             print(f"{reached.wanted.name}: {words}")
-        if words := left_free(reached):
+        if words := unconstrained_motion(reached):
             print(f"{reached.wanted.name}: {words}")
     print(
         f"rms error: {1e3 * rest_error(network):.2f} mm at rest -> {1e3 * network.rms_error:.2f} mm reached in the "
         f"model, {1e3 * network.built:.2f} mm to be expected once built; "
-        f"{counted(network.tried, 'network')} tried in {seconds:.1f} s"
+        f"{plural(network.tried, 'network')} tried in {seconds:.1f} s"
     )
-    print(f"to build it: {craft_of(robot, network.reached)}")
+    print(f"to build it: {build_effort(robot, network.reached)}")
     if words := face_words(robot):
         print(f"cables: {words}")
     _print_filled(network)
@@ -110,17 +110,17 @@ def print_poses(network: "Network", seconds: float) -> None:
 def _print_findings(network: "Network") -> None:
     """What a kit would be refused for, and what is risky, by the loads that the design found."""
     from hydrostat.cli.check import FINDINGS
-    from hydrostat.design import judgement_of
+    from hydrostat.design import review_robot
     from hydrostat.fabrication import demand_of
     from hydrostat.robot import in_words
 
-    for finding in judgement_of(network.robot, demand=demand_of(network.robot, network.reached)):
+    for finding in review_robot(network.robot, demand=demand_of(network.robot, network.reached)):
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
 
 
 def _print_filled(network: "Network") -> None:
     """What is reached on the filled body, if that was asked for."""
-    from hydrostat.units import counted
+    from hydrostat.units import plural
 
     filled = network.filled
     if filled is None:
@@ -128,7 +128,7 @@ def _print_filled(network: "Network") -> None:
             print("filled: a pose has no equilibrium there")
         return
     print(
-        f"filled, the best of {counted(filled.finalists, 'network')}: {1e3 * filled.rms_error:.2f} mm with commands of "
+        f"filled, the best of {plural(filled.finalists, 'network')}: {1e3 * filled.rms_error:.2f} mm with commands of "
         f"its own ({1e3 * filled.played:.2f} mm with those above), markers up to {1e3 * filled.out:.1f} mm out of the "
         "plane"
     )
@@ -156,7 +156,7 @@ def print_front(network: "Network") -> None:
     Console().print(table)
 
 
-def _pose_row(robot: "Robot", reached: "ReachedPose") -> tuple[str, ...]:
+def _pose_row(robot: "Robot", reached: "IKResult") -> tuple[str, ...]:
     worst = max(reached.errors, key=lambda name: reached.errors[name])
     taken = zip(robot.winches, reached.pose.contractions, strict=True)
     return (

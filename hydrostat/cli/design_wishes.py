@@ -6,16 +6,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hydrostat.cli.options import asked, positive
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.design import Constraints, DesignRequest, RouteOptions, TreeOptions, Uncertainty
+    from hydrostat.design import BuildTolerances, Constraints, DesignRequest, RouteOptions, TreeOptions
     from hydrostat.robot import Robot
 
 
 @dataclass(frozen=True, kw_only=True)
-class TypedRequest:
+class DesignArguments:
     """What a design is asked on the command line, as text; None where the file or the default counts."""
 
     poses: Sequence[str] = ()
@@ -42,12 +42,12 @@ class TypedRequest:
     lock_cable: Sequence[str] = ()
 
 
-def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
+def parse_request(robot: "Robot", typed: DesignArguments) -> "DesignRequest":
     """The request that was typed, for a robot (InputError: what cannot be asked, of anyone or of this robot)."""
     from hydrostat.design import DesignMethod, DesignRequest
 
     winches = _winch_count(typed.winches)
-    method = None if typed.method is None else member(DesignMethod, typed.method, what="method")
+    method = None if typed.method is None else parse_choice(DesignMethod, typed.method, what="method")
     given = {"winches": winches, "cables": typed.cables, "method": method}
     given = {name: value for name, value in given.items() if value is not None}
     poses = [robot.pose(name) for name in typed.poses] or list(robot.poses.values())
@@ -70,16 +70,16 @@ def _winch_count(text: str | None) -> int | str | None:
     return int(text) if text is not None and text.isascii() and text.isdigit() and len(text) < 4 else text
 
 
-def _uncertainty(robot: "Robot", typed: TypedRequest) -> "Uncertainty | None":
+def _uncertainty(robot: "Robot", typed: DesignArguments) -> "BuildTolerances | None":
     """The tolerances that are asked for; None for the usual ones."""
-    from hydrostat.design import Uncertainty, read_uncertainty
+    from hydrostat.design import BuildTolerances, read_uncertainty
 
     if typed.as_modelled:
-        return Uncertainty.none()
+        return BuildTolerances.none()
     return None if typed.file is None else read_uncertainty(typed.file, robot)
 
 
-def _constraints(robot: "Robot", typed: TypedRequest) -> "Constraints":
+def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
     """The constraints of a file, with those of the command line before them."""
     from hydrostat.design import Constraints, read_constraints
     from hydrostat.units import FORCE, LENGTH
@@ -101,14 +101,14 @@ def _constraints(robot: "Robot", typed: TypedRequest) -> "Constraints":
     return replace(constraints, **{name: value for name, value in given.items() if value is not None})
 
 
-def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteOptions | TreeOptions | None":
+def _options(typed: DesignArguments, *, trees: bool, open_winches: bool) -> "RouteOptions | TreeOptions | None":
     """Options of the method; None for its usual ones."""
     from hydrostat.design import FibreKind, RouteOptions, TreeOptions
     from hydrostat.units import LENGTH
 
     if typed.tolerance is not None and not open_winches:
         raise InputError("--tolerance is for --winches auto, which finds the fewest winches that keep it")
-    fibres = None if typed.fibres is None else member(FibreKind, typed.fibres, what="--fibres")
+    fibres = None if typed.fibres is None else parse_choice(FibreKind, typed.fibres, what="--fibres")
     for name, given in (("fibres", typed.fibres), ("knob", typed.knobs)):
         if given and not trees:
             raise InputError(f"--{name} is for --method trees; routes are priced by the pose error")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
-    from hydrostat.teleop import DriveLoop, DriveSource, Way
+    from hydrostat.teleop import CommandMapper, DriveLoop, DriveSource
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the motors to the next [s]: on a terminal, and where lines are kept
 BAR = 24  # letters of a full bar
@@ -79,7 +79,7 @@ def drive(
         asked: DriveSource | None = None
         motors: Motors | None = None
         try:
-            wearer = teleop.Wearer(teleop.winch_channels(loaded))
+            wearer = teleop.EmulatedHand(teleop.winch_channels(loaded))
             asked = teleop.open_source(source, way.channels, learned, wearer, smoothing=smooth)
             motors = _motors(folder_of(robot), loaded, port, way)
             shown = _Shown(kind, motors)
@@ -92,7 +92,7 @@ def drive(
             way.close()
 
 
-def _run(shown: "_Shown", what: str, way: "Way", source: "DriveSource", seconds: float) -> None:
+def _run(shown: "_Shown", what: str, way: "CommandMapper", source: "DriveSource", seconds: float) -> None:
     """DriveLoop, and say how it ended."""
     from hydrostat import teleop
 
@@ -108,18 +108,18 @@ def _run(shown: "_Shown", what: str, way: "Way", source: "DriveSource", seconds:
     shown.end("ended")
 
 
-def _way(simulation: "Simulation", networks: "LearnedModel | None", *, tips: bool, guarded: bool) -> "Way":
+def _way(simulation: "Simulation", networks: "LearnedModel | None", *, tips: bool, guarded: bool) -> "CommandMapper":
     """From what is asked for to contractions, from where the body is at rest."""
     from hydrostat import control, teleop
 
     begin = teleop.winch_channels(simulation.robot).rest
     if tips:
         rate = control.LinkLimits().speed if guarded else control.FASTEST
-        return teleop.FingertipWay(simulation, begin, model=networks, rate=rate)
-    return teleop.WinchWay(simulation, begin, solves=guarded)
+        return teleop.MarkerMapper(simulation, begin, model=networks, rate=rate)
+    return teleop.WinchMapper(simulation, begin, solves=guarded)
 
 
-def _motors(folder: Path, robot: "Robot", port: str | None, way: "Way") -> "Motors":
+def _motors(folder: Path, robot: "Robot", port: str | None, way: "CommandMapper") -> "Motors":
     """The motors, armed."""
     from hydrostat import control
 

@@ -12,9 +12,9 @@ from hydrostat.cli.design_results import designed_tension
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import asked, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.fabrication import Kit, KitOptions
@@ -72,12 +72,12 @@ def fabricate(
     from hydrostat.units import FORCE
 
     require_folder(out)
-    kind = member(kits.MouldKind, mould or "printed", what="--mould")
+    kind = parse_choice(kits.MouldKind, mould or "printed", what="--mould")
     options = kits.KitOptions(
-        method=None if method is None else member(kits.Method, method, what="--method"),
+        method=None if method is None else parse_choice(kits.Method, method, what="--method"),
         motor=motor,
         mould=kits.MouldOptions(kind=kind, bed=_lengths("--bed", bed)),
-        paper=member(kits.Paper, paper, what="--paper"),
+        paper=parse_choice(kits.Paper, paper, what="--paper"),
         pattern=kits.PatternOptions(seam_allowance=_millimetres("--seam", seam)),
         parts=kits.PartOptions(cable=_millimetres("--line", line), clearance=_millimetres("--clearance", clearance)),
         step=step,
@@ -113,7 +113,7 @@ def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
     except UnbuildableError as error:
         for reason in error.reasons:
             print(f"cannot be built: {in_words(reason)}")
-        count = counted(len(error.reasons), "reason")
+        count = plural(len(error.reasons), "reason")
         words = f"{folder}: cannot be built well, for {count}; mend it, or write it anyway with --force"
         raise InputError(words) from None
 

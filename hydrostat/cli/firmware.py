@@ -9,7 +9,7 @@ import typer
 from hydrostat.cli.folders import OutFolder, RobotFolder
 from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -70,7 +70,7 @@ def firmware(
     given = control.Calibration(tuple(replace(each, counts=new or each.counts or usual) for each in given.motors))
     ports = port.split(",") if port else []
     if ports and len(ports) != given.boards:
-        raise InputError(f"--port {port}: {counted(given.boards, 'board')} need a port each, with commas between them")
+        raise InputError(f"--port {port}: {plural(given.boards, 'board')} need a port each, with commas between them")
     places = [out if given.boards == 1 else out / f"board_{number}" for number in range(1, given.boards + 1)]
     build.check_ports(ports)
     shown = ", ".join(dict.fromkeys(f"{each.counts:g}" for each in given.motors))
@@ -119,7 +119,7 @@ def _tell(kind: str, number: int, given: "Calibration") -> None:
 
     motors = sorted((given.motors[place] for place in given.places(number)), key=lambda one: one.number)
     name = kind if given.boards == 1 else f"board {number}, {kind}"
-    print(f"{name}: {counted(len(motors), 'motor')}, wired so (driver's PWM, direction, encoder A and B, current):")
+    print(f"{name}: {plural(len(motors), 'motor')}, wired so (driver's PWM, direction, encoder A and B, current):")
     for each, pins in zip(motors, board_kind(kind).wiring, strict=False):
         print(f"  {each.number} {each.winch}: {', '.join(pins)}")
 

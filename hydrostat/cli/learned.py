@@ -9,8 +9,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hydrostat.learning import LearnedModel
-    from hydrostat.robot import Pose, Robot
-    from hydrostat.simulation import Simulation, SolvedPose
+    from hydrostat.robot import PoseTarget, Robot
+    from hydrostat.simulation import Equilibrium, Simulation
 
 
 def read_model(path: Path, robot: "Robot") -> "tuple[LearnedModel, Robot]":
@@ -27,13 +27,13 @@ def read_model(path: Path, robot: "Robot") -> "tuple[LearnedModel, Robot]":
     return model, robot
 
 
-def learned_start(simulation: "Simulation", model: "LearnedModel", target: "Pose") -> "SolvedPose | None":
+def learned_start(simulation: "Simulation", model: "LearnedModel", target: "PoseTarget") -> "Equilibrium | None":
     """The pose that a model's answer leads to, and a line about it; None where that is no equilibrium."""
-    from hydrostat.learning import certify
+    from hydrostat.learning import verify
 
-    found = certify(simulation, model, model.solve(target))
+    found = verify(simulation, model, model.solve(target))
     expected = _root_mean_square(found.errors)
-    words = f"networks expect an rms error of {1e3 * expected:.2f} mm, with a doubt of {1e3 * found.doubt:.2f} mm"
+    words = f"networks expect an rms error of {1e3 * expected:.2f} mm, with a doubt of {1e3 * found.uncertainty:.2f} mm"
     if found.certified is None:
         print(f"{target.name}: {words}; there the simulator says: {found.reason}")
         return None

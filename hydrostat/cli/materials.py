@@ -15,10 +15,10 @@ def materials(
 
     Example: hydrostat materials "ecoflex 00-30"
     """
-    from hydrostat.robot import MATERIALS, find_material
+    from hydrostat.robot import MATERIALS, get_material
 
     if name is not None:
-        _print_one(find_material(name))
+        _print_one(get_material(name))
         return
     width = max(map(len, MATERIALS))
     print(f"{'':<{width}}  {'kg/m^3':>7}  {'Young':>9}  {'Poisson':>7}  range")

@@ -52,7 +52,7 @@ def mimic(
         raise InputError(f"--poses {poses}: errors are known from 4 on")
     require_folder(out)
     loaded = read_robot(robot)
-    wearer = teleop.Wearer(teleop.winch_channels(loaded))
+    wearer = teleop.EmulatedHand(teleop.winch_channels(loaded))
     wearer.waves, emulated = False, glove == teleop.EMULATED
     hand = teleop.open_hand(glove, wearer)
     try:
@@ -124,7 +124,7 @@ class _Session:
         robot, self._simulation, self._hand = simulation.robot, simulation, hand
         self.kind = "simulated" if port is None else port.partition(":")[0]
         rest = teleop.winch_channels(robot).rest
-        self._way = teleop.WinchWay(simulation, rest, solves=port is not None)
+        self._way = teleop.WinchMapper(simulation, rest, solves=port is not None)
         try:
             self.motors = control.Motors(robot.winches, control.SimulatedLink(rest))
             if port is not None:
@@ -148,7 +148,7 @@ class _Session:
     def beat(self) -> None:
         """Tell the motors that somebody is there."""
         self.motors.drive(time.monotonic())
-        self._way.see(self.motors.places)
+        self._way.observe(self.motors.places)
 
     def go(self, contractions: "Vector", out: Path, *, drawn: bool) -> None:
         """Take a pose, and draw it if nobody could see it otherwise."""

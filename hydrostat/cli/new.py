@@ -16,7 +16,7 @@ from hydrostat.cli.check import FINDINGS, print_sewing
 from hydrostat.cli.options import asked, positive
 from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.geometry import Inner
@@ -103,10 +103,10 @@ def _of_option(error: InputError) -> InputError:
 
 
 def _inner(given: str | None) -> "Inner | None":
-    from hydrostat.closed_set import member
+    from hydrostat.closed_set import parse_choice
     from hydrostat.geometry import Inner
 
-    return None if given is None else member(Inner, given, what="--inner")
+    return None if given is None else parse_choice(Inner, given, what="--inner")
 
 
 def _robot_name(folder: Path) -> str:
@@ -205,7 +205,7 @@ def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "Ne
     shapes = bounded(count, file=source, words="reading the drawing ...", seconds=seconds)
     if not shapes:
         return wish
-    what = f"The drawing has {counted(shapes, 'closed shape')} within the body."
+    what = f"The drawing has {plural(shapes, 'closed shape')} within the body."
     drawn = typer.confirm(f"{what} Drawn on it, such as an eye (y), or cut through it, as a hole (n)?", default=True)
     return replace(wish, inner=Inner.DRAWN if drawn else Inner.HOLES)
 

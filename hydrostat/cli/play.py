@@ -14,11 +14,11 @@ import typer
 from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.control import Motors, Player
-    from hydrostat.simulation import Profile
+    from hydrostat.simulation import ContractionProfile
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: on a terminal, and where lines are kept
 
@@ -68,7 +68,7 @@ def play(
             motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
         try:
             often = {0: "until it is stopped", 1: "once"}.get(loop, f"{loop} times")
-            seconds, winches = float(table.profile.times[-1]), counted(len(motors.names), "winch")
+            seconds, winches = float(table.profile.times[-1]), plural(len(motors.names), "winch")
             _say(kind, f"{moves} on {loaded.name}, {winches}: {seconds:.2f} s, {often}, at {speed:g}x")
             _play(kind, motors, table.profile, player)
         finally:
@@ -76,7 +76,7 @@ def play(
     _say(kind, f"played; the motors hold at {_places(motors)}")
 
 
-def _play(kind: str, motors: "Motors", profile: "Profile", player: "Player") -> None:
+def _play(kind: str, motors: "Motors", profile: "ContractionProfile", player: "Player") -> None:
     """Play, and say how it was stopped, if it was."""
     import numpy as np
 

@@ -16,9 +16,9 @@ from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
     from hydrostat.geometry import Outline
-    from hydrostat.ik import Limits, ReachedPose
-    from hydrostat.robot import Pose, Robot
-    from hydrostat.simulation import Simulation, SolvedPose
+    from hydrostat.ik import IKResult, Limits
+    from hydrostat.robot import PoseTarget, Robot
+    from hydrostat.simulation import Equilibrium, Simulation
 
 
 def pose(
@@ -51,7 +51,7 @@ def pose(
 
     Example: hydrostat pose examples/starfish --pose wave --out build/wave
     """
-    from hydrostat.ik import InverseOptions, InverseReason, ShapeGoal, drawn_pose, solve_ik
+    from hydrostat.ik import IKOptions, IKStatus, ShapeTarget, load_target_outline, solve_ik
     from hydrostat.simulation import Simulation
     from hydrostat.units import TIME
 
@@ -59,10 +59,10 @@ def pose(
     limits, patience = pose_limits(tension, equal), asked("--within", within, TIME)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
-    options = InverseOptions() if restarts is None else InverseOptions(restarts=restarts)
+    options = IKOptions() if restarts is None else IKOptions(restarts=restarts)
     loaded = read_robot(robot)
-    outline = None if drawing is None else drawn_pose(loaded, drawing)
-    wishes = [] if outline is None else [ShapeGoal(outline=outline)]
+    outline = None if drawing is None else load_target_outline(loaded, drawing)
+    wishes = [] if outline is None else [ShapeTarget(outline=outline)]
     asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": patience}
     targets = _targets(loaded, robot, name, drawing)
     learned, loaded = (None, loaded) if model is None else read_model(model, loaded)
@@ -80,14 +80,14 @@ def pose(
         _note_other_pose(simulation, reached)
         _note_crossings(loaded, reached.pose)
         print(f"  wrote {folder}")
-        stuck |= reached.reason not in (InverseReason.REACHED, InverseReason.OPTIMAL)
+        stuck |= reached.status not in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM)
     if stuck:
         raise typer.Exit(1)
 
 
 def _targets(
     loaded: "Robot", folder: Path, name: str | None, drawing: Path | None
-) -> "Sequence[tuple[str, Pose | None]]":
+) -> "Sequence[tuple[str, PoseTarget | None]]":
     """Poses with their names; None where only a drawing is given (InputError: there is nothing to reach)."""
     if name:
         return [(name, loaded.pose(name))]
@@ -100,7 +100,7 @@ def _targets(
 
 def _write(
     simulation: "Simulation",
-    reached: "ReachedPose",
+    reached: "IKResult",
     folder: Path,
     title: str,
     limits: "Limits",
@@ -122,9 +122,9 @@ def _write(
         "version": __version__,
         "pose": title,
         "errors": dict(reached.errors),
-        "inverse": str(reached.reason),
+        "inverse": str(reached.status),
         "optimality": reached.optimality,
-        "held": list(reached.held),
+        "held": list(reached.active_limits),
         "tension_limit": limits.tension,
         "equal": [list(group) for group in limits.equal],
     }
@@ -135,21 +135,21 @@ def _write(
     save_png(draw_reached(simulation.robot, reached, title=head, outline=outline), folder / "pose.png")
 
 
-def _print_reached(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -> None:
+def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: float) -> None:
     """Print what was reached, and what keeps it from more."""
-    print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.reason} ({1e3 * seconds:.0f} ms)")
+    print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.status} ({1e3 * seconds:.0f} ms)")
     text = ", ".join(f"{winch} {1e3 * value:z.1f} mm" for winch, value in _taken(loaded, reached).items())
     print(f"  contractions: {text}")
-    if reached.friction_band:
-        band = ", ".join(f"{name} {1e3 * apart:.2f} mm" for name, apart in reached.friction_band.items())
+    if reached.friction_hysteresis:
+        band = ", ".join(f"{name} {1e3 * apart:.2f} mm" for name, apart in reached.friction_hysteresis.items())
         print(f"  friction: come to from a tenth above, markers end elsewhere by: {band}")
-    for words in reached.held:
+    for words in reached.active_limits:
         print(f"  limit: {words}")
-    if reached.held or reached.optimality > _STEEP:
+    if reached.active_limits or reached.optimality > _STEEP:
         print(f"  optimality: {reached.optimality:.1g} (0 at an optimum within these limits)")
 
 
-def _note_other_pose(simulation: "Simulation", reached: "ReachedPose") -> None:
+def _note_other_pose(simulation: "Simulation", reached: "IKResult") -> None:
     """Say it if the contractions alone do not decide the pose (E20): at once from rest they may lead to another."""
     from hydrostat.simulation import largest_distance
 
@@ -160,7 +160,7 @@ def _note_other_pose(simulation: "Simulation", reached: "ReachedPose") -> None:
         print("  take them in step by step, or see `hydrostat branches`")
 
 
-def _note_crossings(loaded: "Robot", pose: "SolvedPose") -> None:
+def _note_crossings(loaded: "Robot", pose: "Equilibrium") -> None:
     """Say it if the body passes through itself."""
     from hydrostat.geometry import find_crossings
 
@@ -168,7 +168,7 @@ def _note_crossings(loaded: "Robot", pose: "SolvedPose") -> None:
         print(f"  note: {words}")
 
 
-def _taken(loaded: "Robot", reached: "ReachedPose") -> dict[str, float]:
+def _taken(loaded: "Robot", reached: "IKResult") -> dict[str, float]:
     return {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
 
 

@@ -12,7 +12,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, require_folder
 from hydrostat.cli.waiting import told
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def reproduce(
     for name in asked:
         if name not in there:
             raise InputError(f"there is no {name!r}; there are: all, {', '.join(there)}")
-    study, bodies = _study(member(Size, size, what="--size"), draw, robots, counts, targets, seeds)
+    study, bodies = _study(parse_choice(Size, size, what="--size"), draw, robots, counts, targets, seeds)
     require_folder(out)
     out.mkdir(parents=True, exist_ok=True)
     if tables := [name for name in asked if name in THINGS]:
@@ -109,10 +109,13 @@ def _study(
     size: Size, draw: str, robots: str | None, counts: str | None, targets: int | None, seeds: int | None
 ) -> "tuple[Study, list[str]]":
     """What is compared, and on which robots."""
-    from hydrostat.learning import Draw, LearnOptions, Study
+    from hydrostat.learning import LearnOptions, SamplingScheme, Study
 
-    usual, draws = _SIZES[size], tuple(member(Draw, each.strip(), what="--draw") for each in draw.split(","))
-    if Draw.TENSION in draws:
+    usual, draws = (
+        _SIZES[size],
+        tuple(parse_choice(SamplingScheme, each.strip(), what="--draw") for each in draw.split(",")),
+    )
+    if SamplingScheme.TENSION in draws:
         raise InputError(
             "--draw tension: is for hydrostat sample, which takes a --tension; here: box, antagonist, faces"
         )

@@ -181,14 +181,22 @@ def _used(name: str, pairs: int, known: int, usual: "_Trials") -> int:
 
 def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: int) -> "LearnedModel":
     """The model of a file, or one of samples in which one winch of each pair takes in."""
-    from hydrostat.learning import Draw, learn_model, load_model, plan_samples, read_samples, sample_robot, save_model
+    from hydrostat.learning import (
+        SamplingScheme,
+        learn_model,
+        load_model,
+        plan_samples,
+        read_samples,
+        sample_robot,
+        save_model,
+    )
 
     if file is not None:
         return load_model(file)
     kept = out / f"{robot.name}-{samples}.model"
     if not kept.exists():
-        folder = out / f"{robot.name}-{Draw.ANTAGONIST}-train-{samples}"
-        sample_robot(plan_samples(robot, samples, draws=(Draw.ANTAGONIST,)), folder, jobs=jobs, tell=told())
+        folder = out / f"{robot.name}-{SamplingScheme.ANTAGONIST}-train-{samples}"
+        sample_robot(plan_samples(robot, samples, draws=(SamplingScheme.ANTAGONIST,)), folder, jobs=jobs, tell=told())
         save_model(learn_model(read_samples(folder), tell=told()), kept)
     return load_model(kept)
 

@@ -56,15 +56,22 @@ def sample(
 
     Example: hydrostat sample examples/starfish --count 200 --contact --out build/samples
     """
-    from hydrostat.closed_set import member
-    from hydrostat.learning import Draw, check_export, export_samples, plan_samples, read_samples, sample_robot
+    from hydrostat.closed_set import parse_choice
+    from hydrostat.learning import (
+        SamplingScheme,
+        check_export,
+        export_samples,
+        plan_samples,
+        read_samples,
+        sample_robot,
+    )
     from hydrostat.units import FORCE
 
     require_folder(out)
     if export is not None:
         check_export(export)
     part = _part(shard)
-    draws = tuple(member(Draw, each.strip(), what="--draw") for each in draw.split(","))
+    draws = tuple(parse_choice(SamplingScheme, each.strip(), what="--draw") for each in draw.split(","))
     most = asked("--tension", tension, FORCE)
     loaded = read_robot(robot)
     plan = plan_samples(

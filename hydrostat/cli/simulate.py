@@ -13,11 +13,11 @@ from hydrostat.cli.options import Contract, asked, check_contraction, contractio
 from hydrostat.cli.profiling import profiled
 from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.robot import Robot
-    from hydrostat.simulation import Motion, Profile, Simulation, SolvedPose
+    from hydrostat.simulation import ContractionProfile, Equilibrium, Motion, Simulation
 
 
 def simulate(
@@ -90,7 +90,7 @@ def simulate(
         raise typer.Exit(1)
 
 
-def _print_places(found: "SolvedPose | Motion", robot: "Robot") -> None:
+def _print_places(found: "Equilibrium | Motion", robot: "Robot") -> None:
     """Print where each marker is [mm], and how hard each cable pulls [N], with its winch."""
     for name, place in found.markers.items():
         print(f"{name:<16} {', '.join(f'{1e3 * value:z8.2f}' for value in place)} mm")
@@ -98,12 +98,12 @@ def _print_places(found: "SolvedPose | Motion", robot: "Robot") -> None:
         print(f"cable {index + 1:<10} {tension:8.3f} N  {robot.cables[index].winch}")
 
 
-def _print_notes(simulation: "Simulation", pose: "SolvedPose") -> None:
+def _print_notes(simulation: "Simulation", pose: "Equilibrium") -> None:
     """Print what is in the way of a pose that was not found, and where else the body could have gone."""
     from hydrostat.geometry import find_crossings
 
     if not pose.result.converged:
-        for obstacle in simulation.in_the_way(pose):
+        for obstacle in simulation.diagnose(pose):
             print(f"in the way: {obstacle}")
     if words := str(find_crossings(simulation.robot.body.mesh, pose.nodes)):
         print(f"note: {words}")
@@ -132,7 +132,7 @@ def _move(
     profile = _profile(simulation, contractions, ramp, play)
     seconds = asked("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
     dt = positive("--step", step, TIME)
-    start = simulation.still(simulation.solve(profile.at(0.0)) if rests_at_first(simulation.robot) else None)
+    start = simulation.motion_at_rest(simulation.solve(profile.at(0.0)) if rests_at_first(simulation.robot) else None)
     began = time.process_time()
     with progress_bar() as tell:
         motions = _reported(simulation.play(profile, seconds, dt, start=start), seconds, tell)
@@ -145,17 +145,19 @@ def _move(
     files.append(save_png(draw_motion(simulation.robot, table), out / "motion.png"))
     _print_places(last, simulation.robot)
     fastest = 1e3 * float((last.velocities**2).sum(axis=1).max() ** 0.5)
-    steps = f"{counted(len(table.times) - 1, 'step')} to {last.time:g} s, {spent:.1f} s of work"
+    steps = f"{plural(len(table.times) - 1, 'step')} to {last.time:g} s, {spent:.1f} s of work"
     print(f"{steps}; no node is faster than {fastest:.2g} mm/s at the end")
     return files
 
 
-def _profile(simulation: "Simulation", contractions: Mapping[str, float], ramp: str, play: Path | None) -> "Profile":
-    from hydrostat.simulation import Profile, read_profile
+def _profile(
+    simulation: "Simulation", contractions: Mapping[str, float], ramp: str, play: Path | None
+) -> "ContractionProfile":
+    from hydrostat.simulation import ContractionProfile, read_profile
     from hydrostat.units import TIME
 
     if play is None:
-        return Profile.ramp(simulation.contractions(contractions), positive("--ramp", ramp, TIME))
+        return ContractionProfile.ramp(simulation.as_contractions(contractions), positive("--ramp", ramp, TIME))
     if contractions:
         raise InputError("--play and --contract: give one of them")
     profile = read_profile(play, simulation.robot)

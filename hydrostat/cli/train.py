@@ -92,7 +92,7 @@ def train(
         raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
     from hydrostat.learning import load_model, save_model
     from hydrostat.simulation import write_profile
-    from hydrostat.units import LENGTH, counted, parse_quantity
+    from hydrostat.units import LENGTH, parse_quantity, plural
 
     require_folder(out)
     methods = [str(each) for each in training.TrainMethod]
@@ -141,7 +141,7 @@ def train(
         trained, curve = training.train(env, wanted, options, out, judge_in=judged, listener=listener, **more)
     last = curve[-1]
     share = f", {100 * last.mean / size:.2f} % of the size" if word == "mm" else ""
-    print(f"{factor * last.mean:.2f} {word}{share}, on {counted(goals, 'unseen goal')}")
+    print(f"{factor * last.mean:.2f} {word}{share}, on {plural(goals, 'unseen goal')}")
     print(f"Wrote {_picture(curve, method, out, word, factor)}")
     policy = training.policy_of(trained, env, task=task, error=last.mean)
     print(f"Wrote {policy.save(out / 'actor.policy')}, which runs without PyTorch")

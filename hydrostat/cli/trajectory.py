@@ -11,7 +11,7 @@ import typer
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import EqualWinches, MostTension, PictureWidth, asked, check_width, pose_limits, positive
 from hydrostat.cli.waiting import prepared, progress_bar, read_robot
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def trajectory(
 
     Example: hydrostat trajectory examples/starfish --poses wave,star_jump --loop --out build/dance
     """
-    from hydrostat.ik import InverseReason, PathKind, solve_ik_trajectory
+    from hydrostat.ik import IKStatus, PathKind, solve_ik_trajectory
     from hydrostat.units import ACCELERATION, SPEED, TIME
 
     require_folder(out)
@@ -62,7 +62,7 @@ def trajectory(
     hardest = asked("--acceleration", acceleration, ACCELERATION)
     stay = positive("--hold", hold, TIME, zero=True)
     limits = pose_limits(tension, equal)
-    kind = member(PathKind, path, what="--path")
+    kind = parse_choice(PathKind, path, what="--path")
     check_width(width)
     loaded = read_robot(robot)
     names = _keyframe_names(loaded, poses)
@@ -84,8 +84,8 @@ def trajectory(
         files = _write(simulation, made, facts, out, width, tell)
     print(*made.lines(), sep="\n")
     print("Wrote " + ", ".join(str(file) for file in files))
-    stuck = (InverseReason.ITERATION_LIMIT, InverseReason.NO_EQUILIBRIUM)
-    if any(key.found is not None and key.found.reason in stuck for key in made.keys):
+    stuck = (IKStatus.ITERATION_LIMIT, IKStatus.NO_EQUILIBRIUM)
+    if any(key.found is not None and key.found.status in stuck for key in made.keyframes):
         raise typer.Exit(1)
 
 
@@ -145,13 +145,13 @@ def _facts(simulation: "Simulation", made: "Trajectory", limits: "Limits", secon
         "path": str(made.path),
         "duration": made.seconds,
         "seconds": seconds,
-        "speed_limit": _by_winch(made, made.pace.speed),
-        "acceleration_limit": _by_winch(made, made.pace.acceleration),
+        "speed_limit": _by_winch(made, made.limits.speed),
+        "acceleration_limit": _by_winch(made, made.limits.acceleration),
         "tension_limit": limits.tension,
         "equal": [list(group) for group in limits.equal],
         "report": made.lines(),
-        "keyframes": [_key_facts(made, key) for key in made.keys],
-        "snaps": [{"time": snap.time, "distance": snap.distance} for snap in made.snaps],
+        "keyframes": [_key_facts(made, key) for key in made.keyframes],
+        "snaps": [{"time": snap.time, "distance": snap.distance} for snap in made.branch_jumps],
         "times": made.times.tolist(),
         "markers": {name: places.tolist() for name, places in made.markers.items()},
         "tensions": made.tensions.tolist(),

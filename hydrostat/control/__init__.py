@@ -21,18 +21,18 @@ if TYPE_CHECKING:
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
     from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
     from hydrostat.control.emulated_line import EmulatedLine
-    from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo, LiveChain
+    from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults, LiveChain
     from hydrostat.control.feetech_bus import FeetechBus
     from hydrostat.control.firmware_build import board_kind
     from hydrostat.control.firmware_bus import FirmwareBus
     from hydrostat.control.guard import GuardLimits, TensionGuard, not_judged
     from hydrostat.control.link import SILENCE, Link, SimulatedLink
-    from hydrostat.control.model_tensions import KnownPulls, WinchPull, tensions_along, winch_pulls, winch_tensions
+    from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_pulls, winch_tensions
     from hydrostat.control.motors import FASTEST, Motors
     from hydrostat.control.open_bus import EMULATED, check_port, layered, open_bus, open_line
     from hydrostat.control.player import Player, play
     from hydrostat.control.spool_curve import SpoolCurve, fit_spool, measure_spool
-    from hydrostat.control.take_up import TakenUp, take_up_slack
+    from hydrostat.control.take_up import SlackCalibration, take_up_slack
     from hydrostat.control.timeline import LONGEST, Key, Timeline, read_timeline, timeline_table
 
 __all__ = [
@@ -44,7 +44,6 @@ __all__ = [
     "LONGEST",
     "SILENCE",
     "TICK",
-    "Ails",
     "Bus",
     "BusLink",
     "Calibration",
@@ -57,8 +56,8 @@ __all__ = [
     "FeetechBus",
     "FirmwareBus",
     "GuardLimits",
+    "InjectedFaults",
     "Key",
-    "KnownPulls",
     "Link",
     "LinkLimits",
     "LinkState",
@@ -69,9 +68,10 @@ __all__ = [
     "Port",
     "Reading",
     "SimulatedLink",
+    "SlackCalibration",
     "SpoolCurve",
-    "TakenUp",
     "TensionGuard",
+    "TensionLookup",
     "Timeline",
     "WinchMotor",
     "WinchPull",

@@ -88,7 +88,7 @@ class Bus(ABC):
     """
 
     kind: ClassVar[str]
-    forgot: bool = False
+    lost_position: bool = False
 
     def mark(self) -> None:  # noqa: B027 - most motors know their angle by themselves
         """Remember that the motors are calibrated, where that can be lost (HydrostatError: it cannot be remembered)."""
@@ -104,7 +104,7 @@ class Bus(ABC):
     def arm(self, currents: Vector) -> None:
         """Switch torque on where they stand, each bounded to a current [A] (HydrostatError: one did not take it)."""
 
-    def rewatch(self) -> None:  # noqa: B027 - where nothing watches by itself there is nothing to do
+    def restart_watchdog(self) -> None:  # noqa: B027 - where nothing watches by itself there is nothing to do
         """Let the own watchdogs of armed motors begin anew: they may have fired while others were armed.
 
         Raises:

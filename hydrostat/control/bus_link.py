@@ -18,7 +18,7 @@ from hydrostat.robot import Winch
 
 DEADLINE = 0.2
 """Told nothing for so long [s], motors are stopped by the watch on this side; their own watchdogs stop them sooner."""
-AHEAD = 0.12
+MAX_LEAD_TIME = 0.12
 """A goal is never further ahead of a motor than it turns in this time [s]: a dead host leaves it no further."""
 LOST = 0.2
 """A reading so old is a fault [s]."""
@@ -121,7 +121,7 @@ class BusLink(Link):
             self.facts = ()
             with self._stopping():
                 self.facts = self._bus.identify()
-            done = self._calibration.done and not self._bus.forgot
+            done = self._calibration.done and not self._bus.lost_position
             self._to(LinkState.CALIBRATED if done else LinkState.IDENTIFIED)
             for fact, name in zip(self.facts, self._names, strict=True):
                 stops = "stops by itself" if fact.watchdog else "does not stop by itself: its goals stay close ahead"
@@ -161,7 +161,7 @@ class BusLink(Link):
                 raise self._stopped(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
             self._goal = np.clip(contractions, self._low, self._high)
             self._speed = min(speed, self.limits.speed, self._speed + self.limits.rise * max(since, 1e-3))
-            ahead = self._speed * AHEAD
+            ahead = self._speed * MAX_LEAD_TIME
             near = np.clip(self._goal, self._places - ahead, self._places + ahead)
             if (np.abs(near - self._goal) == 0).all() and np.abs(self._goal - self._places).max(initial=0.0) < 1e-4:
                 self._speed = 0.0
@@ -272,7 +272,7 @@ class BusLink(Link):
         needed = ""
         if self._over.is_set() or not self.facts:
             needed = "identify the motors"
-        elif self._bus.forgot:
+        elif self._bus.lost_position:
             needed = "calibrate them anew, as a motor or its board was switched off or reset since (docs/motors.md)"
         elif not self._calibration.done:
             needed = "calibrate them"

@@ -12,17 +12,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.control.bus import MotorFacts, Port, Reading
-from hydrostat.control.dynamixel_packets import (
-    ALL,
-    PING,
-    READ,
-    STATUS,
-    SYNC_READ,
-    SYNC_WRITE,
-    WRITE,
-    Packet,
-    pack,
-)
+from hydrostat.control.dynamixel_packets import ALL, PING, READ, STATUS, SYNC_READ, SYNC_WRITE, WRITE, Packet, pack
 from hydrostat.control.servo_bus import ServoBus
 from hydrostat.errors import HydrostatError
 
@@ -121,9 +111,9 @@ class DynamixelBus(ServoBus):
                 self._bound(number, most)
                 self._set(number, TORQUE, 1, 1)
             self._holding = True
-            self.rewatch()  # at last: who waits for others to be armed would be told nothing
+            self.restart_watchdog()  # at last: who waits for others to be armed would be told nothing
 
-    def rewatch(self) -> None:
+    def restart_watchdog(self) -> None:
         """Arm the watchdogs of all at once; one that has fired refuses goals until it is reset."""
         with self._lock:
             self._tell_all(WATCHDOG, dict.fromkeys(self._numbers, bytes(1)))

@@ -35,7 +35,7 @@ from hydrostat.control.dynamixel_packets import (
 
 
 @dataclass
-class Ails:
+class InjectedFaults:
     """What is wrong with a servo.
 
     Attributes:
@@ -73,7 +73,7 @@ class EmulatedServo:
     origin: float = 0.0
     load: Callable[[float], float] = lambda _: 0.0
     constant: float = 0.35
-    ails: Ails = field(default_factory=Ails)
+    ails: InjectedFaults = field(default_factory=InjectedFaults)
 
     def __post_init__(self) -> None:
         self.table = bytearray(256)

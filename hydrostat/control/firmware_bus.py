@@ -55,7 +55,7 @@ class FirmwareBus(Bus):
         self._known = self._closed = False
         self._bounds = ""  # of the currents of armed motors; empty where none are
         self._stood = True  # whether they were told to stand since they were armed
-        self._robot, self.forgot = robot, False
+        self._robot, self.lost_position = robot, False
         nothing = np.full(len(self._scale), np.nan)
         self._last = Reading(
             angles=nothing,
@@ -79,7 +79,7 @@ class FirmwareBus(Bus):
                 )
             if int(told[5]) != len(self._scale):
                 raise HydrostatError(f"the board was built for {told[5]} motors, and {len(self._scale)} are asked for")
-            self.forgot, self._bounds = told[-1] == "new", ""
+            self.lost_position, self._bounds = told[-1] == "new", ""
             proved = self._stops_by_itself(1e-3 * float(told[6]))
             self._must("O", "to let go")
             self._known = True
@@ -90,7 +90,7 @@ class FirmwareBus(Bus):
         """Let the board remember, until its power goes, that the zeros of its motors are known."""
         with self._lock:
             self._must("M", "that it is calibrated")
-            self.forgot = False
+            self.lost_position = False
 
     def arm(self, currents: Vector) -> None:
         """Switch torque on where they stand; the board refuses more current than its settings allow."""
@@ -101,7 +101,7 @@ class FirmwareBus(Bus):
             self._must(f"A {bounds}", "its bounds of current")
             self._bounds, self._stood = bounds, False
 
-    def rewatch(self) -> None:
+    def restart_watchdog(self) -> None:
         """Arm them once more where they stand, if the board has stopped them for silence meanwhile."""
         with self._lock:
             self._must(f"A {self._bounds}", "its bounds of current")
@@ -121,7 +121,7 @@ class FirmwareBus(Bus):
                     faults = [""] * len(faults)
                     faults[int(self._order[int(told[2]) - 1])] = told[1]
                 if told[1] == "off" and self._bounds:
-                    self.forgot, faults = True, [f"board: {ANEW}"] * len(faults)
+                    self.lost_position, faults = True, [f"board: {ANEW}"] * len(faults)
                 self._refused = ""
                 self._last = Reading(
                     angles=numbers[:, 0] / self._scale,
@@ -159,8 +159,8 @@ class FirmwareBus(Bus):
     def _see_that_it_counts_on(self, marked: bool) -> None:
         """Raise that the board was reset since it was identified, as it begins to count at 0 then, wherever it is."""
         off = self._bounds and (self._ask("R") or "").startswith("ok off ")
-        if off or (not marked and not self.forgot):
-            self.forgot = True
+        if off or (not marked and not self.lost_position):
+            self.lost_position = True
             raise HydrostatError(f"the board does not arm its motors: {ANEW}")
 
     def _stops_by_itself(self, deadline: float) -> bool:

@@ -27,9 +27,9 @@ class JoinedBus(Bus):
         self.kind = parts[0][0].kind  # type: ignore[misc]  # that of its parts
 
     @property
-    def forgot(self) -> bool:  # type: ignore[override]
+    def lost_position(self) -> bool:  # type: ignore[override]
         """Whether motors of any part have lost their count."""
-        return any(bus.forgot for bus, _ in self._parts)
+        return any(bus.lost_position for bus, _ in self._parts)
 
     def identify(self) -> tuple[MotorFacts, ...]:
         """Facts of the motors of all parts; each part tries its own watchdogs."""
@@ -43,14 +43,14 @@ class JoinedBus(Bus):
         """Switch torque on in all parts, one after the other; all stop if one does not take it."""
         try:
             self._each(lambda bus, places: bus.arm(currents[places]))
-            self.rewatch()  # those of the first may have fired while the last were armed
+            self.restart_watchdog()  # those of the first may have fired while the last were armed
         except BaseException:
             self.stop()
             raise
 
-    def rewatch(self) -> None:
+    def restart_watchdog(self) -> None:
         """Let the watchdogs of all parts begin anew."""
-        self._each(lambda bus, _: bus.rewatch())
+        self._each(lambda bus, _: bus.restart_watchdog())
 
     def read(self) -> Reading:
         """What was last heard of all motors."""

@@ -1,4 +1,4 @@
-"""`KnownPulls`, `tensions_along`, `winch_pulls`: what motors should feel, by simulation."""
+"""`TensionLookup`, `tensions_along`, `winch_pulls`: what motors should feel, by simulation."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.robot import Robot
-from hydrostat.simulation import Profile, Simulation, SolvedPose
+from hydrostat.simulation import ContractionProfile, Equilibrium, Simulation
 
 SAMPLES = 80
 """Equilibria along a way, at most."""
@@ -40,7 +40,7 @@ class WinchPull:
         return float(self.at(self.taut + beyond)) / beyond
 
 
-class KnownPulls:
+class TensionLookup:
     """What the cables of each winch pull together [N], by contractions [m], in poses that were solved.
 
     Between poses the nearest two are mixed by their distances. One thread may add while others ask.
@@ -51,7 +51,7 @@ class KnownPulls:
         self._robot, self._near, self._most = robot, near, most
         self._known: tuple[np.ndarray, np.ndarray] = (np.zeros((0, len(robot.winches))), np.zeros((0, 0)))
 
-    def add(self, pose: SolvedPose) -> None:
+    def add(self, pose: Equilibrium) -> None:
         """Remember a pose; one that is no equilibrium is left out."""
         if pose.result.converged:
             self.put(pose.contractions, winch_tensions(self._robot, pose.tensions))
@@ -81,13 +81,13 @@ class KnownPulls:
         return (1 - share) * pulls[first] + share * pulls[second]
 
 
-def tensions_along(robot: Robot, profile: Profile) -> Callable[[Vector], Vector]:
+def tensions_along(robot: Robot, profile: ContractionProfile) -> Callable[[Vector], Vector]:
     """What the cables of each winch pull together [N], by contractions [m] that lie near a profile or its way there.
 
     Equilibria are solved at even steps of the way, from one to the next; between, the nearest two are mixed by their
     distances. A pose that is not found is left out.
     """
-    simulation, known, pose = Simulation(robot), KnownPulls(robot), None
+    simulation, known, pose = Simulation(robot), TensionLookup(robot), None
     for taken in _samples(profile):
         found = simulation.solve(taken, start=pose, strict=False)
         known.add(found)
@@ -95,7 +95,7 @@ def tensions_along(robot: Robot, profile: Profile) -> Callable[[Vector], Vector]
     return known.nearest
 
 
-def _samples(profile: Profile) -> list[Vector]:
+def _samples(profile: ContractionProfile) -> list[Vector]:
     """Contractions from rest to the begin of a profile, then along it."""
     begin = profile.at(0.0)
     way = [share * begin for share in np.linspace(0, 1, 8)]

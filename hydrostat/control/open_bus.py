@@ -17,7 +17,7 @@ from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.joined_bus import JoinedBus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 EMULATED = "emulated"
 """What is written for motors that are not there, but behave like servos."""
@@ -66,8 +66,8 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
     make, usual = _KINDS[kind]
     ports, buses = rest.split(","), list[Bus]()
     if len(ports) != calibration.boards:
-        boards = counted(calibration.boards, "board")
-        raise InputError(f"--port {text}: has {counted(len(ports), 'port')}, and motors.toml has motors on {boards}")
+        boards = plural(calibration.boards, "board")
+        raise InputError(f"--port {text}: has {plural(len(ports), 'port')}, and motors.toml has motors on {boards}")
     try:
         for board, port in enumerate(ports, 1):
             name, _, baud = port.partition("@")

@@ -9,11 +9,11 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control.motors import Motors
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.simulation import Profile
+from hydrostat.simulation import ContractionProfile
 
 SPEEDS = (0.1, 4.0)  # slowest and fastest, as times the timeline's own
 TICK = 1 / 60  # motors that play are told and read once in this time [s]
-LATE = 2.0  # motors may take so much longer [s] to where they shall be than at their largest speed
+ARRIVAL_TIMEOUT = 2.0  # motors may take so much longer [s] to where they shall be than at their largest speed
 
 
 class Player:
@@ -67,7 +67,7 @@ class Player:
 
 def play(
     motors: Motors,
-    profile: Profile,
+    profile: ContractionProfile,
     player: Player,
     *,
     tell: Callable[[], None] = lambda: None,
@@ -93,7 +93,9 @@ def play(
         tell()
 
     def arrive(contractions: Vector) -> None:
-        latest = clock() + float(np.abs(contractions - motors.places).max(initial=0.0)) / motors.fastest + LATE
+        latest = (
+            clock() + float(np.abs(contractions - motors.places).max(initial=0.0)) / motors.fastest + ARRIVAL_TIMEOUT
+        )
         drive(contractions)
         while motors.moving:
             if clock() > latest:

@@ -48,7 +48,7 @@ class ServoBus(Bus):
         self._lock, self._reader = threading.RLock(), self.packets()
         self._known = self._closed = False  # whether it is known who they are, and whether the line is let go
         self._holding = False  # whether torque is on since they were heard last
-        self.forgot = False
+        self.lost_position = False
         nothing = np.full(len(self._numbers), np.nan)
         self._last = Reading(
             angles=nothing,
@@ -87,7 +87,7 @@ class ServoBus(Bus):
 
     def mark(self) -> None:
         """Their zeros are known."""
-        self.forgot = False
+        self.lost_position = False
 
     def _heard(self, reading: Reading) -> Reading:
         """Keep a reading as the last; a motor that holds and has jumped by a turn or so is at fault from then on.
@@ -97,7 +97,7 @@ class ServoBus(Bus):
         jumped = np.abs(reading.angles - self._last.angles) > TURNED  # NaN: not heard yet
         faults = list(reading.faults)
         for index in np.flatnonzero(jumped & self._holding).tolist():
-            faults[index], self.forgot = ANEW, True
+            faults[index], self.lost_position = ANEW, True
         self._last = replace(reading, faults=tuple(faults))
         return self._last
 

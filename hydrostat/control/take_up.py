@@ -35,7 +35,7 @@ OLD = 0.2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TakenUp:
+class SlackCalibration:
     """What was found on a winch.
 
     Attributes:
@@ -63,12 +63,12 @@ def take_up_slack(
     bus: Bus,
     motors: Sequence[WinchMotor],
     model: Sequence[WinchPull],
-    found: Callable[[TakenUp], None],
+    found: Callable[[SlackCalibration], None],
     *,
     most: float = 0.04,
     clock: Callable[[], float] = steady,
     wait: Callable[[float], None] = time.sleep,
-) -> tuple[TakenUp, ...]:
+) -> tuple[SlackCalibration, ...]:
     """Find the zeros of all motors, one after the other, while the others stand; all stand at their zeros at the end.
 
     Args:
@@ -139,7 +139,7 @@ class _Taker:
             replace(motor, zero=float(angle)) for motor, angle in zip(self._motors, angles.tolist(), strict=True)
         )
 
-    def take_up(self, index: int, model: WinchPull) -> TakenUp:
+    def take_up(self, index: int, model: WinchPull) -> SlackCalibration:
         """Find the zero of a winch; its motor then stands there."""
         began = self._clock()
         floor = self._free(index)
@@ -161,7 +161,7 @@ class _Taker:
         place = replace(origin, zero=0.0, turns=1)
         turned = place.angle(edge) - place.angle(model.taut)
         self._go(index, edge - model.taut, SEARCH)
-        return TakenUp(
+        return SlackCalibration(
             motor=replace(origin, zero=float((origin.zero or 0.0) + origin.turns * turned)),
             slack=edge,
             apart=apart,

@@ -11,7 +11,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Profile, ProfileTable, profile_text
+from hydrostat.simulation import ContractionProfile, ProfileTable, profile_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,11 +51,11 @@ class Timeline:
         """Length in time [s]."""
         return max(self.length, self.keys[-1].time if self.keys else 0.0)
 
-    def profile(self, winches: Sequence[str]) -> Profile:
+    def profile(self, winches: Sequence[str]) -> ContractionProfile:
         """Contractions in time of these winches, a column each; nothing is taken in where there is no key."""
         keys = self.keys or (Key(time=0.0, contractions={}),)
         values = [[key.contractions.get(name, 0.0) for name in winches] for key in keys]
-        return Profile(
+        return ContractionProfile(
             times=np.array([key.time for key in keys]),
             values=np.array(values, dtype=float).reshape(len(keys), len(winches)),
             gentle=self.smooth,
@@ -94,7 +94,7 @@ def timeline_table(robot: Robot, timeline: Timeline) -> bytes:
         raise InputError("there are no keyframes to export; turn the knobs and press Add")
     profile = timeline.profile([winch.name for winch in robot.winches])
     times = _times(timeline)
-    return profile_text(robot, Profile(times=times, values=np.array([profile.at(time) for time in times])))
+    return profile_text(robot, ContractionProfile(times=times, values=np.array([profile.at(time) for time in times])))
 
 
 def read_timeline(robot: Robot, name: str, content: bytes) -> Timeline:

@@ -9,12 +9,12 @@ if TYPE_CHECKING:
     from hydrostat.design.built_error import BuiltErrors, built_errors, expected_error
     from hydrostat.design.constraints import RANGES, Constraints
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
-    from hydrostat.design.craft import Craft, SewingTimes, craft_of, front, sewing_minutes
+    from hydrostat.design.craft import Craft, SewingTimes, build_effort, front, sewing_minutes
     from hydrostat.design.design_cables import design_cables, find_network
-    from hydrostat.design.faced import faced
+    from hydrostat.design.faced import assign_cable_sides
     from hydrostat.design.filled_reach import FilledReach, out_of_plane
-    from hydrostat.design.finding import Finding, Weight, places_in
-    from hydrostat.design.judgement import judgement_of
+    from hydrostat.design.finding import Diagnostic, Severity, places_in
+    from hydrostat.design.judgement import review_robot
     from hydrostat.design.muscles.activation import Activation, FibreKind, Fibres, activate, edge_fibres, element_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
     from hydrostat.design.network import (
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from hydrostat.design.routes.route_graph import RouteGraph, route_graph
     from hydrostat.design.score_card import rest_error, score_card
     from hydrostat.design.trees.design_trees import propose_trees
-    from hydrostat.design.uncertainty import Uncertainty
+    from hydrostat.design.uncertainty import BuildTolerances
     from hydrostat.design.zone import Zone
 
 __all__ = [
@@ -58,6 +58,7 @@ __all__ = [
     "TREE_RANGES",
     "Activation",
     "Alternative",
+    "BuildTolerances",
     "BuiltErrors",
     "CableRoute",
     "Certificate",
@@ -66,10 +67,10 @@ __all__ = [
     "DesignMethod",
     "DesignRequest",
     "DesignStage",
+    "Diagnostic",
     "FibreKind",
     "Fibres",
     "FilledReach",
-    "Finding",
     "FreePosing",
     "Layout",
     "Network",
@@ -78,27 +79,25 @@ __all__ = [
     "RouteGraph",
     "RouteOptions",
     "RouteTrace",
+    "Severity",
     "SewingTimes",
     "TreeOptions",
     "TreeTrace",
-    "Uncertainty",
-    "Weight",
     "WinchSite",
     "Zone",
     "activate",
+    "assign_cable_sides",
     "best_errors",
     "body_region",
+    "build_effort",
     "built_errors",
     "cable_name",
-    "craft_of",
     "design_cables",
     "edge_fibres",
     "element_fibres",
     "expected_error",
-    "faced",
     "find_network",
     "front",
-    "judgement_of",
     "nearest_shares",
     "on_front",
     "out_of_plane",
@@ -107,6 +106,7 @@ __all__ = [
     "read_constraints",
     "read_uncertainty",
     "rest_error",
+    "review_robot",
     "rms_error",
     "route_along",
     "route_graph",

@@ -4,17 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrostat.design.checks.cables import (
-    bend_violations,
-    clearance_violations,
-    gap_violations,
-    hole_violations,
-)
+from hydrostat.design.checks.cables import bend_violations, clearance_violations, gap_violations, hole_violations
 from hydrostat.design.checks.parts import LENGTH, Parts, mm
 from hydrostat.design.checks.winches import mirror_violations, winch_violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
-from hydrostat.ik import ReachedPose
+from hydrostat.ik import IKResult
 from hydrostat.robot import Robot
 
 
@@ -50,7 +45,7 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
     ]
 
 
-def pulls(robot: Robot, reached: Sequence[ReachedPose], constraints: Constraints) -> list[str]:
+def pulls(robot: Robot, reached: Sequence[IKResult], constraints: Constraints) -> list[str]:
     """What poses ask of winches and cables beyond what they can do: sentences on tension, contraction and torque.
 
     Tensions and torques may exceed their limit by 0.1 %, contractions by 0.02 mm. Travel and release are each winch's
@@ -62,7 +57,7 @@ def pulls(robot: Robot, reached: Sequence[ReachedPose], constraints: Constraints
 _SHARE = 1.001  # forces may be so many times their limit: solvers end near it
 
 
-def _pulled(robot: Robot, number: int, reached: ReachedPose, constraints: Constraints) -> list[str]:
+def _pulled(robot: Robot, number: int, reached: IKResult, constraints: Constraints) -> list[str]:
     name = f'pose "{reached.target.name}"' if reached.target is not None else f"pose {number}"
     tensions, contractions = reached.pose.tensions, reached.pose.contractions
     most, found = constraints.tension_limit, []

@@ -7,11 +7,11 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.design.spread import spread_columns
-from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import NotConvergedError
-from hydrostat.ik import ReachedPose
-from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import Simulation, rig_slopes
+from hydrostat.ik import IKResult
+from hydrostat.robot import PoseTarget, Robot
+from hydrostat.simulation import Simulation, cable_sensitivities
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -39,9 +39,9 @@ class BuiltErrors:
 
 def built_errors(
     robot: Robot,
-    poses: Sequence[Pose],
+    poses: Sequence[PoseTarget],
     commands: Sequence[Vector],
-    uncertainty: Uncertainty,
+    uncertainty: BuildTolerances,
     *,
     draws: int = 40,
     seed: int = 0,
@@ -70,7 +70,7 @@ def built_errors(
     return BuiltErrors(drawn=np.array(found), model=played_error(robot, poses, commands))
 
 
-def played_error(robot: Robot, poses: Sequence[Pose], commands: Sequence[Vector]) -> float:
+def played_error(robot: Robot, poses: Sequence[PoseTarget], commands: Sequence[Vector]) -> float:
     """Rms error over markers and poses of contractions played from rest [m]; infinite without an equilibrium."""
     simulation = Simulation(robot)
     squares = []
@@ -83,7 +83,7 @@ def played_error(robot: Robot, poses: Sequence[Pose], commands: Sequence[Vector]
     return float(np.sqrt(np.mean(squares)))
 
 
-def expected_error(simulation: Simulation, reached: Sequence[ReachedPose], uncertainty: Uncertainty) -> float:
+def expected_error(simulation: Simulation, reached: Sequence[IKResult], uncertainty: BuildTolerances) -> float:
     """Root mean square of the marker error over poses and over robots as they may be built [m].
 
     By first-order second moments (`spread_columns`): squares of the error in the model and of what each tolerance adds.
@@ -95,7 +95,7 @@ def expected_error(simulation: Simulation, reached: Sequence[ReachedPose], uncer
         targets = one.wanted.targets
         markers = [names.index(name) for name in targets]
         try:
-            slopes = rig_slopes(simulation, one.pose, markers)
+            slopes = cable_sensitivities(simulation, one.pose, markers)
         except NotConvergedError:
             return float("inf")
         rows = len(markers) * simulation.robot.body.mesh.dim

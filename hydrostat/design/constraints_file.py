@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, Strict
 
 from hydrostat import units
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import (
@@ -60,7 +60,7 @@ class ZoneTable(TomlTable):
 
 
 class BuiltTable(TomlTable):
-    """[built]: the fields of `Uncertainty`."""
+    """[built]: the fields of `BuildTolerances`."""
 
     sewing: Length | None = None
     friction: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
@@ -119,11 +119,11 @@ def read_constraints(path: str | Path, robot: Robot) -> Constraints:
     return _ConstraintsReader(path, read_text(path), robot).constraints()
 
 
-def read_uncertainty(path: str | Path, robot: Robot) -> Uncertainty:
+def read_uncertainty(path: str | Path, robot: Robot) -> BuildTolerances:
     """What a robot as it is built may differ by, from the table [built] of a file of constraints.
 
-    Keys are the fields of `Uncertainty`: lengths as text with their unit, friction as the least and the largest
-    coefficient, all else as plain numbers. What is left out is as is usual for the body (`Uncertainty.of`). Raises
+    Keys are the fields of `BuildTolerances`: lengths as text with their unit, friction as the least and the largest
+    coefficient, all else as plain numbers. What is left out is as is usual for the body (`BuildTolerances.of`). Raises
     InputError as `read_constraints` does.
     """
     path = Path(path)
@@ -163,7 +163,7 @@ class _ConstraintsReader(TablesFile):
         )
         return self.at("", lambda: _fitting(given, self.robot))
 
-    def uncertainty(self) -> Uncertainty:
+    def uncertainty(self) -> BuildTolerances:
         """The tolerances that the text describes, those usual for the body where it says nothing."""
         given = {key: value for key, value in self.table.built or () if value is not None}
         numbers = {
@@ -192,10 +192,10 @@ def cable_name(given: str | int, robot: Robot) -> str:
     return robot.cable(text).name
 
 
-def _usual_but(given: dict[str, Any], robot: Robot) -> Uncertainty:
+def _usual_but(given: dict[str, Any], robot: Robot) -> BuildTolerances:
     """The usual tolerances of a body, but for some, whose complaints begin with the key."""
     try:
-        return replace(Uncertainty.of(robot.body), **given)
+        return replace(BuildTolerances.of(robot.body), **given)
     except InputError as error:
         raise InputError(str(error).removeprefix("uncertainty: ")) from None
 

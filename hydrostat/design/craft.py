@@ -8,9 +8,9 @@ import numpy as np
 from hydrostat.design.checks.cables import SAME
 from hydrostat.design.polyline import nearest_shares, turns
 from hydrostat.fabrication import PRICES, choose_motor, control_needs, power_plan, shaft_torques
-from hydrostat.ik import ReachedPose
+from hydrostat.ik import IKResult
 from hydrostat.robot import Cable, Mount, Robot, sewn_sides
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 SHARP = 60.0  # a turn of more than this [degrees] is called sharp
 
@@ -44,10 +44,10 @@ class Craft:
 
     def __str__(self) -> str:
         """Such as "18 holes, 52 min of sewing, 165 USD for 3 motors, power and cables"; crossings if there are any."""
-        crossed = f", {counted(self.crossings, 'crossing')}" if self.crossings else ""
+        crossed = f", {plural(self.crossings, 'crossing')}" if self.crossings else ""
         return (
-            f"{counted(self.holes, 'hole')}{crossed}, {self.minutes:.0f} min of sewing, {self.price:.0f} USD for "
-            f"{counted(self.motors, 'motor')}, power and cables"
+            f"{plural(self.holes, 'hole')}{crossed}, {self.minutes:.0f} min of sewing, {self.price:.0f} USD for "
+            f"{plural(self.motors, 'motor')}, power and cables"
         )
 
     @property
@@ -56,7 +56,7 @@ class Craft:
         return dict(vars(self))
 
 
-def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes | None = None) -> Craft:
+def build_effort(robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None) -> Craft:
     """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches.
 
     Cables in pairs are sewn twice: all but motors counts for both.

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TypedDict, Unpack
 
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.faced import faced
-from hydrostat.design.filled_judge import judged_filled
+from hydrostat.design.faced import assign_cable_sides
+from hydrostat.design.filled_judge import evaluate_stuffed
 from hydrostat.design.filled_reach import check_filled
 from hydrostat.design.network import Network
 from hydrostat.design.progress import Progress, Watch, silent, unseen
@@ -18,12 +18,12 @@ from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.given import check_kind
-from hydrostat.robot import Pose, Robot
+from hydrostat.given import check_type
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
 
-class Asked(TypedDict, total=False):
+class DesignKeywords(TypedDict, total=False):
     """Fields of `DesignRequest` as keywords; those left out are as there."""
 
     winches: int | str
@@ -37,11 +37,11 @@ class Asked(TypedDict, total=False):
 
 def design_cables(
     robot: Robot,
-    poses: Iterable[Pose],
+    poses: Iterable[PoseTarget],
     *,
     progress: Progress | None = None,
     watch: Watch | None = None,
-    **asked: Unpack[Asked],
+    **asked: Unpack[DesignKeywords],
 ) -> Network:
     """Find a network of winches and cables that brings a robot into some poses.
 
@@ -57,15 +57,15 @@ def design_cables(
         InputError: no pose, a pose of a marker that does not exist, counts, constraints or options that do not fit.
         HydrostatError: no network can be built.
     """
-    if isinstance(poses, Pose) or not isinstance(poses, Iterable):
+    if isinstance(poses, PoseTarget) or not isinstance(poses, Iterable):
         raise InputError(f"poses must be several, such as [pose] or robot.poses.values(), not {type(poses).__name__}")
     for name in asked:
-        if name not in Asked.__annotations__:
-            known = ", ".join(Asked.__annotations__)
+        if name not in DesignKeywords.__annotations__:
+            known = ", ".join(DesignKeywords.__annotations__)
             raise InputError(f'a design is not asked for "{name}"; it is for {known}; all else is in Constraints(...)')
-    check_kind(asked.get("constraints"), (Constraints, type(None)), "constraints must be Constraints(...)")
+    check_type(asked.get("constraints"), (Constraints, type(None)), "constraints must be Constraints(...)")
     given = {name: value for name, value in asked.items() if value is not None}
-    given["method"] = member(DesignMethod, given.get("method", DesignRequest.method), what="method")
+    given["method"] = parse_choice(DesignMethod, given.get("method", DesignRequest.method), what="method")
     return find_network(robot, DesignRequest(poses=tuple(poses), **given), progress=progress, watch=watch)  # type: ignore[arg-type]
 
 
@@ -75,7 +75,7 @@ def find_network(
     """Find the network that a request asks for; `design_cables` for one that is made already.
 
     `watch` is told each better network that is found on the way. The cables of a flat robot that does not say where
-    they run are designed to be sewn in pairs (`faced`), and the network's robot says so.
+    they run are designed to be sewn in pairs (`assign_cable_sides`), and the network's robot says so.
 
     Raises:
         InputError: a request that does not fit the robot.
@@ -83,12 +83,12 @@ def find_network(
     """
     if not isinstance(robot, Robot):
         raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
-    stated, told = faced(robot), progress or silent
+    stated, told = assign_cable_sides(robot), progress or silent
     fitted = request.fitted(stated)
     if fitted.filled:
         check_filled(stated)  # told before the search
     found = _search(stated, fitted, told, watch or unseen)
-    return replace(judged_filled(found, progress=told) if fitted.filled else found, source=robot)
+    return replace(evaluate_stuffed(found, progress=told) if fitted.filled else found, source=robot)
 
 
 def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -> Network:

@@ -1,4 +1,4 @@
-"""`faced`: a robot that says where the cables of a new network run."""
+"""`assign_cable_sides`: a robot that says where the cables of a new network run."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ from hydrostat.fabrication import STUFFINGS
 from hydrostat.robot import Face, Robot
 
 
-def faced(robot: Robot) -> Robot:
+def assign_cable_sides(robot: Robot) -> Robot:
     """The robot itself; if it is flat and does not say where its cables run, with what a builder would want.
 
     That is in pairs: on one face alone they would curl a stuffed body out of its plane by centimetres (decision 0029).

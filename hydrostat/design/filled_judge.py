@@ -1,4 +1,4 @@
-"""`judged_filled`: finalists of a design compared on the filled body, with their cables on its skin."""
+"""`evaluate_stuffed`: finalists of a design compared on the filled body, with their cables on its skin."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ FINALISTS = 4  # so many networks are compared: the one that was found, and the 
 GAIN = 0.95  # another network takes its place if its error on the filled body is less than this share of its own
 
 
-def judged_filled(found: Network, *, progress: Progress) -> Network:
+def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
     """The network with what it reaches on the filled body; an alternative that does better there takes its place.
 
     Compared are alternatives with no more winches and no more cables, of which a kit can be made. Stopped

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
-from hydrostat.robot import Face, Pose, Robot, inflated_robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik
+from hydrostat.robot import Face, PoseTarget, Robot, inflated_robot
+from hydrostat.simulation import Equilibrium, Simulation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -15,7 +15,7 @@ class FilledReach:
     """A network on the body in space that a flat one becomes once it is filled, cables on its skin."""
 
     face: Face  # where the cables run
-    reached: tuple[ReachedPose, ...]  # each pose by contractions found there, its targets in the plane
+    reached: tuple[IKResult, ...]  # each pose by contractions found there, its targets in the plane
     played: float  # rms error over markers and poses with the commands of the flat model [m]
     finalists: int  # networks that were compared so, this one among them
 
@@ -30,12 +30,12 @@ class FilledReach:
         return max(out_of_plane(pose.pose) for pose in self.reached)
 
 
-def out_of_plane(pose: SolvedPose) -> float:
+def out_of_plane(pose: Equilibrium) -> float:
     """How far the farthest marker of a filled body is out of the plane z = 0 [m]."""
     return max((abs(float(place[2])) for place in pose.markers.values()), default=0.0)
 
 
-def filled_reach(robot: Robot, reached: Sequence[ReachedPose], *, tension: float, finalists: int = 1) -> FilledReach:
+def filled_reach(robot: Robot, reached: Sequence[IKResult], *, tension: float, finalists: int = 1) -> FilledReach:
     """Find the commands of poses on the filled body, from those of the flat model on.
 
     Args:
@@ -49,7 +49,7 @@ def filled_reach(robot: Robot, reached: Sequence[ReachedPose], *, tension: float
         NotConvergedError: a pose that has no equilibrium.
     """
     simulation = Simulation(inflated_robot(robot))
-    limits, once = Limits(tension=tension), InverseOptions(restarts=0)
+    limits, once = Limits(tension=tension), IKOptions(restarts=0)
     found, squares = [], []
     for flat in reached:
         pose = raised(flat.wanted)
@@ -61,7 +61,7 @@ def filled_reach(robot: Robot, reached: Sequence[ReachedPose], *, tension: float
     return FilledReach(face=face, reached=tuple(found), played=played, finalists=finalists)
 
 
-def raised(pose: Pose) -> Pose:
+def raised(pose: PoseTarget) -> PoseTarget:
     """A pose of a flat robot as one in space, within the plane z = 0."""
     return replace(pose, targets={name: (*place, 0.0) for name, place in pose.targets.items()})
 

@@ -1,4 +1,4 @@
-"""`Finding`, `places_in`: what is said of a robot that is to be built, and where on it that is."""
+"""`Diagnostic`, `places_in`: what is said of a robot that is to be built, and where on it that is."""
 
 import re
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from hydrostat.design.polyline import nearest_shares
 from hydrostat.robot import Point, Robot
 
 
-class Weight(StrEnum):
+class Severity(StrEnum):
     """How much a finding weighs."""
 
     REFUSED = "refused"  # a kit is refused
@@ -28,11 +28,11 @@ class Place:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class Diagnostic:
     """A sentence on a robot that is to be built."""
 
     text: str  # parts as they are named in robot.toml, by number from 0
-    weight: Weight
+    weight: Severity
     places: tuple[Place, ...]  # that it is about; none where it is about all of the robot
 
 

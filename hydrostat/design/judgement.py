@@ -1,4 +1,4 @@
-"""`judgement_of`: the one judgement of a robot that is to be built, for fabrication, studio and command line."""
+"""`review_robot`: the one judgement of a robot that is to be built, for fabrication, studio and command line."""
 
 from collections.abc import Iterator
 
@@ -6,19 +6,19 @@ from hydrostat.design.checks.cables import clearance_violations, gap_violations,
 from hydrostat.design.checks.parts import Parts
 from hydrostat.design.checks.winches import standing_violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.finding import Finding, Weight, places_in
+from hydrostat.design.finding import Diagnostic, Severity, places_in
 from hydrostat.design.skin_region import cable_region
 from hydrostat.fabrication import Demand, KitOptions, find_refusals
 from hydrostat.robot import Robot, find_risks
 
 
-def judgement_of(
+def review_robot(
     robot: Robot,
     *,
     demand: Demand | None = None,
     constraints: Constraints | None = None,
     options: KitOptions | None = None,
-) -> tuple[Finding, ...]:
+) -> tuple[Diagnostic, ...]:
     """What is to be said of a robot before it is built, the gravest first, each sentence with its places.
 
     - What a kit is refused for (`find_refusals`): with the demand of its poses all that is known before it is made.
@@ -31,13 +31,13 @@ def judgement_of(
     refused = find_refusals(robot, demand, options=options) if robot.cables else ()
     limits = _limits(robot, constraints) if constraints is not None and robot.cables else ()
     return (
-        *(Finding(text=text, weight=Weight.REFUSED, places=places_in(text, robot)) for text in refused),
+        *(Diagnostic(text=text, weight=Severity.REFUSED, places=places_in(text, robot)) for text in refused),
         *limits,
-        *(Finding(text=text, weight=Weight.MIND, places=places_in(text, robot)) for text in find_risks(robot)),
+        *(Diagnostic(text=text, weight=Severity.MIND, places=places_in(text, robot)) for text in find_risks(robot)),
     )
 
 
-def _limits(robot: Robot, constraints: Constraints) -> Iterator[Finding]:
+def _limits(robot: Robot, constraints: Constraints) -> Iterator[Diagnostic]:
     """A finding for each kind of limit: its first sentence, and the places of all."""
     parts = Parts(robot, constraints, cable_region(robot.body, constraints))
     for check in (standing_violations, clearance_violations, hole_violations, gap_violations, turn_violations):
@@ -46,4 +46,4 @@ def _limits(robot: Robot, constraints: Constraints) -> Iterator[Finding]:
             continue
         more = f" (and {len(told) - 1} more such)" if len(told) > 1 else ""
         places = dict.fromkeys(place for text in told for place in places_in(text, robot))
-        yield Finding(text=told[0] + more, weight=Weight.LIMIT, places=tuple(places))
+        yield Diagnostic(text=told[0] + more, weight=Severity.LIMIT, places=tuple(places))

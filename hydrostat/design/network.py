@@ -13,12 +13,12 @@ from hydrostat.design.filled_reach import FilledReach
 from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.polyline import Route
 from hydrostat.design.request import DesignRequest
-from hydrostat.ik import ReachedPose
+from hydrostat.ik import IKResult
 from hydrostat.robot import Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
-def rms_error(reached: Sequence[ReachedPose]) -> float:
+def rms_error(reached: Sequence[IKResult]) -> float:
     """Root of the mean squared marker error over poses [m]."""
     return float(np.sqrt(np.mean([pose.rms_error**2 for pose in reached])))
 
@@ -72,7 +72,7 @@ class Alternative:
     """Another network that was found, with other routes or other counts."""
 
     robot: Robot  # with that network
-    reached: tuple[ReachedPose, ...]  # what it reaches of each pose
+    reached: tuple[IKResult, ...]  # what it reaches of each pose
     built: float  # rms error expected of a robot as it is built, its commands played open loop [m]
 
     @property
@@ -103,7 +103,7 @@ class Network:
     robot: Robot
     source: Robot
     request: DesignRequest
-    reached: tuple[ReachedPose, ...]
+    reached: tuple[IKResult, ...]
     built: float
     alternatives: tuple[Alternative, ...] = ()
     trace: TreeTrace | RouteTrace
@@ -115,7 +115,7 @@ class Network:
     def __repr__(self) -> str:
         """What it is, in one line."""
         built = f"{1e3 * self.rms_error:.3g} mm in the model, {1e3 * self.built:.3g} mm expected once built"
-        return f"<Network for {counted(len(self.reached), 'pose')}, rms error {built}: {self.robot!r}>"
+        return f"<Network for {plural(len(self.reached), 'pose')}, rms error {built}: {self.robot!r}>"
 
     @property
     def constraints(self) -> Constraints:

@@ -1,4 +1,4 @@
-"""`Progress` and `Watch`: who is told how the work goes on, and of networks that are found on the way."""
+"""`Progress` and `CandidatePairs`: who is told how the work goes on, and of networks that are found on the way."""
 
 from collections.abc import Callable
 

@@ -9,10 +9,10 @@ from typing import Any, Self
 from hydrostat.closed_set import make_member
 from hydrostat.design.constraints import Constraints, Range
 from hydrostat.design.muscles.activation import FibreKind
-from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
 from hydrostat.ik import place
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 
 AUTO = "auto"  # as many winches as are needed
 
@@ -172,7 +172,7 @@ class DesignRequest:
     the method does not do.
     """
 
-    poses: tuple[Pose, ...]  # what the network should reach, all of them with the same cables
+    poses: tuple[PoseTarget, ...]  # what the network should reach, all of them with the same cables
     # how many; "auto" for the fewest that bring every pose under the tolerance of the options (F1, F2)
     winches: int | str = 2
     cables: int = 6  # how many in all, at least one a winch
@@ -182,8 +182,8 @@ class DesignRequest:
     constraints: Constraints = field(default_factory=Constraints)
     options: RouteOptions | TreeOptions | None = None  # of the method; its usual ones if left out
     # what a builder cannot make just so: routes are chosen by the error of robots as they are built; None: what is
-    # usual for the body, `Uncertainty.none()` for what is best in the model
-    uncertainty: Uncertainty | None = None
+    # usual for the body, `BuildTolerances.none()` for what is best in the model
+    uncertainty: BuildTolerances | None = None
     # begin with the robot's own winches and cables, and move and exchange those that are not locked; what travel,
     # release, slack and spools these have is allowed
     improve: bool = False
@@ -195,7 +195,7 @@ class DesignRequest:
         if not self.poses:
             raise InputError("there is no pose to design for; add a [[pose]] to the robot")
         for pose in self.poses:
-            if not isinstance(pose, Pose):
+            if not isinstance(pose, PoseTarget):
                 raise InputError(f"poses must be Pose records, such as robot.poses.values(), not {pose!r}")
         self._check_counts()
         make_member(self, "method", DesignMethod)
@@ -238,7 +238,7 @@ class DesignRequest:
         self.constraints.check(robot)
         if self.filled and robot.body.outline is None:
             raise InputError("filled is for flat robots with a drawing; leave it out")
-        fitted = replace(self, uncertainty=self.uncertainty or Uncertainty.of(robot.body))
+        fitted = replace(self, uncertainty=self.uncertainty or BuildTolerances.of(robot.body))
         return replace(fitted, constraints=_with_own(self.constraints, robot)) if self.improve else fitted
 
     def as_values(self) -> dict[str, Any]:

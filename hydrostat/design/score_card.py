@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design.craft import craft_of
+from hydrostat.design.craft import build_effort
 from hydrostat.design.filled_reach import out_of_plane
 from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
-from hydrostat.ik import ReachedPose
+from hydrostat.ik import IKResult
 from hydrostat.robot import Robot, robot_hash
 
 
@@ -20,7 +20,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error": network.rms_error,
         "rms_error_as_built": network.built,
         "rms_error_at_rest": rest_error(network),
-        "craft": craft_of(robot, network.reached).as_values,
+        "craft": build_effort(robot, network.reached).as_values,
         "tension_limit": network.constraints.tension_limit,
         "poses": {pose.wanted.name: _reached(robot, pose) for pose in network.reached},
         "winches": _winches(robot),
@@ -121,13 +121,13 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "cables": len(other.robot.cables),
         "rms_error": other.rms_error,
         "rms_error_as_built": other.built,
-        "craft": craft_of(other.robot, other.reached).as_values,
+        "craft": build_effort(other.robot, other.reached).as_values,
         "poses": {pose.wanted.name: pose.rms_error for pose in other.reached},
         "robot": robot_hash(other.robot),
     }
 
 
-def _reached(robot: Robot, reached: ReachedPose) -> dict[str, Any]:
+def _reached(robot: Robot, reached: IKResult) -> dict[str, Any]:
     pose = reached.pose
     return {
         "rms_error": reached.rms_error,
@@ -136,7 +136,7 @@ def _reached(robot: Robot, reached: ReachedPose) -> dict[str, Any]:
             winch.name: float(value) for winch, value in zip(robot.winches, pose.contractions, strict=True)
         },
         "tensions": [float(tension) for tension in pose.tensions],
-        "reason": str(reached.reason),
-        "held": list(reached.held),
+        "reason": str(reached.status),
+        "held": list(reached.active_limits),
         "residual": pose.result.residual,
     }

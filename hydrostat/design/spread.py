@@ -4,20 +4,20 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
-from hydrostat.design.uncertainty import Uncertainty
-from hydrostat.simulation import RigSlopes, Simulation, SolvedPose
+from hydrostat.design.uncertainty import BuildTolerances
+from hydrostat.simulation import Equilibrium, RigSlopes, Simulation
 
 Columns = Float[np.ndarray, "rows tolerances"]
 
 
 def spread_columns(
-    simulation: Simulation, pose: SolvedPose, slopes: RigSlopes, uncertainty: Uncertainty, markers: int
+    simulation: Simulation, pose: Equilibrium, slopes: RigSlopes, uncertainty: BuildTolerances, markers: int
 ) -> Columns:
     """Moves of the first `markers` rows of `slopes` by one standard deviation of each independent tolerance [m].
 
-    The sum of their squares is the variance of the rows, to first order. Tolerances are those of `Uncertainty`: holes,
-    each with its coordinates, winch after winch and cable after cable; then knots, spools, stiffnesses of cables and of
-    body; friction is the last one. Pins are left out: they are stiff beside the body.
+    The sum of their squares is the variance of the rows, to first order. Tolerances are those of `BuildTolerances`:
+    coordinates of holes, winch after winch and cable after cable; then knots, spools, stiffnesses of cables and of
+    body; friction is last. Pins are left out: they are stiff compared with the body.
     """
     robot = simulation.robot
     sewing = uncertainty.sewing * _holes(simulation, slopes.points[:markers])
@@ -33,7 +33,7 @@ def spread_columns(
 
 
 def friction_column(
-    simulation: Simulation, pose: SolvedPose, fields: Float[np.ndarray, "rows nodes dim"]
+    simulation: Simulation, pose: Equilibrium, fields: Float[np.ndarray, "rows nodes dim"]
 ) -> Float[np.ndarray, " rows"]:
     """Slope of some rows by the coefficient of friction of all cables, at 0 and while all slip towards their winch [m].
 

@@ -1,4 +1,4 @@
-"""`Uncertainty`: manufacturing tolerances, what a robot that is built may differ by from its model."""
+"""`BuildTolerances`: manufacturing tolerances, what a robot that is built may differ by from its model."""
 
 from dataclasses import dataclass, fields, replace
 from typing import Self
@@ -12,7 +12,7 @@ from hydrostat.robot import Body, Mount, Robot
 
 
 @dataclass(frozen=True, kw_only=True)
-class Uncertainty:
+class BuildTolerances:
     """Standard deviations of what a builder cannot make just so, and the friction that is not known beforehand.
 
     The default is hand-sewn plush: a needle goes in some 2 mm beside the mark, filling and felt differ from bag to
@@ -144,7 +144,7 @@ UNCERTAINTY_RANGES = {
     "slack": _LENGTH,
     "spool": Range(most=0.3),
 }
-"""What each number of `Uncertainty` may be."""
+"""What each number of `BuildTolerances` may be."""
 
 
 def _band(given: object) -> tuple[float, float]:

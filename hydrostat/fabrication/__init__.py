@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.fabrication.build_kit import build_kit, export_kit
+    from hydrostat.fabrication.build_kit import build_kit, write_kit
     from hydrostat.fabrication.demand import Demand, demand_of, find_demand, shaft_torques
     from hydrostat.fabrication.kit import Check, Kit, UnbuildableError, forget_files, write_files
     from hydrostat.fabrication.kit_options import (
@@ -84,7 +84,6 @@ __all__ = [
     "demand_of",
     "depth_table",
     "drawn_solid",
-    "export_kit",
     "find_demand",
     "find_refusals",
     "find_sewing",
@@ -106,6 +105,7 @@ __all__ = [
     "winch_marks",
     "winch_marks_of",
     "write_files",
+    "write_kit",
 ]
 
 open_package(__name__)

@@ -26,7 +26,7 @@ from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Face, Mount, Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -79,7 +79,7 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
         ),
         mould=mould,
         summary=(
-            f"Mould: {counted(pieces, 'piece')}, closed {sides} mm; {held:.1f} % of the skin is undercut",
+            f"Mould: {plural(pieces, 'piece')}, closed {sides} mm; {held:.1f} % of the skin is undercut",
             f"Pour: {body.mass:.0f} g of {body.material}",
         ),
         problems=(*mould.problems, *channel_problems(robot, options.parts)),
@@ -104,7 +104,7 @@ def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
     if pieces <= MANY_PIECES and mass <= MUCH_PLASTIC:
         return ()
     return (
-        f"the mould takes {counted(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic: make the body smaller, use "
+        f"the mould takes {plural(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic: make the body smaller, use "
         "a printer with a larger bed, or cut the body out of a block of foam",
     )
 
@@ -174,7 +174,7 @@ def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
         stitches=pattern.stitches,
         gusset=bool(pattern.gusset),
         cloth=_cloth(pattern),
-        summary=(f"Pattern: {counted(len(pattern.panels), 'panel')} on {_size(pattern)} mm of felt",),
+        summary=(f"Pattern: {plural(len(pattern.panels), 'panel')} on {_size(pattern)} mm of felt",),
         problems=(*pattern.problems, *stuffing_problems(robot)),
         warnings=pattern.warnings,
         checks=checks,

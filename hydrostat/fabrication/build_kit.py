@@ -23,14 +23,14 @@ from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
-from hydrostat.given import check_kind, path_of
+from hydrostat.given import check_type, path_of
 from hydrostat.robot import Face, Robot, face_words, sewn_robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 Progress = Callable[[str, int, int], None]  # told the stage, how much of it is done, and how much there is
 
 
-def export_kit(
+def write_kit(
     robot: Robot, folder: str | Path, *, options: KitOptions | None = None, progress: Progress | None = None
 ) -> Kit:
     """Make the kit of a robot and write it into a folder. Nothing is written unless all can be.
@@ -52,8 +52,8 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
         UnbuildableError: the robot cannot be built well (unless `force`).
         InputError: a body that the method cannot make, or an unknown motor.
     """
-    check_kind(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
-    check_kind(options, (KitOptions, type(None)), "options must be KitOptions(...)")
+    check_type(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
+    check_type(options, (KitOptions, type(None)), "options must be KitOptions(...)")
     options, tell = options or KitOptions(), _Stages(progress)
     choose_motor(options.motor, ())  # a name that is wrong is told before the work
     if options.step:
@@ -298,6 +298,6 @@ def _summary(plan: _Plan) -> tuple[str, ...]:
     return (
         *plan.work.summary,
         f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}" if plan.rigid.units else "Winches: none",
-        f"To print: {counted(count, 'piece')}, about {mass:.0f} g",
+        f"To print: {plural(count, 'piece')}, about {mass:.0f} g",
         f"To buy: about {used:.0f} USD of what is used up, {packs:.0f} USD in whole packs",
     )

@@ -8,11 +8,11 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
-from hydrostat.robot import Pose, Robot, Winch
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik
+from hydrostat.robot import PoseTarget, Robot, Winch
+from hydrostat.simulation import Equilibrium, Simulation
 
-_ONCE = InverseOptions(restarts=0)
+_ONCE = IKOptions(restarts=0)
 """Whether another beginning would reach a pose better by some micrometres does not matter to a motor."""
 
 
@@ -56,7 +56,7 @@ def find_demand(
     return work.demand()
 
 
-def demand_of(robot: Robot, reached: Sequence[ReachedPose]) -> Demand:
+def demand_of(robot: Robot, reached: Sequence[IKResult]) -> Demand:
     """The loads of poses that are solved already, as a design has them."""
     rest = np.zeros((1, len(robot.cables)))
     tensions = np.concatenate([rest, *(pose.pose.tensions[None] for pose in reached)])
@@ -75,11 +75,11 @@ class _PoseLoads:
     def __init__(self, robot: Robot, limits: Limits) -> None:
         self._robot, self._limits = robot, limits
         self._simulation = Simulation(robot)
-        self.solved: dict[str, SolvedPose] = {}
+        self.solved: dict[str, Equilibrium] = {}
         self._missed: list[str] = []
         self._far: list[str] = []
 
-    def reach(self, pose: Pose) -> None:
+    def reach(self, pose: PoseTarget) -> None:
         """A pose, as near as winches come."""
         name = f'pose "{pose.name}"'
         try:

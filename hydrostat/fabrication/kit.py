@@ -13,7 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot, replace_file, robot_hash
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class UnbuildableError(InputError):
     """
 
     def __init__(self, reasons: tuple[str, ...]) -> None:
-        super().__init__(f"it cannot be built well, for {counted(len(reasons), 'reason')}: {'; '.join(reasons)}")
+        super().__init__(f"it cannot be built well, for {plural(len(reasons), 'reason')}: {'; '.join(reasons)}")
         self.reasons = reasons
 
 

@@ -13,11 +13,11 @@ from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import (
     BodyPhysics,
     Contractions,
+    Equilibrium,
     Simulation,
-    SolvedPose,
     StepOptions,
     obstacle_forces,
-    replacing,
+    with_replaced,
 )
 
 Tell = Callable[[str, int, int], None]
@@ -78,7 +78,7 @@ class PullOut:
     moved: Vector
     forces: Vector
     contact: Points
-    poses: tuple[SolvedPose, ...]
+    poses: tuple[Equilibrium, ...]
     released: bool
     reason: str
 
@@ -139,13 +139,13 @@ def pull_out(
         raise InputError(f'"{thing.name}" is touched by nothing when the robot has closed; put it elsewhere')
     straight = np.outer(unit, unit)
     springs = options.along * straight + options.across * (whole - straight)
-    rows: list[tuple[float, SolvedPose, Vector, Vector]] = []
+    rows: list[tuple[float, Equilibrium, Vector, Vector]] = []
     travel = options.travel or 1.5 * _size(thing)
     count, reason = max(1, int(np.ceil(travel / options.step))), "the hand that pulls has gone all its way"
     for number in range(count + 1):
         pulled = min(number * options.step, travel)
         guide = GuideEnergy(carriage, place=place + pulled * unit, axes=axes, along=springs, turning=options.across)
-        pulling = replacing(closing, held, guide)
+        pulling = with_replaced(closing, held, guide)
         found = pulling.solve(contractions, start=pose, strict=False)
         if not found.result.converged:
             found = _settled(pulling, contractions, pose)
@@ -177,12 +177,12 @@ def pull_out(
     )
 
 
-def _settled(simulation: Simulation, contractions: Contractions, pose: SolvedPose) -> SolvedPose | None:
+def _settled(simulation: Simulation, contractions: Contractions, pose: Equilibrium) -> Equilibrium | None:
     """Where the robot comes to rest when it is let go as it is, in time; None if it does not.
 
     Masses tell what a balance of forces alone leaves open: which way a thing slips that could slip either way.
     """
-    motion = simulation.still(pose)
+    motion = simulation.motion_at_rest(pose)
     for _ in range(_STEPS):
         try:
             motion = simulation.step(motion, contractions, _STEP, options=StepOptions(scheme="euler"))

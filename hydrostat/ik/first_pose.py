@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from hydrostat.ik.solve_ik import solve_ik
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 _SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01  # travels to try, in shares of all; how near is near, in sizes of the body
@@ -18,7 +18,7 @@ def with_first_pose(robot: Robot) -> Robot:
         if not solved.result.converged:
             continue
         targets = {name: tuple(round(float(value), 4) for value in place) for name, place in solved.markers.items()}
-        pose = Pose(name="bend", targets=targets)
+        pose = PoseTarget(name="bend", targets=targets)
         if solve_ik(simulation, pose).rms_error < _REACHED * robot.body.mesh.size:
             return replace(robot, poses={pose.name: pose})
     return robot

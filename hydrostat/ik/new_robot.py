@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner, read_stranger
-from hydrostat.given import check_kind, path_of
+from hydrostat.given import check_type, path_of
 from hydrostat.robot import (
     GALLERY,
     Robot,
@@ -48,8 +48,8 @@ class NewRobotWish:
                 check_number(key, value, "m")
                 if value > LONGEST:
                     raise InputError(f"{key} must be at most {LONGEST:g} m, not {value:g}; in metres: 200 mm is 0.2")
-        check_kind(self.nodes, (int, type(None)), "nodes must be a whole number")
-        check_kind(self.material, (str, type(None)), "material must be a name of the table")
+        check_type(self.nodes, (int, type(None)), "nodes must be a whole number")
+        check_type(self.material, (str, type(None)), "material must be a name of the table")
         if self.nodes is not None and self.element_size is not None:
             raise InputError("nodes and element_size: give one of them")
 
@@ -144,7 +144,7 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
     from hydrostat.robot import inflated
 
     content, file = read_stranger(path), _file_name(path.name)
-    inner = member(Inner, wish.inner or Inner.HOLES, what="inner")
+    inner = parse_choice(Inner, wish.inner or Inner.HOLES, what="inner")
     drawing = read_drawing(content, name=file, size=wish.size, inner=inner)
     notes = tuple(f"drawing: {note}" for note in drawing.notes)
     material = wish.material or "polyester fibre"

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, smooth_robot
+from hydrostat.simulation import Simulation, without_contact_friction
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,7 +65,7 @@ def find_reach(
     Raises:
         InputError: a robot without markers or winches, no number of poses, or other physics that remember the way.
     """
-    robot = smooth_robot(simulation.robot)
+    robot = without_contact_friction(simulation.robot)
     if robot is not simulation.robot:
         simulation = Simulation(robot, options=simulation.options)
     if not robot.winches or not robot.markers:
@@ -74,7 +74,7 @@ def find_reach(
         raise InputError(f"count must be at least 1, not {count}")
     low, high = _limits(robot)
     shares, half = _tiles(len(low), count)
-    found = simulation.solve_many(low + shares * (high - low), threads=threads)
+    found = simulation.solve_batch(low + shares * (high - low), threads=threads)
     slopes = np.zeros((0, 0, 0, 0)) if found.jacobians is None else found.jacobians
     held = found.converged & found.stable & np.isfinite(slopes).all(axis=(1, 2, 3))
     if tension is not None:

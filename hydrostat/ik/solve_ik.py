@@ -10,22 +10,29 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
+from hydrostat.ik.ik_result import IKResult, IKStatus
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.effort import keeps_taut
-from hydrostat.ik.objectives.marker_goal import MarkerGoal, named_targets
+from hydrostat.ik.objectives.marker_target import MarkerTarget, named_targets
 from hydrostat.ik.objectives.objective import Objective, checked_objectives
-from hydrostat.ik.reached_pose import InverseReason, ReachedPose
+from hydrostat.ik.search.anchor_untargeted import anchor_untargeted_markers
 from hydrostat.ik.search.descend import descend, least_effort
 from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_pose
-from hydrostat.ik.search.others_stay import others_stayed
-from hydrostat.ik.search.patience import Patience, Tell
-from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
+from hydrostat.ik.search.problem import IKOptions, InverseProblem, InverseState
+from hydrostat.ik.search.search_budget import SearchBudget, Tell
 from hydrostat.mechanics import Reason
-from hydrostat.robot import Pose
-from hydrostat.simulation import Simulation, SolvedPose, check_still, friction_band, not_converged, smooth_robot
+from hydrostat.robot import PoseTarget
+from hydrostat.simulation import (
+    Equilibrium,
+    Simulation,
+    friction_hysteresis,
+    not_converged,
+    require_static_obstacles,
+    without_contact_friction,
+)
 
-Targets = Pose | Mapping[str, Sequence[float] | Vector]  # where markers should go [m]: a pose, or points by name
+Targets = PoseTarget | Mapping[str, Sequence[float] | Vector]  # where markers should go [m]: a pose, or points by name
 
 
 def solve_ik(
@@ -34,11 +41,11 @@ def solve_ik(
     *,
     limits: Limits | None = None,
     objectives: Sequence[Objective] = (),
-    start: SolvedPose | None = None,
-    options: InverseOptions | None = None,
+    start: Equilibrium | None = None,
+    options: IKOptions | None = None,
     seconds: float | None = None,
     progress: Tell | None = None,
-) -> ReachedPose:
+) -> IKResult:
     """Bounded Gauss-Newton through the sensitivities of the equilibrium.
 
     Minimises half the squares of what targets and objectives miss while the winches stay within their limits. Each step
@@ -65,11 +72,11 @@ def solve_ik(
             cables, or other physics that remember the way.
         NotConvergedError: no equilibrium where the search begins.
     """
-    check_kind(simulation, Simulation, "a pose is found by a Simulation(robot)")
-    check_kind(options, (InverseOptions, type(None)), "options must be InverseOptions(...)")
-    target, patience = as_pose(targets), Patience.of(seconds, progress)
-    check_still(simulation.robot, "inverse kinematics")
-    if (robot := smooth_robot(simulation.robot)) is not simulation.robot:
+    check_type(simulation, Simulation, "a pose is found by a Simulation(robot)")
+    check_type(options, (IKOptions, type(None)), "options must be IKOptions(...)")
+    target, patience = as_pose(targets), SearchBudget.of(seconds, progress)
+    require_static_obstacles(simulation.robot, "inverse kinematics")
+    if (robot := without_contact_friction(simulation.robot)) is not simulation.robot:
         begin = None if start is None else replace(start, history=np.zeros(0))
         found = solve_ik(
             Simulation(robot, options=simulation.options),
@@ -81,39 +88,39 @@ def solve_ik(
             seconds=seconds,
             progress=progress,
         )
-        return _followed(simulation.until(patience.deadline), found, start)
-    simulation = simulation.until(patience.deadline)
+        return _followed(simulation.with_deadline(patience.deadline), found, start)
+    simulation = simulation.with_deadline(patience.deadline)
     given = limits or Limits()
     allowed = bounds(simulation, given)
     if given.rate is not None:
         allowed = allowed.near(allowed.channel((start or simulation.rest).contractions))
-    terms = [wish.on(simulation) for wish in wishes(target, objectives)]
+    terms = [wish.bind(simulation) for wish in wishes(target, objectives)]
     ready = given.rate is not None or any(keeps_taut(wish) for wish in objectives)
-    problem = InverseProblem(simulation, terms, allowed, options or InverseOptions(), ready=ready)
+    problem = InverseProblem(simulation, terms, allowed, options or IKOptions(), ready=ready)
     search = InverseSearch(problem, origin=start, patience=patience)
     begun = search.begin(start)
     seek, aside = descend, None
-    if problem.options.unique and problem.redundant(begun):
+    if problem.options.min_tension and problem.redundant(begun):
         seek = least_effort
         if given.rate is None and (start is not None or problem.options.restarts):
             begun, aside = begun if start is None else search.begin(None), begun
     found = _best(search, seek(search, begun), seek)
     if aside is not None and found.reason not in _ENDS:  # none is worse than where it began, or than a plain descent
         found = _better(search, found, descend(search, aside), share=_PLAINLY)
-    search, found = others_stayed(search, found, target, start)
+    search, found = anchor_untargeted_markers(search, found, target, start)
     reached = reached_pose(search, found, target)
     if not simulation.assembly.has_history:
         return reached
-    return replace(reached, friction_band=_band(simulation, reached.pose))
+    return replace(reached, friction_hysteresis=_band(simulation, reached.pose))
 
 
-def _followed(simulation: Simulation, found: ReachedPose, start: SolvedPose | None) -> ReachedPose:
+def _followed(simulation: Simulation, found: IKResult, start: Equilibrium | None) -> IKResult:
     """What was found without friction on obstacles, as the way to its contractions ends with it."""
     pose = simulation.solve(found.pose.contractions, start=start, strict=False)
     if pose.result.reason is Reason.TIME_LIMIT:
-        found = replace(found, reason=InverseReason.TIME_LIMIT)
+        found = replace(found, reason=IKStatus.TIME_LIMIT)
     elif not pose.result.converged:
-        raise not_converged(pose.result, simulation.in_the_way(pose))
+        raise not_converged(pose.result, simulation.diagnose(pose))
     targets = {} if found.target is None else found.target.targets
     errors = {
         name: float(np.linalg.norm(pose.markers[name] - targets[name])) if name in targets else error
@@ -122,24 +129,24 @@ def _followed(simulation: Simulation, found: ReachedPose, start: SolvedPose | No
     return replace(found, pose=pose, errors=errors)
 
 
-def _band(simulation: Simulation, pose: SolvedPose) -> Mapping[str, float]:
+def _band(simulation: Simulation, pose: Equilibrium) -> Mapping[str, float]:
     """What friction leaves open; empty where the way there and back breaks off."""
     try:
-        return friction_band(simulation, pose)
+        return friction_hysteresis(simulation, pose)
     except NotConvergedError:
         return {}
 
 
-def as_pose(targets: Targets | None) -> Pose | None:
+def as_pose(targets: Targets | None) -> PoseTarget | None:
     """Targets as a pose; None if there are none."""
-    if targets is None or isinstance(targets, Pose):
+    if targets is None or isinstance(targets, PoseTarget):
         return targets
-    return Pose(name="target", targets=dict(named_targets(targets))) if targets else None
+    return PoseTarget(name="target", targets=dict(named_targets(targets))) if targets else None
 
 
-def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objective]:
+def wishes(target: PoseTarget | None, objectives: Sequence[Objective]) -> list[Objective]:
     """All that is wished for (InputError: nothing)."""
-    found = [*([MarkerGoal(targets=target.targets)] if target else []), *checked_objectives(objectives)]
+    found = [*([MarkerTarget(targets=target.targets)] if target else []), *checked_objectives(objectives)]
     if not found:
         raise InputError("there is nothing to reach: give targets for markers, or objectives")
     return found
@@ -157,14 +164,14 @@ def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, 
         if _better(search, found, other) is other:
             found = other
             best.append(other.state)
-        if found.reason is InverseReason.REACHED:
+        if found.reason is IKStatus.REACHED:
             break
         if search.patience.over:
-            return replace(found, reason=InverseReason.TIME_LIMIT).after(spent)
+            return replace(found, reason=IKStatus.TIME_LIMIT).after(spent)
     return found.after(spent)
 
 
-_ENDS = (InverseReason.REACHED, InverseReason.TIME_LIMIT)
+_ENDS = (IKStatus.REACHED, IKStatus.TIME_LIMIT)
 """After these no other beginning is tried."""
 
 
@@ -226,7 +233,7 @@ def _contractions(search: InverseSearch, state: InverseState, number: int, draw:
 
 def _concerned(search: InverseSearch, state: InverseState) -> np.ndarray:
     """Which channels act mostly on what is missed."""
-    slopes = search.problem.slopes(state) ** 2
+    slopes = search.problem.jacobian(state) ** 2
     missed = state.residual**2 / max(float(np.max(state.residual**2, initial=0.0)), np.finfo(float).tiny)
     share = (missed @ slopes) / np.maximum(slopes.sum(axis=0), np.finfo(float).tiny)
     return share >= _CONCERNED * share.max(initial=0.0)

@@ -10,16 +10,16 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
+from hydrostat.ik.ik_result import IKResult, IKStatus
 from hydrostat.ik.limits import Limits, bounds
-from hydrostat.ik.objectives.objective import Objective, Term
-from hydrostat.ik.outlook import Outlook
-from hydrostat.ik.reached_pose import InverseReason, ReachedPose
+from hydrostat.ik.linearized_pose import LinearizedPose
+from hydrostat.ik.objectives.objective import Objective, Residual
 from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, StepRules, ends, reached_pose, try_step
-from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
+from hydrostat.ik.search.problem import IKOptions, InverseProblem, InverseState
 from hydrostat.ik.solve_ik import Targets, as_pose, wishes
-from hydrostat.robot import Point, Pose, Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.robot import Point, PoseTarget, Robot
+from hydrostat.simulation import Equilibrium, Simulation
 
 
 @runtime_checkable
@@ -37,7 +37,7 @@ class ModelAnswer(Protocol):
         ...
 
     @property
-    def doubt(self) -> float:
+    def uncertainty(self) -> float:
         """How far that may be off [m]."""
         ...
 
@@ -77,8 +77,8 @@ class Tracker:
         *,
         limits: Limits | None = None,
         objectives: Sequence[Objective] = (),
-        start: SolvedPose | None = None,
-        options: InverseOptions | None = None,
+        start: Equilibrium | None = None,
+        options: IKOptions | None = None,
         accuracy: float | None = None,
         model: PoseModel | None = None,
     ) -> None:
@@ -91,10 +91,10 @@ class Tracker:
         Raises:
             InputError: no simulation, limits, start, accuracy or model, or a start or a model of another robot.
         """
-        check_kind(simulation, Simulation, "a pose is found by a Simulation(robot)")
-        check_kind(limits, (Limits, type(None)), "limits must be Limits(...), such as Limits(rate=0.05)")
+        check_type(simulation, Simulation, "a pose is found by a Simulation(robot)")
+        check_type(limits, (Limits, type(None)), "limits must be Limits(...), such as Limits(rate=0.05)")
         simulation.check_start(start)
-        simulation.solver.roughly(accuracy, simulation.robot.body.mesh.size)
+        simulation.solver.with_accuracy(accuracy, simulation.robot.body.mesh.size)
         if model is not None:
             if not hasattr(model, "check"):
                 raise InputError(f"model must be one that load_model gives, not {model!r:.60}")
@@ -102,16 +102,16 @@ class Tracker:
         self._model = model
         self._asked: Mapping[str, Point] | None = None  # the targets that the model was asked for last
         self._simulation, self._objectives = simulation, tuple(objectives)
-        self._limits, self._options = limits or Limits(), options or InverseOptions()
+        self._limits, self._options = limits or Limits(), options or IKOptions()
         self._radius, self._accuracy = self._options.largest_step, accuracy
         self._state: InverseState | None = None
         self._targets: Mapping[str, Point] = {}  # of the last update
-        self._terms: Sequence[Term] = ()
+        self._terms: Sequence[Residual] = ()
         self.pose = start or simulation.rest
 
     def update(
         self, targets: Targets | None = None, *, seconds: float, objectives: Sequence[Objective] = ()
-    ) -> ReachedPose:
+    ) -> IKResult:
         """One step towards where the targets are now.
 
         Args:
@@ -128,23 +128,23 @@ class Tracker:
         target = as_pose(targets)
         search = self._search(target, seconds, objectives)
         state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
-        weight, reason = search.problem.weight(state), InverseReason.REACHED
+        weight, reason = search.problem.weight(state), IKStatus.REACHED
         if not _reached(search.problem, state):
             led = self._foretold(search, state, target)
             weight = search.problem.weight(led or state)
-            state, reason = (led, InverseReason.ITERATION_LIMIT) if led else self._step(search, state, weight)
+            state, reason = (led, IKStatus.ITERATION_LIMIT) if led else self._step(search, state, weight)
         self._state = state
         if _reached(search.problem, state):
-            reason = InverseReason.REACHED
+            reason = IKStatus.REACHED
         elif state.excess > _RULES.far:
-            reason = InverseReason.TOO_TIGHT
+            reason = IKStatus.INFEASIBLE
         found = Descent(state=state, reason=reason, iterations=1, weight=weight)
         reached = reached_pose(search, found, target)
         self.pose, self._targets = reached.pose, {} if target is None else dict(target.targets)
         self._terms = search.problem.terms
         return reached
 
-    def outlook(self, *, seconds: float) -> Outlook:
+    def linearize(self, *, seconds: float) -> LinearizedPose:
         """What contractions do about the pose of the last update, to first order.
 
         It answers targets that have just moved at once, while the next update is still to be done.
@@ -158,7 +158,7 @@ class Tracker:
         if self._state is None or not self._targets:
             raise InputError("an outlook needs an update with targets before it")
         problem = self._problem(seconds, self._terms)
-        return Outlook(
+        return LinearizedPose(
             model=problem.linear(self._state),
             targets=self._targets,
             worth=problem.worth,
@@ -172,13 +172,13 @@ class Tracker:
         """What it is, in one line."""
         return f"<Tracker at {self.pose!r}>"
 
-    def _foretold(self, search: InverseSearch, state: InverseState, target: Pose | None) -> InverseState | None:
+    def _foretold(self, search: InverseSearch, state: InverseState, target: PoseTarget | None) -> InverseState | None:
         """Where the model leads; None if it was asked for this before, or that is not better."""
         if self._model is None or target is None or target.targets == self._asked:
             return None
         self._asked = dict(target.targets)
         answer, problem = self._model.solve(target), search.problem
-        if answer.error + answer.doubt > _WORTH * np.mean([state.errors[name] for name in target.targets]):
+        if answer.error + answer.uncertainty > _WORTH * np.mean([state.errors[name] for name in target.targets]):
             return None
         found = search.follow(state, problem.bounds.channel(answer.contractions))
         if found is None or found.excess > max(state.excess, _RULES.far):
@@ -186,7 +186,7 @@ class Tracker:
         weight = problem.weight(state)
         return found if problem.objective(found, weight) < problem.objective(state, weight) else None
 
-    def _step(self, search: InverseSearch, state: InverseState, weight: float) -> tuple[InverseState, InverseReason]:
+    def _step(self, search: InverseSearch, state: InverseState, weight: float) -> tuple[InverseState, IKStatus]:
         """The state after the first step that is accepted, and what to say of it."""
         problem, largest = search.problem, self._options.largest_step
         least = self._options.progress * problem.objective(state, weight)
@@ -195,20 +195,20 @@ class Tracker:
             step = problem.step(state, weight, self._radius)
             if ends(problem, state, step, least, first):
                 self._radius = largest
-                return state, InverseReason.OPTIMAL
+                return state, IKStatus.LOCAL_OPTIMUM
             tried = try_step(problem, state, step, weight, search.follow, _RULES)
             if tried.accepted and tried.trial is not None:
                 self._radius = min(2.0 * self._radius, largest)
-                return tried.trial, InverseReason.ITERATION_LIMIT
+                return tried.trial, IKStatus.ITERATION_LIMIT
             found = found or tried.trial is not None
             self._radius = max(0.25 * self._radius, _SMALLEST)
-        return state, InverseReason.STUCK if found else InverseReason.NO_EQUILIBRIUM
+        return state, IKStatus.STALLED if found else IKStatus.NO_EQUILIBRIUM
 
-    def _search(self, target: Pose | None, seconds: float, objectives: Sequence[Objective]) -> InverseSearch:
-        terms = [wish.on(self._simulation) for wish in wishes(target, [*self._objectives, *objectives])]
+    def _search(self, target: PoseTarget | None, seconds: float, objectives: Sequence[Objective]) -> InverseSearch:
+        terms = [wish.bind(self._simulation) for wish in wishes(target, [*self._objectives, *objectives])]
         return InverseSearch(self._problem(seconds, terms), accuracy=self._accuracy, origin=self.pose)
 
-    def _problem(self, seconds: float, terms: Sequence[Term]) -> InverseProblem:
+    def _problem(self, seconds: float, terms: Sequence[Residual]) -> InverseProblem:
         """Terms within what can be reached from the pose in time [s]."""
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
         allowed = bounds(self._simulation, limits)

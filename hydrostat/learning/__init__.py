@@ -5,16 +5,16 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.learning.certify import certify, exact_steps, solve_exactly
+    from hydrostat.learning.certify import exact_steps, solve_exactly, verify
     from hydrostat.learning.compare import METHODS, STEP, Compared, compare, targets_of, way_of
     from hydrostat.learning.correct_model import correct_model
-    from hydrostat.learning.draw import Draw, antagonists
+    from hydrostat.learning.draw import SamplingScheme, antagonists
     from hydrostat.learning.export import EXPORTS, check_export, export_samples
     from hydrostat.learning.learn_model import learn_model
     from hydrostat.learning.learn_options import LearnOptions
     from hydrostat.learning.learned_model import LearnedModel
     from hydrostat.learning.learned_pose import LearnedPose, Tier
-    from hydrostat.learning.lesson import LEAST, Lesson, lesson_of, linear_map
+    from hydrostat.learning.lesson import LEAST, TrainingSet, lesson_of, linear_map
     from hydrostat.learning.model_file import load_model, save_model
     from hydrostat.learning.perceptrons import Perceptrons
     from hydrostat.learning.portable_policy import PortablePolicy, load_policy
@@ -34,22 +34,21 @@ __all__ = [
     "METHODS",
     "STEP",
     "Compared",
-    "Draw",
     "LearnOptions",
     "LearnedModel",
     "LearnedPose",
-    "Lesson",
     "Perceptrons",
     "PortablePolicy",
     "SampleFolder",
     "SamplePlan",
     "Samples",
+    "SamplingScheme",
     "Study",
     "StudyRow",
     "Tier",
+    "TrainingSet",
     "answer",
     "antagonists",
-    "certify",
     "check_export",
     "compare",
     "correct_model",
@@ -72,6 +71,7 @@ __all__ = [
     "tensors_of",
     "train_forward",
     "train_thesis_network",
+    "verify",
     "way_of",
 ]
 

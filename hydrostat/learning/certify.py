@@ -1,4 +1,4 @@
-"""`certify`: what the simulator says of a learned answer, and how much nearer exact steps bring it."""
+"""`verify`: what the simulator says of a learned answer, and how much nearer exact steps bring it."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.given import check_kind
-from hydrostat.ik import InverseOptions, InverseReason, Limits, Targets, Tracker, named_targets, solve_ik
+from hydrostat.given import check_type
+from hydrostat.ik import IKOptions, IKStatus, Limits, Targets, Tracker, named_targets, solve_ik
 from hydrostat.learning.known_contact import contact_facts
 from hydrostat.learning.learned_model import LearnedModel
 from hydrostat.learning.learned_pose import LearnedPose, Tier
 from hydrostat.learning.sample_plan import physics_hash
-from hydrostat.robot import Point, Pose, Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.robot import Point, PoseTarget, Robot
+from hydrostat.simulation import Equilibrium, Simulation
 
 
-def certify(
+def verify(
     simulation: Simulation, model: LearnedModel, answer: LearnedPose, *, steps: int = 0, enough: float = 0.0
 ) -> LearnedPose:
     """A learned answer with the error that the simulator finds, if asked after exact Gauss-Newton steps from there.
@@ -24,7 +24,7 @@ def certify(
     The contractions are solved from rest, unless the answer was certified before, for the same robot; each step goes on
     from the pose before, as an update of `Tracker`. Where no equilibrium is found, `certified` is None and `reason`
     says why. After steps the pose is that at the end of their way: the same contractions, taken in from rest, may lead
-    to another. What they leave from rest says `certify(simulation, model, replace(found, pose=None))`.
+    to another. What they leave from rest says `verify(simulation, model, replace(found, pose=None))`.
 
     Args:
         simulation: of the robot that the model was learned of.
@@ -36,9 +36,9 @@ def certify(
     Raises:
         InputError: a model of another robot.
     """
-    check_kind(simulation, Simulation, "an answer is certified by a Simulation(robot)")
-    check_kind(model, LearnedModel, "the model must be one that load_model gives")
-    check_kind(answer, LearnedPose, "the answer must be what model.solve gives")
+    check_type(simulation, Simulation, "an answer is certified by a Simulation(robot)")
+    check_type(model, LearnedModel, "the model must be one that load_model gives")
+    check_type(answer, LearnedPose, "the answer must be what model.solve gives")
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:
         raise InputError(f"steps must be a whole number of 0 or more, not {steps!r:.60}")
     model.check(simulation.robot)
@@ -46,14 +46,14 @@ def certify(
     if pose is None or not _same(pose.robot, simulation.robot):
         pose = simulation.solve(answer.contractions, strict=False)
     pose, taken = exact_steps(simulation, pose, answer.target, steps, enough=enough)
-    found = model.judged(answer.target, pose.contractions, Tier.STEP if taken else answer.tier)
+    found = model.evaluate(answer.target, pose.contractions, Tier.STEP if taken else answer.tier)
     certified = _missed(answer, pose) if pose.result.converged else None
     return replace(found, certified=certified, reason=pose.result.reason, pose=pose)
 
 
 def exact_steps(
-    simulation: Simulation, pose: SolvedPose, target: Targets, steps: int, *, enough: float = 0.0
-) -> tuple[SolvedPose, int]:
+    simulation: Simulation, pose: Equilibrium, target: Targets, steps: int, *, enough: float = 0.0
+) -> tuple[Equilibrium, int]:
     """The pose after exact steps towards a target, each an update of `Tracker`, and how many were taken.
 
     An update that finds no better pose is tried again with a shorter step, a few times. Where the pose is no
@@ -71,18 +71,18 @@ def exact_steps(
     """
     if not (steps and pose.result.converged):
         return pose, 0
-    goals = dict(named_targets(target)) if not isinstance(target, Pose) else target.targets
+    goals = dict(named_targets(target)) if not isinstance(target, PoseTarget) else target.targets
     tracker, taken, tried = Tracker(simulation, start=pose), 0, 0
     while taken < steps and tried < _TRIES and _mean_error(pose, goals) > enough:
         reached = tracker.update(target, seconds=1.0)
         moved = not np.array_equal(reached.pose.contractions, pose.contractions)
         pose, taken, tried = reached.pose, taken + moved, 0 if moved else tried + 1
-        if not moved and reached.reason in (InverseReason.REACHED, InverseReason.OPTIMAL):
+        if not moved and reached.status in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM):
             break
     return pose, taken
 
 
-def _mean_error(pose: SolvedPose, goals: Mapping[str, Point]) -> float:
+def _mean_error(pose: Equilibrium, goals: Mapping[str, Point]) -> float:
     """Mean distance of the markers from their targets [m]."""
     return float(np.mean([np.linalg.norm(pose.markers[name] - np.asarray(goal)) for name, goal in goals.items()]))
 
@@ -93,7 +93,7 @@ def solve_exactly(
     answer: LearnedPose,
     *,
     limits: Limits | None = None,
-    options: InverseOptions | None = None,
+    options: IKOptions | None = None,
 ) -> LearnedPose:
     """The answer of `solve_ik` that begins where a learned answer leads, from rest where that is no equilibrium.
 
@@ -108,11 +108,11 @@ def solve_exactly(
         InputError: a model of another robot, or as for `solve_ik`.
         NotConvergedError: as for `solve_ik`.
     """
-    start = certify(simulation, model, answer)
+    start = verify(simulation, model, answer)
     begun = start.pose if start.certified is not None else None
     reached = solve_ik(simulation, answer.target, limits=limits, start=begun, options=options)
-    found = model.judged(answer.target, reached.pose.contractions, Tier.EXACT)
-    return replace(found, certified=_missed(answer, reached.pose), reason=reached.reason, pose=reached.pose)
+    found = model.evaluate(answer.target, reached.pose.contractions, Tier.EXACT)
+    return replace(found, certified=_missed(answer, reached.pose), reason=reached.status, pose=reached.pose)
 
 
 def _same(one: Robot, other: Robot) -> bool:
@@ -120,12 +120,12 @@ def _same(one: Robot, other: Robot) -> bool:
     return one is other or (physics_hash(one), contact_facts(one)) == (physics_hash(other), contact_facts(other))
 
 
-def _residual(answer: LearnedPose, pose: SolvedPose) -> np.ndarray:
+def _residual(answer: LearnedPose, pose: Equilibrium) -> np.ndarray:
     """From targets to markers [m], a row for each that was asked for."""
     return np.array([pose.markers[name] - np.asarray(point) for name, point in answer.target.targets.items()])
 
 
-def _missed(answer: LearnedPose, pose: SolvedPose) -> dict[str, float]:
+def _missed(answer: LearnedPose, pose: Equilibrium) -> dict[str, float]:
     distances = np.linalg.norm(_residual(answer, pose), axis=1).tolist()
     return dict(zip(answer.target.targets, distances, strict=True))
 

@@ -16,7 +16,7 @@ from hydrostat.learning.others import OTHERS
 from hydrostat.learning.samples import Samples
 from hydrostat.learning.thesis_network import Answers, train_thesis_network
 from hydrostat.robot import Point
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 Distances = Float[np.ndarray, "targets markers"]
 
@@ -117,9 +117,9 @@ def _learned(train: Samples, test: Samples, asked: set[str], options: LearnOptio
         model = learn_model(train, options=options)
         seconds = model.facts["seconds"]
         if "inverse" in asked and model.inverse is not None:
-            model.inverted(goals[0])
+            model.predict_inverse(goals[0])
             began = time.process_time()
-            answers = np.array([model.inverted(goal) for goal in goals])
+            answers = np.array([model.predict_inverse(goal) for goal in goals])
             each = 1e6 * (time.process_time() - began) / len(test)
             yield told("inverse", answers, seconds, facts={"microseconds": each})
         if "search" in asked:
@@ -142,7 +142,7 @@ def _searched(model: LearnedModel, test: Samples) -> tuple[Answers, Distances, d
 
 def _rolled(simulation: Simulation, test: Samples, found: Compared, methods: set[str]) -> Iterator[Compared]:
     """What is asked of an answer in the simulator: from rest, and after one exact step for each target."""
-    poses = list[SolvedPose]()
+    poses = list[Equilibrium]()
     for row in found.contractions:
         same = poses and np.array_equal(row, poses[-1].contractions)
         poses.append(poses[-1] if same else simulation.solve(row, strict=False).without_factors())
@@ -170,7 +170,7 @@ def _rolled(simulation: Simulation, test: Samples, found: Compared, methods: set
         )
 
 
-def _distances(poses: Sequence[SolvedPose], test: Samples) -> Distances:
+def _distances(poses: Sequence[Equilibrium], test: Samples) -> Distances:
     """How far the markers are from where they are in samples [m]; NaN where there is no equilibrium."""
     names = test.facts["markers"]
     rows = [

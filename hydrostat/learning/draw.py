@@ -1,4 +1,4 @@
-"""`Draw`: the ways in which contractions are drawn, each by scrambled Sobol points."""
+"""`SamplingScheme`: the ways in which contractions are drawn, each by scrambled Sobol points."""
 
 from collections.abc import Sequence
 from enum import StrEnum
@@ -13,7 +13,7 @@ Points = Float[np.ndarray, "samples dimensions"]
 Winches = Sequence[Sequence[int]]
 
 
-class Draw(StrEnum):
+class SamplingScheme(StrEnum):
     """How contractions are drawn."""
 
     BOX = "box"  # each winch between its release and its travel
@@ -22,12 +22,12 @@ class Draw(StrEnum):
     TENSION = "tension"  # as box, let out until no cable pulls harder than allowed
 
 
-def dimensions(draw: Draw, pairs: Winches, winches: int) -> int:
+def dimensions(draw: SamplingScheme, pairs: Winches, winches: int) -> int:
     """How many numbers a sample is drawn by."""
-    return {Draw.ANTAGONIST: len(pairs), Draw.FACES: 2 * winches}.get(draw, winches)
+    return {SamplingScheme.ANTAGONIST: len(pairs), SamplingScheme.FACES: 2 * winches}.get(draw, winches)
 
 
-def contractions(draw: Draw, points: Points, low: Vector, high: Vector, pairs: Winches) -> Rows:
+def contractions(draw: SamplingScheme, points: Points, low: Vector, high: Vector, pairs: Winches) -> Rows:
     """Contractions [m] of points in the unit cube.
 
     Args:
@@ -37,14 +37,14 @@ def contractions(draw: Draw, points: Points, low: Vector, high: Vector, pairs: W
         high: largest [m].
         pairs: winches that work against one another, two by two; those that have no partner alone.
     """
-    if draw is Draw.ANTAGONIST:
+    if draw is SamplingScheme.ANTAGONIST:
         return _against(points, high, pairs)
     box = low + points[:, : len(low)] * (high - low)
-    return np.where(points[:, len(low) :] < 0.5, box, 0.0) if draw is Draw.FACES else box
+    return np.where(points[:, len(low) :] < 0.5, box, 0.0) if draw is SamplingScheme.FACES else box
 
 
 def shared_numbers(rows: Rows, high: Vector, pairs: Winches) -> Points:
-    """Points in the unit cube, (samples, pairs), that give such contractions drawn by `Draw.ANTAGONIST`."""
+    """Points in the unit cube, (samples, pairs), that give such contractions drawn by `SamplingScheme.ANTAGONIST`."""
     shares = rows / np.where(high > 0, high, 1.0)
     columns = [
         shares[:, one] if not other else 0.5 + 0.5 * (shares[:, one] - shares[:, other[0]]) for one, *other in pairs

@@ -18,7 +18,7 @@ def contact_facts(robot: Robot) -> ContactFacts:
     return _facts((robot.contact_distance, robot.contact.friction))
 
 
-def told_contact(facts: Mapping[str, Any]) -> ContactFacts:
+def contact_in_model(facts: Mapping[str, Any]) -> ContactFacts:
     """The same as a file tells it; one that does not, being earlier, was made with the usual distance, no friction."""
     if not facts["contact"]:
         return _facts(None)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.learning.draw import Draw
-from hydrostat.learning.known_contact import told_contact
+from hydrostat.learning.draw import SamplingScheme
+from hydrostat.learning.known_contact import contact_in_model
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel, paired
 from hydrostat.learning.lesson import lesson_of
@@ -72,8 +72,8 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
 
 def kept_facts(samples: Samples) -> dict[str, Any]:
     """What a model tells of the robot that it was learned of."""
-    pairs = samples.facts["pairs"] if list(samples.facts["draws"]) == [Draw.ANTAGONIST] else []
-    return {**{name: samples.facts[name] for name in _KEPT}, "pairs": pairs, **told_contact(samples.facts)}
+    pairs = samples.facts["pairs"] if list(samples.facts["draws"]) == [SamplingScheme.ANTAGONIST] else []
+    return {**{name: samples.facts[name] for name in _KEPT}, "pairs": pairs, **contact_in_model(samples.facts)}
 
 
 def silent(stage: str, done: int, total: int) -> None:

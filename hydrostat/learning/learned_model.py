@@ -12,11 +12,11 @@ from jaxtyping import Float
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik import Targets, named_targets
-from hydrostat.learning.known_contact import check_contact, told_contact
+from hydrostat.learning.known_contact import check_contact, contact_in_model
 from hydrostat.learning.learned_pose import LearnedPose, Tier
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.learning.sample_plan import physics_hash
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,9 +64,9 @@ class LearnedModel:
                 f"the model was learned of another robot than {robot.name!r} ({self.facts['robot']!r}, or what it was "
                 f"before it was changed): sample and learn again"
             )
-        check_contact(told_contact(self.facts), robot)
+        check_contact(contact_in_model(self.facts), robot)
 
-    def expect(self, contractions: Vector) -> tuple[Vector, Vector]:
+    def predict(self, contractions: Vector) -> tuple[Vector, Vector]:
         """What is expected at contractions [m]: coordinates of the markers [m], then tensions [N]; and their spread."""
         return self._expected(self._winches(contractions))
 
@@ -75,7 +75,7 @@ class LearnedModel:
         _, slopes = self.forward.slopes(self._scaled(self._winches(contractions)))
         return (self.unit[:, None] * slopes / self._half)[: self._coordinates]
 
-    def inverted(self, markers: Vector) -> Vector:
+    def predict_inverse(self, markers: Vector) -> Vector:
         """Contractions [m] by the inverse network alone, for coordinates of all markers [m] in their order.
 
         Raises:
@@ -104,10 +104,10 @@ class LearnedModel:
         if len(target.targets) < len(self._rows):
             whole = np.where(asked, goal, self._nearest(goal, asked, 1)[1][0])
         if not search:
-            return self.judged(target, self._inverted(whole), Tier.NETWORK)
-        return self.judged(target, self._search(whole, asked), Tier.SEARCH)
+            return self.evaluate(target, self._inverted(whole), Tier.NETWORK)
+        return self.evaluate(target, self._search(whole, asked), Tier.SEARCH)
 
-    def judged(self, target: Pose, contractions: Vector, tier: Tier) -> LearnedPose:
+    def evaluate(self, target: PoseTarget, contractions: Vector, tier: Tier) -> LearnedPose:
         """An answer, with what the networks say of it."""
         expected, spread = self._expected(contractions)
         names, dim, count = self.facts["markers"], self.facts["dim"], self._coordinates
@@ -183,10 +183,14 @@ class LearnedModel:
         best = np.argsort(squares, kind="stable")[:count] if count > 1 else squares.argmin(keepdims=True)
         return self.known[best], self.reached[best]
 
-    def _pose(self, targets: Targets) -> Pose:
-        return targets if isinstance(targets, Pose) else Pose(name="target", targets=dict(named_targets(targets)))
+    def _pose(self, targets: Targets) -> PoseTarget:
+        return (
+            targets
+            if isinstance(targets, PoseTarget)
+            else PoseTarget(name="target", targets=dict(named_targets(targets)))
+        )
 
-    def _goal(self, target: Pose) -> tuple[Vector, np.ndarray]:
+    def _goal(self, target: PoseTarget) -> tuple[Vector, np.ndarray]:
         """Coordinates of all markers [m], NaN where nothing is asked for, and which of them are asked for."""
         rows, dim, targets = self._rows, self.facts["dim"], target.targets
         for name, point in targets.items():

@@ -7,10 +7,10 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.ik import InverseReason
+from hydrostat.ik import IKStatus
 from hydrostat.mechanics import Reason
-from hydrostat.robot import Pose
-from hydrostat.simulation import SolvedPose
+from hydrostat.robot import PoseTarget
+from hydrostat.simulation import Equilibrium
 
 
 class Tier(StrEnum):
@@ -40,7 +40,7 @@ class LearnedPose:
         pose: the equilibrium; None where there is none.
     """
 
-    target: Pose
+    target: PoseTarget
     tier: Tier
     contractions: Vector
     commands: Mapping[str, float]
@@ -49,8 +49,8 @@ class LearnedPose:
     errors: Mapping[str, float]
     spread: Mapping[str, float]
     certified: Mapping[str, float] | None = None
-    reason: Reason | InverseReason | None = None
-    pose: SolvedPose | None = None
+    reason: Reason | IKStatus | None = None
+    pose: Equilibrium | None = None
 
     def __repr__(self) -> str:
         """What it is, in one line."""
@@ -63,7 +63,7 @@ class LearnedPose:
         return float(np.mean(list((self.errors if self.certified is None else self.certified).values())))
 
     @property
-    def doubt(self) -> float:
+    def uncertainty(self) -> float:
         """Mean spread of the markers that were asked for [m]."""
         return float(np.mean(list(self.spread.values())))
 

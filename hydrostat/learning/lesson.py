@@ -1,4 +1,4 @@
-"""`Lesson`: samples as networks see them, without units."""
+"""`TrainingSet`: samples as networks see them, without units."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from hydrostat.learning.samples import Samples
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Lesson:
+class TrainingSet:
     """What there is to learn: inputs from -1 to 1, and what they lead to, markers first, in a unit for each kind.
 
     Attributes:
@@ -38,7 +38,7 @@ class Lesson:
     linear: Float[np.ndarray, "rows outputs"]
 
 
-def lesson_of(samples: Samples, like: LearnedModel | None = None) -> Lesson:
+def lesson_of(samples: Samples, like: LearnedModel | None = None) -> TrainingSet:
     """What there is to learn from samples; in the units of a model if its networks are to learn on.
 
     Raises:
@@ -62,7 +62,7 @@ def lesson_of(samples: Samples, like: LearnedModel | None = None) -> Lesson:
         found_slopes = np.hstack([found_slopes, samples.tension_slopes])
     slopes = found_slopes * (0.5 * span) / unit[: found_slopes.shape[1], None]
     outputs = (found - middle) / unit
-    return Lesson(
+    return TrainingSet(
         low=low,
         high=high,
         middle=middle,

@@ -10,7 +10,7 @@ from jaxtyping import Float
 from scipy.stats.qmc import Sobol
 
 from hydrostat.errors import InputError
-from hydrostat.learning.draw import Draw, Rows, antagonists, contractions, dimensions
+from hydrostat.learning.draw import Rows, SamplingScheme, antagonists, contractions, dimensions
 from hydrostat.learning.known_contact import contact_facts
 from hydrostat.robot import Contact, Robot, robot_hash
 from hydrostat.simulation import Simulation
@@ -27,8 +27,8 @@ class SamplePlan:
         draws: ways in which contractions are drawn, one sample each in turn.
         shard: samples in one file.
         nodes: whether the positions of all nodes are kept.
-        tension: the most that a cable shall pull [N]; for `Draw.TENSION`.
-        pairs: winches that work against one another, two by two; those without a partner alone; for `Draw.ANTAGONIST`.
+        tension: the most that a cable shall pull [N]; for `SamplingScheme.TENSION`.
+        pairs: antagonistic pairs of winches, those without a partner alone; for `SamplingScheme.ANTAGONIST`.
 
     Raises:
         InputError: counts below 1, no draw, or a draw that lacks its limit.
@@ -37,7 +37,7 @@ class SamplePlan:
     robot: Robot
     count: int
     seed: int = 0
-    draws: Sequence[Draw] = (Draw.BOX,)
+    draws: Sequence[SamplingScheme] = (SamplingScheme.BOX,)
     shard: int = 64
     nodes: bool = False
     tension: float | None = None
@@ -50,11 +50,11 @@ class SamplePlan:
         if self.seed < 0:
             raise InputError(f"seed must be 0 or more, not {self.seed}")
         if not self.draws:
-            raise InputError(f"there must be a way to draw contractions; there are: {', '.join(Draw)}")
+            raise InputError(f"there must be a way to draw contractions; there are: {', '.join(SamplingScheme)}")
         if not self.robot.winches or not self.robot.markers:
             raise InputError(f"robot {self.robot.name!r} needs a winch to be moved by and a marker to be looked at")
         limited = self.tension is not None and isfinite(self.tension) and self.tension > 0
-        if Draw.TENSION in self.draws and not limited:
+        if SamplingScheme.TENSION in self.draws and not limited:
             raise InputError("drawing by tension needs the most that a cable shall pull, such as 10 N")
 
     @property
@@ -66,7 +66,7 @@ class SamplePlan:
         """Numbers of the samples in a file."""
         return range(shard * self.shard, min((shard + 1) * self.shard, self.count))
 
-    def draw_of(self, number: int) -> Draw:
+    def draw_of(self, number: int) -> SamplingScheme:
         """How the contractions of a sample are drawn."""
         return self.draws[number % len(self.draws)]
 
@@ -123,7 +123,7 @@ def plan_samples(
     *,
     contact: bool = False,
     seed: int = 0,
-    draws: Sequence[Draw] = (Draw.BOX,),
+    draws: Sequence[SamplingScheme] = (SamplingScheme.BOX,),
     shard: int = 64,
     nodes: bool = False,
     tension: float | None = None,
@@ -138,7 +138,7 @@ def plan_samples(
         draws: ways in which contractions are drawn, one sample each in turn.
         shard: samples in one file.
         nodes: whether all nodes are kept.
-        tension: the most that a cable shall pull [N]; for `Draw.TENSION`.
+        tension: the most that a cable shall pull [N]; for `SamplingScheme.TENSION`.
 
     Raises:
         InputError: as for `SamplePlan`.
@@ -148,12 +148,12 @@ def plan_samples(
     plan = SamplePlan(
         robot=robot, count=count, seed=seed, draws=tuple(draws), shard=shard, nodes=nodes, tension=tension
     )
-    if Draw.ANTAGONIST not in plan.draws:
+    if SamplingScheme.ANTAGONIST not in plan.draws:
         return plan
     simulation, winches = Simulation(robot), len(robot.winches)
     travel = np.array([winch.travel for winch in robot.winches])
     rows = np.vstack([np.zeros(winches), _LITTLE * np.diag(travel)])
-    markers = simulation.solve_many(rows, jacobians=False, threads=1).markers.reshape(winches + 1, -1)
+    markers = simulation.solve_batch(rows, jacobians=False, threads=1).markers.reshape(winches + 1, -1)
     return replace(plan, pairs=antagonists(np.nan_to_num(markers[1:] - markers[0])))
 
 

@@ -4,10 +4,10 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.geometry import find_crossings
-from hydrostat.learning.draw import Draw
+from hydrostat.learning.draw import SamplingScheme
 from hydrostat.learning.sample_plan import SamplePlan, physics_hash
 from hydrostat.mechanics import Reason
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 REASONS = (*Reason, "error")
 """What the column `reason` counts."""
@@ -46,8 +46,8 @@ def sample_shard(plan: SamplePlan, shard: int) -> np.ndarray:
     rows = np.zeros(len(numbers), sample_type(plan))
     for row, number, contractions in zip(rows, numbers, plan.contractions(numbers), strict=True):
         draw = plan.draw_of(number)
-        row["number"], row["draw"] = number, list(Draw).index(draw)
-        _fill(row, simulation, contractions, plan.tension if draw is Draw.TENSION else None)
+        row["number"], row["draw"] = number, list(SamplingScheme).index(draw)
+        _fill(row, simulation, contractions, plan.tension if draw is SamplingScheme.TENSION else None)
     return rows
 
 
@@ -84,17 +84,17 @@ def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: f
         row["tension_slopes"] = _tension_slopes(simulation, pose, moves)
 
 
-def _tension_slopes(simulation: Simulation, pose: SolvedPose, moves: np.ndarray) -> np.ndarray:
+def _tension_slopes(simulation: Simulation, pose: Equilibrium, moves: np.ndarray) -> np.ndarray:
     """How tensions rise with contractions [N/m], (cables, winches): T' (dl/dx dx/da + ratio); 0 for slack cables."""
     cables, count = simulation.cables, len(simulation.robot.cables)
     if simulation.friction is not None:
-        return simulation.rubbing_slopes(pose, (np.zeros((count, pose.nodes.size)), np.eye(count))).contractions
+        return simulation.friction_sensitivities(pose, (np.zeros((count, pose.nodes.size)), np.eye(count))).contractions
     longer = cables.columns(pose.nodes).T @ moves.reshape(pose.nodes.size, -1)
     longer[np.arange(count), cables.winches] += cables.ratios
     return cables.law.tangent(cables.elongations(pose.nodes, pose.contractions))[:, None] * longer
 
 
-def _within(simulation: Simulation, contractions: Vector, tension: float | None) -> SolvedPose:
+def _within(simulation: Simulation, contractions: Vector, tension: float | None) -> Equilibrium:
     """Pose at contractions that are let out, in proportion, until no cable pulls harder than allowed [N]."""
     pose = simulation.solve(contractions, strict=False)
     if tension is None:
@@ -108,15 +108,17 @@ def _within(simulation: Simulation, contractions: Vector, tension: float | None)
     return pose
 
 
-def _touches(simulation: Simulation, pose: SolvedPose) -> bool:
+def _touches(simulation: Simulation, pose: Equilibrium) -> bool:
     """Whether parts of the body push one another off."""
     slot = simulation.body.own_contact
     if slot is None:
         return False
-    return bool(simulation.assembly.near(pose.nodes).energies[slot].gradient(pose.nodes, pose.contractions).any())
+    return bool(
+        simulation.assembly.with_active_terms(pose.nodes).energies[slot].gradient(pose.nodes, pose.contractions).any()
+    )
 
 
-def _crosses(simulation: Simulation, pose: SolvedPose) -> bool:
+def _crosses(simulation: Simulation, pose: Equilibrium) -> bool:
     robot = simulation.robot
     return robot.contact is None and len(find_crossings(robot.body.mesh, pose.nodes)) > 0
 

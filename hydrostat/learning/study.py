@@ -11,7 +11,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.learning.compare import METHODS, Compared, compare, way_of
-from hydrostat.learning.draw import Draw
+from hydrostat.learning.draw import SamplingScheme
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.sample_plan import SamplePlan, plan_samples
 from hydrostat.learning.sample_robot import Tell, sample_robot
@@ -40,7 +40,7 @@ class Study:
         InputError: counts, seeds or targets below 1, nothing to compare, or a way that there is not.
     """
 
-    draws: Sequence[Draw] = (Draw.BOX,)
+    draws: Sequence[SamplingScheme] = (SamplingScheme.BOX,)
     counts: Sequence[int] = (1000,)
     seeds: int = 1
     targets: int = 300
@@ -155,7 +155,7 @@ class _Wanted:
     study: Study
     samples: Samples
     test: Samples
-    draw: Draw
+    draw: SamplingScheme
     seed: int
     options: str
 
@@ -211,7 +211,7 @@ def _errors(errors: np.ndarray) -> dict[str, float]:
 
 
 def _samples(
-    study: Study, robot: Robot, draw: Draw, folder: Path, jobs: int, tell: Tell | None
+    study: Study, robot: Robot, draw: SamplingScheme, folder: Path, jobs: int, tell: Tell | None
 ) -> tuple[Samples, Samples, float]:
     """Samples to learn from, and others to be asked for; CPU time of one [s]."""
     found: list[Samples] = []

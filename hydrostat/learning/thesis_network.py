@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import InputError
-from hydrostat.learning.draw import Draw, contractions, shared_numbers
+from hydrostat.learning.draw import SamplingScheme, contractions, shared_numbers
 from hydrostat.learning.samples import Samples
 
 Goals = Float[np.ndarray, "targets coordinates"]
@@ -81,11 +81,11 @@ def train_thesis_network(train: Samples, *, seed: int = 0, epochs: int = 300) ->
 def _actions(train: Samples) -> tuple[Callable[[Answers], np.ndarray], Callable[[np.ndarray], Answers]]:
     """From contractions [m] to actions between -1 and 1, and back."""
     low, high = train.limits
-    if list(train.facts["draws"]) != [Draw.ANTAGONIST]:
+    if list(train.facts["draws"]) != [SamplingScheme.ANTAGONIST]:
         return lambda rows: 2 * (rows - low) / (high - low) - 1, lambda found: low + 0.5 * (found + 1) * (high - low)
     places = {name: place for place, name in enumerate(train.facts["winches"])}
     pairs = tuple(tuple(places[name] for name in names) for names in train.facts["pairs"])
     return (
         lambda rows: 2 * shared_numbers(rows, high, pairs) - 1,
-        lambda found: contractions(Draw.ANTAGONIST, 0.5 * (found + 1), low, high, pairs),
+        lambda found: contractions(SamplingScheme.ANTAGONIST, 0.5 * (found + 1), low, high, pairs),
     )

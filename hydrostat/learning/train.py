@@ -11,7 +11,7 @@ from jaxtyping import Float
 from hydrostat.errors import InputError
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import span_of
-from hydrostat.learning.lesson import Lesson, linear_map
+from hydrostat.learning.lesson import TrainingSet, linear_map
 from hydrostat.learning.perceptrons import Perceptrons
 
 try:
@@ -40,7 +40,7 @@ class Trained:
 
 
 def train_forward(
-    lesson: Lesson, dim: int, options: LearnOptions, tell: Tell, *, start: Perceptrons | None = None
+    lesson: TrainingSet, dim: int, options: LearnOptions, tell: Tell, *, start: Perceptrons | None = None
 ) -> Trained:
     """Networks from contractions to markers and tensions; each holds out other samples.
 
@@ -75,7 +75,7 @@ def train_forward(
 
 
 def train_inverse(
-    lesson: Lesson,
+    lesson: TrainingSet,
     dim: int,
     forward: Perceptrons,
     options: LearnOptions,
@@ -124,7 +124,7 @@ def train_inverse(
     return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
 
 
-def _holding(lesson: Lesson, pairs: tuple[np.ndarray, np.ndarray]) -> Callable[[Tensor], Tensor]:
+def _holding(lesson: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) -> Callable[[Tensor], Tensor]:
     """What makes of scaled contractions such that of each pair only one takes in, as `LearnedModel` does."""
     one, other = (torch.tensor(places) for places in pairs)
     if not len(one):

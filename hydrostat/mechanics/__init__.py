@@ -7,12 +7,20 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.mechanics.assembly import Assembly
     from hydrostat.mechanics.cable import CableEnergy, CableSegments
+    from hydrostat.mechanics.cable_friction import FrictionCableEnergy
     from hydrostat.mechanics.chain_law import ChainLaw
     from hydrostat.mechanics.contact import ContactEnergy
-    from hydrostat.mechanics.energy import Compliance, Coupling, Energy, Law, Pressed, Stencils, nearest_semidefinite
+    from hydrostat.mechanics.energy import (
+        Compliance,
+        ContactForces,
+        Energy,
+        Law,
+        LowRankStiffness,
+        Stencils,
+        nearest_semidefinite,
+    )
     from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
     from hydrostat.mechanics.fibre import FibreEnergy
-    from hydrostat.mechanics.friction import FrictionCableEnergy
     from hydrostat.mechanics.inertia import InertiaEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimise
@@ -22,13 +30,13 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.patch_volume import PatchVolume
     from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
     from hydrostat.mechanics.pin import PinEnergy
-    from hydrostat.mechanics.rigid import Carriage, CarriedWarp, GuideEnergy, RigidEnergy
-    from hydrostat.mechanics.rubbing import RubbingEnergy
+    from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
+    from hydrostat.mechanics.self_friction import SelfFrictionEnergy
     from hydrostat.mechanics.stiffness import Stiffness
     from hydrostat.mechanics.tension_law import TensionLaw
     from hydrostat.mechanics.time_scheme import SCHEMES
-    from hydrostat.mechanics.turns import Turns
-    from hydrostat.mechanics.viscous import Memory, Metrics
+    from hydrostat.mechanics.via_point_turns import ViaPointTurns
+    from hydrostat.mechanics.viscous import MaxwellBranches, Metrics
     from hydrostat.mechanics.warp import Bend, Warp
     from hydrostat.mechanics.weight import WeightEnergy
 
@@ -41,12 +49,11 @@ __all__ = [
     "Bend",
     "CableEnergy",
     "CableSegments",
-    "Carriage",
     "CarriedWarp",
     "ChainLaw",
     "Compliance",
     "ContactEnergy",
-    "Coupling",
+    "ContactForces",
     "Energy",
     "Factorisation",
     "FibreEnergy",
@@ -54,7 +61,8 @@ __all__ = [
     "GuideEnergy",
     "InertiaEnergy",
     "Law",
-    "Memory",
+    "LowRankStiffness",
+    "MaxwellBranches",
     "Metrics",
     "NeoHookean",
     "NewtonOptions",
@@ -62,15 +70,15 @@ __all__ = [
     "ObstacleEnergy",
     "PatchVolume",
     "PinEnergy",
-    "Pressed",
     "Reason",
+    "RigidBodyDofs",
     "RigidEnergy",
     "RoundOff",
-    "RubbingEnergy",
+    "SelfFrictionEnergy",
     "Stencils",
     "Stiffness",
     "TensionLaw",
-    "Turns",
+    "ViaPointTurns",
     "Warp",
     "WeightEnergy",
     "factorise",

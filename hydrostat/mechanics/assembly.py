@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.mechanics.energy import Coupling, Energy, Places
+from hydrostat.mechanics.energy import Energy, LowRankStiffness, ScatterMap
 from hydrostat.mechanics.sparsity import SparsityPattern
 from hydrostat.mechanics.stiffness import Stiffness
 
@@ -66,12 +66,12 @@ class Assembly:
             other.__dict__.update({name: value for name, value in self.__dict__.items() if name == "_quadratic"})
         return other
 
-    def near(self, nodes: Nodes) -> "Assembly":
+    def with_active_terms(self, nodes: Nodes) -> "Assembly":
         """Sum with the terms that count near `nodes`; itself where none come and go.
 
         The pattern is analysed anew only when a pair of nodes meets that never met before.
         """
-        return self.with_terms([energy.near(nodes) for energy in self.energies])
+        return self.with_terms([energy.with_active_terms(nodes) for energy in self.energies])
 
     def continuing(self, other: object) -> "Assembly":
         """This sum with the terms that come and go of another one made from it, and its pattern; itself where none do.
@@ -133,30 +133,30 @@ class Assembly:
         begin = sum(len(other.history) for other in self.energies[:number])
         return history[begin : begin + len(energy.history)]
 
-    def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "Assembly":
+    def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> "Assembly":
         """Sum of energies that remember `history`, at equilibrium in a given state."""
         ends = np.cumsum([len(energy.history) for energy in self.energies])
         parts = zip(self.energies, np.split(history, ends[:-1]), strict=True)
-        return self.with_terms([energy.resumed(part, nodes, controls) for energy, part in parts])
+        return self.with_terms([energy.with_history(part, nodes, controls) for energy, part in parts])
 
-    def imbalance(self, nodes: Nodes, controls: Vector) -> float:
+    def history_residual(self, nodes: Nodes, controls: Vector) -> float:
         """Largest force [N] by which what is held fixed while minimising is off."""
-        return max((energy.imbalance(nodes, controls) for energy in self.energies), default=0.0)
+        return max((energy.history_residual(nodes, controls) for energy in self.energies), default=0.0)
 
-    def corrected(self, nodes: Nodes, controls: Vector, stiffness: Stiffness | None) -> "Assembly":
+    def with_corrected_history(self, nodes: Nodes, controls: Vector, stiffness: Stiffness | None) -> "Assembly":
         """Sum in which that is nearer to what it should be; by Newton's method if the stiffness is given."""
         if stiffness is None:
-            return self.with_terms([energy.corrected(nodes, controls, None) for energy in self.energies])
+            return self.with_terms([energy.with_corrected_history(nodes, controls, None) for energy in self.energies])
         energies = []
         for energy in self.energies:
             spans = energy.span_columns(nodes)
             compliance = None if spans is None else stiffness.compliance_to(spans)
-            energies.append(energy.corrected(nodes, controls, compliance, stiffness.solve))
+            energies.append(energy.with_corrected_history(nodes, controls, compliance, stiffness.solve))
         return self.with_terms(energies)
 
-    def after(self, nodes: Nodes, controls: Vector) -> "Assembly":
+    def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "Assembly":
         """Sum of what follows a state on the loading path."""
-        return self.with_terms([energy.after(nodes, controls) for energy in self.energies])
+        return self.with_terms([energy.with_advanced_history(nodes, controls) for energy in self.energies])
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Total energy [J]; infinite where one of the energies is not defined."""
@@ -184,14 +184,14 @@ class Assembly:
         values = self._values(nodes, controls, projection)
         return csc_array((values, self.pattern.indices, self.pattern.indptr), shape=(self.size, self.size))
 
-    def coupling(self, nodes: Nodes, controls: Vector) -> Coupling:
+    def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
         """Springs of all energies together: the part G D G^T of d2E/dx2 that `hessian` leaves out.
 
         Their law is known if one energy alone has any.
         """
         parts = [part for part in self.couplings(nodes, controls) if part is not None]
         if not parts:
-            return Coupling(columns=np.zeros((self.size, 0)), weights=np.zeros((0, 0)))
+            return LowRankStiffness(columns=np.zeros((self.size, 0)), weights=np.zeros((0, 0)))
         if len(parts) == 1:
             return parts[0]
         columns = np.concatenate([part.columns for part in parts], axis=1)
@@ -199,9 +199,9 @@ class Assembly:
         weights = np.zeros((ends[-1], ends[-1]))
         for begin, end, part in zip(ends, ends[1:], parts, strict=False):
             weights[begin:end, begin:end] = part.weights
-        return Coupling(columns=columns, weights=weights)
+        return LowRankStiffness(columns=columns, weights=weights)
 
-    def couplings(self, nodes: Nodes, controls: Vector) -> list[Coupling | None]:
+    def couplings(self, nodes: Nodes, controls: Vector) -> list[LowRankStiffness | None]:
         """Springs of each energy that couple many nodes; None where it has none."""
         return [energy.coupling(nodes, controls) for energy in self.energies]
 
@@ -251,14 +251,14 @@ class Assembly:
         data = self._quadratic.copy()
         for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
             if not energy.quadratic:
-                share = 1.0 if projection and energy.lifts_early else projection
-                energy.add_hessian(nodes, controls, share, Places(slots, self.pattern.strides, data))
+                share = 1.0 if projection and energy.projects_first else projection
+                energy.add_hessian(nodes, controls, share, ScatterMap(slots, self.pattern.strides, data))
         return data
 
     @property
-    def lifts_early(self) -> bool:
+    def projects_first(self) -> bool:
         """Whether terms are felt whose negative part is taken out before that of the others."""
-        return any(energy.lifts_early and len(energy.stencils) for energy in self.energies)
+        return any(energy.projects_first and len(energy.stencils) for energy in self.energies)
 
     @cached_property
     def _quadratic(self) -> Vector:
@@ -267,7 +267,7 @@ class Assembly:
         rest, idle = np.zeros(self.shape), np.zeros(self.control_count)
         for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
             if energy.quadratic:
-                energy.add_hessian(rest, idle, 0.0, Places(slots, self.pattern.strides, data))
+                energy.add_hessian(rest, idle, 0.0, ScatterMap(slots, self.pattern.strides, data))
         return data
 
 

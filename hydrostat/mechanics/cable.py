@@ -7,7 +7,7 @@ from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.kernel import native
-from hydrostat.mechanics.energy import Blocks, Coupling, Energy, HessianBlocks, Places, Stencils
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, LowRankStiffness, ScatterMap, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 
 
@@ -102,7 +102,7 @@ class CableEnergy(Energy):
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.bends(nodes, self.tensions(nodes, controls))
 
-    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
         spans, lengths = self._spans(nodes)
         pulls = self.tensions(nodes, controls)[self.cables] / lengths
         native.add_bends(spans, lengths, self.weights, pulls, self.stencils, *places)
@@ -110,10 +110,10 @@ class CableEnergy(Energy):
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.ratios * self.law.tangent(self.elongations(nodes, controls)))
 
-    def coupling(self, nodes: Nodes, controls: Vector) -> Coupling:
+    def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
         elongations = self.elongations(nodes, controls)
         weights = np.diag(self.law.tangent(elongations))
-        return Coupling(columns=self.columns(nodes), weights=weights, elongations=elongations, law=self.law)
+        return LowRankStiffness(columns=self.columns(nodes), weights=weights, elongations=elongations, law=self.law)
 
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         return float(self.tensions(nodes, controls).max(initial=0.0))

@@ -8,7 +8,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.chain_law import ChainLaw
-from hydrostat.mechanics.energy import Small
+from hydrostat.mechanics.energy import RankMatrix
 from hydrostat.mechanics.tension_law import TensionLaw
 
 
@@ -38,11 +38,11 @@ class CapstanChains:
     tensions: Vector
     elongations: Vector
     angles: Vector
-    compliance: Small
-    turning: Small
+    compliance: RankMatrix
+    turning: RankMatrix
     stable: bool
 
-    def balance(self) -> Vector | None:
+    def solve_slip_complementarity(self) -> Vector | None:
         """Tensions where the capstan's law holds [N]; None if these are not found."""
         tensions = self._solve(turns=True)
         return self._solve(turns=False) if tensions is None else tensions

@@ -7,7 +7,7 @@ from jaxtyping import Bool, Int
 
 from hydrostat.arrays import Vector
 from hydrostat.kernel import native
-from hydrostat.mechanics.energy import Small
+from hydrostat.mechanics.energy import RankMatrix
 from hydrostat.mechanics.tension_law import TensionLaw
 
 
@@ -52,7 +52,7 @@ class ChainLaw(TensionLaw):
         """T of each span [N]."""
         return super().tension(self._own(elongation, self.slips(elongation)))
 
-    def tangents(self, elongation: Vector) -> Small:
+    def tangents(self, elongation: Vector) -> RankMatrix:
         """dT/ds [N/m]: springs joined where cable slips are one spring in series."""
         slips = self.slips(elongation)
         return self._joined(super().tangent(self._own(elongation, slips)), slips != 0)[0]
@@ -67,7 +67,7 @@ class ChainLaw(TensionLaw):
         taut = series > 0
         return np.where(taut, np.cumsum(taut) - 1, -1)[group], series[taut]
 
-    def locked(self, tensions: Vector, signs: Vector) -> tuple[Small, Small]:
+    def locked(self, tensions: Vector, signs: Vector) -> tuple[RankMatrix, RankMatrix]:
         """dT/ds [N/m] and dT/dlimits while cable goes on slipping where it does.
 
         Args:
@@ -86,7 +86,7 @@ class ChainLaw(TensionLaw):
         after = np.append(slips[1:], 0.0)
         return elongation + slips - after
 
-    def _joined(self, springs: Vector, slipping: Bool[np.ndarray, " spans"]) -> tuple[Small, Vector, Small]:
+    def _joined(self, springs: Vector, slipping: Bool[np.ndarray, " spans"]) -> tuple[RankMatrix, Vector, RankMatrix]:
         """dT/ds, the compliance of each span, and which spans are joined by points that slip."""
         group, series = self._series(springs, slipping)
         same = (group[:, None] == group).astype(float)

@@ -10,11 +10,11 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import BoundaryTree, Mesh, Pairs, facet_areas
 from hydrostat.kernel import native
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Places, Pressed, Stencils
+from hydrostat.mechanics.energy import Blocks, ContactForces, Energy, HessianBlocks, ScatterMap, Stencils
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TouchingSkin:
+class ContactSurface:
     """What all states of the contact of one body with itself share.
 
     Attributes:
@@ -54,7 +54,7 @@ class TouchingSkin:
         return self.stiffness * area / (_HALF_WAY * np.sqrt(np.maximum(begins, np.finfo(float).tiny)))
 
 
-class Watch(NamedTuple):
+class CandidatePairs(NamedTuple):
     """All pairs that can be felt while each node stays in a box of its own.
 
     Attributes:
@@ -83,9 +83,9 @@ class ContactEnergy(Energy):
     """
 
     convex: ClassVar[bool] = False
-    lifts_early: ClassVar[bool] = True
+    projects_first: ClassVar[bool] = True
 
-    def __init__(self, skin: TouchingSkin, pairs: Pairs, watch: Watch | None = None) -> None:
+    def __init__(self, skin: ContactSurface, pairs: Pairs, watch: CandidatePairs | None = None) -> None:
         """Contact between the given pairs, and what is known of all others."""
         self.skin, self.pairs, self.watch = skin, pairs, watch
         self.swept: tuple[Nodes, Pairs] | None = None
@@ -106,7 +106,7 @@ class ContactEnergy(Energy):
         """
         rest = mesh.nodes if rest is None else rest
         areas = facet_areas(mesh)[1] * (thickness or 1.0)
-        skin = TouchingSkin(tree=BoundaryTree(mesh), rest=rest, distance=distance, stiffness=young, areas=areas)
+        skin = ContactSurface(tree=BoundaryTree(mesh), rest=rest, distance=distance, stiffness=young, areas=areas)
         return cls(skin, Pairs(np.empty((0, mesh.dim + 1), np.int64), np.empty(0, np.bool_)))
 
     @cached_property
@@ -139,7 +139,7 @@ class ContactEnergy(Energy):
         if len(self.stencils):
             super().add_gradient(nodes, controls, total)
 
-    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
         if len(self.stencils):
             super().add_hessian(nodes, controls, share, places)
 
@@ -152,7 +152,7 @@ class ContactEnergy(Energy):
             self.swept = nodes + share * move, pairs
         return max(float(share), _LEAST_STEP)
 
-    def near(self, nodes: Nodes) -> "ContactEnergy":
+    def with_active_terms(self, nodes: Nodes) -> "ContactEnergy":
         watch = self.watch
         if watch is None or not watch.serves(nodes):
             watch = self._look_around(nodes)
@@ -170,9 +170,9 @@ class ContactEnergy(Energy):
     def continues(self, other: Energy) -> bool:
         return isinstance(other, ContactEnergy) and other.skin is self.skin
 
-    def pressed(self, nodes: Nodes) -> Pressed:
+    def contact_forces(self, nodes: Nodes) -> ContactForces:
         """Where the body touches itself: half-way between both sides, with the normal force on the first of them."""
-        here = self.near(nodes)
+        here = self.with_active_terms(nodes)
         blocks = -here.gradient(nodes, np.zeros(0))
         felt = np.flatnonzero(blocks.any(axis=(1, 2)))
         stencils, blocks, edges = here.pairs.stencils[felt], blocks[felt], here.pairs.edges[felt]
@@ -180,19 +180,19 @@ class ContactEnergy(Energy):
         weights = np.linalg.norm(blocks, axis=2)
         weights /= np.where(first, (first * weights).sum(1)[:, None], (~first * weights).sum(1)[:, None])
         places = 0.5 * np.einsum("pc,pcd->pd", weights, nodes[stencils])
-        return Pressed(places, np.einsum("pc,pcd->pd", first, blocks), stencils)
+        return ContactForces(places, np.einsum("pc,pcd->pd", first, blocks), stencils)
 
     @property
     def _reach(self) -> float:
         return _LOOK * self.skin.distance
 
-    def _look_around(self, nodes: Nodes) -> Watch:
+    def _look_around(self, nodes: Nodes) -> CandidatePairs:
         """Pairs that are near, and serve as long as no node moves by more than half of what is looked at beyond."""
         margin = 0.5 * (self._reach - self.skin.distance)
         end, pairs = self.swept or (None, None)
         if end is None or pairs is None or np.abs(nodes - end).max() > _ROUNDING * self.skin.distance:
             pairs = self.skin.tree.pairs(nodes, self._reach)
-        return Watch(nodes - margin, nodes + margin, pairs)
+        return CandidatePairs(nodes - margin, nodes + margin, pairs)
 
     def _felt(self, nodes: Nodes) -> int:
         """How many of its pairs are felt."""

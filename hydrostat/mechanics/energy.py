@@ -14,8 +14,8 @@ from hydrostat.kernel import native
 Stencils = Int[np.ndarray, "terms corners"]
 Blocks = Float[np.ndarray, "terms corners dim"]
 HessianBlocks = Float[np.ndarray, "terms size size"]
-Columns = Float[np.ndarray, "dofs rank"]
-Small = Float[np.ndarray, "rank rank"]
+LowRankBasis = Float[np.ndarray, "dofs rank"]
+RankMatrix = Float[np.ndarray, "rank rank"]
 
 
 @runtime_checkable
@@ -30,7 +30,7 @@ class Law(Protocol):
         """dT/ds [N/m]."""
         ...
 
-    def balance(self, elongations: Vector, compliance: Small) -> Vector | None:
+    def solve_slack_complementarity(self, elongations: Vector, compliance: RankMatrix) -> Vector | None:
         """T = law(elongations - compliance @ T): forces on a linear body that gives way to them; None if not found."""
         ...
 
@@ -43,16 +43,16 @@ class Compliance(NamedTuple):
         compliance: G^T K^-1 G [m/N].
     """
 
-    moves: Columns
-    compliance: Small
+    moves: LowRankBasis
+    compliance: RankMatrix
 
 
-Response = Callable[[Columns], Columns]
+Response = Callable[[LowRankBasis], LowRankBasis]
 """How all degrees of freedom move under forces on them, a column for each case [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Coupling:
+class LowRankStiffness:
     """Springs that couple many nodes through few elongations s(x): the part G D G^T of the Hessian, of low rank.
 
     Attributes:
@@ -62,13 +62,13 @@ class Coupling:
         law: forces of the springs, with D = diag(dT/ds); Newton then knows that a spring can go slack within a step.
     """
 
-    columns: Columns
-    weights: Small
+    columns: LowRankBasis
+    weights: RankMatrix
     elongations: Vector | None = None
     law: Law | None = None
 
 
-class Places(NamedTuple):
+class ScatterMap(NamedTuple):
     """Where the Hessian blocks of one energy are added.
 
     Attributes:
@@ -82,7 +82,7 @@ class Places(NamedTuple):
     data: np.ndarray
 
 
-class Pressed(NamedTuple):
+class ContactForces(NamedTuple):
     """Where a body is pushed by what it touches.
 
     Attributes:
@@ -110,9 +110,10 @@ class Energy(ABC):
         supports: index of the support that holds each term, (terms,); None for an energy that nothing outside holds.
         convex: whether every Hessian block is positive semidefinite wherever the energy is defined.
         quadratic: whether the Hessian is the same for all nodes and controls; then it is added up once.
-        lifts_early: whether what is negative in its Hessian is taken out first, and whole, where the sum is indefinite.
+        projects_first: whether its Hessian is projected first, and whole, where the sum is indefinite.
         has_history: whether it depends on the loading path, as friction does; then a solve follows the path by
-            `imbalance`, `corrected` and `after`, and `history` is kept with the pose.
+            `history_residual`, `with_corrected_history`
+            and `with_advanced_history`, and `history` is kept with the pose.
         patience: so many corrections in a row without progress are worth trying.
         stiffest: its stiffest spring to a place [N/m]: what rounds positions makes forces of.
     """
@@ -122,7 +123,7 @@ class Energy(ABC):
     supports: Int[np.ndarray, " terms"] | None = None
     convex: ClassVar[bool] = True
     quadratic: ClassVar[bool] = False
-    lifts_early: ClassVar[bool] = False
+    projects_first: ClassVar[bool] = False
     has_history: bool = False
     patience: ClassVar[int] = 40
     stiffest: float = 0.0
@@ -148,7 +149,7 @@ class Energy(ABC):
         """Add dE/dx to the forces of all nodes [N]; to be told anew only where that is faster than by `gradient`."""
         native.add_vectors(self.stencils, self.gradient(nodes, controls), total)
 
-    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
         """Add d2E/dx2, with a share of what is negative taken out, to the values of a sparse matrix; as above."""
         if share and not self.convex:
             blocks = self.projected_hessian(nodes, controls, share)
@@ -156,12 +157,12 @@ class Energy(ABC):
             blocks = self.hessian(nodes, controls)
         native.add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
 
-    def coupling(self, nodes: Nodes, controls: Vector) -> Coupling | None:
+    def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness | None:
         """Springs that couple many nodes, whose Hessian G D G^T is kept as the low rank it has. None for most."""
         return None
 
-    def span_columns(self, nodes: Nodes) -> Columns | None:
-        """Slopes of the elongations along which `corrected` asks how the body gives way; None for most."""
+    def span_columns(self, nodes: Nodes) -> LowRankBasis | None:
+        """Slopes of the elongations along which `with_corrected_history` asks how the body gives way; None for most."""
         return None
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
@@ -183,7 +184,7 @@ class Energy(ABC):
         """J of the element that is squeezed most, at most 1; 1 for an energy without elements."""
         return 1.0
 
-    def near(self, nodes: Nodes) -> "Energy":
+    def with_active_terms(self, nodes: Nodes) -> "Energy":
         """Energy with the terms that count near `nodes`, where these come and go; itself where they never change."""
         return self
 
@@ -191,7 +192,7 @@ class Energy(ABC):
         """Whether another one is the same but for the terms that count, so that it may stand in its place and go on."""
         return False
 
-    def pressed(self, nodes: Nodes) -> Pressed | None:
+    def contact_forces(self, nodes: Nodes) -> ContactForces | None:
         """Where what it stands for touches the body at `nodes`; None for what touches nothing, whatever the nodes."""
         return None
 
@@ -216,15 +217,15 @@ class Energy(ABC):
         """What it remembers of the loading path, as numbers; empty for most."""
         return np.zeros(0)
 
-    def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> Self:
+    def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> Self:
         """Energy that remembers `history`, at equilibrium in a given state."""
         return self
 
-    def imbalance(self, nodes: Nodes, controls: Vector) -> float:
+    def history_residual(self, nodes: Nodes, controls: Vector) -> float:
         """Force [N] by which what is held fixed while minimising is off what it should be at `nodes`; 0 for most."""
         return 0.0
 
-    def corrected(
+    def with_corrected_history(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> Self:
         """Energy in which that is nearer to what it should be; by Newton's method if it is told how the body gives way.
@@ -237,7 +238,7 @@ class Energy(ABC):
         """
         return self
 
-    def after(self, nodes: Nodes, controls: Vector) -> Self:
+    def with_advanced_history(self, nodes: Nodes, controls: Vector) -> Self:
         """Energy of what follows a state on the loading path."""
         return self
 

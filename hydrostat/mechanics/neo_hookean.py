@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.kernel import native
-from hydrostat.mechanics.energy import Blocks, ElementGroups, Energy, HessianBlocks, Places, element_groups
+from hydrostat.mechanics.energy import Blocks, ElementGroups, Energy, HessianBlocks, ScatterMap, element_groups
 
 
 class NeoHookean(Energy):
@@ -77,7 +77,7 @@ class NeoHookean(Energy):
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
         native.gradient(nodes - self._rest, *self._groups, self.mu, self.lame, total)
 
-    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
         native.hessian(nodes - self._rest, *self._groups, self.mu, self.lame, share, *places)
 
     def least_volume(self, nodes: Nodes) -> float:

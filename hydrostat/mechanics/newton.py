@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
-from hydrostat.mechanics.falling_mode import falling_mode
+from hydrostat.mechanics.negative_curvature import find_negative_curvature
 from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
 from hydrostat.mechanics.newton_result import NewtonResult
 from hydrostat.mechanics.stiffness import Stiffness
@@ -103,12 +103,12 @@ class _EnergyDescent:
 
     def run(self, start: Nodes, known: Stiffness | None) -> NewtonResult:
         """Newton from `start` to a reason to stop."""
-        assembly = self.assembly.continuing(None if known is None else known.source).near(start)
+        assembly = self.assembly.continuing(None if known is None else known.source).with_active_terms(start)
         energy = assembly.value(start, self.controls)
         if not np.isfinite(energy):
             place = _Iterate(assembly, start, energy, np.full(start.size, np.inf))
             return self._result(place, Reason.BAD_START, 0.0, 0)
-        place = self._arrive(assembly, start, energy, assembly.least_volume(start))
+        place = self._evaluate(assembly, start, energy, assembly.least_volume(start))
         residual = np.inf
         for iteration in count():
             self.whole = self.options.whole and iteration == 0
@@ -137,7 +137,7 @@ class _EnergyDescent:
     def _late(self) -> bool:
         return time.monotonic() >= self.options.deadline
 
-    def _arrive(self, assembly: Assembly, nodes: Nodes, energy: float, least_volume: float) -> _Iterate:
+    def _evaluate(self, assembly: Assembly, nodes: Nodes, energy: float, least_volume: float) -> _Iterate:
         return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), least_volume)
 
     def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> _Trial:
@@ -146,7 +146,7 @@ class _EnergyDescent:
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
             nodes = place.nodes + share * (nodes - place.nodes)
-        assembly = place.assembly.near(nodes)
+        assembly = place.assembly.with_active_terms(nodes)
         energy = assembly.value(nodes, self.controls)
         least = assembly.least_volume(nodes) if np.isfinite(energy) else 0.0
         return _Trial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
@@ -162,7 +162,7 @@ class _EnergyDescent:
                 return found
         reused = self._reuse(place, known)
         self.last = None  # its memory serves for new factors
-        stiffness = reused or self._definite(place)
+        stiffness = reused or self._definite_hessian(place)
         self.last, self.sharp = (
             (stiffness, self.left < _NEAR and (reused is None or self.exact))
             if self.share == 0.0 == self.damping
@@ -183,7 +183,7 @@ class _EnergyDescent:
             return
         square, curvature = float(step @ step), -float(place.gradient @ step) / float(step @ step)
         taken = float(np.linalg.norm(found.nodes - place.nodes)) / square**0.5
-        if taken < _SHORT and place.assembly.lifts_early:
+        if taken < _SHORT and place.assembly.projects_first:
             self.damping = max(_DAMPS * self.damping, curvature * (1.0 / max(taken, _LEAST_TAKEN) - 1.0))
         elif taken > _LONG:
             self.damping = self.damping / _EASES if self.damping > _FREE * curvature else 0.0
@@ -204,7 +204,7 @@ class _EnergyDescent:
         stiffness = known.with_coupling(springs)
         return stiffness if stiffness.definite else None
 
-    def _definite(self, place: _Iterate) -> Stiffness | None:
+    def _definite_hessian(self, place: _Iterate) -> Stiffness | None:
         """The Hessian, or a definite matrix in its place where it is not definite.
 
         Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
@@ -221,7 +221,7 @@ class _EnergyDescent:
                 return stiffness
             if self.share == 1.0:
                 break
-            first = _EARLY if place.assembly.lifts_early else 1.0
+            first = _EARLY if place.assembly.projects_first else 1.0
             self.share = (min(16 * self.share, 1.0) if self.share > _EARLY else _LEAST_SHARE) if self.share else first
         for shift in _SHIFTS:
             stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=1.0, shift=shift)
@@ -245,10 +245,10 @@ class _EnergyDescent:
                     trial = min(trial, straight, key=lambda found: found.energy)
                 if trial.energy <= place.energy - 1e-4 * gain:
                     if self.share > 0.0 and length * trial.share == 1.0:
-                        trial = self._stride(place, step, trial)
-                    return self._arrive(*trial[:4])
+                        trial = self._extrapolate(place, step, trial)
+                    return self._evaluate(*trial[:4])
             elif trial.energy <= place.energy + 10 * self.noise.energy:
-                found = self._arrive(*trial[:4])
+                found = self._evaluate(*trial[:4])
                 if abs(found.gradient @ step) <= 0.9 * abs(slope):
                     return found
             if self.whole or self._late:
@@ -266,7 +266,7 @@ class _EnergyDescent:
         trial = self._try(place, -last.solve(place.gradient))
         if not trial.energy <= place.energy + 10 * self.noise.energy:
             return None
-        found = self._arrive(*trial[:4])
+        found = self._evaluate(*trial[:4])
         return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
     def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
@@ -280,7 +280,7 @@ class _EnergyDescent:
                     return step
         return -stiffness.solve(place.gradient)
 
-    def _stride(self, place: _Iterate, step: Vector, trial: _Trial) -> _Trial:
+    def _extrapolate(self, place: _Iterate, step: Vector, trial: _Trial) -> _Trial:
         """A projected Hessian is too stiff, so its step is too short: doubled as long as the energy falls."""
         length = 2.0
         while True:
@@ -297,7 +297,7 @@ class _EnergyDescent:
         stiffness = self._stiffness(place)
         if stiffness.definite or stiffness.singular:
             return None
-        mode = falling_mode(stiffness, place.gradient.size)
+        mode = find_negative_curvature(stiffness, place.gradient.size)
         if mode is None:
             return None
         size = float(np.ptp(place.nodes, axis=0).max())
@@ -307,7 +307,7 @@ class _EnergyDescent:
             return None
         self.saddles += 1
         self.last = None
-        return self._arrive(*lowest[:4])
+        return self._evaluate(*lowest[:4])
 
     def _stiffness(self, place: _Iterate) -> Stiffness:
         """The Hessian at the end."""

@@ -13,16 +13,16 @@ from hydrostat.kernel import native
 from hydrostat.mechanics.energy import (
     Blocks,
     Compliance,
+    ContactForces,
     Energy,
     HessianBlocks,
-    Places,
-    Pressed,
     Response,
+    ScatterMap,
     Stencils,
     nearest_semidefinite,
 )
-from hydrostat.mechanics.grip import Grip
-from hydrostat.mechanics.rigid import Carriage
+from hydrostat.mechanics.obstacle_friction import ObstacleFriction
+from hydrostat.mechanics.rigid import RigidBodyDofs
 
 
 class ObstacleEnergy(Energy):
@@ -32,11 +32,12 @@ class ObstacleEnergy(Energy):
     is W h phi(d^2/h), phi(r) = -(r - 1)^2 ln r below r = 1, with h the square of the distance at which it is felt.
 
     All that an obstacle does is a function of where a sample is in the frame of the obstacle. If that moves, its rows
-    among the unknowns belong to the stencil of every sample. With friction it has a history: the anchors of its `Grip`.
+    among the unknowns belong to the stencil of every sample. With friction its history is the anchors of its
+    `ObstacleFriction`.
     """
 
     convex: ClassVar[bool] = False
-    lifts_early: ClassVar[bool] = True
+    projects_first: ClassVar[bool] = True
 
     def __init__(
         self,
@@ -47,7 +48,7 @@ class ObstacleEnergy(Energy):
         young: float,
         thickness: float | None = None,
         friction: float = 0.0,
-        carriage: Carriage | None = None,
+        carriage: RigidBodyDofs | None = None,
     ) -> None:
         """Barrier of a body at rest.
 
@@ -70,7 +71,7 @@ class ObstacleEnergy(Energy):
             self.stencils = np.concatenate([self._corners, rows], axis=1)
         self.has_history = friction > 0
         self._friction = friction, _STICKS * young / distance * areas
-        self.grip: Grip | None = None
+        self.grip: ObstacleFriction | None = None
         self._seen: tuple[Nodes, Points, Vector] | None = None
 
     def places(self, nodes: Nodes) -> Points:
@@ -111,11 +112,11 @@ class ObstacleEnergy(Energy):
         """Force of the body on the obstacle [N]."""
         return self._forces_in_world(nodes)[1].sum(axis=0)
 
-    def pressed(self, nodes: Nodes) -> Pressed:
+    def contact_forces(self, nodes: Nodes) -> ContactForces:
         some, forces = self._forces_in_world(nodes)
         felt = forces.any(axis=1)
         some = some[felt]
-        return Pressed(self._points(nodes)[some], -forces[felt], self._corners[some])
+        return ContactForces(self._points(nodes)[some], -forces[felt], self._corners[some])
 
     def _points(self, nodes: Nodes) -> Points:
         """Where the samples are [m]."""
@@ -166,7 +167,7 @@ class ObstacleEnergy(Energy):
         blocks[some] = self._blocks(nodes, some, share)
         return blocks
 
-    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
         some = self._felt(nodes)
         if len(some):
             blocks = self._blocks(nodes, some, share)
@@ -196,15 +197,17 @@ class ObstacleEnergy(Energy):
 
     def begun(self, nodes: Nodes) -> "ObstacleEnergy":
         """The same with friction, as it is at rest."""
-        return self._gripping(Grip.at_rest(*self._friction, self.places(nodes))) if self.has_history else self
+        return (
+            self._gripping(ObstacleFriction.at_rest(*self._friction, self.places(nodes))) if self.has_history else self
+        )
 
-    def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
+    def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
         if self.grip is None:
             return self
         still = replace(self.grip, anchors=history.reshape(self.grip.anchors.shape))
         return self._gripping(still.asked(*self._pushes(nodes)))
 
-    def imbalance(self, nodes: Nodes, controls: Vector) -> float:
+    def history_residual(self, nodes: Nodes, controls: Vector) -> float:
         if self.grip is None:
             return 0.0
         some = self._felt(nodes)
@@ -213,16 +216,16 @@ class ObstacleEnergy(Energy):
         asked = grip.asked(pushes[some], normals[some])
         return float(np.abs(asked.forces(places) - grip.forces(places)).max(initial=0.0))
 
-    def corrected(
+    def with_corrected_history(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        places, grip = self._located(nodes)[0], self.grip.judged(self.imbalance(nodes, controls))
+        places, grip = self._located(nodes)[0], self.grip.judged(self.history_residual(nodes, controls))
         slips = np.flatnonzero(grip.slipping(places))
         pushes, normals = self._pushes(nodes)
         if response is None or not len(slips):
-            return self._gripping(grip.corrected(pushes, normals))
+            return self._gripping(grip.with_corrected_history(pushes, normals))
         found = self.field(places[slips])
         rises = -self._derivatives(found, self.weights[slips])[1][:, None] * found.normals  # of the pushes
         ways = grip.only(slips).directions(places[slips])
@@ -242,12 +245,12 @@ class ObstacleEnergy(Energy):
     def _still_slopes(self, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
         return np.einsum("tc,ki->tkci", self.shares[some], np.eye(self.shares.shape[1]))
 
-    def after(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
+    def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
         if self.grip is None:
             return self
         return self._gripping(self.grip.asked(*self._pushes(nodes)).slipped(self._located(nodes)[0]))
 
-    def _gripping(self, grip: Grip) -> "ObstacleEnergy":
+    def _gripping(self, grip: ObstacleFriction) -> "ObstacleEnergy":
         other = copy(self)
         other.grip = grip
         return other

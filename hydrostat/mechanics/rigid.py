@@ -1,4 +1,4 @@
-"""`Carriage`, `RigidEnergy`, `GuideEnergy`: a rigid thing that moves, as a few rows more of the unknowns."""
+"""`RigidBodyDofs`, `RigidEnergy`, `GuideEnergy`: a rigid thing that moves, as a few rows more of the unknowns."""
 
 from copy import copy
 from typing import ClassVar, NamedTuple
@@ -13,7 +13,7 @@ from hydrostat.mechanics.warp import Bend
 Matrix = Float[np.ndarray, "dim dim"]
 
 
-class Carriage(NamedTuple):
+class RigidBodyDofs(NamedTuple):
     """Where the unknowns of a rigid thing that moves are: its place, then its axes times a length (affine body).
 
     A point at u in the frame of the thing is at place + sum of u_k x axis_k. Axes are unknowns of their own, which
@@ -53,7 +53,7 @@ class RigidEnergy(Energy):
 
     convex: ClassVar[bool] = False
 
-    def __init__(self, carriage: Carriage, stiffness: float) -> None:
+    def __init__(self, carriage: RigidBodyDofs, stiffness: float) -> None:
         """The axes of a carriage are held by a stiffness [J]."""
         self.carriage, self.stiffness = carriage, stiffness
         self.stencils = carriage.rows[None, 1:]
@@ -88,7 +88,7 @@ class GuideEnergy(Energy):
 
     quadratic: ClassVar[bool] = True
 
-    def __init__(self, carriage: Carriage, *, place: Vector, axes: Matrix, along: Matrix, turning: float) -> None:
+    def __init__(self, carriage: RigidBodyDofs, *, place: Vector, axes: Matrix, along: Matrix, turning: float) -> None:
         """Springs to a place [m] and to axes.
 
         Args:
@@ -134,7 +134,7 @@ class GuideEnergy(Energy):
 class CarriedWarp:
     """Steps of a body along arcs, and of rigid things: their axes make the turn that a step begins."""
 
-    def __init__(self, body: Bend, count: int, carriages: tuple[Carriage, ...]) -> None:
+    def __init__(self, body: Bend, count: int, carriages: tuple[RigidBodyDofs, ...]) -> None:
         """Steps of a body with so many nodes, and of the things whose rows follow."""
         self._body, self._count, self._carriages = body, count, carriages
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.mechanics.energy import Columns, Compliance, Coupling, Small
+from hydrostat.mechanics.energy import Compliance, LowRankBasis, LowRankStiffness, RankMatrix
 from hydrostat.mechanics.factorisation import Factorisation
 
 
@@ -31,7 +31,7 @@ class Stiffness:
     """
 
     def __init__(
-        self, factors: Factorisation, coupling: Coupling, *, token: object = None, source: object = None
+        self, factors: Factorisation, coupling: LowRankStiffness, *, token: object = None, source: object = None
     ) -> None:
         """Take the factors of K, and G and D."""
         self.factors, self.token, self.coupling, self.source = factors, token, coupling, source
@@ -45,7 +45,7 @@ class Stiffness:
         """What is sent to another process."""
         return self.__dict__ | {"source": None}
 
-    def with_coupling(self, coupling: Coupling) -> "Stiffness":
+    def with_coupling(self, coupling: LowRankStiffness) -> "Stiffness":
         """The same with the springs as they are now; where their law is known, with the G that it has."""
         if coupling.law is None or coupling.weights.shape != self.weights.shape:
             return Stiffness(self.factors, coupling, token=self.token, source=self.source)
@@ -53,13 +53,13 @@ class Stiffness:
         other.coupling = coupling
         return other
 
-    def with_weights(self, weights: Small) -> "Stiffness":
+    def with_weights(self, weights: RankMatrix) -> "Stiffness":
         """The same with another D, for next to nothing."""
         other = copy(self)
         other._weigh(weights)
         return other
 
-    def _weigh(self, weights: Small) -> None:
+    def _weigh(self, weights: RankMatrix) -> None:
         self.weights, self._pulling = weights, bool(weights.any())
         self._inside = None
         self.singular, self.definite = self.factors.singular, self.factors.definite
@@ -73,18 +73,18 @@ class Stiffness:
         self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
         self.definite = not self.singular and self.factors.negative == int((signs < 0).sum())
 
-    def _inner(self) -> tuple[Small, Small]:
+    def _inner(self) -> tuple[RankMatrix, RankMatrix]:
         """R, and I + R^T M R."""
         root = _square_root(self.weights)
         inner = np.eye(root.shape[1]) + root.T @ self.compliance @ root
         return root, 0.5 * (inner + inner.T)
 
     @cached_property
-    def moves(self) -> Columns:
+    def moves(self) -> LowRankBasis:
         """Z [m/N]: how the nodes move when a cable pulls by 1 N more."""
         return self.factors.expand(self._reduced) if self.columns.size else self.columns
 
-    def compliance_to(self, columns: Columns) -> Compliance:
+    def compliance_to(self, columns: LowRankBasis) -> Compliance:
         """How the body without the springs gives way to forces along some columns."""
         reduced = self.factors.reduce(columns)
         return Compliance(self.factors.expand(reduced), self.factors.inner(reduced, reduced))
@@ -94,12 +94,12 @@ class Stiffness:
         """Whether K alone is positive definite."""
         return self.factors.definite
 
-    def response(self, weights: Small) -> Columns:
+    def response(self, weights: RankMatrix) -> LowRankBasis:
         """How x moves when each column's spring is taken in by 1 m, were D these weights: -H^-1 G D."""
         inner = np.eye(len(weights)) + weights @ self.compliance
         return -self.moves @ np.linalg.solve(inner, weights)
 
-    def move(self, forces: Float[np.ndarray, " dofs"], coupling: Coupling) -> Float[np.ndarray, " dofs"] | None:
+    def move(self, forces: Float[np.ndarray, " dofs"], coupling: LowRankStiffness) -> Float[np.ndarray, " dofs"] | None:
         """How x moves under forces [N] and springs that may go slack or taut on the way; None if that is not found.
 
         Args:
@@ -109,7 +109,7 @@ class Stiffness:
         assert coupling.law is not None
         free = self.factors.reduce(forces)
         elongations = coupling.elongations + self.factors.inner(self._reduced, free)
-        tensions = coupling.law.balance(elongations, self.compliance)
+        tensions = coupling.law.solve_slack_complementarity(elongations, self.compliance)
         return None if tensions is None else self.factors.expand(free - self._reduced @ tensions)
 
     def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
@@ -124,7 +124,7 @@ class Stiffness:
         return self.factors.expand(free - self._reduced @ pulls)
 
 
-def _square_root(weights: Small) -> Small:
+def _square_root(weights: RankMatrix) -> RankMatrix:
     """R with R R^T = weights."""
     diagonal = weights.diagonal()
     if np.count_nonzero(weights) == np.count_nonzero(diagonal):

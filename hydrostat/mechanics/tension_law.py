@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.kernel import native
-from hydrostat.mechanics.energy import Small
+from hydrostat.mechanics.energy import RankMatrix
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,7 +51,7 @@ class TensionLaw:
         share = np.maximum(tension, 0.0) / k
         return np.where(share > eps, share + eps, 2 * np.sqrt(eps * share))
 
-    def balance(self, elongations: Vector, compliance: Small) -> Vector | None:
+    def solve_slack_complementarity(self, elongations: Vector, compliance: RankMatrix) -> Vector | None:
         """Tensions of cables on a linear body at rest, as a complementarity problem; None if they are not found.
 
         The body gives way by compliance @ tensions, so T = law(elongations - compliance @ T): the least of a convex

@@ -1,4 +1,4 @@
-"""`Memory`: the viscous branches of a material; `ViscousEnergy`: what they do to one step in time."""
+"""`MaxwellBranches`: the viscous branches of a material; `ViscousEnergy`: what they do to one step in time."""
 
 from typing import ClassVar
 
@@ -60,7 +60,7 @@ class ViscousEnergy(Energy):
         return (corners - corners[:, :1]).reshape(-1, nodes.shape[1])
 
 
-class Memory:
+class MaxwellBranches:
     """Branches of springs behind dashpots beside an elastic body: a transient network (Linder 2011).
 
     Each branch stores mu/2 (tr(A C) - dim - ln det(A C)), C = F^T F, in a metric A that follows the body:

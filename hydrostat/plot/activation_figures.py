@@ -17,7 +17,7 @@ from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Spread
 from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 PALE = 0.62  # how far felt fades behind muscles
 
@@ -57,7 +57,7 @@ def draw_candidates(
     The title is the pose's name if left out, nothing if empty; width in inches.
     """
     head = f"Candidates: {shorten(activation.target.name)}" if title is None else title
-    note = f"the strongest {len(candidates)} of {counted(len(activation.fibres), 'fibre')}"
+    note = f"the strongest {len(candidates)} of {plural(len(activation.fibres), 'fibre')}"
     sheet, panes = _pale_sheet(robot, head, note, width, bar=True)
     tensions = activation.tensions[candidates]
     scale = TensionScale.of(tensions)
@@ -71,7 +71,7 @@ def draw_candidates(
 def draw_trees(robot: Robot, trees: Iterable[Spread], *, title: str | None = None, width: float = WIDTH) -> Figure:
     """Routes [m] that grew from the candidates, on the rest shape, a colour each (Fig 3.9c); width in inches."""
     trees = list(trees)
-    note = f"{counted(len(trees), 'route')} grown from the candidates"
+    note = f"{plural(len(trees), 'route')} grown from the candidates"
     sheet, panes = _pale_sheet(robot, "Trees" if title is None else title, note, width, bar=title == "")
     for pane, (index, tree) in product(panes, enumerate(trees)):
         colour, route = WINCHES[index % len(WINCHES)], pane.places(np.asarray(tree))

@@ -17,8 +17,8 @@ from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Spread
 from hydrostat.robot import Robot
-from hydrostat.simulation import Branch, PathDependence, SolvedPose
-from hydrostat.units import counted
+from hydrostat.simulation import Branch, Equilibrium, Multistability
+from hydrostat.units import plural
 
 MOST_MARKERS = 4  # so many markers have a chart: those that differ most between the poses, or move most
 TOLD = 0.25  # markers that differ less, or move less, than this share of the first have no chart
@@ -27,7 +27,7 @@ EDGES = 0.75  # of that for words and numbers [inch]
 
 
 def draw_branches(
-    robot: Robot, found: PathDependence, branches: Sequence[Branch], *, title: str | None = None, width: float = WIDTH
+    robot: Robot, found: Multistability, branches: Sequence[Branch], *, title: str | None = None, width: float = WIDTH
 ) -> Figure:
     """The poses found, one over the other; below how far markers move along the branches, if there are any.
 
@@ -61,16 +61,16 @@ def draw_branches(
     return sheet.figure
 
 
-def _found_text(found: PathDependence) -> str:
+def _found_text(found: Multistability) -> str:
     if not found.poses:
         return "no stable pose found"
     if found.unique:
-        return f"one pose from {counted(found.starts, 'start')}"
+        return f"one pose from {plural(found.starts, 'start')}"
     where, far = found.largest
     return f"{len(found.poses)} poses at the same contractions, up to {MILLIMETRES * far:.3g} mm apart at {where}"
 
 
-def _tracked(robot: Robot, found: PathDependence, branches: Sequence[Branch]) -> list[str]:
+def _tracked(robot: Robot, found: Multistability, branches: Sequence[Branch]) -> list[str]:
     """Names of the markers that have a chart; one empty name for the node that moves most where there are none."""
     names = [marker.name for marker in robot.markers]
     if not names:
@@ -82,7 +82,7 @@ def _tracked(robot: Robot, found: PathDependence, branches: Sequence[Branch]) ->
     return sorted(told, key=lambda name: -counts[name])[:MOST_MARKERS]
 
 
-def _moved(robot: Robot, pose: SolvedPose, name: str) -> float:
+def _moved(robot: Robot, pose: Equilibrium, name: str) -> float:
     """How far a marker is from its place at rest, or the node that moves most [m]."""
     if not name:
         return float(np.linalg.norm(pose.nodes - robot.body.mesh.nodes, axis=1).max())
@@ -94,7 +94,7 @@ def _colour(index: int) -> str:
     return WINCHES[index % len(WINCHES)]
 
 
-def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[SolvedPose]) -> None:
+def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[Equilibrium]) -> None:
     """The rest shape, the pose of least energy as a body, the others as outlines."""
     pane.draw_ghost(sheet)
     for index, pose in reversed(list(enumerate(poses))):
@@ -110,7 +110,7 @@ def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[SolvedPose]) ->
             )
 
 
-def _name_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[SolvedPose], name: str) -> None:
+def _name_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[Equilibrium], name: str) -> None:
     """A numbered flag on each pose, at the marker that differs most."""
     points: Spread = np.array([pose.markers[name] if name else _farthest(poses, pose) for pose in poses])
     places = pane.places(points)
@@ -120,7 +120,7 @@ def _name_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[SolvedPose], na
         labels.flag(place, f"{index + 1}: {pose.energy:.4g} J", _colour(index))
 
 
-def _farthest(poses: Sequence[SolvedPose], pose: SolvedPose) -> Vector:
+def _farthest(poses: Sequence[Equilibrium], pose: Equilibrium) -> Vector:
     """The node that differs most between the poses [m]."""
     apart = sum(np.linalg.norm(other.nodes - poses[0].nodes, axis=1) for other in poses)
     return pose.nodes[int(np.argmax(apart))]
@@ -152,7 +152,7 @@ def _chart(figure: Figure, index: int, rows: int, columns: int, *, last: bool) -
     return axes
 
 
-def _draw_chart(axes: Axes, robot: Robot, name: str, found: PathDependence, branches: Sequence[Branch]) -> None:
+def _draw_chart(axes: Axes, robot: Robot, name: str, found: Multistability, branches: Sequence[Branch]) -> None:
     """How far one marker moves along the branches."""
     title = f"{shorten(name)} moved [mm]" if name else "largest displacement [mm]"
     axes.set_title(title, loc="left", color=INK, fontsize=8, fontweight="bold", parse_math=False)
@@ -174,7 +174,7 @@ def _draw_chart(axes: Axes, robot: Robot, name: str, found: PathDependence, bran
         _number_poses(axes, heights)
 
 
-def _parting(found: PathDependence, branches: Sequence[Branch]) -> float:
+def _parting(found: Multistability, branches: Sequence[Branch]) -> float:
     """Share [%] a little before the first pose that is not stable, or a fold; 0 where branches do not part."""
     marked = [branch.points[point.index] for branch in branches for point in branch.critical]
     lost = marked + [point for branch in branches for point in branch.points if not point.stable]
@@ -223,6 +223,6 @@ def _number_poses(axes: Axes, heights: Sequence[float]) -> None:
         )  # fmt: skip
 
 
-def _share(pose: SolvedPose, goal: Vector) -> float:
+def _share(pose: Equilibrium, goal: Vector) -> float:
     """Share of the way from rest to the goal."""
     return float(pose.contractions @ goal / (goal @ goal))

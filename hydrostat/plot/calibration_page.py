@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
-from hydrostat.control import SpoolCurve, TakenUp, WinchPull
+from hydrostat.control import SlackCalibration, SpoolCurve, WinchPull
 from hydrostat.drawing import MUTED, WINCHES, Html, tag
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
@@ -17,7 +17,7 @@ from hydrostat.robot import Robot, replace_file
 
 def write_calibration_page(
     robot: Robot,
-    found: Sequence[TakenUp],
+    found: Sequence[SlackCalibration],
     model: Sequence[WinchPull],
     constants: Vector,
     notes: Sequence[str],
@@ -94,12 +94,12 @@ def _draw_spool(found: SpoolCurve) -> Figure:
     return figure
 
 
-def reach(found: TakenUp) -> float:
+def reach(found: SlackCalibration) -> float:
     """How far beyond the edge a winch was pulled [m]."""
     return max(float(found.places.max()), 1e-3)
 
 
-def _draw(found: TakenUp, model: WinchPull, constant: float) -> Figure:
+def _draw(found: SlackCalibration, model: WinchPull, constant: float) -> Figure:
     """Pull by cable taken in; current where the motor's constant is not known."""
     known = np.isfinite(constant)
     figure, axes = new_chart(

@@ -13,7 +13,7 @@ from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.report_tables import millimetres
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 _WIDE = 30.0  # errors that differ by this factor are drawn on a logarithmic scale
 
@@ -122,7 +122,7 @@ def _draw_dots(axes: Axes, networks: Sequence[Alternative | Network], dots: Sequ
     """All dots; a line of the legend for each number of winches."""
     counts = [len(one.robot.winches) for one in networks]
     for number, count in enumerate(sorted(set(counts))):
-        colour, name = WINCHES[number % len(WINCHES)], counted(count, "winch")
+        colour, name = WINCHES[number % len(WINCHES)], plural(count, "winch")
         axes.plot([], [], marker="o", markersize=5.5, linestyle="none", color=colour, label=name)
         for index in (index for index, other in enumerate(counts) if other == count):
             axes.plot(

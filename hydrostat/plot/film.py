@@ -8,13 +8,13 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.ik import KeyPose, ReachedPose, Trajectory
+from hydrostat.ik import IKResult, KeyPose, Trajectory
 from hydrostat.plot.animation import Tell
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.sheet import MILLIMETRES
-from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.robot import PoseTarget, Robot
+from hydrostat.simulation import Equilibrium, Simulation
 
 STILL = 0.25  # share of the time from one stop to the next in which the robot stays there
 FEWEST = 4  # frames from one stop to the next
@@ -27,7 +27,7 @@ class Stop:
 
     name: str  # of the pose, or what is done
     contractions: Vector  # cable taken in by each winch [m]
-    target: Pose | None = None  # whose targets are shown on the way
+    target: PoseTarget | None = None  # whose targets are shown on the way
     words: str = ""  # shown while the robot stays there
 
 
@@ -40,7 +40,7 @@ class Film:
     missing: tuple[int, ...]  # numbers of the frames without an equilibrium; they show the one before
 
 
-def pose_stops(reached: Iterable[ReachedPose]) -> list[Stop]:
+def pose_stops(reached: Iterable[IKResult]) -> list[Stop]:
     """A stop for each pose that inverse kinematics found."""
     return [
         Stop(
@@ -99,7 +99,7 @@ def film(
 class _Shot:
     """Frames as they are made."""
 
-    def __init__(self, simulation: Simulation, rest: SolvedPose, count: int, tell: Tell | None) -> None:
+    def __init__(self, simulation: Simulation, rest: Equilibrium, count: int, tell: Tell | None) -> None:
         self.frames = [Frame.of(rest, words="at rest")]
         self.missing: list[int] = []
         self._simulation, self._last, self._count, self._tell = simulation, rest, count, tell
@@ -129,7 +129,7 @@ class _Shot:
             self._tell("solving", len(self.frames), self._count)
 
 
-def upright(robot: Robot, pose: SolvedPose) -> bool:
+def upright(robot: Robot, pose: Equilibrium) -> bool:
     """Tell whether no element is inverted."""
     corners = pose.nodes[robot.body.mesh.elements]
     return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())
@@ -154,13 +154,13 @@ def trajectory_frames(trajectory: Trajectory) -> tuple[list[Frame], float]:
 
 def _key(trajectory: Trajectory, sample: int) -> tuple[KeyPose, bool]:
     """The keyframe that is approached, or in which the robot stays."""
-    for before in reversed(trajectory.keys):
+    for before in reversed(trajectory.keyframes):
         if before.index <= sample:
             stays = (trajectory.contractions[sample] == trajectory.contractions[before.index]).all()
-            if stays or before is trajectory.keys[-1]:
+            if stays or before is trajectory.keyframes[-1]:
                 return before, True
             break
-    return next(key for key in trajectory.keys if key.index > sample), False
+    return next(key for key in trajectory.keyframes if key.index > sample), False
 
 
 def _words(key: KeyPose, there: bool) -> str:

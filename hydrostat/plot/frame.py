@@ -8,8 +8,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import Obstacle, Pose, Robot
-from hydrostat.simulation import Motion, SolvedPose
+from hydrostat.robot import Obstacle, PoseTarget, Robot
+from hydrostat.simulation import Equilibrium, Motion
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -19,13 +19,18 @@ class Frame:
     nodes: Nodes  # positions of the nodes [m]
     tensions: Vector  # of each cable [N]
     contractions: Vector | None = None  # cable taken in by each winch [m]; without, no winch is seen to turn
-    target: Pose | None = None  # the pose that is approached, whose targets are shown
+    target: PoseTarget | None = None  # the pose that is approached, whose targets are shown
     words: str = ""  # what happens, in a line
     things: tuple[Obstacle, ...] = ()  # beside the robot, where they are
 
     @classmethod
     def of(
-        cls, found: SolvedPose | Motion, *, target: Pose | None = None, words: str = "", things: Sequence[Obstacle] = ()
+        cls,
+        found: Equilibrium | Motion,
+        *,
+        target: PoseTarget | None = None,
+        words: str = "",
+        things: Sequence[Obstacle] = (),
     ) -> Self:
         """The frame that shows an equilibrium, or an instant of a motion, and things beside the robot."""
         told = {"nodes": found.nodes, "tensions": found.tensions, "contractions": found.contractions}

@@ -17,7 +17,7 @@ from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
 from hydrostat.robot import Robot
-from hydrostat.simulation import MotionTable, SolvedPose
+from hydrostat.simulation import Equilibrium, MotionTable
 
 MOST_NAMES = 12  # so many lines are named; of more, the others are only drawn
 
@@ -86,7 +86,7 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
 
     Keyframes are upright lines, limits dashed, snaps red. The title is the robot's name if left out; width in inches.
     """
-    shown = [("start", 0.0, trajectory.poses[0]), *((key.name, key.time, key.pose) for key in trajectory.keys)]
+    shown = [("start", 0.0, trajectory.poses[0]), *((key.name, key.time, key.pose) for key in trajectory.keyframes)]
     told = [shown[0], *(one for last, one in pairwise(shown) if last[2].nodes is not one[2].nodes)]
     shown = told[: MOST_POSES + 1]  # without poses that are still those before
     images = _portraits(robot, [pose for _, _, pose in shown])
@@ -106,7 +106,7 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
     return figure
 
 
-def _portraits(robot: Robot, poses: list[SolvedPose]) -> list[np.ndarray]:
+def _portraits(robot: Robot, poses: list[Equilibrium]) -> list[np.ndarray]:
     """Pictures of poses, all in one frame, without the border that is empty in all."""
     carried, shapes = Attachments(robot), [pose.nodes for pose in poses]
     beside = [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
@@ -123,8 +123,8 @@ def _head(figure: Figure, title: str, trajectory: Trajectory) -> None:
         return
     width, height = figure.get_size_inches()
     used = f"{trajectory.path} path, {trajectory.seconds:.2f} s"
-    if trajectory.snaps:
-        used += f", snaps at {', '.join(f'{snap.time:.2f} s' for snap in trajectory.snaps[:4])}"
+    if trajectory.branch_jumps:
+        used += f", snaps at {', '.join(f'{snap.time:.2f} s' for snap in trajectory.branch_jumps[:4])}"
     figure.text(
         0.12 / width, 1 - 0.1 / height, title, fontsize=11, color=INK, weight="bold", va="top", parse_math=False
     )
@@ -136,8 +136,8 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
     width, height = figure.get_size_inches()
     rows = (
         ("taken in [mm]", trajectory.contractions, None),
-        ("speed [mm/s]", trajectory.speeds, trajectory.pace.speed),
-        ("acceleration [mm/s\N{SUPERSCRIPT TWO}]", trajectory.accelerations, trajectory.pace.acceleration),
+        ("speed [mm/s]", trajectory.speeds, trajectory.limits.speed),
+        ("acceleration [mm/s\N{SUPERSCRIPT TWO}]", trajectory.accelerations, trajectory.limits.acceleration),
     )
     colours = winch_colours(robot.winches)
     right = 0.5 + 0.068 * max((len(shorten(name)) for name in trajectory.winches), default=0)
@@ -158,7 +158,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         if limits is not None:
             _limits(axes, limits)
         if row == 0:
-            _name_keys(axes, trajectory.keys, trajectory.seconds)
+            _name_keys(axes, trajectory.keyframes, trajectory.seconds)
         if row == 0 and trajectory.winches:
             axes.legend(
                 loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=7.5, frameon=False, labelcolor=INK,
@@ -181,9 +181,9 @@ def _chart(axes: Axes, label: str, *, last: bool) -> None:
 
 def _events(axes: Axes, trajectory: Trajectory) -> None:
     """Keyframes and snaps."""
-    for key in trajectory.keys:
+    for key in trajectory.keyframes:
         axes.axvline(key.time, color=GHOST, linewidth=0.9, zorder=1)
-    for snap in trajectory.snaps:
+    for snap in trajectory.branch_jumps:
         axes.axvline(snap.time, color=ERROR, linewidth=0.9, linestyle=(0, (1, 1.5)), zorder=1.5)
 
 

@@ -18,7 +18,7 @@ from hydrostat.plot.robot_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.robot import Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 def write_report(
@@ -49,9 +49,9 @@ HOW = ", by its own winches, in simulation"
 def _hero(network: Network, title: str) -> Html:
     """Headline, the errors, and portraits at rest and in poses."""
     robot = network.robot
-    winches = counted(len(robot.winches), "winch")
-    cables = counted(len(robot.cables), "cable")
-    poses = counted(len(network.reached), "pose")
+    winches = plural(len(robot.winches), "winch")
+    cables = plural(len(robot.cables), "cable")
+    poses = plural(len(network.reached), "pose")
     return tag(
         "div",
         tag("p", "hydrostat \N{MIDDLE DOT} design report", class_="eyebrow"),

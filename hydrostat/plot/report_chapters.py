@@ -10,12 +10,12 @@ from hydrostat.design import (
     Network,
     RouteTrace,
     TreeTrace,
-    craft_of,
+    build_effort,
     rest_error,
     sewing_minutes,
 )
 from hydrostat.drawing import Html, tag
-from hydrostat.ik import ReachedPose, find_reach, left_free
+from hydrostat.ik import IKResult, find_reach, unconstrained_motion
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
 from hydrostat.plot.reach_figure import draw_reach
@@ -37,9 +37,9 @@ from hydrostat.plot.report_tables import (
 )
 from hydrostat.plot.robot_figures import draw_network, draw_reached, draw_rest, draw_stage, draw_target, stage_frame
 from hydrostat.plot.sheet import MILLIMETRES
-from hydrostat.robot import Pose, Robot, Source
+from hydrostat.robot import PoseTarget, Robot, Source
 from hydrostat.simulation import Simulation
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 _HEADS = {
     Source.OUTLINE: "A drawing becomes a body",
@@ -77,7 +77,7 @@ def body_part(robot: Robot) -> Html:
     return tag("div", shown, tag("div", tag("h3", "Body"), body_table(robot), *markers), class_="pose")
 
 
-def target_chapter(robot: Robot, poses: Iterable[Pose]) -> Chapter:
+def target_chapter(robot: Robot, poses: Iterable[PoseTarget]) -> Chapter:
     """What each pose asks of the markers."""
     words = (
         "Each pose names targets for markers: a cross is a target; a marker with a cross and no arrow should stay, "
@@ -86,7 +86,7 @@ def target_chapter(robot: Robot, poses: Iterable[Pose]) -> Chapter:
     pictures = []
     for index, pose in enumerate(poses):
         figure = draw_target(robot.with_network((), ()), pose, title="", width=NARROW)
-        note = f": where {counted(len(pose.targets), 'marker')} should go"
+        note = f": where {plural(len(pose.targets), 'marker')} should go"
         pictures.append(picture(figure, f"target-{index}", pose.name, note))
     return Chapter("What it should do", words, [grid(*pictures)])
 
@@ -94,8 +94,8 @@ def target_chapter(robot: Robot, poses: Iterable[Pose]) -> Chapter:
 def _network(network: Network) -> Chapter:
     robot = network.robot
     words = (
-        f"{counted(len(robot.winches), 'winch')} and {counted(len(robot.cables), 'cable')}, "
-        f"chosen from {counted(network.tried, 'network')} whose poses were solved. All cables of one winch "
+        f"{plural(len(robot.winches), 'winch')} and {plural(len(robot.cables), 'cable')}, "
+        f"chosen from {plural(network.tried, 'network')} whose poses were solved. All cables of one winch "
         "share its contraction, each by the radius of its spool. A bar marks the stopper at the end of a "
         "cable, a pale pipe a sheath."
     )
@@ -116,10 +116,10 @@ REACHED = (  # head and words of the chapter on the poses
 )
 
 
-def reached_part(robot: Robot, reached: ReachedPose, index: int, *notes: Html) -> Html:
+def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> Html:
     """A pose as the winches reach it, beside tables of markers, winches and cables; below them what is to be minded."""
     figure = draw_reached(robot, reached, title="", width=NARROW)
-    note = f": {MILLIMETRES * reached.rms_error:.2f} mm rms; {reached.reason}"
+    note = f": {MILLIMETRES * reached.rms_error:.2f} mm rms; {reached.status}"
     tables = {
         "Markers": marker_table(robot, reached),
         "Winches": contraction_table(robot, reached),
@@ -127,7 +127,7 @@ def reached_part(robot: Robot, reached: ReachedPose, index: int, *notes: Html) -
     }
     numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
     shown = picture(figure, f"reached-{index}", reached.wanted.name, note)
-    minded = filter(None, (*reached.pose.notes, left_free(reached)))
+    minded = filter(None, (*reached.pose.warnings, unconstrained_motion(reached)))
     told = [tag("div", tag("b", "Mind: "), words, class_="note") for words in minded]
     return tag("div", shown, tag("div", *numbers, *told, *notes), class_="pose")
 
@@ -173,10 +173,10 @@ def _routes(network: Network, trace: TreeTrace) -> Chapter:
     pictures = []
     for index, (activation, kept) in enumerate(zip(trace.activations, trace.candidates, strict=True)):
         figure = draw_candidates(network.robot, activation, kept, title="", width=NARROW)
-        note = f": the strongest {len(kept)} of {counted(len(activation.fibres), 'fibre')}"
+        note = f": the strongest {len(kept)} of {plural(len(activation.fibres), 'fibre')}"
         pictures.append(picture(figure, f"candidates-{index}", f"Candidates for {activation.target.name}", note))
     figure = draw_trees(network.robot, trace.trees, title="", width=NARROW)
-    note = f": {counted(len(trace.trees), 'route')} that join neighbouring candidates"
+    note = f": {plural(len(trace.trees), 'route')} that join neighbouring candidates"
     pictures.append(picture(figure, "trees", "Trees", note))
     return Chapter("From muscles to routes", words, [grid(*pictures, kind="small")])
 
@@ -209,7 +209,7 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
         head = f"{index + 1}. {stage.words[:1].upper()}{stage.words[1:]}"
         pictures.append(picture(figure, f"stage-{index}", head, f": {_rms_text(stage.error)}"))
     curve = draw_growth(trace.stages, rest=rest_error(network), final=network.built, marked=shown, width=CHART)
-    note = f" over {counted(len(trace.stages), 'stage')}; those with a picture above are filled dots"
+    note = f" over {plural(len(trace.stages), 'stage')}; those with a picture above are filled dots"
     parts = [grid(*pictures, kind="tiny"), grid(picture(curve, "growth", "The error", note))]
     return [Chapter("How it grew", words, [*parts, _certificate(network, trace.certificate)])]
 
@@ -272,9 +272,9 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
     pictures = []
     for index, other in enumerate(others):
         robot = other.robot
-        head = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
+        head = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        told = f": {_rms_text(other.built)} once built; {craft_of(robot, other.reached)}"
+        told = f": {_rms_text(other.built)} once built; {build_effort(robot, other.reached)}"
         pictures.append(picture(figure, f"alternative-{index}", head, told))
     return grid(*pictures, kind="tiny")
 

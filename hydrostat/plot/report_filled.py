@@ -6,7 +6,7 @@ from hydrostat.errors import HydrostatError
 from hydrostat.plot.report_tables import Chapter, millimetres, table
 from hydrostat.robot import face_words
 from hydrostat.simulation import filled_motion, quickly_filled
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 HEAD = "Once it is filled"
 
@@ -57,7 +57,7 @@ def _judged(network: Network, filled: FilledReach) -> Html:
     heads = ("pose", "error in the model [mm]", "error filled [mm]", "out of the plane [mm]", "contractions there [mm]")
     told = (
         f"Commands were found on the filled body: {millimetres(filled.rms_error)} mm rms over all poses, where those "
-        f"of the flat model reach {millimetres(filled.played)} mm. {counted(filled.finalists, 'network')} stood there "
+        f"of the flat model reach {millimetres(filled.played)} mm. {plural(filled.finalists, 'network')} stood there "
         "side by side; this one was chosen."
     )
     return tag("div", table(heads, rows, numbers=(1, 2, 3)), tag("p", told, class_="note"))

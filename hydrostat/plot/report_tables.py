@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from hydrostat.design import Network, TreeTrace
 from hydrostat.drawing import Html, tag, winch_colours
-from hydrostat.ik import ReachedPose
+from hydrostat.ik import IKResult
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.targets import rest_errors
@@ -89,7 +89,7 @@ def swatch(colour: str) -> Html:
     return tag("i", class_="swatch", style=f"background:{colour}")
 
 
-def marker_table(robot: Robot, reached: ReachedPose) -> Html:
+def marker_table(robot: Robot, reached: IKResult) -> Html:
     """Target, reached place and error of each marker."""
     before = rest_errors(robot, reached.wanted)
     rows = [
@@ -101,7 +101,7 @@ def marker_table(robot: Robot, reached: ReachedPose) -> Html:
     return table(heads, rows, numbers=(1, 2, 3, 4))
 
 
-def contraction_table(robot: Robot, reached: ReachedPose) -> Html:
+def contraction_table(robot: Robot, reached: IKResult) -> Html:
     """Contraction of each winch against what it can take in."""
     colours = winch_colours(robot.winches)
     rows = [
@@ -113,7 +113,7 @@ def contraction_table(robot: Robot, reached: ReachedPose) -> Html:
     return table(("winch", "contraction [mm]", "", "limit [mm]"), rows, numbers=(1, 3))
 
 
-def tension_table(robot: Robot, reached: ReachedPose) -> Html:
+def tension_table(robot: Robot, reached: IKResult) -> Html:
     """Tension of each cable."""
     scale = TensionScale.of(reached.pose.tensions)
     colours = winch_colours(robot.winches)

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing import ERROR, LIGHT, winch_colours
 from hydrostat.geometry import Outline, Ring
-from hydrostat.given import check_kind
-from hydrostat.ik import ReachedPose
+from hydrostat.given import check_type
+from hydrostat.ik import IKResult
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, name_winches
@@ -28,9 +28,9 @@ from hydrostat.plot.targets import (
     target_points,
 )
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Obstacle, Pose, Robot, check_positive
-from hydrostat.simulation import SolvedPose, as_posed, check_pose
-from hydrostat.units import counted
+from hydrostat.robot import Obstacle, PoseTarget, Robot, check_positive
+from hydrostat.simulation import Equilibrium, check_pose, obstacles_in_pose
+from hydrostat.units import plural
 
 
 def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:
@@ -50,7 +50,7 @@ def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -
     return sheet.figure
 
 
-def draw_target(robot: Robot, pose: Pose, *, title: str | None = None, width: float = WIDTH) -> Figure:
+def draw_target(robot: Robot, pose: PoseTarget, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """The rest shape with an arrow from each marker to its target.
 
     The title is the pose's name if left out, nothing if empty; width in inches.
@@ -80,7 +80,7 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
     The title counts winches and cables if left out, nothing if empty; width in inches.
     """
     _check(robot, width)
-    count = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
+    count = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
     head = shorten(robot.name) if title is None else title
     sheet, panes, bodies = _at_rest(robot, head, count, width)
     drawn, labels = _draw_parts(sheet, robot, panes, bodies, width=2.4, size=4.0)
@@ -92,7 +92,7 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
 
 def _check(robot: Robot, width: float) -> None:
     """Refuse what cannot be drawn (InputError)."""
-    check_kind(robot, Robot, "a picture is drawn of a Robot, such as load_robot gives")
+    check_type(robot, Robot, "a picture is drawn of a Robot, such as load_robot gives")
     check_positive("width", width, "inches")
 
 
@@ -152,7 +152,7 @@ def stage_frame(robots: Iterable[Robot]) -> Spread:
 
 
 def draw_pose(
-    robot: Robot, pose: SolvedPose, *, title: str | None = None, note: str | None = None, width: float = WIDTH
+    robot: Robot, pose: Equilibrium, *, title: str | None = None, note: str | None = None, width: float = WIDTH
 ) -> Figure:
     """A simulated pose over the ghost of the rest shape; cables coloured by tension, winches with their contraction.
 
@@ -173,7 +173,7 @@ def draw_pose(
 
 def draw_reached(
     robot: Robot,
-    reached: ReachedPose,
+    reached: IKResult,
     *,
     title: str | None = None,
     outline: Outline | None = None,
@@ -185,7 +185,7 @@ def draw_reached(
     dashed; width in inches.
     """
     _check(robot, width)
-    check_kind(reached, ReachedPose, "what is reached must be what solve_ik gives")
+    check_type(reached, IKResult, "what is reached must be what solve_ik gives")
     check_pose(reached.pose, robot.body.mesh.nodes.shape, len(robot.winches), what="the pose")
     named = "Reached" if reached.target is None else f"Reached: {shorten(reached.target.name)}"
     head = named if title is None else title
@@ -202,13 +202,13 @@ def draw_reached(
     return sheet.figure
 
 
-def _reached_note(reached: ReachedPose, names: list[str]) -> str:
+def _reached_note(reached: IKResult, names: list[str]) -> str:
     """Errors in words: of the markers together, of each other goal by its name."""
     markers = [reached.errors[name] for name in names]
     parts = [f"marker error {MILLIMETRES * float(np.sqrt(np.mean(np.square(markers)))):.2f} mm rms"] if markers else []
     others = {name: error for name, error in reached.errors.items() if name not in names}
     parts += [f"{shorten(name)} error {MILLIMETRES * error:.2f} mm" for name, error in others.items()]
-    return ", ".join(parts) or str(reached.reason)
+    return ", ".join(parts) or str(reached.status)
 
 
 def _draw_wanted(sheet: PictureSheet, ring: Places) -> None:
@@ -240,7 +240,7 @@ def draw_portrait(
 
 def _in_pose(
     robot: Robot,
-    pose: SolvedPose,
+    pose: Equilibrium,
     title: str,
     subtitle: str,
     width: float,
@@ -249,7 +249,7 @@ def _in_pose(
     rings: Sequence[Ring] = (),
 ) -> tuple[PictureSheet, list[Pane], Labels]:
     """A sheet with ghost, posed body, cables by tension and winches, room for rings and for labels off targets [m]."""
-    robot = as_posed(robot, pose.carried)
+    robot = obstacles_in_pose(robot, pose.carried)
     rest, carried = robot.body.mesh.nodes, Attachments(robot)
     goals = np.array(list(targets.values())).reshape(-1, robot.body.mesh.dim)
     sheet, panes = open_sheet(
@@ -280,7 +280,7 @@ def _in_pose(
     return sheet, panes, labels
 
 
-def _rests(pose: SolvedPose) -> str:
+def _rests(pose: Equilibrium) -> str:
     """Whether a pose is an equilibrium, in words."""
     if not pose.result.converged:
         return f"not at rest under the given contractions: {pose.result.reason}"

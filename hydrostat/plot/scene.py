@@ -19,7 +19,7 @@ from hydrostat.plot.sheet import Spread
 from hydrostat.plot.solids import Solid, cross, joined, skin, slab, sphere, spool, tube
 from hydrostat.plot.targets import target_points
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Pose, Robot, replace_file
+from hydrostat.robot import PoseTarget, Robot, replace_file
 
 MOST_KEYS = 120  # of a film of more different frames every second, third ... is a key: programs hold them all at once
 SAME = 1e-5  # two frames are one key where no node differs by more than this, in sizes of the body
@@ -97,7 +97,7 @@ def _distinct(robot: Robot, frames: Sequence[Frame]) -> tuple[list[Frame], list[
     return keys, order
 
 
-def _instants(order: Sequence[int], targets: Sequence[Pose | None]) -> list[int]:
+def _instants(order: Sequence[int], targets: Sequence[PoseTarget | None]) -> list[int]:
     """Numbers of the frames that tell all: without those between others of the same key and the same targets."""
     known = [(index, key, targets[index]) for index, key in enumerate(order) if key >= 0]
     inner = [
@@ -166,7 +166,7 @@ def _carried(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray
     return np.stack([_in_space(places(nodes)) for nodes in film.nodes])
 
 
-def _add_targets(glb: Glb, robot: Robot, targets: Sequence[Pose | None]) -> None:
+def _add_targets(glb: Glb, robot: Robot, targets: Sequence[PoseTarget | None]) -> None:
     """A cross at each target, there at the instants whose pose it belongs to."""
     poses = list({pose.name: pose for pose in targets if pose is not None}.values())
     if poses:

@@ -9,7 +9,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.drawing import DARK, ERROR, LIGHT
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import PictureSheet, Place
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 
 
 def rest_markers(robot: Robot) -> dict[str, Vector]:
@@ -65,17 +65,17 @@ def draw_misses(
         draw_markers(sheet, markers)
 
 
-def target_places(pose: Pose) -> dict[str, Vector]:
+def target_places(pose: PoseTarget) -> dict[str, Vector]:
     """Each target [m]."""
     return {name: np.array(target, dtype=float) for name, target in pose.targets.items()}
 
 
-def target_points(pose: Pose) -> Points:
+def target_points(pose: PoseTarget) -> Points:
     """All targets [m]."""
     return np.array(list(pose.targets.values()), dtype=float)
 
 
-def rest_errors(robot: Robot, pose: Pose) -> dict[str, float]:
+def rest_errors(robot: Robot, pose: PoseTarget) -> dict[str, float]:
     """Distance of each targeted marker from its target while the robot rests [m]."""
     markers = rest_markers(robot)
     return {name: float(np.linalg.norm(markers[name] - np.array(target))) for name, target in pose.targets.items()}

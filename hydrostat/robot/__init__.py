@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from hydrostat.robot.commented import commented_text
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
     from hydrostat.robot.face import Face
-    from hydrostat.robot.gallery import GALLERY, gallery_folder, gallery_names, is_of_gallery
+    from hydrostat.robot.gallery import GALLERY, gallery_folder, is_of_gallery, list_gallery
     from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
     from hydrostat.robot.html_repr import html_repr
     from hydrostat.robot.in_words import in_words
     from hydrostat.robot.inflated import inflated_robot
-    from hydrostat.robot.marker import Marker, Pose
-    from hydrostat.robot.materials import MATERIALS, Material, Relaxation, find_material
+    from hydrostat.robot.marker import Marker, PoseTarget
+    from hydrostat.robot.materials import MATERIALS, Material, Relaxation, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.pin import Pin
@@ -64,7 +64,7 @@ __all__ = [
     "ObstacleShape",
     "Pin",
     "Point",
-    "Pose",
+    "PoseTarget",
     "Relaxation",
     "Robot",
     "RobotReader",
@@ -85,16 +85,16 @@ __all__ = [
     "comments",
     "direction_of",
     "face_words",
-    "find_material",
     "find_risks",
     "gallery_folder",
-    "gallery_names",
+    "get_material",
     "gravity_along",
     "html_repr",
     "in_words",
     "inflated",
     "inflated_robot",
     "is_of_gallery",
+    "list_gallery",
     "load_robot",
     "lost_comments",
     "merged_text",

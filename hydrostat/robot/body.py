@@ -16,7 +16,7 @@ from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Thickness, locate, measure_thickness
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.checks import check_positive
-from hydrostat.robot.materials import Material, find_material
+from hydrostat.robot.materials import Material, get_material
 
 
 class Source(StrEnum):
@@ -70,7 +70,7 @@ class Body:
         if self.inner is Inner.DRAWN and self.source is not Source.OUTLINE:
             raise InputError('inner = "drawn" is for bodies with an outline; remove it')
         if isinstance(self.material, str):
-            object.__setattr__(self, "material", find_material(self.material))
+            object.__setattr__(self, "material", get_material(self.material))
         if self.mesh.dim == 2 and self.thickness is None:
             raise InputError('thickness is missing; a flat body needs one, for example thickness = "40 mm"')
         if self.mesh.dim == 3 and self.thickness is not None:

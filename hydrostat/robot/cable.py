@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
 from hydrostat.robot.checks import (
     LONGEST_NAME,
     Point,
@@ -58,9 +58,9 @@ class Cable:
     def __post_init__(self) -> None:
         if self.name:
             check_name(self.name)
-        check_kind(self.winch, str, "winch must be the name of a winch")
-        check_kind(self.points, (tuple, list, np.ndarray), "points must hold at least 2 points [m]")
-        check_kind(self.sheathed, (tuple, list), "sheathed must hold pairs of point indices")
+        check_type(self.winch, str, "winch must be the name of a winch")
+        check_type(self.points, (tuple, list, np.ndarray), "points must hold at least 2 points [m]")
+        check_type(self.sheathed, (tuple, list), "sheathed must hold pairs of point indices")
         count = len(self.points)
         if count < 2:
             raise InputError(f"points must hold at least 2 points, not {count}")

@@ -15,15 +15,15 @@ def is_of_gallery(source: object) -> TypeGuard[str]:
     return isinstance(source, str) and source.startswith(GALLERY)
 
 
-def gallery_names() -> list[str]:
+def list_gallery() -> list[str]:
     """Names of the robots in the gallery, sorted."""
     return sorted(folder.name for folder in _shelf().iterdir() if (folder / "robot.toml").is_file())
 
 
 def gallery_folder(name: str) -> Path:
     """Folder of a gallery robot (InputError: the gallery has no robot of this name)."""
-    if name not in gallery_names():
-        raise InputError(f'the gallery has no robot "{name}"; it has: {", ".join(gallery_names())}')
+    if name not in list_gallery():
+        raise InputError(f'the gallery has no robot "{name}"; it has: {", ".join(list_gallery())}')
     return _shelf() / name
 
 

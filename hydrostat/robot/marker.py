@@ -1,4 +1,4 @@
-"""`Marker`: a tracked point, such as a fingertip; `Pose`: where markers should go."""
+"""`Marker`: a tracked point, such as a fingertip; `PoseTarget`: where markers should go."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class Marker:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pose:
+class PoseTarget:
     """Targets for some markers.
 
     Attributes:

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Self
 
 from hydrostat.errors import InputError
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
 from hydrostat.robot.checks import check_not_negative, check_number, check_positive
 from hydrostat.units import quote
 
@@ -322,9 +322,9 @@ _TABLE = (
 MATERIALS = MappingProxyType({material.name: material for material in _TABLE})  # materials by name
 
 
-def find_material(name: str) -> Material:
+def get_material(name: str) -> Material:
     """Material of the table; capitals do not matter (InputError: no material has this name)."""
-    check_kind(name, str, 'a material is found by its name, such as "flexfoam-it x"')
+    check_type(name, str, 'a material is found by its name, such as "flexfoam-it x"')
     material = MATERIALS.get(name.lower())
     if material is None:
         from difflib import get_close_matches

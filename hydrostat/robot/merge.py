@@ -14,7 +14,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import Contact, Obstacle
-from hydrostat.robot.marker import Marker, Pose
+from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
@@ -113,7 +113,7 @@ _RECORDS = {
     "winch": Winch,
     "cable": Cable,
     "marker": Marker,
-    "pose": Pose,
+    "pose": PoseTarget,
     "obstacle": Obstacle,
 }
 _LISTS = ("pin", "winch", "cable", "marker", "pose", "obstacle")

@@ -16,8 +16,8 @@ from hydrostat.robot.closed_mesh import closed_mesh
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.gallery import GALLERY, gallery_folder, is_of_gallery
 from hydrostat.robot.gravity import gravity_along
-from hydrostat.robot.marker import Marker, Pose
-from hydrostat.robot.materials import Material, Relaxation, find_material
+from hydrostat.robot.marker import Marker, PoseTarget
+from hydrostat.robot.materials import Material, Relaxation, get_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.tables_file import TablesFile, read_text
@@ -72,7 +72,7 @@ class RobotReader(TablesFile):
             "markers": self.records("marker", self._marker),
             "obstacles": self.records("obstacle", self._obstacle),
         }
-        poses: dict[str, Pose] = {}
+        poses: dict[str, PoseTarget] = {}
         for index, pose in enumerate(self.records("pose", self._pose)):
             if pose.name in poses:
                 self.fail(f"pose[{index}].name", f'there are two of the name "{pose.name}"; names must be unique')
@@ -128,8 +128,8 @@ class RobotReader(TablesFile):
     def _marker(self, entry: Any) -> Marker:
         return Marker(name=entry.name, at=self.point(entry.at))
 
-    def _pose(self, entry: Any) -> Pose:
-        return Pose(name=entry.name, targets={name: self.point(point) for name, point in entry.targets.items()})
+    def _pose(self, entry: Any) -> PoseTarget:
+        return PoseTarget(name=entry.name, targets={name: self.point(point) for name, point in entry.targets.items()})
 
     def _body(self) -> Body:
         entry = self.table.body
@@ -185,12 +185,12 @@ class RobotReader(TablesFile):
 def read_material(entry: Any) -> Material:
     """A material by its name, or by its numbers (InputError: an unknown name, or a number out of its range)."""
     if isinstance(entry, str):
-        return find_material(entry)
+        return get_material(entry)
     viscous = _given(entry, "viscosity")
     if entry.relaxation is not None:
         viscous["relaxation"] = tuple(_branch(index, branch) for index, branch in enumerate(entry.relaxation))
     if hasattr(entry, "name"):
-        return replace(find_material(entry.name), **viscous)
+        return replace(get_material(entry.name), **viscous)
     return Material(young=entry.young, poisson=float(entry.poisson), density=entry.density, **viscous)
 
 

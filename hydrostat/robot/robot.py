@@ -11,7 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
 from hydrostat.painters import draw_record
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
@@ -20,11 +20,11 @@ from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.html_repr import html_repr
-from hydrostat.robot.marker import Marker, Pose
-from hydrostat.robot.materials import Material, find_material
+from hydrostat.robot.marker import Marker, PoseTarget
+from hydrostat.robot.materials import Material, get_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.winch import Mount, Winch
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 _Part = TypeVar("_Part", Winch, Cable)
 
@@ -60,7 +60,7 @@ class Robot:
     winches: tuple[Winch, ...] = ()
     cables: tuple[Cable, ...] = ()
     markers: tuple[Marker, ...] = ()
-    poses: Mapping[str, Pose]
+    poses: Mapping[str, PoseTarget]
     length_unit: str = "mm"
     gravity: tuple[float, ...] | None = None
     face: Face | None = None
@@ -106,7 +106,7 @@ class Robot:
         """Name of each cable, but "" where it is the one that a cable without a name gets here."""
         return given_names(self.cables)
 
-    def pose(self, name: str) -> Pose:
+    def pose(self, name: str) -> PoseTarget:
         """The pose of this name (InputError: there is none)."""
         if name not in self.poses:
             raise InputError(f'there is no pose "{name}"; {_choices("poses", list(self.poses))}')
@@ -151,7 +151,7 @@ class Robot:
         Raises:
             InputError: no material has this name, or a number that none has or that is out of its range.
         """
-        known = find_material(material) if isinstance(material, str) else material or self.body.material
+        known = get_material(material) if isinstance(material, str) else material or self.body.material
         if not isinstance(known, Material):
             raise InputError(f"material must be a Material or a name of the table, not {material!r:.60}")
         numbers = ("young", "poisson", "density", "viscosity")
@@ -165,9 +165,9 @@ class Robot:
     def __repr__(self) -> str:
         """What it is, in one line."""
         mesh = self.body.mesh
-        parts = [counted(len(self.winches), "winch"), counted(len(self.cables), "cable")]
+        parts = [plural(len(self.winches), "winch"), plural(len(self.cables), "cable")]
         return (
-            f"<Robot {self.name!r}: {1e3 * mesh.size:.0f} mm, {counted(len(mesh.nodes), 'node')}, {', '.join(parts)}, "
+            f"<Robot {self.name!r}: {1e3 * mesh.size:.0f} mm, {plural(len(mesh.nodes), 'node')}, {', '.join(parts)}, "
             f"markers: {', '.join(marker.name for marker in self.markers) or 'none'}, "
             f"poses: {', '.join(self.poses) or 'none'}>"
         )
@@ -178,16 +178,16 @@ class Robot:
 
     def _check_kinds(self) -> None:
         """Refuse parts of another kind, before they are asked for anything."""
-        check_kind(self.body, Body, "body must be a Body, as that of another robot")
+        check_type(self.body, Body, "body must be a Body, as that of another robot")
         for what, kind in _PARTS.items():
-            check_kind(getattr(self, what), (tuple, list), f"{what} must be several, such as () for none")
+            check_type(getattr(self, what), (tuple, list), f"{what} must be several, such as () for none")
             for part in getattr(self, what):
-                check_kind(part, kind, f"{what} must be {kind.__name__} records")
-        check_kind(self.poses, Mapping, "poses must be given by name")
+                check_type(part, kind, f"{what} must be {kind.__name__} records")
+        check_type(self.poses, Mapping, "poses must be given by name")
         for pose in self.poses.values():
-            check_kind(pose, Pose, "poses must be Pose records")
-        check_kind(self.contact, (Contact, type(None)), "contact must be a Contact()")
-        check_kind(
+            check_type(pose, PoseTarget, "poses must be Pose records")
+        check_type(self.contact, (Contact, type(None)), "contact must be a Contact()")
+        check_type(
             self.gravity,
             (tuple, list, np.ndarray, str, type(None)),
             "gravity must be m/s^2 along each axis",

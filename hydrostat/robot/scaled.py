@@ -9,7 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.checks import Point
 from hydrostat.robot.contact import Contact, Obstacle
-from hydrostat.robot.marker import Pose
+from hydrostat.robot.marker import PoseTarget
 from hydrostat.robot.robot import Robot
 
 LEAST, MOST = 0.01, 100.0
@@ -79,7 +79,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
         ),
         markers=tuple(replace(marker, at=point(marker.at)) for marker in robot.markers),
         poses={
-            name: Pose(name=name, targets={key: point(place) for key, place in pose.targets.items()})
+            name: PoseTarget(name=name, targets={key: point(place) for key, place in pose.targets.items()})
             for name, pose in robot.poses.items()
         },
         obstacles=tuple(map(placed, robot.obstacles)),

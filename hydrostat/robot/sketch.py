@@ -7,8 +7,8 @@ import numpy as np
 from hydrostat.geometry import Inner, Outline, read_outline, size_for, triangulate
 from hydrostat.robot.body import outline_body
 from hydrostat.robot.finer import finer_size
-from hydrostat.robot.marker import Marker, Pose
-from hydrostat.robot.materials import find_material
+from hydrostat.robot.marker import Marker, PoseTarget
+from hydrostat.robot.materials import get_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 
@@ -53,7 +53,7 @@ def sketch_robot(
 
     outline = read_outline(content, name=file, size=size, inner=inner)
     length, asked = element_size or _element_size(outline, nodes), bool(element_size or nodes)
-    make = partial(outline_body, content, file=file, material=find_material(material), size=size, inner=inner)
+    make = partial(outline_body, content, file=file, material=get_material(material), size=size, inner=inner)
     body = make(element_size=length, thickness=thickness or _round(outline.size / 7))
     while not asked and (finer := finer_size(body, MOST_NODES)) is not None:
         if _round(finer) >= length:
@@ -71,7 +71,7 @@ def sketch_robot(
         body=body,
         pins=(Pin(at=_point(centre), radius=_round(max(0.4 * depth, 1.3 * (body.element_size or 0.0)))),),
         markers=(Marker(name="tip", at=_point(tip)),),
-        poses={"bend": Pose(name="bend", targets={"tip": _point(turned)})},
+        poses={"bend": PoseTarget(name="bend", targets={"tip": _point(turned)})},
     )
 
 

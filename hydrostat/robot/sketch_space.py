@@ -13,8 +13,8 @@ from hydrostat.geometry import Healing, Mesh, Outline, Solid, Surface, clearance
 from hydrostat.robot.body import Body, Source, mesh_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
-from hydrostat.robot.marker import Marker, Pose
-from hydrostat.robot.materials import find_material
+from hydrostat.robot.marker import Marker, PoseTarget
+from hydrostat.robot.materials import get_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Winch
@@ -62,7 +62,7 @@ def sketch_surface(
     """
     from hydrostat.geometry import read_surface, tetrahedralise, write_ply
 
-    known, nodes = find_material(material), NODES if nodes is None else nodes
+    known, nodes = get_material(material), NODES if nodes is None else nodes
     before = read_surface(content, name=file, size=size)
     _check_scale(before.size, size)
     told = tell or _silent
@@ -109,7 +109,7 @@ def inflated(outline: Outline, height: float) -> bytes:
 
 def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: str = "flexfoam-it x") -> Robot:
     """Robot from a ready mesh of tetrahedra, in mm unless a size [m] is given (InputError: no mesh in space)."""
-    body = mesh_body(path, unit=1e-3, material=find_material(material), size=size)
+    body = mesh_body(path, unit=1e-3, material=get_material(material), size=size)
     _check_scale(body.mesh.size, size)
     return _first_robot(body, name)
 
@@ -171,7 +171,7 @@ def _first_robot(body: Body, name: str) -> Robot:
         winches=(winch,),
         cables=(cable,),
         markers=(Marker(name="tip", at=_point(tip)),),
-        poses={"bend": Pose(name="bend", targets={"tip": _point(bent)})},
+        poses={"bend": PoseTarget(name="bend", targets={"tip": _point(bent)})},
     )
 
 

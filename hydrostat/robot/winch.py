@@ -7,7 +7,7 @@ from enum import StrEnum
 
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
 from hydrostat.robot.checks import Point, check_not_negative, check_point, check_positive
 
 
@@ -42,7 +42,7 @@ class Winch:
     mount: Mount = Mount.BODY
 
     def __post_init__(self) -> None:
-        check_kind(self.name, str, "name must be a text")
+        check_type(self.name, str, "name must be a text")
         if not self.name:
             raise InputError("name must not be empty")
         check_point("at", self.at)

@@ -11,7 +11,7 @@ from typing import Any
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner
-from hydrostat.given import check_kind, path_of
+from hydrostat.given import check_type, path_of
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
@@ -38,7 +38,7 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     Raises:
         InputError: a name that robot.toml does not allow, or a folder that cannot be written.
     """
-    check_kind(robot, Robot, "a folder is written of a Robot, such as load_robot gives")
+    check_type(robot, Robot, "a folder is written of a Robot, such as load_robot gives")
     folder = path_of(folder, "a robot is kept in a folder")
     for name in (robot.name, *robot.poses, *(part.name for part in (*robot.winches, *robot.cables, *robot.markers))):
         check_name(name)

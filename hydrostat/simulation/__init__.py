@@ -5,88 +5,100 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.simulation.adjoint import Sensitivity
-    from hydrostat.simulation.balanced import balanced
     from hydrostat.simulation.body_physics import BodyPhysics
-    from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
-    from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
-    from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_filled
-    from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
-    from hydrostat.simulation.friction_band import friction_band
-    from hydrostat.simulation.many_poses import ManyPoses
-    from hydrostat.simulation.meeting import as_posed, carried_frames, obstacle_forces, replacing, with_obstacles
-    from hydrostat.simulation.motion import Motion
-    from hydrostat.simulation.motion_file import MotionTable, write_motion
-    from hydrostat.simulation.obstacles import not_converged
-    from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
-    from hydrostat.simulation.pose_file import pose_facts, write_pose
-    from hydrostat.simulation.profile import Profile, ProfileTable, profile_text, read_profile, write_profile
-    from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
-    from hydrostat.simulation.simulation import Simulation
-    from hydrostat.simulation.solved_pose import (
+    from hydrostat.simulation.branches.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
+    from hydrostat.simulation.branches.continue_branch import BranchOptions, continue_branch
+    from hydrostat.simulation.branches.find_equilibria import FoundPose, Multistability, find_equilibria
+    from hydrostat.simulation.branches.friction_hysteresis import friction_hysteresis
+    from hydrostat.simulation.cable_sensitivities import RigSlopes, cable_sensitivities
+    from hydrostat.simulation.contraction_profile import (
+        ContractionProfile,
+        ProfileTable,
+        profile_text,
+        read_profile,
+        write_profile,
+    )
+    from hydrostat.simulation.equilibrium import (
         Contractions,
-        SolvedPose,
+        Equilibrium,
         check_pose,
         contraction_values,
         largest_distance,
     )
-    from hydrostat.simulation.static_solver import StaticSolver
-    from hydrostat.simulation.still import check_still, rests_at_first, smooth_robot
+    from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_filled
+    from hydrostat.simulation.find_contacts import ContactPatch, find_contacts, touch_words
+    from hydrostat.simulation.motion_file import MotionTable, write_motion
+    from hydrostat.simulation.obstacle_frames import (
+        carried_frames,
+        obstacle_forces,
+        obstacles_in_pose,
+        with_obstacles,
+        with_replaced,
+    )
+    from hydrostat.simulation.pose_file import pose_facts, write_pose
+    from hydrostat.simulation.sensitivities.adjoint import Sensitivity
+    from hydrostat.simulation.simulation import Simulation
+    from hydrostat.simulation.static_obstacles import require_static_obstacles, rests_at_first, without_contact_friction
+    from hydrostat.simulation.statics.batch_result import BatchResult
+    from hydrostat.simulation.statics.diagnose_failure import not_converged
+    from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium
+    from hydrostat.simulation.statics.static_solver import StaticSolver
     from hydrostat.simulation.strain import node_strains, node_stresses
-    from hydrostat.simulation.touches import Touch, touch_words, touches
+    from hydrostat.simulation.time.dynamics import Dynamics, PinShifts, StepOptions
+    from hydrostat.simulation.time.motion import Motion
 
 __all__ = [
+    "BatchResult",
     "BodyPhysics",
     "Branch",
     "BranchOptions",
     "BranchPoint",
     "BranchReason",
+    "ContactPatch",
+    "ContractionProfile",
     "Contractions",
     "CriticalKind",
     "CriticalPoint",
     "Dynamics",
+    "Equilibrium",
     "FilledMotion",
     "FoundPose",
-    "ManyPoses",
     "Motion",
     "MotionTable",
-    "PathDependence",
+    "Multistability",
     "PinShifts",
-    "Profile",
     "ProfileTable",
     "RigSlopes",
     "Sensitivity",
     "Simulation",
-    "SolvedPose",
     "StaticSolver",
     "StepOptions",
-    "Touch",
-    "as_posed",
-    "balanced",
+    "cable_sensitivities",
     "carried_frames",
     "check_pose",
-    "check_still",
+    "continue_branch",
     "contraction_values",
     "filled_motion",
-    "follow_branch",
-    "friction_band",
+    "find_contacts",
+    "find_equilibria",
+    "find_history_equilibrium",
+    "friction_hysteresis",
     "largest_distance",
     "node_strains",
     "node_stresses",
     "not_converged",
     "obstacle_forces",
-    "path_dependence",
+    "obstacles_in_pose",
     "pose_facts",
     "profile_text",
     "quickly_filled",
     "read_profile",
-    "replacing",
+    "require_static_obstacles",
     "rests_at_first",
-    "rig_slopes",
-    "smooth_robot",
     "touch_words",
-    "touches",
     "with_obstacles",
+    "with_replaced",
+    "without_contact_friction",
     "write_motion",
     "write_pose",
     "write_profile",

@@ -8,12 +8,11 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
 from hydrostat.mechanics import (
     PATCH_SIZE,
     Assembly,
     Bend,
-    Carriage,
     CarriedWarp,
     ContactEnergy,
     Energy,
@@ -23,9 +22,10 @@ from hydrostat.mechanics import (
     ObstacleEnergy,
     PatchVolume,
     PinEnergy,
+    RigidBodyDofs,
     RigidEnergy,
     RoundOff,
-    RubbingEnergy,
+    SelfFrictionEnergy,
     Warp,
     WeightEnergy,
     grow_patches,
@@ -61,16 +61,18 @@ class BodyPhysics:
         Raises:
             InputError: no robot, or a part of the mesh that no pin holds.
         """
-        check_kind(robot, Robot, "a simulation is of a Robot, such as load_robot gives")
+        check_type(robot, Robot, "a simulation is of a Robot, such as load_robot gives")
         body = robot.body
         self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles
         self.material, self.thickness = body.material, body.thickness
         mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.material.lame
         self.carriages = _carriages(robot, in_time=in_time)
         moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.carriages.items()]
-        self.begin = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
+        self.rest_unknowns = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
         patched = body.volume is Volume.PATCH
-        self.elastic = NeoHookean(self.begin, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness)
+        self.elastic = NeoHookean(
+            self.rest_unknowns, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness
+        )
         self.pins = _pins(robot)
         carried = [_carried(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
         self.masses = _masses(robot)
@@ -78,24 +80,24 @@ class BodyPhysics:
         energies: list[Energy] = [self.elastic, self.pins]
         if patched:
             patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim])
-            energies.append(PatchVolume(self.begin, mesh.elements, patches, lame=lame, thickness=thickness))
+            energies.append(PatchVolume(self.rest_unknowns, mesh.elements, patches, lame=lame, thickness=thickness))
         if robot.gravity is not None:
-            energies.append(WeightEnergy(self.begin, self._heavy[:, None] * np.array(robot.gravity)))
+            energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
-            own = ContactEnergy.of(mesh, **_felt(robot), rest=self.begin)
+            own = ContactEnergy.of(mesh, **_felt(robot), rest=self.rest_unknowns)
             rubs = robot.contact.friction
-            energies.append(RubbingEnergy.of(mesh, own, rubs) if rubs else own)
+            energies.append(SelfFrictionEnergy.of(mesh, own, rubs) if rubs else own)
         self.obstacles, self.guides = [], dict[int, Obstacle]()
         for index, obstacle in enumerate(robot.obstacles):
             self.obstacles.append(len(energies))
             if index in self.carriages and obstacle.path:
                 self.guides[len(energies) + 1] = obstacle
             energies += self._met(robot, obstacle, self.carriages.get(index))
-        self.assembly = Assembly(energies, rest=self.begin, control_count=0)
+        self.assembly = Assembly(energies, rest=self.rest_unknowns, control_count=0)
 
     @property
-    def count(self) -> int | None:
+    def node_count(self) -> int | None:
         """How many of the unknowns are nodes of the body; None if all are."""
         return len(self._given[0].mesh.nodes) if self.carriages else None
 
@@ -131,7 +133,7 @@ class BodyPhysics:
         Raises:
             InputError: no pin, so it moves before friction on the ground can hold it; or an obstacle floats.
         """
-        where, (_, _, _, _, obstacles) = self.begin if start is None else start, self._given
+        where, (_, _, _, _, obstacles) = self.rest_unknowns if start is None else start, self._given
         for index in () if guided else self.carriages:
             met = self.assembly.energies[self.obstacles[index]]
             if not met.push(where).any():  # type: ignore[attr-defined]
@@ -145,12 +147,12 @@ class BodyPhysics:
                 "move (`hydrostat simulate --dynamic`, or `Simulation.play`), or pin it"
             )
 
-    def _met(self, robot: Robot, obstacle: Obstacle, carriage: Carriage | None) -> list[Energy]:
+    def _met(self, robot: Robot, obstacle: Obstacle, carriage: RigidBodyDofs | None) -> list[Energy]:
         """What keeps the body from passing through an obstacle; and the obstacle rigid, or on its path, if it moves."""
         field = (obstacle if carriage is None or obstacle.path else obstacle.centred()).field()
         friction = robot.friction_of(obstacle)
         met = ObstacleEnergy(robot.body.mesh, field, **_felt(robot), friction=friction, carriage=carriage)
-        met, rigid = met.begun(self.begin), _RIGID * robot.body.material.young
+        met, rigid = met.begun(self.rest_unknowns), _RIGID * robot.body.material.young
         if carriage is None:
             return [met]
         if not obstacle.path:
@@ -180,7 +182,7 @@ class BodyPhysics:
     @cached_property
     def rest_factors(self) -> Factorisation:
         """Hessian of the body at rest, factorised; cables that do not pull add nothing to it."""
-        return self.assembly.near(self.begin).stiffness(self.begin, np.zeros(0)).factors
+        return self.assembly.with_active_terms(self.rest_unknowns).stiffness(self.rest_unknowns, np.zeros(0)).factors
 
     def round_off(self, stiffest: float = 0.0) -> RoundOff:
         """What the rounding errors of the body's own forces hide, and those of springs up to `stiffest` [N/m]."""
@@ -207,16 +209,16 @@ def _felt(robot: Robot) -> dict[str, Any]:
     return {"distance": robot.contact_distance, "young": body.material.young, "thickness": body.thickness}
 
 
-def _carriages(robot: Robot, *, in_time: bool) -> dict[int, Carriage]:
+def _carriages(robot: Robot, *, in_time: bool) -> dict[int, RigidBodyDofs]:
     """Rows of the unknowns of obstacles that move, after those of the nodes: first of those with a mass."""
     carriages, row, mesh = {}, len(robot.body.mesh.nodes), robot.body.mesh
     for index, obstacle in enumerate(robot.obstacles):
         if obstacle.mass is not None:
-            carriages[index] = Carriage(row, 2 * float(np.sqrt(obstacle.second_moments().max())), mesh.dim)
+            carriages[index] = RigidBodyDofs(row, 2 * float(np.sqrt(obstacle.second_moments().max())), mesh.dim)
             row += 1 + mesh.dim
     for index, obstacle in enumerate(robot.obstacles):
         if in_time and obstacle.path:
-            carriages[index] = Carriage(row, mesh.size, mesh.dim)
+            carriages[index] = RigidBodyDofs(row, mesh.size, mesh.dim)
             row += 1 + mesh.dim
     return carriages
 
@@ -227,7 +229,7 @@ def _begin(obstacle: Obstacle) -> tuple[Vector, Points]:
     return (np.zeros(dim), np.eye(dim)) if obstacle.path else obstacle.frame()
 
 
-def _carried(obstacle: Obstacle, carriage: Carriage) -> Float[np.ndarray, " rows"]:
+def _carried(obstacle: Obstacle, carriage: RigidBodyDofs) -> Float[np.ndarray, " rows"]:
     """Masses of the rows of an obstacle that moves [kg]: its own, then that of each of its axes."""
     if obstacle.mass is None:
         return np.zeros(1 + len(obstacle.at))

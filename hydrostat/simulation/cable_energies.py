@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Int
 
-from hydrostat.mechanics import CableEnergy, CableSegments, FrictionCableEnergy, TensionLaw, Turns
+from hydrostat.mechanics import CableEnergy, CableSegments, FrictionCableEnergy, TensionLaw, ViaPointTurns
 from hydrostat.robot import Robot
 from hydrostat.simulation.route_points import RoutePoints
 
@@ -41,7 +41,7 @@ def _bare_segments(robot: Robot, points: RoutePoints) -> dict[str, Any]:
     }
 
 
-def _turns(robot: Robot, points: RoutePoints) -> Turns:
+def _turns(robot: Robot, points: RoutePoints) -> ViaPointTurns:
     """Corners of the cables of a robot that have friction; their points are those of the bare segments in robot order.
 
     A corner is where two bare segments meet, or where a sheath between two of them begins and ends. Nothing rubs at the
@@ -51,7 +51,7 @@ def _turns(robot: Robot, points: RoutePoints) -> Turns:
     stencils, weights, offsets = (
         np.stack(parts) for parts in zip(points.segments(before), points.segments(after), strict=True)
     )
-    return Turns(stencils=stencils, weights=weights, offsets=offsets, points=behind)
+    return ViaPointTurns(stencils=stencils, weights=weights, offsets=offsets, points=behind)
 
 
 def turn_starts(robot: Robot) -> tuple[Int[np.ndarray, "2 turns"], Int[np.ndarray, " turns"]]:

@@ -13,9 +13,9 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.geometry import write_vtu
 from hydrostat.robot import Robot, replace_file
-from hydrostat.simulation.meeting import carried_frames
-from hydrostat.simulation.motion import Motion
-from hydrostat.simulation.profile import csv_text
+from hydrostat.simulation.contraction_profile import csv_text
+from hydrostat.simulation.obstacle_frames import carried_frames
+from hydrostat.simulation.time.motion import Motion
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

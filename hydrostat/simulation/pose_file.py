@@ -10,12 +10,12 @@ import numpy as np
 
 from hydrostat.geometry import write_vtu
 from hydrostat.robot import Robot, replace_file, robot_hash
-from hydrostat.simulation.meeting import carried_frames
+from hydrostat.simulation.equilibrium import Equilibrium
+from hydrostat.simulation.obstacle_frames import carried_frames
 from hydrostat.simulation.simulation import Simulation
-from hydrostat.simulation.solved_pose import SolvedPose
 
 
-def pose_facts(robot: Robot, pose: SolvedPose) -> dict[str, Any]:
+def pose_facts(robot: Robot, pose: Equilibrium) -> dict[str, Any]:
     """What pose.json holds: SI units, contractions by winch, tensions in the order of the named cables.
 
     Of each obstacle that moves it holds the place of its middle and its axes.
@@ -44,7 +44,7 @@ def pose_facts(robot: Robot, pose: SolvedPose) -> dict[str, Any]:
 
 def write_pose(
     simulation: Simulation,
-    pose: SolvedPose,
+    pose: Equilibrium,
     folder: Path,
     *,
     extra: Mapping[str, Any] | None = None,

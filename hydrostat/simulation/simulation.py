@@ -12,41 +12,40 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry import Anchors, locate
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
 from hydrostat.mechanics import Assembly, Energy, FrictionCableEnergy, NewtonOptions, NewtonResult, Stiffness
 from hydrostat.robot import Robot
-from hydrostat.simulation.adjoint import Sensitivity, cotangents, sensitivity
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import cable_energy, friction_energy
-from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
-from hydrostat.simulation.loading_path import LoadingPath
-from hydrostat.simulation.many_poses import LONG_ENOUGH, ManyPoses, PoseRow, in_threads, many_poses, pose_row
-from hydrostat.simulation.motion import Motion
-from hydrostat.simulation.obstacles import not_converged, obstacles
-from hydrostat.simulation.profile import Profile, check_profile
-from hydrostat.simulation.response import response
+from hydrostat.simulation.contraction_profile import ContractionProfile, check_profile
+from hydrostat.simulation.equilibrium import Contractions, Equilibrium, check_apart, check_pose, contraction_values
 from hydrostat.simulation.route_points import RoutePoints, route_points
-from hydrostat.simulation.rubbing_slopes import RubbingSlopes, rubbing_sensitivity, rubbing_slopes
-from hydrostat.simulation.solved_pose import Contractions, SolvedPose, check_apart, check_pose, contraction_values
-from hydrostat.simulation.static_solver import StaticSolver
-from hydrostat.simulation.still import check_still
+from hydrostat.simulation.sensitivities.adjoint import Sensitivity, cotangents, sensitivity
+from hydrostat.simulation.sensitivities.friction import FrictionSensitivities, friction_adjoint, friction_sensitivities
+from hydrostat.simulation.sensitivities.response import response
+from hydrostat.simulation.static_obstacles import require_static_obstacles
+from hydrostat.simulation.statics.batch_result import BatchResult, PoseRow, pose_row, solve_rows
+from hydrostat.simulation.statics.diagnose_failure import diagnose_failure, not_converged
+from hydrostat.simulation.statics.loading_path import LoadingPath
+from hydrostat.simulation.statics.static_solver import StaticSolver
+from hydrostat.simulation.time.dynamics import Dynamics, PinShifts, StepOptions
+from hydrostat.simulation.time.motion import Motion
 
 
 class Simulation:
     """Quasi-static equilibrium of a tendon-driven robot: where it rests when its winches take in cable.
 
-    It is never changed by a solve: threads may share it, and it can be sent to other processes. What is known of a
-    pose, its factorised Hessian included, travels with the pose.
+    Immutable, thread-safe and picklable: the factorized Hessian of a pose travels with the pose.
 
     Attributes:
-        robot: whose physics it is.
-        options: how far Newton goes.
-        body: what it shares with all other networks on this body.
-        route_points: what holds the points of the cables.
-        cables: energy of the cables, as if they had no friction.
-        friction: energy of the cables as they rub, in its place; None if none does.
-        assembly: the sum of all energies.
-        solver: Newton's method on it; `solver.relax` is for those who follow a pose step by step.
+        robot: robot that is simulated.
+        options: tolerance and limits of Newton's method.
+        body: physics of the body, shared by all cable networks on it.
+        route_points: anchors of the cable points.
+        cables: energy of the cables without friction.
+        friction: energy of the cables with friction, used in its place; None without friction.
+        assembly: sum of all energies.
+        solver: Newton's method on it; `solver.relax` follows a pose step by step.
     """
 
     def __init__(
@@ -81,7 +80,7 @@ class Simulation:
         hidden = self.body.round_off(max(springs, default=0.0))
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
-    def contractions(self, given: Contractions) -> Vector:
+    def as_contractions(self, given: Contractions) -> Vector:
         """Contractions as an array in winch order [m] (InputError: not one number in metres for each winch)."""
         return contraction_values(self.robot, given)
 
@@ -89,11 +88,11 @@ class Simulation:
         self,
         contractions: Contractions,
         *,
-        start: SolvedPose | None = None,
+        start: Equilibrium | None = None,
         strict: bool = True,
         seconds: float | None = None,
         accuracy: float | None = None,
-    ) -> SolvedPose:
+    ) -> Equilibrium:
         """Equilibrium at the given contractions.
 
         With friction it depends on the way there. This is then followed from `start` in small increments, in which all
@@ -111,30 +110,30 @@ class Simulation:
             InputError: contractions that do not fit the robot, or a limit or an accuracy that is not above 0.
             NotConvergedError: the solver stopped early; its text says why, and what stands in the way.
         """
-        goal = self.contractions(contractions)
+        goal = self.as_contractions(contractions)
         self.check_start(start)
         self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
-        history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy, self.robot.body.mesh.size)
+        solver = self.solver.with_timeout(seconds).with_accuracy(accuracy, self.robot.body.mesh.size)
         if self.assembly.has_history:
-            result, history = self.path.within(seconds).solve(goal, start)
+            result, history = self.path.with_timeout(seconds).solve(goal, start)
         else:
             begin = None if start is None else (start.unknowns, start.contractions, self.stiffness_of(start))
-            result = solver.solve(goal, (self.body.begin, self.rest_stiffness), begin)
-        pose = self.posed(goal, result, history)
+            result, history = solver.solve(goal, (self.body.rest_unknowns, self.rest_stiffness), begin), np.zeros(0)
+        pose = self.make_pose(goal, result, history)
         if strict and not result.converged:
-            raise not_converged(result, self.in_the_way(pose))
+            raise not_converged(result, self.diagnose(pose))
         return pose
 
-    def solve_many(
+    def solve_batch(
         self,
         contractions: Sequence[Contractions] | Float[np.ndarray, "poses winches"],
         *,
         jacobians: bool = True,
         nodes: bool = False,
         threads: int = 2,
-        start: SolvedPose | None = None,
+        start: Equilibrium | None = None,
         seconds: float | None = None,
-    ) -> ManyPoses:
+    ) -> BatchResult:
         """Equilibria at many contractions, each found by itself: the same bytes for any number of threads.
 
         A pose that is not found leaves NaN and its reason in its row. Ctrl-C ends it after the poses under way.
@@ -150,28 +149,27 @@ class Simulation:
         Raises:
             InputError: as for `solve`; or no number of threads.
         """
-        check_kind(contractions, Iterable, "contractions must be a row for each pose")
-        given = [self.contractions(each) for each in contractions]
+        check_type(contractions, Iterable, "contractions must be a row for each pose")
+        given = [self.as_contractions(each) for each in contractions]
         self.check_start(start)
         self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
         goals = np.array(given).reshape(len(given), len(self.robot.winches))
-        _ = self.solver.within(seconds), self.rest_stiffness  # checked and made before threads ask for them
-        pays = self.assembly.pattern.analysis.tree.seconds >= LONG_ENOUGH
+        _ = self.solver.with_timeout(seconds), self.rest_stiffness  # checked and made before threads ask for them
         slopes = self.marker_jacobian if jacobians else None
 
         def row(number: int) -> PoseRow:
             pose = self.solve(goals[number], start=start, strict=False, seconds=seconds)
-            return pose_row(pose, self.marker_anchors, keep=nodes, slopes=slopes, in_the_way=self.in_the_way)
+            return pose_row(pose, self.marker_anchors, keep=nodes, slopes=slopes, diagnose=self.diagnose)
 
-        rows = in_threads(row, len(goals), threads, pays=pays)
-        return many_poses(self.robot, goals, rows, jacobians=jacobians, nodes=nodes)
+        cost = self.assembly.pattern.analysis.tree.seconds
+        return solve_rows(self.robot, goals, row, jacobians=jacobians, nodes=nodes, threads=threads, cost=cost)
 
-    def in_the_way(self, pose: SolvedPose) -> tuple[str, ...]:
+    def diagnose(self, pose: Equilibrium) -> tuple[str, ...]:
         """Tell what kept a solve from an equilibrium: the cable that pulls hardest, an element next to flat."""
         forces = self.forces(pose.unknowns, pose.contractions).reshape(self.assembly.shape)[: len(pose.nodes)]
-        return obstacles(self.robot, self.cables, pose.nodes, pose.contractions, forces)
+        return diagnose_failure(self.robot, self.cables, pose.nodes, pose.contractions, forces)
 
-    def check_start(self, start: SolvedPose | None) -> None:
+    def check_start(self, start: Equilibrium | None) -> None:
         """Check that a solve can begin there (InputError: another robot, not finite, no slips, or crossing itself)."""
         if start is not None:
             history = self.assembly.history if self.assembly.has_history else None
@@ -179,7 +177,7 @@ class Simulation:
             if self.robot.contact and self.stiffness_of(start) is None:
                 check_apart(self.robot.body.mesh, start.nodes)
 
-    def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
+    def jacobian(self, pose: Equilibrium) -> Float[np.ndarray, "nodes dim winches"]:
         """Sensitivities dx/da of the nodes at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da.
 
         Cables with friction go on slipping where they are at the limit of it, and stick elsewhere.
@@ -190,18 +188,19 @@ class Simulation:
         """
         check_pose(pose, self.robot.body.mesh.nodes.shape, len(self.robot.winches), what="the pose")
         if not self.assembly.has_history:
-            right = -self.assembly.near(pose.unknowns).control_derivative(pose.unknowns, pose.contractions).toarray()
+            active = self.assembly.with_active_terms(pose.unknowns)
+            right = -active.control_derivative(pose.unknowns, pose.contractions).toarray()
             return self.response(pose, right).reshape(*self.assembly.shape, -1)[: len(pose.nodes)]
         cables, stiffness = self._rubbing(pose)
         compliance = stiffness.compliance_to(cables.span_columns(pose.nodes))
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
 
-    def marker_jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "markers dim winches"]:
+    def marker_jacobian(self, pose: Equilibrium) -> Float[np.ndarray, "markers dim winches"]:
         """Sensitivities of the markers at an equilibrium, in marker order; errors as for `jacobian`."""
         anchors = self.marker_anchors
         return np.einsum("pc,pcdw->pdw", anchors.weights, self.jacobian(pose)[anchors.stencils])
 
-    def adjoint(self, pose: SolvedPose, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
+    def adjoint(self, pose: Equilibrium, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
         """Sensitivities of a number L of an equilibrium to contractions, slack, routes, material, by one solve.
 
         Cables with friction slip on or stick as for `jacobian`; what has slipped before the pose was begun from stays.
@@ -215,26 +214,25 @@ class Simulation:
             InputError: other energies that remember the way; cotangents of a wrong shape; obstacles that move.
             NotConvergedError: as for `jacobian`.
         """
-        check_still(self.robot, "the adjoint")
+        require_static_obstacles(self.robot, "the adjoint")
         if self.assembly.has_history:
             right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
-            slopes = self.rubbing_slopes(pose, (right.reshape(1, -1), pulls[None]))
-            return rubbing_sensitivity(self.body, self.route_points, pose, slopes)
-        points, respond = self.route_points, partial(self.response, pose)
-        given = {"nodes": nodes, "tensions": tensions, "points": points, "response": respond}
-        return sensitivity(self.body, self.assembly, self.cables, pose, **given)
+            slopes = self.friction_sensitivities(pose, (right.reshape(1, -1), pulls[None]))
+            return friction_adjoint(self.body, self.route_points, pose, slopes)
+        given = {"nodes": nodes, "tensions": tensions, "points": self.route_points}
+        return sensitivity(self.body, self.assembly, self.cables, pose, **given, response=partial(self.response, pose))
 
-    def rubbing_slopes(self, pose: SolvedPose, rows: tuple[np.ndarray, np.ndarray]) -> RubbingSlopes:
+    def friction_sensitivities(self, pose: Equilibrium, rows: tuple[np.ndarray, np.ndarray]) -> FrictionSensitivities:
         """Slopes of numbers of a pose whose cables rub: `rows` are by its nodes, then by tensions; as for `adjoint`."""
-        return rubbing_slopes(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
+        return friction_sensitivities(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
 
-    def _rubbing(self, pose: SolvedPose) -> tuple[FrictionCableEnergy, Stiffness]:
+    def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, Stiffness]:
         if self.friction is None or self._more or any(map(self.robot.friction_of, self.robot.obstacles)):
             raise InputError("physics that remember the way have a derivative only for cables with friction alone")
-        return self.friction.resumed(pose.history, pose.nodes, pose.contractions), self._regular(pose)
+        return self.friction.with_history(pose.history, pose.nodes, pose.contractions), self._regular(pose)
 
     def response(
-        self, pose: SolvedPose, forces: Float[np.ndarray, "dofs columns"]
+        self, pose: Equilibrium, forces: Float[np.ndarray, "dofs columns"]
     ) -> Float[np.ndarray, "dofs columns"]:
         """How the nodes move under small forces at an equilibrium [m]: H u = f, by the full Hessian.
 
@@ -249,9 +247,11 @@ class Simulation:
         if self.assembly.has_history:
             raise InputError("with friction a pose gives way to forces as it goes on or back; ask for its adjoint")
         stiffness = self._regular(pose)
-        return response(self.assembly.near(pose.unknowns), stiffness, (pose.unknowns, pose.contractions), forces)
+        return response(
+            self.assembly.with_active_terms(pose.unknowns), stiffness, (pose.unknowns, pose.contractions), forces
+        )
 
-    def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
+    def motion_at_rest(self, pose: Equilibrium | None = None, *, velocities: Nodes | None = None) -> Motion:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
 
         Args:
@@ -260,8 +260,8 @@ class Simulation:
         """
         self.check_start(pose)
         if pose is None:
-            return self.dynamics.still(self.body.begin, self.contractions({}), velocities, None)
-        return self.dynamics.still(pose.unknowns, pose.contractions, velocities, pose.history)
+            return self.dynamics.motion_at_rest(self.body.rest_unknowns, self.as_contractions({}), velocities, None)
+        return self.dynamics.motion_at_rest(pose.unknowns, pose.contractions, velocities, pose.history)
 
     def step(
         self,
@@ -285,12 +285,12 @@ class Simulation:
             InputError: arguments that do not fit the robot.
             NotConvergedError: not even the smallest steps converged; its text says why.
         """
-        goal = self.contractions(contractions)
+        goal = self.as_contractions(contractions)
         return self.dynamics.step(motion, goal, dt, options or StepOptions(), pin_shifts or {})
 
     def play(
         self,
-        profile: Profile,
+        profile: ContractionProfile,
         seconds: float,
         dt: float,
         *,
@@ -310,7 +310,7 @@ class Simulation:
             InputError, NotConvergedError: as for `step`.
         """
         check_profile(profile, self.robot)
-        return self.dynamics.play(profile, seconds, dt, start or self.still(), options or StepOptions())
+        return self.dynamics.play(profile, seconds, dt, start or self.motion_at_rest(), options or StepOptions())
 
     def __repr__(self) -> str:
         return f"<Simulation of {self.robot!r}>"
@@ -333,60 +333,61 @@ class Simulation:
         """Tension of each cable [N]; at its winch if it has friction and remembers its slips in `history` [m]."""
         if self.friction is not None and history is not None:
             slips = self.assembly.part_of(history, self.friction)
-            return self.friction.resumed(slips, nodes, contractions).tensions(nodes, contractions)
+            return self.friction.with_history(slips, nodes, contractions).tensions(nodes, contractions)
         return self.cables.tensions(nodes, contractions)
 
-    def stiffness(self, pose: SolvedPose) -> Stiffness:
-        """The Hessian at a pose, factorised; after a solve perhaps where its last step began, a hair from there."""
+    def stiffness(self, pose: Equilibrium) -> Stiffness:
+        """Factorized Hessian at a pose; after a solve it may be that of the start of its last step."""
         if self.assembly.has_history:
-            return self.path.resumed(pose).stiffness(pose.unknowns, pose.contractions)
-        return self.stiffness_of(pose) or self.assembly.near(pose.unknowns).stiffness(pose.unknowns, pose.contractions)
+            return self.path.with_history(pose).stiffness(pose.unknowns, pose.contractions)
+        active = self.assembly.with_active_terms(pose.unknowns)
+        return self.stiffness_of(pose) or active.stiffness(pose.unknowns, pose.contractions)
 
-    def _regular(self, pose: SolvedPose) -> Stiffness:
+    def _regular(self, pose: Equilibrium) -> Stiffness:
         if (stiffness := self.stiffness(pose)).singular:
             raise NotConvergedError("no derivative: the Hessian is singular, the pose is about to snap", pose.result)
         return stiffness
 
-    def stiffness_of(self, pose: SolvedPose) -> Stiffness | None:
+    def stiffness_of(self, pose: Equilibrium) -> Stiffness | None:
         """The Hessian that a pose of this simulation brings along; None if it brings none, or its nodes were moved."""
         known = pose.result.stiffness
-        return known if known is not None and pose.moved_by_none and known.token is self.assembly.token else None
+        return known if known is not None and pose.is_unmodified and known.token is self.assembly.token else None
 
     @cached_property
-    def rest(self) -> SolvedPose:
+    def rest(self) -> Equilibrium:
         """The pose without contractions: where gravity leaves the body (NotConvergedError: as for `solve`)."""
         return self.solve(np.zeros(len(self.robot.winches)))
 
     @cached_property
     def rest_stiffness(self) -> Stiffness:
         """The Hessian at the nodes' rest positions."""
-        nodes, idle = self.body.begin, np.zeros(len(self.robot.winches))
+        nodes, idle = self.body.rest_unknowns, np.zeros(len(self.robot.winches))
         if self._more:
-            return self.assembly.near(nodes).stiffness(nodes, idle)
+            return self.assembly.with_active_terms(nodes).stiffness(nodes, idle)
         return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
 
-    def until(self, deadline: float) -> "Simulation":
+    def with_deadline(self, deadline: float) -> "Simulation":
         """The same physics, all solves of which stop at a time of `time.monotonic` [s]; itself if that is infinite."""
         if np.isinf(deadline):
             return self
         other = copy(self)
-        other.solver = self.solver.until(deadline)
+        other.solver = self.solver.with_deadline(deadline)
         other.__dict__.pop("path", None)
         return other
 
     @cached_property
     def path(self) -> LoadingPath:
         """Incremental loading; only for energies with a history."""
-        return LoadingPath(self.robot, self.solver, self.body.begin)
+        return LoadingPath(self.robot, self.solver, self.body.rest_unknowns)
 
     def forces(self, nodes: Nodes, contractions: Vector) -> Vector:
         """Residual forces dE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""
-        return self.assembly.near(nodes).gradient(nodes, contractions)
+        return self.assembly.with_active_terms(nodes).gradient(nodes, contractions)
 
-    def posed(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> SolvedPose:
+    def make_pose(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> Equilibrium:
         """Pose that Newton found, with all that the robot shows there."""
-        positions, count = self.marker_anchors.positions(result.nodes), self.body.count
-        return SolvedPose(
+        positions, count = self.marker_anchors.positions(result.nodes), self.body.node_count
+        return Equilibrium(
             robot=self.robot,
             contractions=contractions,
             nodes=result.nodes if count is None else result.nodes[:count],

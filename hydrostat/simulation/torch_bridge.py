@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.given import check_kind
+from hydrostat.given import check_type
 from hydrostat.robot import Cable, Mount, Robot, Winch
+from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.simulation import Simulation
-from hydrostat.simulation.solved_pose import SolvedPose
 
 try:
     import torch  # pyright: ignore[reportMissingImports]
@@ -25,7 +25,7 @@ except ImportError:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TorchPose:
-    """An equilibrium whose float64 tensors know their derivatives; the same as in a `SolvedPose`.
+    """An equilibrium whose float64 tensors know their derivatives; the same as in a `Equilibrium`.
 
     Attributes:
         nodes: positions of the nodes [m], (nodes, dim).
@@ -37,7 +37,7 @@ class TorchPose:
     nodes: Tensor
     markers: Mapping[str, Tensor]
     tensions: Tensor
-    solved: SolvedPose
+    solved: Equilibrium
 
 
 def solve_torch(
@@ -48,7 +48,7 @@ def solve_torch(
     routes: Sequence[Tensor] | None = None,
     young: Tensor | None = None,
     poisson: Tensor | None = None,
-    start: SolvedPose | None = None,
+    start: Equilibrium | None = None,
 ) -> TorchPose:
     """Equilibrium as `Simulation.solve` finds it; `backward` costs one solve with the factorised Hessian.
 
@@ -70,11 +70,11 @@ def solve_torch(
         InputError: values that the robot refuses, or a wrong shape.
         NotConvergedError: as for `Simulation.solve`; in `backward` as for `Simulation.jacobian`.
     """
-    check_kind(simulation, Simulation, "an equilibrium is found by a Simulation(robot)")
+    check_type(simulation, Simulation, "an equilibrium is found by a Simulation(robot)")
     robot = simulation.robot
-    check_kind(contractions, Tensor, "contractions must be a tensor [m], such as torch.tensor([0.01, 0.0])")
+    check_type(contractions, Tensor, "contractions must be a tensor [m], such as torch.tensor([0.01, 0.0])")
     for what, value in (("slack", slack), ("young", young), ("poisson", poisson)):
-        check_kind(value, (Tensor, type(None)), f"{what} must be a tensor, such as torch.tensor(0.3)")
+        check_type(value, (Tensor, type(None)), f"{what} must be a tensor, such as torch.tensor(0.3)")
     joint = None
     if routes is not None:
         _check_routes(robot, routes)
@@ -93,7 +93,7 @@ class _Equilibrium(torch.autograd.Function):
     """Nodes and tensions of an equilibrium; backwards by the adjoint."""
 
     @staticmethod
-    def forward(ctx: Any, *given: Any) -> tuple[Tensor, Tensor, SolvedPose]:
+    def forward(ctx: Any, *given: Any) -> tuple[Tensor, Tensor, Equilibrium]:
         simulation, start, contractions, *others = given
         if any(value is not None for value in others):
             numbers = (None if value is None else value.detach().numpy() for value in others)
@@ -126,7 +126,7 @@ def _plain(tensor: Tensor) -> Tensor:
 def _check_routes(robot: Robot, routes: Sequence[Tensor]) -> None:
     wanted = [(len(cable.points), robot.body.mesh.dim) for cable in robot.cables]
     for route in routes:
-        check_kind(route, Tensor, "routes must be tensors of points [m], one for each cable")
+        check_type(route, Tensor, "routes must be tensors of points [m], one for each cable")
     given = [tuple(route.shape) for route in routes]
     if given != wanted:
         raise InputError(f"routes must hold the points of each cable, of shapes {wanted}, not {given}")

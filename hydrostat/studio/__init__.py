@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from hydrostat.studio.face.serve import serve
     from hydrostat.studio.jobs import Jobs
     from hydrostat.studio.posing.cable_mover import STRIDE, CableMover
-    from hydrostat.studio.posing.held import Held, Mode
+    from hydrostat.studio.posing.held import HeldPoint, Mode
     from hydrostat.studio.posing.mover import MuscleMover
     from hydrostat.studio.posing.poser import Poser
     from hydrostat.studio.posing.poses import held_of
-    from hydrostat.studio.posing.propose_work import Moment, sketched
+    from hydrostat.studio.posing.propose_work import ProposalInput, sketched
     from hydrostat.studio.records.wished_constraints import wished_constraints
     from hydrostat.studio.records.wishes import Wishes
     from hydrostat.studio.records.work import Work
@@ -30,13 +30,13 @@ __all__ = [
     "Bell",
     "CableMover",
     "Document",
-    "Held",
+    "HeldPoint",
     "Hit",
     "Jobs",
     "Mode",
-    "Moment",
     "MuscleMover",
     "Poser",
+    "ProposalInput",
     "Rooms",
     "Session",
     "Wishes",

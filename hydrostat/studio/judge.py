@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from hydrostat.design import Finding, Weight, judgement_of, places_in
+from hydrostat.design import Diagnostic, Severity, places_in, review_robot
 from hydrostat.errors import HydrostatError
 from hydrostat.fabrication import Demand, KitOptions, find_refusals
 from hydrostat.robot import Robot
@@ -34,11 +34,11 @@ class _Case:
     wishes: Wishes
     options: KitOptions
     known: _Known | None
-    said: tuple[Finding, ...]
+    said: tuple[Diagnostic, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class _Weighed:
+class _KitVerdict:
     """A network of a design that was looked at for what a kit is refused for, with all that counted."""
 
     robot: Robot
@@ -58,14 +58,14 @@ class Judge:
         """Ring when something is to be said; long work waits for slots that other sessions share."""
         self.skins = Skins(bell, slots)  # of bodies that are sewn
         self.options = KitOptions()  # of the kit that the next judgement is for
-        self.chosen: Finding | None = None  # that is shown with its words
+        self.chosen: Diagnostic | None = None  # that is shown with its words
         self._bell = bell
         self._known: tuple[_Known, ...] = ()
         self._cases: tuple[_Case, ...] = ()
-        self._weighed: tuple[_Weighed, ...] = ()
+        self._weighed: tuple[_KitVerdict, ...] = ()
         self._seen: tuple[Robot, Wishes, KitOptions, float] | None = None
 
-    def of(self, robot: Robot, wishes: Wishes) -> tuple[Finding, ...] | None:
+    def of(self, robot: Robot, wishes: Wishes) -> tuple[Diagnostic, ...] | None:
         """What is said of a robot; None until it has been judged."""
         case = self._case(robot, wishes)
         if case is None:
@@ -104,7 +104,7 @@ class Judge:
         robot = next((robot for robot in robots if self._weighed_of(robot) is None), None)
         if robot is not None:
             options, known = self.options, self._of(robot)
-            weighed = _Weighed(robot, options, known, _is_refused(robot, options, known))
+            weighed = _KitVerdict(robot, options, known, _is_refused(robot, options, known))
             self._weighed = (weighed, *self._weighed)[:KEPT]
             self._bell.ring(Topic.JOB)
 
@@ -116,7 +116,7 @@ class Judge:
         self._seen = None
         self._bell.ring(Topic.JOB, Topic.THINGS)
 
-    def choose(self, finding: Finding | None) -> None:
+    def choose(self, finding: Diagnostic | None) -> None:
         """Show a finding with its words; chosen again or None: none."""
         self.chosen = None if finding == self.chosen else finding
         self._bell.ring(Topic.JOB, Topic.THINGS)
@@ -135,7 +135,7 @@ class Judge:
             None,
         )
 
-    def _weighed_of(self, robot: Robot) -> _Weighed | None:
+    def _weighed_of(self, robot: Robot) -> _KitVerdict | None:
         known = self._of(robot)
         return next(
             (one for one in self._weighed if one.robot is robot and one.known is known and one.options == self.options),
@@ -156,17 +156,17 @@ def _alike(one: Robot, other: Robot) -> bool:
     )
 
 
-def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _Known | None) -> tuple[Finding, ...]:
+def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _Known | None) -> tuple[Diagnostic, ...]:
     """All findings, the reasons of a refused kit among them; what cannot be judged is not said."""
     try:
         constraints = wished_constraints(robot, wishes)
         demand = None if known is None else known.demand
-        found = judgement_of(robot, demand=demand, constraints=constraints, options=options)
+        found = review_robot(robot, demand=demand, constraints=constraints, options=options)
     except HydrostatError:
         return ()
     told = {finding.text for finding in found}
     more = (text for text in (known.refused if known else ()) if text not in told)
-    return (*(Finding(text=text, weight=Weight.REFUSED, places=places_in(text, robot)) for text in more), *found)
+    return (*(Diagnostic(text=text, weight=Severity.REFUSED, places=places_in(text, robot)) for text in more), *found)
 
 
 def _is_refused(robot: Robot, options: KitOptions, known: _Known | None) -> bool:

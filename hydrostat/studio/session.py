@@ -8,7 +8,7 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import load_model
 from hydrostat.robot import Contact, in_words
@@ -102,7 +102,7 @@ class Session:
 
         Where it is shown already nothing happens, and nothing is let go.
         """
-        name = member(StageName, name, what="stage")
+        name = parse_choice(StageName, name, what="stage")
         if name is not StageName.START:
             _ = self.document.work
         with self._lock:
@@ -258,7 +258,7 @@ class Session:
 
     def colour_by(self, colouring: Colouring | str) -> None:
         """Choose what the colours of the body mean (InputError: there is no colouring of this name)."""
-        self.colouring = member(Colouring, colouring, what="colouring")
+        self.colouring = parse_choice(Colouring, colouring, what="colouring")
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from threading import Lock
 
-from hydrostat.design import Finding, Weight
+from hydrostat.design import Diagnostic, Severity
 from hydrostat.errors import InputError
 from hydrostat.fabrication import KitOptions, PatternOptions, Sewing, find_sewing
 from hydrostat.robot import Body
@@ -37,10 +37,10 @@ class SewnSkin:
         return "" if self.sewing.problems else f"to sew its skin: {self.sewing}"
 
     @property
-    def findings(self) -> tuple[Finding, ...]:
+    def findings(self) -> tuple[Diagnostic, ...]:
         """Why it cannot be sewn."""
         problems = self.sewing.problems if self.sewing is not None else ()
-        return tuple(Finding(text=text, weight=Weight.REFUSED, places=()) for text in problems)
+        return tuple(Diagnostic(text=text, weight=Severity.REFUSED, places=()) for text in problems)
 
 
 class Skins:

@@ -55,7 +55,7 @@ def run_work(pipe: Connection) -> None:
         return
     report = _Report(pipe)
     signal.signal(signal.SIGTERM, report.interrupt)
-    Thread(target=report.heed, daemon=True).start()
+    Thread(target=report.handle, daemon=True).start()
     _send(pipe, _done(report, *rest))
 
 
@@ -108,7 +108,7 @@ class _Report:
         with self._lock:
             self._stoppable = False
 
-    def heed(self) -> None:
+    def handle(self) -> None:
         """Wait for what the other side says, in a thread of its own."""
         try:
             while True:

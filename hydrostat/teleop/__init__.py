@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from hydrostat.teleop.midi_knobs import MidiKnobs
     from hydrostat.teleop.mimicry import Mimicry, write_mcap
     from hydrostat.teleop.one_euro import OneEuro, Smoothing
-    from hydrostat.teleop.open_source import Wearer, open_hand, open_source
+    from hydrostat.teleop.open_source import EmulatedHand, open_hand, open_source
     from hydrostat.teleop.osc import Osc
     from hydrostat.teleop.ridge import Ridge, fit_ridge
     from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
-    from hydrostat.teleop.ways import FingertipWay, Way, WinchWay, marker_channels, winch_channels
+    from hydrostat.teleop.ways import CommandMapper, MarkerMapper, WinchMapper, marker_channels, winch_channels
 
 __all__ = [
     "BAUD",
@@ -31,14 +31,15 @@ __all__ = [
     "HELP",
     "SENSORS",
     "CameraHand",
+    "CommandMapper",
     "CyberGlove",
     "DriveChannels",
     "DriveLoop",
     "DriveSource",
     "DriveWish",
     "EmulatedGlove",
+    "EmulatedHand",
     "EmulatedPerson",
-    "FingertipWay",
     "Gamepad",
     "HandLandmarks",
     "HandMap",
@@ -48,15 +49,14 @@ __all__ = [
     "Keys",
     "LessonPoses",
     "MappedHand",
+    "MarkerMapper",
     "MidiKnobs",
     "Mimicry",
     "OneEuro",
     "Osc",
     "Ridge",
     "Smoothing",
-    "Way",
-    "Wearer",
-    "WinchWay",
+    "WinchMapper",
     "drive",
     "fit_ridge",
     "go_there",

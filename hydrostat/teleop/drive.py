@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrostat.control import Motors
 from hydrostat.teleop.source import DriveSource, DriveWish
-from hydrostat.teleop.ways import Way
+from hydrostat.teleop.ways import CommandMapper
 
 TICK = 1 / 60
 """Motors are told at least once in this time, and read about as often [s]."""
@@ -30,7 +30,7 @@ class DriveLoop:
     """
 
     def __init__(
-        self, motors: Motors, way: Way, source: DriveSource, *, clock: Callable[[], float] = time.monotonic
+        self, motors: Motors, way: CommandMapper, source: DriveSource, *, clock: Callable[[], float] = time.monotonic
     ) -> None:
         """Begin where the motors are; the clock only runs forward [s]."""
         self.motors, self.way, self.source, self._clock = motors, way, source, clock
@@ -62,7 +62,7 @@ class DriveLoop:
         if look:
             self._looked, self._exchange = now, self._clock() - begin
         self.pause = 0.0 if look else SHARE * self._exchange
-        self.way.see(self.motors.places)
+        self.way.observe(self.motors.places)
         return not wish.over
 
     def _follow(self, wish: DriveWish) -> None:
@@ -80,7 +80,7 @@ class DriveLoop:
 
 def drive(
     motors: Motors,
-    way: Way,
+    way: CommandMapper,
     source: DriveSource,
     *,
     seconds: float = np.inf,
@@ -102,7 +102,7 @@ def drive(
     """
     news, switching = threading.Event(), sys.getswitchinterval()
     sys.setswitchinterval(SWITCHING)
-    source.news = way.news = news
+    source.updated = way.updated = news
     try:
         driven, end = DriveLoop(motors, way, source, clock=clock), clock() + seconds
         while driven.step(clock()) and clock() < end:

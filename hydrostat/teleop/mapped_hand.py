@@ -74,6 +74,6 @@ class MappedHand(DriveSource):
             except Exception as error:  # noqa: BLE001 - of whatever kind: nobody is heard, and why is told
                 self._error = str(error) or type(error).__name__
                 self._over.wait(0.05)
-            if self.news is not None:
-                self.news.set()
+            if self.updated is not None:
+                self.updated.set()
             self._over.wait(1e-3)

@@ -24,7 +24,7 @@ def open_source(
     text: str,
     channels: DriveChannels,
     known: HandMap | None = None,
-    person: "Wearer | None" = None,
+    person: "EmulatedHand | None" = None,
     *,
     smoothing: Smoothing | None = USUAL_SMOOTHING,
 ) -> DriveSource:
@@ -51,7 +51,7 @@ def open_source(
     return MappedHand(channels, open_hand(place if kind == "glove" else text, person), known, smoothing=smoothing)
 
 
-def open_hand(text: str, person: "Wearer | None" = None) -> HandSource:
+def open_hand(text: str, person: "EmulatedHand | None" = None) -> HandSource:
     """A glove or a camera.
 
     Args:
@@ -78,7 +78,7 @@ def open_hand(text: str, person: "Wearer | None" = None) -> HandSource:
     return CyberGlove(open_line(text, BAUD))
 
 
-class Wearer(HandSource):
+class EmulatedHand(HandSource):
     """An emulated hand in an emulated glove: it closes and opens by itself, or mimics what it is told to."""
 
     names = CyberGlove.names

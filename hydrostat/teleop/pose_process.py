@@ -17,9 +17,9 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import winch_tensions
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import InverseReason, Limits, Outlook, Tracker
+from hydrostat.ik import IKStatus, Limits, LinearizedPose, Tracker
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 YIELDS = 5
 """So much nicer than whoever tells the motors is who solves poses, where cores are few (Unix)."""
@@ -46,7 +46,7 @@ class PoseOnWay:
     pulls: Vector
     markers: Vector
     error: float = 0.0
-    outlook: Outlook | None = None
+    outlook: LinearizedPose | None = None
     done: bool = True
 
 
@@ -56,7 +56,7 @@ class WinchPoses:
     def __init__(self, robot: Robot) -> None:
         """The poses of a robot."""
         self._simulation = Simulation(robot)
-        self._pose: SolvedPose | None = None
+        self._pose: Equilibrium | None = None
 
     def __call__(self, contractions: Vector) -> tuple[PoseOnWay | None, bool]:
         """The pose at contractions [m], if there is one; there is never more to do."""
@@ -90,10 +90,10 @@ class FingertipPoses:
                 self._tracker = Tracker(self._simulation, limits=self._limits, start=start)
         self._done = number
         reached = self._tracker.update(targets, seconds=passed)
-        more = reached.reason is InverseReason.ITERATION_LIMIT
+        more = reached.status is IKStatus.ITERATION_LIMIT
         told = {
             "error": max(reached.errors.values()),
-            "outlook": self._tracker.outlook(seconds=LONGEST),
+            "outlook": self._tracker.linearize(seconds=LONGEST),
             "done": not more,
         }
         return replace(_found(number, self._simulation.robot, reached.pose), **told), more
@@ -201,7 +201,7 @@ def _serve(pipe: Connection, make: Callable, arguments: tuple) -> None:
             pipe.send(str(error) or type(error).__name__)
 
 
-def _found(job: int, robot: Robot, pose: SolvedPose) -> PoseOnWay:
+def _found(job: int, robot: Robot, pose: Equilibrium) -> PoseOnWay:
     return PoseOnWay(
         job=job,
         contractions=pose.contractions,

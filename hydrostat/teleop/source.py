@@ -66,7 +66,7 @@ class DriveSource(ABC):
     """
 
     silence: float = inf
-    news: Event | None = None
+    updated: Event | None = None
 
     @abstractmethod
     def read(self) -> DriveWish:

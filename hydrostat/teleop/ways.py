@@ -1,4 +1,4 @@
-"""`WinchWay`, `FingertipWay`: from what a person asks for to contractions."""
+"""`WinchMapper`, `MarkerMapper`: from what a person asks for to contractions."""
 
 import threading
 from abc import ABC, abstractmethod
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control import FASTEST, KnownPulls
+from hydrostat.control import FASTEST, TensionLookup
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
@@ -25,7 +25,7 @@ REACH = 0.5
 """Targets of a marker lie so far about its rest, as a share of the largest side of the body."""
 
 
-class Way(ABC):
+class CommandMapper(ABC):
     """Contract of how what a person asks for becomes contractions; what is slow is done by a process of its own.
 
     Attributes:
@@ -38,15 +38,15 @@ class Way(ABC):
 
     channels: DriveChannels
     contractions: Vector
-    known: KnownPulls
-    news: threading.Event | None = None
+    known: TensionLookup
+    updated: threading.Event | None = None
     words: str = ""
 
     @abstractmethod
     def ask(self, values: Vector) -> None:
         """Let the channels have values [m]; return at once (HydrostatError: what solves has failed)."""
 
-    def see(self, places: Vector) -> None:
+    def observe(self, places: Vector) -> None:
         """Know where the motors are [m], so that a guard knows what they should feel there."""
         del places
 
@@ -59,14 +59,14 @@ class Way(ABC):
         """End what is done beside it."""
 
 
-class WinchWay(Way):
+class WinchMapper(CommandMapper):
     """Winches are what is turned; poses are solved behind it, so that a guard knows what should be felt."""
 
     def __init__(self, simulation: Simulation, contractions: Vector, *, solves: bool = True) -> None:
         """Begin at contractions [m]; poses need not be solved where there is no guard."""
         robot = simulation.robot
         self.channels, self.contractions = winch_channels(robot), contractions.copy()
-        self.known = KnownPulls(robot, near=NEAR)
+        self.known = TensionLookup(robot, near=NEAR)
         self.known.add(simulation.solve(contractions, strict=False))
         self._seen = contractions.copy()
         self._poses = PoseProcess(WinchPoses, (robot,), self._hear) if solves else None
@@ -77,7 +77,7 @@ class WinchWay(Way):
         if self._poses is not None:
             self._poses.check()
 
-    def see(self, places: Vector) -> None:
+    def observe(self, places: Vector) -> None:
         """Let the pose there be solved [m]."""
         if self._poses is not None and np.abs(places - self._seen).max(initial=0.0) > APART:
             self._seen = places.copy()
@@ -97,7 +97,7 @@ class WinchWay(Way):
         self.known.put(found.contractions, found.pulls)
 
 
-class FingertipWay(Way):
+class MarkerMapper(CommandMapper):
     """Markers are what is moved: `Tracker` finds contractions, step by step, each of them a pose in equilibrium.
 
     Targets do not wait for the step that is being solved: they are answered at once to first order about the newest
@@ -116,7 +116,7 @@ class FingertipWay(Way):
         """Begin at contractions [m]; cables get no faster than a rate [m/s] (InputError: there are no markers)."""
         self._model, robot = model, simulation.robot
         self.channels, self.contractions = marker_channels(simulation), contractions.copy()
-        self.known = KnownPulls(robot, near=NEAR)
+        self.known = TensionLookup(robot, near=NEAR)
         start = simulation.solve(contractions, strict=False)
         self.known.add(start)
         self._names, self._dim = tuple(simulation.rest.markers), robot.body.mesh.dim
@@ -187,8 +187,8 @@ class FingertipWay(Way):
                 self._more = found.contractions - self._answers[found.job]
                 self._answers = {job: answer for job, answer in self._answers.items() if job >= found.job}
         self.words = f"{1e3 * found.error:.1f} mm from its targets"
-        if self.news is not None:
-            self.news.set()
+        if self.updated is not None:
+            self.updated.set()
 
 
 def winch_channels(robot: Robot) -> DriveChannels:

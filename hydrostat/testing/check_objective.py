@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
-from hydrostat.ik import Objective, Posture, Term, moves_at, posture_at
-from hydrostat.simulation import Contractions, Simulation, SolvedPose
+from hydrostat.ik import EquilibriumState, Objective, Residual, state_at, state_jacobian_at
+from hydrostat.simulation import Contractions, Equilibrium, Simulation
 from hydrostat.testing.conformance_error import ConformanceError
 from hydrostat.testing.differences import central_differences, steps
 
@@ -59,10 +59,10 @@ def check_objective(
 class _ObjectiveCheck:
     """One objective at one pose, and a method for each promise."""
 
-    def __init__(self, objective: Objective, simulation: Simulation, pose: SolvedPose, tolerance: float) -> None:
+    def __init__(self, objective: Objective, simulation: Simulation, pose: Equilibrium, tolerance: float) -> None:
         self.objective, self.simulation, self.pose, self.tolerance = objective, simulation, pose, tolerance
-        self.term: Term = objective.on(simulation)
-        self.at = posture_at(simulation, pose)
+        self.term: Residual = objective.bind(simulation)
+        self.at = state_at(simulation, pose)
         self.rows = np.asarray(self.term.residual(self.at)).shape
         self.size = simulation.robot.body.mesh.size
 
@@ -80,12 +80,12 @@ class _ObjectiveCheck:
 
     def posture(self, contractions: Vector) -> None:
         """Another pose has as many rows, all finite, and errors that fit them."""
-        self._values(posture_at(self.simulation, self._solved(contractions)))
+        self._values(state_at(self.simulation, self._solved(contractions)))
 
     def repeats(self) -> None:
         """An answer is the same when asked again, of this term or a new one, whatever was asked in between."""
-        rest = posture_at(self.simulation, self.simulation.solve({}))
-        again = self.objective.on(self.simulation)
+        rest = state_at(self.simulation, self.simulation.solve({}))
+        again = self.objective.bind(self.simulation)
         first, slopes, errors = self.term.residual(self.at), self._slopes(self.term), dict(self.term.errors(self.at))
         for term in (self.term, again):
             term.residual(rest)
@@ -114,7 +114,7 @@ class _ObjectiveCheck:
             "slopes", "[row, winch] is not the derivative of the residual", index=best[1], relative_error=best[0]
         )
 
-    def _values(self, posture: Posture) -> None:
+    def _values(self, posture: EquilibriumState) -> None:
         residual = np.asarray(self.term.residual(posture))
         if residual.shape != self.rows:
             raise ConformanceError(
@@ -132,14 +132,14 @@ class _ObjectiveCheck:
                 raise ConformanceError("errors", f"{name} is {error:.3g} m where the residual is zero")
 
     def _residual(self, contractions: Vector) -> Float[np.ndarray, " rows"]:
-        return np.asarray(self.term.residual(posture_at(self.simulation, self._solved(contractions))))
+        return np.asarray(self.term.residual(state_at(self.simulation, self._solved(contractions))))
 
-    def _solved(self, contractions: Vector) -> SolvedPose:
+    def _solved(self, contractions: Vector) -> Equilibrium:
         start = None if self.simulation.assembly.has_history else self.pose
         return self.simulation.solve(contractions, start=start)
 
-    def _slopes(self, term: Term) -> np.ndarray:
-        return np.asarray(term.slopes(self.at, moves_at(self.simulation, self.pose)))
+    def _slopes(self, term: Residual) -> np.ndarray:
+        return np.asarray(term.jacobian(self.at, state_jacobian_at(self.simulation, self.pose)))
 
 
 _REACH = 0.1  # steps of contractions begin with a thousandth of this fraction of the body's size

@@ -5,13 +5,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics import Coupling, Energy
+from hydrostat.mechanics import Energy, LowRankStiffness
 from hydrostat.testing.conformance_error import ConformanceError
 
 _TINY = np.finfo(float).tiny
 
 
-def check_law(part: Coupling) -> None:
+def check_law(part: LowRankStiffness) -> None:
     """Check that D is the tangent of the law, and that the forces it finds on a body that gives way balance."""
     assert part.law is not None
     assert part.elongations is not None
@@ -21,7 +21,7 @@ def check_law(part: Coupling) -> None:
         raise ConformanceError("coupling", "D is not the tangent of its law", relative_error=miss)
     for softness in (1e-6, 1.0, 1e3):
         compliance = softness / (_largest(tangents) or 1.0) * np.eye(len(tangents))
-        tensions = part.law.balance(part.elongations, compliance)
+        tensions = part.law.solve_slack_complementarity(part.elongations, compliance)
         if tensions is None:
             raise ConformanceError("coupling", "its law finds no balance on a body that gives way evenly")
         wanted = part.law.tension(part.elongations - compliance @ tensions)
@@ -43,10 +43,10 @@ def check_steps(energy: Energy, nodes: Nodes, controls: Vector, states: Iterable
         if not 0.0 < share <= 1.0:
             raise ConformanceError("largest step", f"it must be above 0 and at most 1, not {share:g}")
         reached = nodes + share * (goal - nodes)
-        if share < 1.0 and not np.isfinite(energy.near(reached).value(reached, controls)):
+        if share < 1.0 and not np.isfinite(energy.with_active_terms(reached).value(reached, controls)):
             raise ConformanceError("largest step", "the energy is not finite where it allows the nodes to go")
-    near = energy.near(nodes)
-    if not np.array_equal(near.near(nodes).stencils, near.stencils):
+    near = energy.with_active_terms(nodes)
+    if not np.array_equal(near.with_active_terms(nodes).stencils, near.stencils):
         raise ConformanceError("near", "asked again at the same nodes it has other terms")
 
 
@@ -84,18 +84,22 @@ def check_loads(energy: Energy, nodes: Nodes, controls: Vector) -> None:
 def check_history(energy: Energy, nodes: Nodes, controls: Vector) -> None:
     """Check that an energy with a history goes on from it as if it had never stopped, and others remember nothing."""
     if not energy.has_history:
-        if len(energy.history) or energy.imbalance(nodes, controls) or energy.after(nodes, controls) is not energy:
+        if (
+            len(energy.history)
+            or energy.history_residual(nodes, controls)
+            or energy.with_advanced_history(nodes, controls) is not energy
+        ):
             raise ConformanceError("history", "an energy that remembers must say so by `has_history`")
         return
-    after = energy.after(nodes, controls)
-    resumed = energy.resumed(after.history, nodes, controls)
+    after = energy.with_advanced_history(nodes, controls)
+    resumed = energy.with_history(after.history, nodes, controls)
     if np.abs(resumed.history - after.history).max(initial=0.0) > 0:
         raise ConformanceError("history", "resumed from what it remembers it remembers something else")
     first, second = (one.value(nodes, controls) for one in (after, resumed))
     if abs(first - second) > 1e-9 * max(abs(first), _TINY):
         raise ConformanceError("history", "resumed from what it remembers it has another value")
-    left = energy.corrected(nodes, controls, None).imbalance(nodes, controls)
-    if left > 1e-6 * energy.largest_force(nodes, controls) and left >= energy.imbalance(nodes, controls):
+    left = energy.with_corrected_history(nodes, controls, None).history_residual(nodes, controls)
+    if left > 1e-6 * energy.largest_force(nodes, controls) and left >= energy.history_residual(nodes, controls):
         raise ConformanceError("history", "a correction brings it no nearer to balance")
 
 

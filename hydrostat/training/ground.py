@@ -1,4 +1,4 @@
-"""`standing`: a robot upright on the ground, with nothing else that holds it; how far it tilts."""
+"""Upright robot: placed on the ground, held by nothing else; `tilt` measures how far it leans."""
 
 from dataclasses import replace
 

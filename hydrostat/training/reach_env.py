@@ -10,7 +10,7 @@ from gymnasium import spaces
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
@@ -231,7 +231,7 @@ class ReachEnv(GoalEnv):
         goals = {markers[row].name: tuple(places[row]) for row in (self.seen[:: self._dim] // self._dim).tolist()}
         far = 1e3 * self._info()["distance"]
         words = f"{far:.1f} mm from the goal, after action {self.taken_steps} of {self.steps}"
-        return self._pictures.draw(self.world.pose, self._taken, Pose(name="goal", targets=goals), words)
+        return self._pictures.draw(self.world.pose, self._taken, PoseTarget(name="goal", targets=goals), words)
 
     def _check(self, model: LearnedModel) -> None:
         """Check that networks are of this robot (InputError: of another)."""

@@ -4,8 +4,8 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.plot import Frame, FramePictures, Picture
-from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.robot import PoseTarget, Robot
+from hydrostat.simulation import Equilibrium, Simulation
 
 
 class ReachPictures:
@@ -24,7 +24,7 @@ class ReachPictures:
         """Make anew what is copied or sent: a figure of matplotlib that was copied draws nothing more."""
         return ReachPictures, (self._robot,)
 
-    def draw(self, pose: SolvedPose | None, contractions: Vector, goal: Pose, words: str) -> Picture:
+    def draw(self, pose: Equilibrium | None, contractions: Vector, goal: PoseTarget, words: str) -> Picture:
         """The picture of a pose, with words below the name of the robot; without one, of contractions [m] from rest."""
         pose = pose or self._simulation.solve(contractions, strict=False)
         frame = Frame(

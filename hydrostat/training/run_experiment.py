@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from hydrostat.learning import LearnedModel, antagonists, certify
+from hydrostat.learning import LearnedModel, antagonists, verify
 from hydrostat.simulation import Simulation
 from hydrostat.training.experiments import Experiment, Ran
 from hydrostat.training.hindsight_ddpg import HindsightDdpg
@@ -106,7 +106,7 @@ def certified_distances(
             found.append(np.nan)
             continue
         target = dict(zip(names, map(tuple, (0.01 * row).reshape(-1, dim).tolist()), strict=True))
-        answer = certify(simulation, model, model.solve(target), steps=steps, enough=1e-5)
+        answer = verify(simulation, model, model.solve(target), steps=steps, enough=1e-5)
         found.append(np.nan if answer.certified is None else 100.0 * answer.error)
     return np.array(found)[None]
 

@@ -93,7 +93,7 @@ class ThingWorld:
         guide = GuideEnergy(self._carriage, place=self.start, axes=self._begun, along=along, turning=0.0)
         held = [guide] if self._physics.hold else []
         self.simulation = Simulation(self.robot, body=physics, energies=held, options=NewtonOptions(tolerance=_FORCE))
-        self.motion: Motion = self.simulation.still()
+        self.motion: Motion = self.simulation.motion_at_rest()
         self.turned = 0.0
 
     def go(self, contractions: Vector) -> list[Motion]:

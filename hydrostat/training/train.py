@@ -17,7 +17,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import replace_file
-from hydrostat.simulation import Profile
+from hydrostat.simulation import ContractionProfile
 from hydrostat.training.goal_env import GoalEnv
 
 
@@ -144,11 +144,13 @@ def judge(
     return np.array(left)
 
 
-def moves_of(env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goal: Mapping[str, Any]) -> Profile:
+def moves_of(
+    env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goal: Mapping[str, Any]
+) -> ContractionProfile:
     """What motors would be told in an episode, contractions in time; its equilibria are counted nowhere."""
     judge(env, act, [goal])
     times, values = zip(*env.moves, strict=True)
-    return Profile(times=np.array(times), values=np.array(values))
+    return ContractionProfile(times=np.array(times), values=np.array(values))
 
 
 def train(

@@ -147,7 +147,7 @@ class WalkEnv(GoalEnv):
         self._wanted, self._fallen, self.taken_steps = float(wanted[0]), False, 0
         self._simulation = Simulation(with_friction(self.robot, float(given["friction"])))
         self._given = float(given["friction"])
-        self.motion = self._simulation.still()
+        self.motion = self._simulation.motion_at_rest()
         self.moves = [(0.0, self.motion.contractions)]
         self._clock = GaitClock(len(self.robot.winches), self.most)
         self.show()

@@ -8,7 +8,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 
 class World(ABC):
@@ -20,7 +20,7 @@ class World(ABC):
 
     equilibria: int = 0
 
-    pose: SolvedPose | None = None
+    pose: Equilibrium | None = None
     """Where the robot is, where that is known; None at rest, and in networks, which know no shape."""
 
     def begin(self) -> None:
@@ -78,7 +78,7 @@ class LearnedWorld(World):
 
     def reach(self, contractions: Vector) -> Vector | None:
         """Coordinates that are expected."""
-        return self._model.expect(contractions)[0][: self._count]
+        return self._model.predict(contractions)[0][: self._count]
 
 
 class MixedWorld(World):
@@ -91,7 +91,7 @@ class MixedWorld(World):
         self._worlds, self._every, self._episode = (learned, exact), every, -1
 
     @property
-    def pose(self) -> SolvedPose | None:  # type: ignore[override]
+    def pose(self) -> Equilibrium | None:  # type: ignore[override]
         """Where the exact robot is, in its episodes."""
         return self._now.pose
 

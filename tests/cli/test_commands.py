@@ -11,7 +11,7 @@ import pytest
 
 import hydrostat as hs
 from hydrostat.cli.profiling import PARTS
-from hydrostat.robot import gallery_names, robot_hash
+from hydrostat.robot import list_gallery, robot_hash
 
 Run = Callable[..., tuple[int, str, str]]
 SQUARE = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path d="M0 0H60V40H0Z"/></svg>'
@@ -55,7 +55,7 @@ def test_check_says_that_all_is_well(run: Run) -> None:
 
     The reach of markers takes ten times as long as the rest: one robot is asked for it.
     """
-    flat = [name for name in gallery_names() if list(Path("examples", name).glob("*.svg"))]
+    flat = [name for name in list_gallery() if list(Path("examples", name).glob("*.svg"))]
     for number, name in enumerate([*flat, "tongue"]):
         code, out, _ = run("check", Path("examples") / name, *["--thorough"] * (number == 0))
         assert code == 0

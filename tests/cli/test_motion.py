@@ -20,7 +20,7 @@ def test_a_ramp(run: Run, starfish: Path, tmp_path: Path) -> None:
     assert code == 0
     assert "5 steps to 0.1 s" in out
     simulation = hs.Simulation(hs.load_robot(starfish))
-    *_, last = simulation.play(hs.Profile.ramp(simulation.contractions({"left": 0.005}), 0.05), 0.1, 0.02)
+    *_, last = simulation.play(hs.ContractionProfile.ramp(simulation.as_contractions({"left": 0.005}), 0.05), 0.1, 0.02)
     with (tmp_path / "motion.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 6

@@ -78,7 +78,7 @@ def test_equal_winches_take_in_the_same(run: Run, starfish: Path, tmp_path: Path
     robot = hs.load_robot(starfish)
     wave = robot.poses["wave"]
     limits = hs.Limits(equal=[["left", "right"]])
-    alone = hs.solve_ik(hs.Simulation(robot), wave, limits=limits, options=hs.InverseOptions(restarts=0))
+    alone = hs.solve_ik(hs.Simulation(robot), wave, limits=limits, options=hs.IKOptions(restarts=0))
     assert list(taken.values()) == pytest.approx(alone.pose.contractions.tolist(), abs=1e-6)
 
 

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 import hydrostat as hs
-from hydrostat.ik import InverseOptions, InverseReason, TrajectoryOptions, solve_ik_trajectory
+from hydrostat.ik import IKOptions, IKStatus, TrajectoryOptions, solve_ik_trajectory
 from hydrostat.simulation import read_profile
 
 Run = Callable[..., tuple[int, str, str]]
@@ -34,7 +34,7 @@ def test_files_are_what_the_library_finds(run: Run, starfish: Path, tmp_path: Pa
     assert profile.values == pytest.approx(found.contractions, abs=1e-9)
     facts = json.loads((tmp_path / "out" / "trajectory.json").read_text())
     assert [key["name"] for key in facts["keyframes"]] == ["star_jump", "rest"]
-    assert facts["keyframes"][0]["errors"] == pytest.approx(dict(found.keys[0].errors), abs=1e-8)
+    assert facts["keyframes"][0]["errors"] == pytest.approx(dict(found.keyframes[0].errors), abs=1e-8)
     assert facts["duration"] == pytest.approx(found.seconds)
     assert np.array(facts["markers"]["left"]) == pytest.approx(found.markers["left"], abs=1e-8)
     assert np.array(facts["tensions"]) == pytest.approx(found.tensions, abs=1e-5)
@@ -89,11 +89,11 @@ def test_a_search_that_is_stuck_ends_with_1(
     run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One step is too few to reach a pose; the files are written all the same."""
-    hasty = TrajectoryOptions(rate=5, compare=False, inverse=InverseOptions(iterations=1))
+    hasty = TrajectoryOptions(rate=5, compare=False, inverse=IKOptions(iterations=1))
     monkeypatch.setattr("hydrostat.ik.solve_ik_trajectory", partial(solve_ik_trajectory, options=hasty))
     code, out, _ = run("trajectory", starfish, "--poses", "wave", "--width", "160", "--out", tmp_path / "out")
     assert code == 1
-    assert str(InverseReason.ITERATION_LIMIT) in out
+    assert str(IKStatus.ITERATION_LIMIT) in out
     assert (tmp_path / "out" / "trajectory.csv").exists()
 
 

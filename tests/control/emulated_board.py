@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import copysign, pi, sqrt
 
-from hydrostat.control.emulated_servos import Ails, EmulatedChain
+from hydrostat.control.emulated_servos import EmulatedChain, InjectedFaults
 from hydrostat.control.firmware_bus import line_of
 
 DEADLINE, HOT, STALLED = 0.2, 0.05, 0.1  # what stops its motors [s]
@@ -27,7 +27,7 @@ class BoardMotor:
     most: float = 10.0  # speed [rad/s]
     rise: float = 125.0  # [rad/s^2]
     counts: float = 1000.0  # in a turn
-    ails: Ails = field(default_factory=Ails)
+    ails: InjectedFaults = field(default_factory=InjectedFaults)
 
     def __post_init__(self) -> None:
         self.switch_on()

@@ -6,7 +6,7 @@ import numpy as np
 from emulation import CURRENT, NAMES, RADIUS, REACH, Rig, cut, jam
 
 from hydrostat.control.bus_link import BEYOND, LinkState
-from hydrostat.control.emulated_servos import Ails, EmulatedChain
+from hydrostat.control.emulated_servos import EmulatedChain, InjectedFaults
 from hydrostat.errors import HydrostatError
 
 LOW, HIGH = -0.002, 0.04  # limits of the winches [m]
@@ -147,7 +147,7 @@ class Campaign:
         self.count[kind] += 1
         self.late = 0.0
         if kind in ("deaf", "stuck", "hot"):
-            servo.ails = Ails(**{kind: True, "deaf_watchdog": servo.ails.deaf_watchdog})
+            servo.ails = InjectedFaults(**{kind: True, "deaf_watchdog": servo.ails.deaf_watchdog})
         elif kind == "anew":
             servo.begin_anew()
         elif kind == "unplugged":

@@ -21,20 +21,10 @@ time.sleep = lambda seconds: _sleep(seconds * SLOW)
 from emulation import NAMES, RADIUS  # noqa: E402
 
 from hydrostat.cli.waiting import one_interrupt  # noqa: E402
-from hydrostat.control import (  # noqa: E402
-    BusLink,
-    Calibration,
-    DynamixelBus,
-    FeetechBus,
-    Motors,
-    Player,
-    Port,
-    WinchMotor,
-    play,
-)
+from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, Port, WinchMotor, play  # noqa: E402
 from hydrostat.errors import HydrostatError  # noqa: E402
 from hydrostat.robot import Winch  # noqa: E402
-from hydrostat.simulation import Profile  # noqa: E402
+from hydrostat.simulation import ContractionProfile  # noqa: E402
 
 
 def main(path: str, kind: str, event: str) -> None:
@@ -60,7 +50,7 @@ def main(path: str, kind: str, event: str) -> None:
             raise ZeroDivisionError
 
     far = 0.0096 if event == "clock jumps" else 0.03  # goals far ahead, which the link must not pass on as they are
-    profile = Profile(times=np.array([0.0, 0.2]), values=np.full((2, 3), far))
+    profile = ContractionProfile(times=np.array([0.0, 0.2]), values=np.full((2, 3), far))
     try:
         with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
             play(motors, profile, player, tell=tell)

@@ -12,7 +12,7 @@ from hydrostat.control.bus_link import BusLink, LinkState
 from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
-from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.joined_bus import JoinedBus
@@ -97,7 +97,7 @@ class Boards:
             if kind == "anew":
                 chain.begin_anew()
             elif kind == "stuck":
-                servo.ails = Ails(stuck=True)
+                servo.ails = InjectedFaults(stuck=True)
             else:
                 chain.deaf = True
         elif kind == "anew":
@@ -105,14 +105,14 @@ class Boards:
         else:
             for each in chain.servos if kind == "mute" else [servo]:
                 kept = each.ails.deaf_watchdog
-                each.ails = Ails(**{"deaf" if kind == "mute" else kind: True, "deaf_watchdog": kept})
+                each.ails = InjectedFaults(**{"deaf" if kind == "mute" else kind: True, "deaf_watchdog": kept})
 
     def heal(self) -> None:
         """All that can be heard again is: what was forgotten stays forgotten."""
         for chain in self.chains:
             chain.gone = chain.deaf = False  # type: ignore[attr-defined]
             for servo in chain.servos:
-                servo.ails = Ails(deaf_watchdog=servo.ails.deaf_watchdog)
+                servo.ails = InjectedFaults(deaf_watchdog=servo.ails.deaf_watchdog)
 
     def _line(self, random: np.random.Generator, count: int) -> EmulatedChain:
         if self.kind == "firmware":

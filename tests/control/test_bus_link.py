@@ -9,7 +9,7 @@ from emulation import NAMES, Rig
 
 from hydrostat.control.bus_link import DEADLINE, LinkState
 from hydrostat.control.dynamixel_bus import HARDWARE, TORQUE
-from hydrostat.control.emulated_servos import Ails
+from hydrostat.control.emulated_servos import InjectedFaults
 from hydrostat.errors import HydrostatError
 
 STANDS = 0.25  # motors stand so long after the last command [s]
@@ -50,7 +50,7 @@ def test_it_goes_where_it_is_told_at_its_speed_and_within_limits() -> None:
 @pytest.mark.parametrize("silent", [1, 2, 3])
 def test_who_is_silent_is_named_and_nothing_is_armed(silent: int) -> None:
     rig = Rig()
-    rig.servos[silent - 1].ails = Ails(deaf=True)
+    rig.servos[silent - 1].ails = InjectedFaults(deaf=True)
     with pytest.raises(HydrostatError, match=f"motor {silent} does not answer"):
         rig.link.identify()
     assert rig.link.state is LinkState.FAULT
@@ -60,7 +60,7 @@ def test_who_is_silent_is_named_and_nothing_is_armed(silent: int) -> None:
 
 def test_watchdogs_are_tried_and_one_that_fails_is_told() -> None:
     rig = Rig()
-    rig.servos[0].ails = Ails(deaf_watchdog=True)
+    rig.servos[0].ails = InjectedFaults(deaf_watchdog=True)
     assert [fact.watchdog for fact in rig.link.identify()] == [False, True, True]
     assert "index flexor: motor 1, XL330-M288, firmware 52, does not stop by itself" in "\n".join(rig.log)
     assert rig.places == pytest.approx(0.0, abs=1e-5)
@@ -78,7 +78,7 @@ def test_a_dead_host_leaves_motors_standing_by_the_watchdog_alone() -> None:
 def test_a_dead_host_leaves_motors_standing_without_any_watchdog() -> None:
     rig = Rig()
     for servo in rig.servos:
-        servo.ails = Ails(deaf_watchdog=True)
+        servo.ails = InjectedFaults(deaf_watchdog=True)
     rig.begin()
     rig.go(0.03, 0.3)
     assert moved_after(rig, STANDS) == 0.0
@@ -88,7 +88,7 @@ def test_a_dead_host_leaves_motors_standing_without_any_watchdog() -> None:
 def test_the_deadline_of_the_host_alone_stops_them() -> None:
     rig = Rig()
     for servo in rig.servos:
-        servo.ails = Ails(deaf_watchdog=True)
+        servo.ails = InjectedFaults(deaf_watchdog=True)
     rig.begin()
     rig.go(0.03, 0.2)
     rig.bus.write(np.full(3, 1.0 + 0.035 / 0.008), np.full(3, 1.0))
@@ -133,12 +133,12 @@ def test_a_suspended_computer_finds_its_motors_on_hold() -> None:
 @pytest.mark.parametrize(
     ("ails", "told"),
     [
-        (Ails(deaf=True), "the motor of index extensor has not answered for 0.2"),
-        (Ails(stuck=True), "index extensor does not follow: it stands at"),
-        (Ails(hot=True), "the motor of index extensor reports: too hot"),
+        (InjectedFaults(deaf=True), "the motor of index extensor has not answered for 0.2"),
+        (InjectedFaults(stuck=True), "index extensor does not follow: it stands at"),
+        (InjectedFaults(hot=True), "the motor of index extensor reports: too hot"),
     ],
 )
-def test_a_motor_that_fails_is_named_and_all_stand(ails: Ails, told: str) -> None:
+def test_a_motor_that_fails_is_named_and_all_stand(ails: InjectedFaults, told: str) -> None:
     rig = Rig(guarded=False)
     rig.begin()
     rig.go(0.02, 0.2)

@@ -13,7 +13,7 @@ from firmware_bench import Board
 
 from hydrostat.control import BusLink, Calibration, DynamixelBus, LinkLimits, LinkState, WinchMotor, bus
 from hydrostat.control.dynamixel_bus import TORQUE, WATCHDOG
-from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.joined_bus import JoinedBus
 from hydrostat.errors import HydrostatError, InputError
@@ -26,10 +26,10 @@ SPOOLS = tuple(WinchMotor(winch=name, number=n, zero=1.0, radius=RADIUS) for n, 
 def test_who_was_never_identified_is_not_armed_after_a_fault() -> None:
     """A fault is not a way around what comes before arming."""
     rig = Rig()
-    rig.servos[0].ails = Ails(deaf=True)
+    rig.servos[0].ails = InjectedFaults(deaf=True)
     with pytest.raises(HydrostatError, match="motor 1 does not answer"):
         rig.link.identify()
-    rig.servos[0].ails = Ails()
+    rig.servos[0].ails = InjectedFaults()
     with pytest.raises(HydrostatError, match="first identify the motors"):
         rig.link.arm()
     assert not any(servo.table[TORQUE] for servo in rig.servos)
@@ -40,10 +40,10 @@ def test_who_was_never_calibrated_is_not_armed_after_a_fault() -> None:
     spools = (replace(SPOOLS[0], zero=None), *SPOOLS[1:])
     link = BusLink(rig.bus, WINCHES, Calibration(spools), clock=rig.chain.clock)
     link.identify()
-    rig.servos[1].ails = Ails(hot=True)
+    rig.servos[1].ails = InjectedFaults(hot=True)
     with pytest.raises(HydrostatError, match="too hot"):
         link.read(0.0)
-    rig.servos[1].ails = Ails()
+    rig.servos[1].ails = InjectedFaults()
     with pytest.raises(HydrostatError, match="first calibrate them"):
         link.arm()
     assert not any(servo.table[TORQUE] for servo in rig.servos)
@@ -266,11 +266,11 @@ def unplugged(servos: list[EmulatedServo], chains: list[EmulatedChain]) -> None:
 
 
 def deaf(servos: list[EmulatedServo], chains: list[EmulatedChain]) -> None:
-    servos[4].ails = Ails(deaf=True)
+    servos[4].ails = InjectedFaults(deaf=True)
 
 
 def hot(servos: list[EmulatedServo], chains: list[EmulatedChain]) -> None:
-    servos[4].ails = Ails(hot=True)
+    servos[4].ails = InjectedFaults(hot=True)
 
 
 @pytest.mark.parametrize(
@@ -317,7 +317,7 @@ def test_a_mute_line_keeps_no_other_from_standing() -> None:
     link.send(np.full(4, 0.04), chains[0].now, speed=0.05)
     chains[0].wait(0.01)
     for servo in servos[:2]:
-        servo.ails = Ails(deaf=True)
+        servo.ails = InjectedFaults(deaf=True)
     began, before, farthest = chains[0].now, [servo.angle for servo in servos[2:]], 0.0
 
     def look() -> None:

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hydrostat.control import Ails, DynamixelBus, EmulatedChain, EmulatedServo
+from hydrostat.control import DynamixelBus, EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.dynamixel_bus import STATE_BYTES, TORQUE, WATCH, WATCHDOG
 from hydrostat.control.dynamixel_packets import HEADER, PING, READ, STATUS, Packet, PacketReader, crc, pack
 from hydrostat.errors import HydrostatError
@@ -167,7 +167,7 @@ def test_an_answer_that_comes_late_is_not_taken_for_another() -> None:
 
 def test_watchdogs_are_proved_on_a_slow_line() -> None:
     """Of eight servos, as slow as at 57,600 baud, the third does not stop by itself."""
-    servos = [EmulatedServo(number, ails=Ails(deaf_watchdog=number == 3)) for number in range(1, 9)]
+    servos = [EmulatedServo(number, ails=InjectedFaults(deaf_watchdog=number == 3)) for number in range(1, 9)]
     chain = EmulatedChain(servos)
     bus = DynamixelBus(chain, range(1, 9), clock=chain.clock, wait=chain.wait, answer=0.1)
 
@@ -181,7 +181,7 @@ def test_watchdogs_are_proved_on_a_slow_line() -> None:
 
 def dead_after(packets: int) -> tuple[bool, float, float]:
     """Whether a host lives to the end of identify; how long motors turn after its end [s]; how far they were [rad]."""
-    servos = [EmulatedServo(1, angle=1.0, ails=Ails(deaf_watchdog=True)), EmulatedServo(2, angle=1.0)]
+    servos = [EmulatedServo(1, angle=1.0, ails=InjectedFaults(deaf_watchdog=True)), EmulatedServo(2, angle=1.0)]
     chain, died, left, farthest, moved = EmulatedChain(servos), False, packets, 1.0, 0.0
 
     def towards(data: bytes) -> bytes:
@@ -220,7 +220,7 @@ def test_a_host_that_dies_while_it_tries_watchdogs_leaves_motors_standing() -> N
 
 def proved_without(lost: int) -> tuple[list[bool], int]:
     """Watchdogs of a deaf one and one that works, proved or not, where one answer on places is lost; how many came."""
-    chain, seen = EmulatedChain([EmulatedServo(1, ails=Ails(deaf_watchdog=True)), EmulatedServo(2)]), 0
+    chain, seen = EmulatedChain([EmulatedServo(1, ails=InjectedFaults(deaf_watchdog=True)), EmulatedServo(2)]), 0
 
     def back(data: bytes) -> bytes:
         nonlocal seen
@@ -247,6 +247,6 @@ def test_a_lost_answer_makes_no_watchdog_proved_and_none_doubted() -> None:
 
 def test_a_motor_that_its_cable_holds_has_not_proved_its_watchdog() -> None:
     """It stands by itself, told nothing: but it does not go on either when it is told again."""
-    servo = EmulatedServo(1, load=lambda angle: 1.0 if angle > 0.03 else 0.0, ails=Ails(deaf_watchdog=True))
+    servo = EmulatedServo(1, load=lambda angle: 1.0 if angle > 0.03 else 0.0, ails=InjectedFaults(deaf_watchdog=True))
     chain = EmulatedChain([servo])
     assert not DynamixelBus(chain, [1], clock=chain.clock, wait=chain.wait).identify()[0].watchdog

@@ -9,7 +9,7 @@ from emulation import Rig
 from hydrostat.control.bus_link import BusLink, LinkState
 from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
-from hydrostat.control.emulated_servos import Ails
+from hydrostat.control.emulated_servos import InjectedFaults
 from hydrostat.control.feetech_bus import BOUND, LOW, MODE, TICK, TORQUE, FeetechBus
 from hydrostat.control.feetech_packets import SumReader, pack, padded
 from hydrostat.control.guard import not_judged
@@ -123,12 +123,12 @@ def test_its_torque_is_bounded_by_the_servo() -> None:
 @pytest.mark.parametrize(
     ("ails", "told"),
     [
-        (Ails(deaf=True), "the motor of thumb has not answered for 0.2"),
-        (Ails(stuck=True), "thumb does not follow: it stands at"),
-        (Ails(hot=True), "the motor of thumb reports: too hot"),
+        (InjectedFaults(deaf=True), "the motor of thumb has not answered for 0.2"),
+        (InjectedFaults(stuck=True), "thumb does not follow: it stands at"),
+        (InjectedFaults(hot=True), "the motor of thumb reports: too hot"),
     ],
 )
-def test_a_motor_that_fails_is_named_and_all_stand(ails: Ails, told: str) -> None:
+def test_a_motor_that_fails_is_named_and_all_stand(ails: InjectedFaults, told: str) -> None:
     hand = Hand()
     hand.link.identify()
     hand.link.arm()
@@ -153,7 +153,7 @@ def test_who_is_not_ready_is_told() -> None:
     with pytest.raises(HydrostatError, match="motor 1 is not in position mode"):
         hand.bus.identify()
     hand = Hand()
-    hand.servos[0].ails = Ails(deaf=True)
+    hand.servos[0].ails = InjectedFaults(deaf=True)
     with pytest.raises(HydrostatError, match="motor 1 does not answer"):
         hand.bus.identify()
 

@@ -1,4 +1,4 @@
-"""`play` by a clock that only the test moves. Oracles: `Profile.at`, and what a motor at its speed has taken in."""
+"""`play` by a clock that only the test moves. Oracles: `ContractionProfile.at`, and the travel at a motor's speed."""
 
 from collections.abc import Callable
 
@@ -9,10 +9,10 @@ from hydrostat.arrays import Vector
 from hydrostat.control import Link, Motors, Player, SimulatedLink, play
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
-from hydrostat.simulation import Profile
+from hydrostat.simulation import ContractionProfile
 
 WINCHES = (Winch(name="left", at=(0.0, 0.0)), Winch(name="feet", at=(0.0, 0.0)))
-TABLE = Profile(times=np.array([0.0, 1.0, 2.0]), values=np.array([[0.01, 0.0], [0.03, 0.02], [0.02, 0.0]]))
+TABLE = ContractionProfile(times=np.array([0.0, 1.0, 2.0]), values=np.array([[0.01, 0.0], [0.03, 0.02], [0.02, 0.0]]))
 
 
 class Clock:
@@ -163,5 +163,11 @@ def test_one_row_is_gone_to() -> None:
     motors = Motors(WINCHES, link)
     player = Player()
     player.rounds = 2
-    play(motors, Profile(times=np.zeros(1), values=np.array([[0.03, 0.0]])), player, clock=clock, wait=clock.wait)
+    play(
+        motors,
+        ContractionProfile(times=np.zeros(1), values=np.array([[0.03, 0.0]])),
+        player,
+        clock=clock,
+        wait=clock.wait,
+    )
     assert motors.places == pytest.approx([0.03, 0.0])

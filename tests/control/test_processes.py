@@ -13,7 +13,14 @@ import pytest
 from emulation import RADIUS
 
 import hydrostat
-from hydrostat.control import Ails, EmulatedChain, EmulatedFeetechChain, EmulatedLine, EmulatedServo, EmulatedSts
+from hydrostat.control import (
+    EmulatedChain,
+    EmulatedFeetechChain,
+    EmulatedLine,
+    EmulatedServo,
+    EmulatedSts,
+    InjectedFaults,
+)
 
 STANDS = 0.25  # motors stand so long after the last command [s]
 HOST = Path(__file__).with_name("host.py")
@@ -27,7 +34,7 @@ def chain(kind: str) -> EmulatedChain:
     if kind == "feetech":
         made: EmulatedChain = EmulatedFeetechChain([EmulatedSts(number, angle=1.0) for number in (1, 2, 3)])
     else:
-        ails = [Ails(), Ails(deaf_watchdog=True), Ails()]
+        ails = [InjectedFaults(), InjectedFaults(deaf_watchdog=True), InjectedFaults()]
         models = (1200, 1220, 1060)
         made = EmulatedChain(
             [EmulatedServo(n + 1, model=models[n], angle=1.0, ails=ails[n]) for n in range(3)],

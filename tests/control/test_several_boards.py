@@ -69,7 +69,9 @@ def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
 
         monkeypatch.setattr(FirmwareBus, "read", blind)
         monkeypatch.setattr(FirmwareBus, "_see_that_it_counts_on", lambda self, marked: None)
-        monkeypatch.setattr(FirmwareBus, "forgot", property(lambda self: False, lambda self, told: None), raising=False)
+        monkeypatch.setattr(
+            FirmwareBus, "lost_position", property(lambda self: False, lambda self, told: None), raising=False
+        )
 
 
 @pytest.mark.parametrize(

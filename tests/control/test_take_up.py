@@ -5,9 +5,9 @@ import pytest
 
 from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.dynamixel_bus import DynamixelBus
-from hydrostat.control.emulated_servos import Ails, EmulatedChain, EmulatedServo
+from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.model_tensions import WinchPull
-from hydrostat.control.take_up import APART, GENTLE, TakenUp, find_edge, take_up_slack
+from hydrostat.control.take_up import APART, GENTLE, SlackCalibration, find_edge, take_up_slack
 from hydrostat.errors import HydrostatError
 
 RADIUS, CONSTANT = 0.008, 0.35  # [m], [N m/A]
@@ -45,9 +45,9 @@ class Winches:
         numbers = [servo.number for servo in self.servos]
         self.bus = DynamixelBus(self.chain, numbers, clock=self.chain.clock, wait=self.chain.wait)
         self.motors = [WinchMotor(winch=f"winch {n}", number=n, radius=RADIUS) for n in numbers]
-        self.found: list[TakenUp] = []
+        self.found: list[SlackCalibration] = []
 
-    def take_up(self, taut: np.ndarray | None = None) -> tuple[TakenUp, ...]:
+    def take_up(self, taut: np.ndarray | None = None) -> tuple[SlackCalibration, ...]:
         self.bus.identify()
         taut = np.zeros(len(self.motors)) if taut is None else taut
         model = [straight(float(place)) for place in taut]
@@ -85,8 +85,8 @@ def test_what_the_model_has_slack_is_no_part_of_the_zero_and_spools_grow() -> No
     ("spoil", "told"),
     [
         (lambda w: w.pulls.__setitem__(1, 0.0), "winch 2: no pull is felt after 40 mm"),
-        (lambda w: w.servos[0].__setattr__("ails", Ails(hot=True)), "winch 1 reports"),
-        (lambda w: w.servos[0].__setattr__("ails", Ails(stuck=True)), "winch 1: its motor does not follow"),
+        (lambda w: w.servos[0].__setattr__("ails", InjectedFaults(hot=True)), "winch 1 reports"),
+        (lambda w: w.servos[0].__setattr__("ails", InjectedFaults(stuck=True)), "winch 1: its motor does not follow"),
         (lambda w: w.pulls.__setitem__(0, 2.0), "winch 1: "),
     ],
 )
@@ -112,9 +112,9 @@ def test_a_motor_that_is_unplugged_midway_is_told_and_what_was_found_is_kept() -
     winches = Winches(SLACKS[:3])
     winches.motors = winches.motors[:3]
 
-    def found(taken: TakenUp) -> None:
+    def found(taken: SlackCalibration) -> None:
         winches.found.append(taken)
-        winches.servos[2].ails = Ails(deaf=True)
+        winches.servos[2].ails = InjectedFaults(deaf=True)
 
     winches.bus.identify()
     clock, wait = winches.chain.clock, winches.chain.wait

@@ -1,4 +1,4 @@
-"""Oracles: values written down by hand, and `Profile`, which has tests of its own."""
+"""Oracles: values written down by hand, and `ContractionProfile`, which has tests of its own."""
 
 import pytest
 

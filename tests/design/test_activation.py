@@ -8,10 +8,10 @@ from scipy.optimize import nnls
 from hydrostat.design import activate, edge_fibres, element_fibres
 from hydrostat.design.muscles.activation import _Activation, least_effort, wanted_directions
 from hydrostat.mechanics import NewtonOptions, minimise
-from hydrostat.robot import Pose
+from hydrostat.robot import PoseTarget
 from hydrostat.simulation import BodyPhysics
 
-BENT = Pose(name="bent", targets={"tip": (0.18, 0.06)})
+BENT = PoseTarget(name="bent", targets={"tip": (0.18, 0.06)})
 
 
 @pytest.mark.parametrize("seed", range(12))

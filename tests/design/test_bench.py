@@ -17,12 +17,12 @@ from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.route_graph import route_graph
-from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
-from hydrostat.robot import Marker, Pose
+from hydrostat.ik import IKOptions, IKResult, solve_ik
+from hydrostat.robot import Marker, PoseTarget
 from hydrostat.simulation import Simulation
 
 LIMITS = Constraints(winch_clearance=0.006, leads=False)
-POSES = [Pose(name="up", targets={"tip": (0.18, 0.06)}), Pose(name="down", targets={"tip": (0.18, -0.06)})]
+POSES = [PoseTarget(name="up", targets={"tip": (0.18, 0.06)}), PoseTarget(name="down", targets={"tip": (0.18, -0.06)})]
 
 
 def robot_and_bench() -> tuple[Layout, Bench]:
@@ -77,7 +77,7 @@ def test_a_pose_that_misses_more_than_hoped_is_sought_again(monkeypatch: pytest.
     good = bench.reached(layout, None)
     asked: list[int] = []
 
-    def watched(*given: Any, options: InverseOptions, **more: Any) -> ReachedPose:
+    def watched(*given: Any, options: IKOptions, **more: Any) -> IKResult:
         asked.append(options.restarts)
         return solve_ik(*given, options=options, **more)
 
@@ -109,7 +109,7 @@ def test_markers_that_a_pose_does_not_name_count_a_hundredth(unchecked: None) ->
     layout, _ = robot_and_bench()
     low = Marker(name="low", at=(0.1, 0.005))
     robot = replace(layout.source, markers=(*layout.source.markers, low))
-    bench = Bench(robot, [Pose(name="up", targets={"tip": (0.19, 0.04)})], LIMITS)
+    bench = Bench(robot, [PoseTarget(name="up", targets={"tip": (0.19, 0.04)})], LIMITS)
     simulation = Simulation(replace(layout, source=robot).robot())
     pose = simulation.solve(np.array([0.01, 0.0]))
     tip, others = pose.markers["tip"], pose.markers["low"]

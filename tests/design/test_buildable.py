@@ -17,7 +17,7 @@ from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import body_region
 from hydrostat.design.zone import Zone
-from hydrostat.robot import Body, Cable, Mount, Pin, Pose, Robot, Winch
+from hydrostat.robot import Body, Cable, Mount, Pin, PoseTarget, Robot, Winch
 
 UP = ((0.03, 0.03), (0.06, 0.03), (0.1, 0.03), (0.15, 0.03))
 DOWN = ((0.03, -0.03), (0.06, -0.03), (0.1, -0.03), (0.15, -0.03))
@@ -462,7 +462,7 @@ def test_rounding_breaks_nothing() -> None:
 
 def reached(contractions: tuple[float, ...], tensions: tuple[float, ...], name: str | None = "wave") -> Any:
     return SimpleNamespace(
-        target=None if name is None else Pose(name=name, targets={"tip": (0.0, 0.0)}),
+        target=None if name is None else PoseTarget(name=name, targets={"tip": (0.0, 0.0)}),
         pose=SimpleNamespace(contractions=np.array(contractions), tensions=np.array(tensions)),
     )
 

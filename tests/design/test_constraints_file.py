@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from builders import box_robot, strip_robot
 
-from hydrostat.design import Constraints, Uncertainty, Zone
+from hydrostat.design import BuildTolerances, Constraints, Zone
 from hydrostat.design.constraints_file import (
     ZONES,
     BuiltTable,
@@ -136,17 +136,17 @@ spool = 0.01
 
 
 def test_tolerances_stand_in_the_same_file(file: Path) -> None:
-    assert set(BuiltTable.model_fields) == {field.name for field in fields(Uncertainty)}
+    assert set(BuiltTable.model_fields) == {field.name for field in fields(BuildTolerances)}
     file.write_text(BUILT)
-    assert read_uncertainty(file, strip_robot()) == Uncertainty(
+    assert read_uncertainty(file, strip_robot()) == BuildTolerances(
         sewing=1e-3, friction=(0.1, 0.3), young=0.1, thickness=0.05, stiffness=0.15, pins=0.25, slack=5e-4, spool=0.01
     )
     assert read_constraints(file, strip_robot()).clearance == 4e-3
     file.write_text("[built]\nspool = 0.01")
     for robot in (strip_robot(), box_robot()):
-        assert read_uncertainty(file, robot) == replace(Uncertainty.of(robot.body), spool=0.01)
+        assert read_uncertainty(file, robot) == replace(BuildTolerances.of(robot.body), spool=0.01)
     file.write_text("")
-    assert read_uncertainty(file, strip_robot()) == Uncertainty()
+    assert read_uncertainty(file, strip_robot()) == BuildTolerances()
 
 
 @pytest.mark.parametrize(

@@ -14,11 +14,11 @@ from hydrostat.design.region import body_region
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import plush_pattern
 from hydrostat.ik import solve_ik
-from hydrostat.robot import Pose, Robot, load_robot, robot_hash
+from hydrostat.robot import PoseTarget, Robot, load_robot, robot_hash
 from hydrostat.simulation import Simulation
 
-UP = Pose(name="up", targets={"tip": (0.18, 0.06)})
-DOWN = Pose(name="down", targets={"tip": (0.185, -0.05)})
+UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
+DOWN = PoseTarget(name="down", targets={"tip": (0.185, -0.05)})
 CASES = {
     "one winch": ((UP,), 1, 2, FibreKind.EDGES),
     "two poses": ((UP, DOWN), 2, 4, FibreKind.EDGES),
@@ -39,7 +39,7 @@ def designed(case: str) -> Network:
     return design_cables(body(), poses, winches=winches, cables=cables, method="trees", options=options)
 
 
-def rest_error(robot: Robot, poses: tuple[Pose, ...]) -> float:
+def rest_error(robot: Robot, poses: tuple[PoseTarget, ...]) -> float:
     places = {marker.name: np.array(marker.at) for marker in robot.markers}
     squares = [np.mean([np.sum((places[n] - at) ** 2) for n, at in pose.targets.items()]) for pose in poses]
     return float(np.sqrt(np.mean(squares)))
@@ -167,11 +167,17 @@ def thin_robot() -> Robot:
         (body(), [], 1, 1, "no pose to design for"),
         (body(), [UP], 0, 1, "winches must be a whole number from 1 to 20"),
         (body(), [UP], 3, 2, "3 winches and 2 cables"),
-        (body(), [UP, Pose(name="odd", targets={"nose": (0.1, 0.0)})], 1, 1, 'pose "odd".*no marker "nose".*are: tip'),
+        (
+            body(),
+            [UP, PoseTarget(name="odd", targets={"nose": (0.1, 0.0)})],
+            1,
+            1,
+            'pose "odd".*no marker "nose".*are: tip',
+        ),
         (thin_robot(), [UP], 1, 1, "too thin for cables 5 mm inside its edge"),
     ],
 )
-def test_what_cannot_be_designed(robot: Robot, poses: list[Pose], winches: int, cables: int, text: str) -> None:
+def test_what_cannot_be_designed(robot: Robot, poses: list[PoseTarget], winches: int, cables: int, text: str) -> None:
     with pytest.raises(InputError, match=text) as caught:
         design_cables(robot, poses, winches=winches, cables=cables, method="trees")
     assert "\n" not in str(caught.value)
@@ -189,7 +195,9 @@ def test_more_winches_than_the_muscles_can_feed() -> None:
 
 def test_a_pose_that_is_there_already() -> None:
     with pytest.raises(HydrostatError, match="bends the body more"):
-        design_cables(body(), [Pose(name="rest", targets={"tip": (0.2, 0.0)})], winches=1, cables=1, method="trees")
+        design_cables(
+            body(), [PoseTarget(name="rest", targets={"tip": (0.2, 0.0)})], winches=1, cables=1, method="trees"
+        )
 
 
 @pytest.mark.parametrize("case", CASES)

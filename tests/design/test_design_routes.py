@@ -17,13 +17,13 @@ from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import Limits, solve_ik
-from hydrostat.robot import Marker, Mount, Pin, Pose, Robot, Winch, robot_hash
+from hydrostat.robot import Marker, Mount, Pin, PoseTarget, Robot, Winch, robot_hash
 from hydrostat.simulation import BodyPhysics, Simulation
 
-UP = Pose(name="up", targets={"tip": (0.18, 0.06)})
-DOWN = Pose(name="down", targets={"tip": (0.185, -0.05)})
-PINCH = Pose(name="pinch", targets={"tip": (0.085, 0.045), "low": (0.085, -0.045)})
-SPREAD = Pose(name="spread", targets={"tip": (0.095, 0.055), "low": (0.095, -0.055)})
+UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
+DOWN = PoseTarget(name="down", targets={"tip": (0.185, -0.05)})
+PINCH = PoseTarget(name="pinch", targets={"tip": (0.085, 0.045), "low": (0.085, -0.045)})
+SPREAD = PoseTarget(name="spread", targets={"tip": (0.095, 0.055), "low": (0.095, -0.055)})
 SMALL = RouteOptions(starts=1, exchanges=0, polish=4, trials=2, steps=3, hops=8)
 
 
@@ -51,7 +51,7 @@ def plate() -> Robot:
 class Case:
     winches: int = 2
     cables: int = 4
-    poses: tuple[Pose, ...] = (UP, DOWN)
+    poses: tuple[PoseTarget, ...] = (UP, DOWN)
     robot: Robot = field(default_factory=bare)
     improve: bool = False
 
@@ -117,7 +117,7 @@ def broken(network: Network) -> list[str]:
     ]
 
 
-def at_rest(robot: Robot, poses: tuple[Pose, ...]) -> float:
+def at_rest(robot: Robot, poses: tuple[PoseTarget, ...]) -> float:
     places = {marker.name: np.array(marker.at) for marker in robot.markers}
     squares = [np.mean([np.sum((places[n] - at) ** 2) for n, at in pose.targets.items()]) for pose in poses]
     return float(np.sqrt(np.mean(squares)))
@@ -213,14 +213,14 @@ def test_improving_a_symmetric_network_keeps_it_symmetric(unchecked: None) -> No
     limits = replace(start.constraints, clearance=0.006)
     targets = {"tip": (0.08, 0.05), "low": (0.08, -0.05)}
     network = design_cables(
-        start.robot, [Pose(name="other", targets=targets)], winches=2, cables=len(start.robot.cables),
+        start.robot, [PoseTarget(name="other", targets=targets)], winches=2, cables=len(start.robot.cables),
         constraints=limits, options=SMALL, improve=True,
     )  # fmt: skip
     assert broken(network) == []
 
 
 @pytest.mark.parametrize("poses", [(UP,), (UP, DOWN)])
-def test_improving_never_does_worse(poses: tuple[Pose, ...], unchecked: None) -> None:
+def test_improving_never_does_worse(poses: tuple[PoseTarget, ...], unchecked: None) -> None:
     """Oracle: the first stage, the robot's own network moved into the constraints, solved afresh."""
     limits = Constraints()
     network = design_cables(

@@ -8,7 +8,7 @@ from builders import box_mesh, strip_mesh, strip_robot
 from hydrostat.design import edge_fibres, element_fibres
 from hydrostat.design.muscles.activation import wanted_directions
 from hydrostat.mechanics import NewtonOptions, minimise
-from hydrostat.robot import Pose
+from hydrostat.robot import PoseTarget
 from hydrostat.simulation import BodyPhysics
 
 
@@ -56,7 +56,7 @@ def test_wanted_directions_are_the_best_of_all_angles() -> None:
     """Brute force: pull a little along every angle in some elements, solve, and see which lowers the error most."""
     robot = strip_robot(columns=6, rows=2)
     mesh, goal = robot.body.mesh, np.array([0.19, 0.03])
-    directions = wanted_directions(robot, Pose(name="up", targets={"tip": tuple(goal.tolist())}))
+    directions = wanted_directions(robot, PoseTarget(name="up", targets={"tip": tuple(goal.tolist())}))
     assert np.linalg.norm(directions, axis=1) == pytest.approx(np.ones(len(directions)))
     tip = int(np.argmin(np.linalg.norm(mesh.nodes - [0.2, 0.0], axis=1)))
     count, angles, tension = len(mesh.elements), np.radians(np.arange(0, 180, 3)), 1e-4

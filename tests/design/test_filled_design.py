@@ -6,29 +6,37 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.design import DesignRequest, Network, RouteTrace, craft_of, design_cables, faced, score_card
-from hydrostat.design.filled_judge import judged_filled
+from hydrostat.design import (
+    DesignRequest,
+    Network,
+    RouteTrace,
+    assign_cable_sides,
+    build_effort,
+    design_cables,
+    score_card,
+)
+from hydrostat.design.filled_judge import evaluate_stuffed
 from hydrostat.design.filled_reach import filled_reach
 from hydrostat.design.network import Alternative
 from hydrostat.design.progress import silent
 from hydrostat.errors import InputError
-from hydrostat.ik import ReachedPose, solve_ik
-from hydrostat.robot import Face, Robot, find_material, inflated_robot
+from hydrostat.ik import IKResult, solve_ik
+from hydrostat.robot import Face, Robot, get_material, inflated_robot
 from hydrostat.simulation import Simulation
 
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    starfish = faced(gallery_robot("starfish"))
+    starfish = assign_cable_sides(gallery_robot("starfish"))
     return replace(starfish, poses={"wave": starfish.pose("wave")})
 
 
 @pytest.fixture(scope="module")
-def reached(robot: Robot) -> tuple[ReachedPose, ...]:
+def reached(robot: Robot) -> tuple[IKResult, ...]:
     return tuple(solve_ik(Simulation(robot), pose) for pose in robot.poses.values())
 
 
-def network(robot: Robot, reached: tuple[ReachedPose, ...], *others: Alternative) -> Network:
+def network(robot: Robot, reached: tuple[IKResult, ...], *others: Alternative) -> Network:
     return Network(
         robot=robot,
         source=robot,
@@ -44,18 +52,18 @@ def network(robot: Robot, reached: tuple[ReachedPose, ...], *others: Alternative
 
 def test_new_networks_run_where_a_builder_would_want_them() -> None:
     starfish, trunk = gallery_robot("starfish"), gallery_robot("trunk")
-    assert faced(starfish).face is Face.PAIRS
-    assert faced(trunk) is trunk
+    assert assign_cable_sides(starfish).face is Face.PAIRS
+    assert assign_cable_sides(trunk) is trunk
     front = replace(starfish, face=Face.FRONT)
-    assert faced(front) is front
-    foam = replace(starfish, body=replace(starfish.body, material=find_material("flexfoam-it x")))
-    assert faced(foam).face is Face.MIDDLE
+    assert assign_cable_sides(front) is front
+    foam = replace(starfish, body=replace(starfish.body, material=get_material("flexfoam-it x")))
+    assert assign_cable_sides(foam).face is Face.MIDDLE
 
 
 def test_craft_of_pairs_is_sewn_twice_by_the_same_motors() -> None:
     """Oracle: the craft of the same network on one face, doubled but for its motors."""
     starfish = gallery_robot("starfish")
-    one, both = craft_of(starfish, []), craft_of(faced(starfish), [])
+    one, both = build_effort(starfish, []), build_effort(assign_cable_sides(starfish), [])
     assert (both.holes, both.motors, both.motor) == (2 * one.holes, one.motors, one.motor)
     assert both.minutes == pytest.approx(2 * one.minutes)
     assert both.length == pytest.approx(2 * one.length)
@@ -63,7 +71,7 @@ def test_craft_of_pairs_is_sewn_twice_by_the_same_motors() -> None:
 
 
 @pytest.mark.slow
-def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[ReachedPose, ...]) -> None:
+def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[IKResult, ...]) -> None:
     """Oracle: statics of the inflated robot at both commands; its own are no worse than those of the flat model."""
     filled = filled_reach(robot, reached, tension=20.0)
     solid = Simulation(inflated_robot(robot, "pairs"))
@@ -84,18 +92,18 @@ def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[Reac
 
 
 @pytest.mark.slow
-def test_the_finalist_that_is_best_when_filled_is_chosen(robot: Robot, reached: tuple[ReachedPose, ...]) -> None:
+def test_the_finalist_that_is_best_when_filled_is_chosen(robot: Robot, reached: tuple[IKResult, ...]) -> None:
     """Oracle: cables that end half-way reach less; they give way to whole ones, and never the reverse."""
     short = tuple(replace(cable, points=cable.points[: len(cable.points) // 2 + 1]) for cable in robot.cables)
     stunted = robot.with_network(robot.winches, short)
     solved = tuple(solve_ik(Simulation(stunted), pose) for pose in robot.poses.values())
     whole, poor = (Alternative(robot=r, reached=p, built=0.01) for r, p in ((robot, reached), (stunted, solved)))
-    found = judged_filled(network(stunted, solved, whole), progress=silent)
+    found = evaluate_stuffed(network(stunted, solved, whole), progress=silent)
     assert found.robot is robot
     assert found.filled is not None
     assert found.filled.finalists == 2
     assert [one.robot for one in found.alternatives] == [stunted]
-    kept = judged_filled(network(robot, reached, poor), progress=silent)
+    kept = evaluate_stuffed(network(robot, reached, poor), progress=silent)
     assert kept.robot is robot
     assert kept.filled is not None
     assert kept.filled.rms_error == pytest.approx(found.filled.rms_error)

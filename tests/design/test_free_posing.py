@@ -8,7 +8,7 @@ from scipy.optimize import lsq_linear
 from hydrostat.design.muscles.activation import activate, edge_fibres, least_effort
 from hydrostat.design.muscles.free_posing import FreePosing
 from hydrostat.geometry import Anchors, locate
-from hydrostat.robot import Pose
+from hydrostat.robot import PoseTarget
 
 ROBOT = strip_robot(columns=14, rows=3)
 TIP = locate(ROBOT.body.mesh, np.array([ROBOT.markers[0].at]))
@@ -33,7 +33,7 @@ def test_it_ends_where_activation_ends() -> None:
     follow(posing, goal)
     slow = activate(
         ROBOT,
-        Pose(name="bend", targets={ROBOT.markers[0].name: tuple(goal[0].tolist())}),
+        PoseTarget(name="bend", targets={ROBOT.markers[0].name: tuple(goal[0].tolist())}),
         edge_fibres(ROBOT.body.mesh),
     )
     assert miss(posing, goal) < 1e-4

@@ -14,7 +14,7 @@ from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.route_graph import route_graph
-from hydrostat.robot import Pose, Winch
+from hydrostat.robot import PoseTarget, Winch
 
 LIMITS = Constraints(winch_clearance=0.006, leads=False, cable_gap=0.0)
 
@@ -22,7 +22,7 @@ LIMITS = Constraints(winch_clearance=0.006, leads=False, cable_gap=0.0)
 def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -> None:
     """Each of one segment, from every place where a winch may stand; the grown one may be of up to two hops."""
     robot = strip_robot(columns=6, rows=2).with_network((), ())
-    bench = Bench(robot, [Pose(name="up", targets={"tip": (0.199, 0.006)})], LIMITS)
+    bench = Bench(robot, [PoseTarget(name="up", targets={"tip": (0.199, 0.006)})], LIMITS)
     graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     # Far apart, so that paths of two hops stay straight and no point is moved.
     growth = Growth(Proposals(bench, graph, RouteOptions(hops=2, trials=6, steps=0, starts=1), 0.06), lambda *_: None)
@@ -47,7 +47,7 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
 @pytest.mark.parametrize("cables", [1, 2])
 def test_growth_stops_at_the_count(cables: int, unchecked: None) -> None:
     robot = strip_robot(columns=6, rows=2).with_network((), ())
-    bench = Bench(robot, [Pose(name="up", targets={"tip": (0.18, 0.06)})], LIMITS)
+    bench = Bench(robot, [PoseTarget(name="up", targets={"tip": (0.18, 0.06)})], LIMITS)
     graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     noted: list[int] = []
     growth = Growth(

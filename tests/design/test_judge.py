@@ -8,11 +8,11 @@ from builders import strip_robot
 
 from hydrostat.design.network import rms_error
 from hydrostat.design.trees.design_trees import cost, judge, prune
-from hydrostat.ik import ReachedPose, solve_ik
-from hydrostat.robot import Cable, Pose, Robot
+from hydrostat.ik import IKResult, solve_ik
+from hydrostat.robot import Cable, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
-POSES = (Pose(name="up", targets={"tip": (0.18, 0.06)}), Pose(name="down", targets={"tip": (0.19, -0.04)}))
+POSES = (PoseTarget(name="up", targets={"tip": (0.18, 0.06)}), PoseTarget(name="down", targets={"tip": (0.19, -0.04)}))
 
 
 def shifted(shift: float) -> Robot:
@@ -53,11 +53,11 @@ def test_a_robot_that_pulls_too_hard_is_not_chosen() -> None:
         assert best == int(np.argmin([cost(found, limit) for found in reached]))
 
 
-POSES = (Pose(name="up", targets={"tip": (0.18, 0.06)}), Pose(name="down", targets={"tip": (0.19, -0.04)}))
+POSES = (PoseTarget(name="up", targets={"tip": (0.18, 0.06)}), PoseTarget(name="down", targets={"tip": (0.19, -0.04)}))
 TENSION = 1e3
 
 
-def reach(robot: Robot) -> tuple[ReachedPose, ...]:
+def reach(robot: Robot) -> tuple[IKResult, ...]:
     return tuple(solve_ik(Simulation(robot), pose) for pose in POSES)
 
 

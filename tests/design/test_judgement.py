@@ -7,8 +7,8 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
-from hydrostat.design.finding import Weight
-from hydrostat.design.judgement import judgement_of
+from hydrostat.design.finding import Severity
+from hydrostat.design.judgement import review_robot
 from hydrostat.fabrication import MOTORS, KitOptions, build_kit, demand_of, find_demand
 from hydrostat.robot import Robot, find_risks, robot_hash
 
@@ -16,8 +16,8 @@ SMALL = RouteOptions(starts=1, exchanges=0, polish=2, trials=2, steps=2, hops=6)
 
 
 def refused(robot: Robot, **given: object) -> list[str]:
-    found = judgement_of(robot, **given)  # type: ignore[arg-type]
-    return [finding.text for finding in found if finding.weight is Weight.REFUSED]
+    found = review_robot(robot, **given)  # type: ignore[arg-type]
+    return [finding.text for finding in found if finding.weight is Severity.REFUSED]
 
 
 def crowded() -> Robot:
@@ -46,7 +46,7 @@ def test_nothing_refuses_a_robot_of_the_gallery(unchecked: None) -> None:
 def test_one_sentence_for_each_kind_of_limit_with_all_places(unchecked: None) -> None:
     """Oracle: the holes of letter_e that turn by more than 30 degrees, from their coordinates."""
     robot = gallery_robot("letter_e")
-    found = [one for one in judgement_of(robot, constraints=Constraints()) if one.weight is Weight.LIMIT]
+    found = [one for one in review_robot(robot, constraints=Constraints()) if one.weight is Severity.LIMIT]
     (turns,) = [one for one in found if "turns by" in one.text]
     sharp = set()
     for number, cable in enumerate(robot.cables):
@@ -55,16 +55,16 @@ def test_one_sentence_for_each_kind_of_limit_with_all_places(unchecked: None) ->
         sharp |= {f"via:{number}:{at + 1}" for at in np.flatnonzero(angles > 30.1)}
     assert {place.part for place in turns.places} == sharp
     assert turns.text.endswith(f"(and {len(sharp) - 1} more such)")
-    assert judgement_of(robot) == tuple(
-        one for one in judgement_of(robot, constraints=Constraints()) if one not in found
+    assert review_robot(robot) == tuple(
+        one for one in review_robot(robot, constraints=Constraints()) if one not in found
     )
 
 
 def test_risks_are_told_last_as_they_are(unchecked: None) -> None:
     robot = gallery_robot("squid")
-    found = judgement_of(robot, constraints=Constraints())
-    assert [one.text for one in found if one.weight is Weight.MIND] == find_risks(robot)
-    order = [list(Weight).index(one.weight) for one in found]
+    found = review_robot(robot, constraints=Constraints())
+    assert [one.text for one in found if one.weight is Severity.MIND] == find_risks(robot)
+    order = [list(Severity).index(one.weight) for one in found]
     assert order == sorted(order)
 
 

@@ -18,7 +18,7 @@ def designed(reach: float) -> Network:
     robot = strip_robot(columns=8, rows=3).with_network((), ())
     robot = replace(robot, markers=(*robot.markers, hs.Marker(name="middle", at=(0.1, 0.02))))
     request = DesignRequest(
-        poses=(hs.Pose(name="up", targets={"tip": (0.19, 0.03)}),),
+        poses=(hs.PoseTarget(name="up", targets={"tip": (0.19, 0.03)}),),
         winches=2,
         cables=2,
         options=RouteOptions(reach=reach, starts=1, exchanges=2, polish=15),

@@ -17,7 +17,7 @@ from hydrostat.design.routes.layout import CableRoute, Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import RefineOptions, linear_model, refine
 from hydrostat.design.routes.route_graph import route_graph
-from hydrostat.robot import Marker, Pose, Robot
+from hydrostat.robot import Marker, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 LOOSE = Constraints(winch_clearance=0.006, slack=0.005, spool_ratio=2.0)
@@ -31,14 +31,14 @@ def strip() -> Robot:
     )
 
 
-def poses_of(robot: Robot, contractions: list[tuple[float, ...]]) -> list[Pose]:
+def poses_of(robot: Robot, contractions: list[tuple[float, ...]]) -> list[PoseTarget]:
     """What a robot reaches exactly."""
     simulation = Simulation(robot)
     found = []
     for number, pulled in enumerate(contractions):
         markers = simulation.solve(np.array(pulled)).markers
         targets = {name: tuple(map(float, place)) for name, place in markers.items()}
-        found.append(Pose(name=f"pose {number}", targets=targets))
+        found.append(PoseTarget(name=f"pose {number}", targets=targets))
     return found
 
 
@@ -155,7 +155,7 @@ def test_the_slope_falls_towards_an_optimum(unchecked: None) -> None:
     """
     bench, _, trial = hidden()
     targets = {**bench.targets[0].targets, "tip": (0.18, 0.04)}
-    bench = Bench(bench.source, [Pose(name="other", targets=targets)], bench.constraints)
+    bench = Bench(bench.source, [PoseTarget(name="other", targets=targets)], bench.constraints)
     start = bench.reached(trial.layout, None)
     assert start is not None
     region = body_region(bench.source.body, bench.constraints.clearance)
@@ -172,7 +172,7 @@ def test_what_one_more_cable_promises_comes_true(unchecked: None) -> None:
     reached = Simulation(source).solve(np.array([0.006])).markers
     shifts = {"tip": (-0.0006, -0.0008), "mid": (0.0, -0.0004), "low": (-0.0004, 0.0002)}
     targets = {name: tuple(map(float, np.add(place, shifts[name]))) for name, place in reached.items()}
-    bench = Bench(source, [Pose(name="near", targets=targets)], Constraints(winch_clearance=0.006))
+    bench = Bench(source, [PoseTarget(name="near", targets=targets)], Constraints(winch_clearance=0.006))
     trial = bench.reached(layout_of(source, bench.constraints), None)
     assert trial is not None
     priced = proposals(bench)

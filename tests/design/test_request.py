@@ -7,16 +7,16 @@ from typing import Any
 import pytest
 from builders import strip_robot
 
-from hydrostat.cli.design_wishes import TypedRequest, asked_of
+from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.design import Constraints, DesignMethod, DesignRequest, FibreKind, RouteOptions, TreeOptions
 from hydrostat.design.constraints import RANGES, Range
 from hydrostat.design.request import COUNTS, ROUTE_RANGES
-from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio import Wishes, wished_request
 
-UP = Pose(name="up", targets={"tip": (0.18, 0.06)})
+UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
 
 
 def robot() -> Robot:
@@ -25,7 +25,7 @@ def robot() -> Robot:
 
 def test_nothing_typed_and_nothing_wished_is_what_the_record_says(unchecked: None) -> None:
     usual = DesignRequest(poses=(UP,))
-    assert asked_of(robot(), TypedRequest()) == usual
+    assert parse_request(robot(), DesignArguments()) == usual
     assert wished_request(robot(), Wishes()) == usual
     assert (usual.winches, usual.cables, usual.options) == (2, 6, RouteOptions())
     assert DesignRequest(poses=(UP,), method=DesignMethod.TREES).options == TreeOptions()
@@ -33,10 +33,10 @@ def test_nothing_typed_and_nothing_wished_is_what_the_record_says(unchecked: Non
 
 def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
     limits = {"tension": "12 N", "clearance": "4 mm", "slack": "3 mm", "stepped": True, "lock_winch": ("up",)}
-    typed = TypedRequest(winches="auto", cables=4, tolerance="2 mm", **limits)  # type: ignore[arg-type]
+    typed = DesignArguments(winches="auto", cables=4, tolerance="2 mm", **limits)  # type: ignore[arg-type]
     lengths = {"tolerance": 0.002, "clearance": 0.004, "slack": 0.003}
     wishes = Wishes(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)  # type: ignore[arg-type]
-    assert asked_of(robot(), typed) == wished_request(robot(), wishes)
+    assert parse_request(robot(), typed) == wished_request(robot(), wishes)
 
 
 def test_every_number_has_its_range() -> None:
@@ -95,5 +95,5 @@ def test_improving_allows_what_the_robot_has(unchecked: None) -> None:
     own = strip_robot()
     request = DesignRequest(poses=(UP,), improve=True, constraints=Constraints(travel=0.001)).fitted(own)
     assert request.constraints.travel == max(winch.travel for winch in own.winches)
-    usual = Uncertainty.of(own.body)
+    usual = BuildTolerances.of(own.body)
     assert DesignRequest(poses=(UP,)).fitted(own) == DesignRequest(poses=(UP,), uncertainty=usual)

@@ -15,7 +15,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Cable, Marker, Mount, Robot, Winch
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 SPACING = 0.0125
 
@@ -166,14 +166,14 @@ def _markers(robot: Robot) -> tuple[Marker, ...]:
     return tuple(Marker(name=str(node), at=tuple(nodes[node].tolist())) for node in (len(nodes) - 1, 20, 33))
 
 
-def _fields(simulation: Simulation, pose: SolvedPose) -> np.ndarray:
+def _fields(simulation: Simulation, pose: Equilibrium) -> np.ndarray:
     """H^-1 of the markers' slopes, (nodes, dim, rows)."""
     nodes, dim = pose.nodes.shape
     slopes = np.kron(simulation.marker_anchors.matrix(nodes).toarray(), np.eye(dim))
     return simulation.response(pose, slopes.T).reshape(nodes, dim, -1)
 
 
-def _pulled(robot: Robot, graph: RouteGraph, edge: int, pose: SolvedPose, tension: float) -> np.ndarray:
+def _pulled(robot: Robot, graph: RouteGraph, edge: int, pose: Equilibrium, tension: float) -> np.ndarray:
     """How the markers move per newton when a cable along an edge has about this tension [m/N]."""
     first, second = graph.edges[edge]
     ends = graph.points.copy()

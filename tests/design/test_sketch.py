@@ -17,7 +17,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.routes.sketch import _Choice, _lines, sketches
-from hydrostat.robot import Cable, Pose, load_robot
+from hydrostat.robot import Cable, PoseTarget, load_robot
 from hydrostat.simulation import Simulation
 
 
@@ -35,7 +35,7 @@ def _begun(robot, constraints: Constraints, poses) -> tuple[Proposals, Trial]:
 def test_what_a_sketch_promises_is_what_small_contractions_do(unchecked: None) -> None:
     constraints = Constraints(winch_clearance=0.006)
     proposals, bare = _begun(
-        strip_robot(columns=12, rows=4), constraints, [Pose(name="up", targets={"tip": (0.2, 0.03)})]
+        strip_robot(columns=12, rows=4), constraints, [PoseTarget(name="up", targets={"tip": (0.2, 0.03)})]
     )
     lines = list(_lines(proposals, bare))
     choice = _Choice(proposals, bare, lines, 1, 1)

@@ -9,7 +9,7 @@ from builders import box_mesh, box_robot, gallery_robot, mesh_body, strip_robot
 
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.buildable import violations
-from hydrostat.design.judgement import judgement_of
+from hydrostat.design.judgement import review_robot
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.skin_region import SINK, STITCH, SkinRegion, cable_region
 from hydrostat.errors import InputError
@@ -172,7 +172,7 @@ def test_the_judgement_knows_the_layer() -> None:
     """Cables 3 mm under the skin are too near to it for a clearance of 5 mm, and right for a depth of 3 mm."""
     robot = outside_robot((0.01, 0.02, 0.003), (0.06, 0.02, 0.003), (0.1, 0.02, 0.003))
     told = {
-        limits.depth: judgement_of(robot, constraints=limits) for limits in (Constraints(), Constraints(depth=0.003))
+        limits.depth: review_robot(robot, constraints=limits) for limits in (Constraints(), Constraints(depth=0.003))
     }
     assert any("less than the clearance of 5 mm" in finding.text for finding in told[None])
     assert not any("surface" in finding.text for finding in told[0.003])

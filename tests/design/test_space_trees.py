@@ -13,7 +13,7 @@ from hydrostat.design.region import body_region
 from hydrostat.design.trees.lead_ways import LeadWays, lead_ways
 from hydrostat.design.trees.winch_trees import WinchTrees, tree_score
 from hydrostat.ik import solve_ik
-from hydrostat.robot import Mount, Pose, Robot
+from hydrostat.robot import Mount, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 LIMITS = Constraints()
@@ -123,7 +123,7 @@ def test_two_winches_in_the_world_stand_at_two_places() -> None:
     winches = [replace(winch, at=at[winch.name], mount=Mount.WORLD) for winch in box.winches]
     cables = [replace(cable, points=(at[cable.winch], *cable.points[1:])) for cable in box.cables]
     robot: Robot = box.with_network(winches, cables)
-    pose = Pose(name="up", targets={"tip": (0.1, 0.05, 0.035)})
+    pose = PoseTarget(name="up", targets={"tip": (0.1, 0.05, 0.035)})
     options = TreeOptions.single(threshold=30, distance=1.0)
     network = design_cables(robot, [pose], winches=2, cables=2, method="trees", options=options)
     assert {winch.at for winch in network.robot.winches} == set(at.values())

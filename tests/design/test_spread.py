@@ -9,10 +9,10 @@ from builders import strip_robot
 
 from hydrostat.design.built_error import built_errors, expected_error
 from hydrostat.design.spread import friction_column, spread_columns
-from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.ik import solve_ik
-from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import Simulation, rig_slopes
+from hydrostat.robot import PoseTarget, Robot
+from hydrostat.simulation import Simulation, cable_sensitivities
 
 PULLED = np.array([0.012, 0.002])
 BENT = ((0.02, 0.012), (0.07, 0.016), (0.12, 0.008), (0.18, 0.014))
@@ -33,15 +33,15 @@ def slope(change: Callable[[float], Robot], step: float) -> np.ndarray:
     return (tip(change(step)) - tip(change(-step))) / (2 * step)
 
 
-def columns(uncertainty: Uncertainty) -> np.ndarray:
+def columns(uncertainty: BuildTolerances) -> np.ndarray:
     simulation = Simulation(robot())
     pose = simulation.solve(PULLED)
-    return spread_columns(simulation, pose, rig_slopes(simulation, pose, [0]), uncertainty, 2)
+    return spread_columns(simulation, pose, cable_sensitivities(simulation, pose, [0]), uncertainty, 2)
 
 
 def test_columns_are_those_of_differences(unchecked: None) -> None:
     made, dim = robot(), 2
-    some = Uncertainty(friction=(0.0, 0.0))
+    some = BuildTolerances(friction=(0.0, 0.0))
     found = columns(some)
     holes = dim * (len(made.winches) + sum(len(cable.points) - 1 for cable in made.cables))
 
@@ -72,15 +72,15 @@ def test_the_column_of_friction_is_that_of_a_little_friction(unchecked: None) ->
     made = robot()
     simulation = Simulation(made)
     pose = simulation.solve(PULLED)
-    column = friction_column(simulation, pose, rig_slopes(simulation, pose, [0]).fields[:2])
+    column = friction_column(simulation, pose, cable_sensitivities(simulation, pose, [0]).fields[:2])
     rough = made.with_network(made.winches, [replace(cable, friction=1e-3) for cable in made.cables])
     assert column == pytest.approx((tip(rough) - pose.markers["tip"]) / 1e-3, rel=0.02)
 
 
 def test_the_expected_error_is_that_of_many_draws(unchecked: None) -> None:
     """Oracle: 60 robots, solved; their mean square is known to a fifth, and to first order it is what is expected."""
-    made, pose = robot(), Pose(name="up", targets={"tip": (0.185, 0.035)})
-    small = Uncertainty(sewing=5e-4, friction=(0.0, 0.1))
+    made, pose = robot(), PoseTarget(name="up", targets={"tip": (0.185, 0.035)})
+    small = BuildTolerances(sewing=5e-4, friction=(0.0, 0.1))
     simulation = Simulation(made)
     reached = [solve_ik(simulation, pose)]
     expected = expected_error(simulation, reached, small)

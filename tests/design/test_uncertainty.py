@@ -7,13 +7,13 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design.built_error import built_errors
-from hydrostat.design.uncertainty import UNCERTAINTY_RANGES, Uncertainty
+from hydrostat.design.uncertainty import UNCERTAINTY_RANGES, BuildTolerances
 from hydrostat.errors import InputError
-from hydrostat.robot import Pose
+from hydrostat.robot import PoseTarget
 from hydrostat.simulation import Simulation
 
 ROBOT = strip_robot(columns=10, rows=3)
-NONE = Uncertainty.none()
+NONE = BuildTolerances.none()
 
 
 def test_without_tolerances_a_robot_is_as_its_model(unchecked: None) -> None:
@@ -28,14 +28,14 @@ def test_without_tolerances_a_robot_is_as_its_model(unchecked: None) -> None:
 
 
 def test_the_same_seed_gives_the_same_robot(unchecked: None) -> None:
-    one, same, other = (Uncertainty().draw(ROBOT, np.random.default_rng(seed)) for seed in (3, 3, 4))
+    one, same, other = (BuildTolerances().draw(ROBOT, np.random.default_rng(seed)) for seed in (3, 3, 4))
     assert one.cables == same.cables
     assert one.cables != other.cables
 
 
 def test_what_differs_does_so_by_its_deviation(unchecked: None) -> None:
     """Of 400 draws; a standard deviation is then known to 4 %, so 15 % would be chance once in ten thousand times."""
-    wide = replace(Uncertainty(), sewing=5e-4)
+    wide = replace(BuildTolerances(), sewing=5e-4)
     drawn = [wide.draw(ROBOT, np.random.default_rng([0, number])) for number in range(400)]
     last = np.array([robot.cables[0].points[-1] for robot in drawn]) - ROBOT.cables[0].points[-1]
     assert last.std(axis=0) == pytest.approx(np.full(2, 5e-4), rel=0.15)
@@ -61,7 +61,7 @@ def test_holes_stay_in_the_body(unchecked: None) -> None:
 
 def test_errors_of_robots_that_are_built_just_so(unchecked: None) -> None:
     """Oracle: the distance of the marker from its target, solved once."""
-    pose = Pose(name="up", targets={"tip": (0.18, 0.03)})
+    pose = PoseTarget(name="up", targets={"tip": (0.18, 0.03)})
     command = np.array([0.01, 0.0])
     solved = Simulation(ROBOT).solve(command)
     away = float(np.linalg.norm(solved.markers["tip"] - np.array((0.18, 0.03))))
@@ -71,7 +71,7 @@ def test_errors_of_robots_that_are_built_just_so(unchecked: None) -> None:
     assert errors.most == errors.drawn.max()
 
 
-@pytest.mark.parametrize("field", [field.name for field in fields(Uncertainty)])
+@pytest.mark.parametrize("field", [field.name for field in fields(BuildTolerances)])
 def test_what_is_no_tolerance_is_told_in_one_line(field: str, unchecked: None) -> None:
     for bad in (-0.1, "2 mm", None, float("nan")):
         with pytest.raises(InputError, match=f"^uncertainty: {field} must .+") as error:

@@ -16,7 +16,7 @@ def _posed(robot: hs.Robot, reach: float) -> hs.Robot:
     """The robot with a pose that its winch makes by taking in `reach` [m]."""
     made = hs.Simulation(robot).solve({"pull": reach})
     targets = {name: tuple(place.tolist()) for name, place in made.markers.items()}
-    return replace(robot, poses={"made": hs.Pose(name="made", targets=targets)})
+    return replace(robot, poses={"made": hs.PoseTarget(name="made", targets=targets)})
 
 
 def test_loads_are_those_of_the_pose_that_is_reached():
@@ -61,7 +61,7 @@ def test_with_friction_contractions_and_loads_are_those_that_reach_the_pose():
 
 def test_a_pose_far_out_of_reach_is_told():
     """Oracle: a target 3 m away from a body of 100 mm."""
-    robot = replace(crossed(), poses={"away": hs.Pose(name="away", targets={"tip": (3.0, 3.0)})})
+    robot = replace(crossed(), poses={"away": hs.PoseTarget(name="away", targets={"tip": (3.0, 3.0)})})
     (sentence,) = find_demand(robot).far
     assert sentence.startswith('pose "away" is missed by 4')
     assert find_demand(_posed(crossed(), 0.006)).far == ()

@@ -16,7 +16,7 @@ from hydrostat.fabrication import MOTORS, Kit, KitOptions, Method, PatternOption
 from hydrostat.fabrication.checks.pattern_checks import SeenSvg, pattern_checks
 from hydrostat.fabrication.demand import find_demand
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.spool import capacity, wraps
+from hydrostat.fabrication.parts.spool import capacity, spool_turns
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
@@ -24,7 +24,7 @@ from hydrostat.fabrication.patterns.shape import Circle, PatternPart
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.sheets.legible import typeset
 from hydrostat.fabrication.solids.construct import solid_of
-from hydrostat.robot import Face, Robot, find_material, gallery_folder, load_robot, robot_hash, sewn_robot
+from hydrostat.robot import Face, Robot, gallery_folder, get_material, load_robot, robot_hash, sewn_robot
 
 
 def starfish(face: Face | None) -> Robot:
@@ -82,7 +82,7 @@ def test_a_pair_shares_a_groove_and_has_a_channel_each(pairs: Kit) -> None:
     robot, options = sewn_robot(pairs.robot), PartOptions()
     for unit in _units(pairs):
         winch = robot.winch(unit.winch)
-        turns = wraps(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
+        turns = spool_turns(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
         for groove in unit.spool.grooves:
             length = 2 * turns * 2 * np.pi * groove.radius
             assert capacity(groove.width, groove.radius, options.cable, groove.layers) >= length
@@ -231,4 +231,4 @@ def test_the_middle_is_for_bodies_that_are_cast() -> None:
 
 def _foam(robot: Robot) -> Robot:
     assert SQUARE in robot.body.content.decode()
-    return replace(robot, body=replace(robot.body, material=find_material("flexfoam-it x")))
+    return replace(robot, body=replace(robot.body, material=get_material("flexfoam-it x")))

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from wishes import BENT, FLAT, PLANE
 
-from hydrostat.ik.objectives.marker_goal import MarkerGoal
-from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.marker_target import MarkerTarget
+from hydrostat.ik.objectives.objective import EquilibriumState, Objective, Residual, Rows, Slopes, StateJacobian
 from hydrostat.simulation import Simulation
 from hydrostat.testing import ConformanceError, check_objective
 
@@ -17,31 +17,31 @@ from hydrostat.testing import ConformanceError, check_objective
 class Broken(Objective):
     """A good objective, broken on purpose."""
 
-    change: Callable[[Term], Term]
+    change: Callable[[Residual], Residual]
 
-    def on(self, simulation: Simulation) -> Term:
-        return self.change(PLANE["outline"].on(simulation))
+    def bind(self, simulation: Simulation) -> Residual:
+        return self.change(PLANE["outline"].bind(simulation))
 
 
-class Wrapped(Term):
-    def __init__(self, term: Term) -> None:
+class Wrapped(Residual):
+    def __init__(self, term: Residual) -> None:
         self.term, self.asked = term, 0
 
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         return self.term.residual(posture)
 
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        return self.term.slopes(posture, moves)
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+        return self.term.jacobian(posture, moves)
 
-    def errors(self, posture: Posture) -> Mapping[str, float]:
+    def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
         return self.term.errors(posture)
 
 
 class SlopeOff(Wrapped):
     """One entry of its largest row is 0.01 % too large."""
 
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        slopes = super().slopes(posture, moves).copy()
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+        slopes = super().jacobian(posture, moves).copy()
         slopes[np.abs(slopes[:, 0]).argmax(), 0] *= 1.0001
         return slopes
 
@@ -49,50 +49,50 @@ class SlopeOff(Wrapped):
 class SlopesOfNodesAlone(Wrapped):
     """As if the places of the shape were not pulled at by the body."""
 
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        slopes = super().slopes(posture, moves).copy()
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+        slopes = super().jacobian(posture, moves).copy()
         slopes[-100:] = 0.0
         return slopes
 
 
 class SlopesTurned(Wrapped):
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        return super().slopes(posture, moves).T
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+        return super().jacobian(posture, moves).T
 
 
 class RowsThatComeAndGo(Wrapped):
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         residual = super().residual(posture)
         return residual[: len(residual) - int(posture.contractions[0] > 0.025)]
 
 
 class RowsInATable(Wrapped):
-    def residual(self, posture: Posture) -> np.ndarray:
+    def residual(self, posture: EquilibriumState) -> np.ndarray:
         return super().residual(posture)[:, None]
 
 
 class ResidualNaN(Wrapped):
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         return np.where(np.arange(len(super().residual(posture))) == 3, np.nan, 1.0)
 
 
 class NegativeError(Wrapped):
-    def errors(self, posture: Posture) -> Mapping[str, float]:
+    def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
         return {"outline": -1e-9}
 
 
 class ErrorOfNothing(Wrapped):
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         return np.zeros(3)
 
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
         return np.zeros((3, 2))
 
 
 class Forgetful(Wrapped):
     """Counts how often it was asked."""
 
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         self.asked += 1
         return super().residual(posture) + 1e-9 * self.asked
 
@@ -122,7 +122,7 @@ def test_cables_that_rub_are_taken() -> None:
     """Oracle: differences of whole loading paths, which a slope that is off by 0.01 % does not pass."""
     robot = FLAT.robot
     rough = Simulation(replace(robot, cables=tuple(replace(cable, friction=0.2) for cable in robot.cables)))
-    goal = MarkerGoal(targets={"tip": (0.2, 0.1)})
+    goal = MarkerTarget(targets={"tip": (0.2, 0.1)})
     check_objective(goal, rough, BENT[2], postures=1)
     with pytest.raises(ConformanceError, match="slopes at"):
-        check_objective(Broken(lambda _: SlopeOff(goal.on(rough))), rough, BENT[2], postures=1)
+        check_objective(Broken(lambda _: SlopeOff(goal.bind(rough))), rough, BENT[2], postures=1)

@@ -5,13 +5,13 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.ik.trajectory.course import Course, Pace, StraightCourse, earliest, linear
+from hydrostat.ik.trajectory.timed_path import MotionLimits, StraightCourse, TimedPath, earliest, linear
 
 FREE = np.nan
 
 
-def pace(speed: float = 0.05, acceleration: float = 0.2) -> Pace:
-    return Pace.of(strip_robot(columns=4, rows=2), speed, acceleration)
+def pace(speed: float = 0.05, acceleration: float = 0.2) -> MotionLimits:
+    return MotionLimits.of(strip_robot(columns=4, rows=2), speed, acceleration)
 
 
 def random_keys(seed: int, count: int = 6) -> np.ndarray:
@@ -23,7 +23,7 @@ def random_keys(seed: int, count: int = 6) -> np.ndarray:
     return keys
 
 
-def fine(course: Course | StraightCourse, leg: int | None = None) -> np.ndarray:
+def fine(course: TimedPath | StraightCourse, leg: int | None = None) -> np.ndarray:
     ends = (0.0, course.seconds) if leg is None else (course.times[leg], course.times[leg + 1] - 1e-12)
     return np.linspace(*ends, 20_001)
 
@@ -162,10 +162,10 @@ def test_a_straight_course_passes_its_knots_within_the_limits(seed: int) -> None
 
 def test_limits_by_winch_and_wrong_ones() -> None:
     robot = strip_robot(columns=4, rows=2)
-    found = Pace.of(robot, {"down": 0.02}, None)
+    found = MotionLimits.of(robot, {"down": 0.02}, None)
     assert found.speed.tolist() == [np.inf, 0.02]
     assert np.isinf(found.acceleration).all()
     with pytest.raises(InputError, match=r"a limit on the speed must be a number above 0 m/s, not 0"):
-        Pace.of(robot, 0.0, None)
+        MotionLimits.of(robot, 0.0, None)
     with pytest.raises(InputError, match="tail"):
-        Pace.of(robot, None, {"tail": 1.0})
+        MotionLimits.of(robot, None, {"tail": 1.0})

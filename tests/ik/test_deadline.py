@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.ik import InverseReason, solve_ik
+from hydrostat.ik import IKStatus, solve_ik
 from hydrostat.simulation import Simulation
 
 LOOKS = 12  # of the clock after the time is up: each place that waits looks once or twice, and goes home
@@ -28,10 +28,12 @@ def test_a_search_with_friction_stops_when_time_is_up(allowed: int, monkeypatch:
     monkeypatch.setattr(time, "monotonic", lambda: next(clock))
     target = {"top": rest.markers["top"] + np.array([0.05, -0.02])}
     reached = solve_ik(simulation, target, start=rest, seconds=float(allowed))
-    assert reached.reason is InverseReason.TIME_LIMIT
+    assert reached.status is IKStatus.TIME_LIMIT
     assert next(clock) <= allowed + LOOKS
     assert reached.pose.result.converged
-    left = np.abs(simulation.path.resumed(reached.pose).gradient(reached.pose.nodes, reached.pose.contractions)).max()
+    left = np.abs(
+        simulation.path.with_history(reached.pose).gradient(reached.pose.nodes, reached.pose.contractions)
+    ).max()
     assert left <= reached.pose.result.allowed
 
 
@@ -41,4 +43,4 @@ def test_a_limit_that_is_not_reached_changes_nothing() -> None:
     target = {"top": simulation.rest.markers["top"] + np.array([0.01, -0.002])}
     free, limited = solve_ik(simulation, target), solve_ik(simulation, target, seconds=1e6)
     assert (free.pose.nodes == limited.pose.nodes).all()
-    assert free.reason is limited.reason
+    assert free.status is limited.status

@@ -9,8 +9,8 @@ from scipy.optimize import least_squares
 
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry import Outline
-from hydrostat.ik.objectives.objective import moves_at, posture_at
-from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
+from hydrostat.ik.objectives.objective import state_at, state_jacobian_at
+from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
 from hydrostat.robot import Pin, Robot, outline_body
 from hydrostat.simulation import Simulation
 
@@ -36,7 +36,7 @@ def drawn(size: float | None = None) -> Robot:
 def test_a_pose_stays_where_it_was_drawn(size: float | None, tmp_path: Path) -> None:
     """Moved by 10 to the right and 30 down the page, and 20 longer, all times the scale of the body."""
     (tmp_path / "pose.svg").write_bytes(svg(40, 70, 220))
-    found = drawn_pose(drawn(size), tmp_path / "pose.svg").polygon.bounds
+    found = load_target_outline(drawn(size), tmp_path / "pose.svg").polygon.bounds
     scale = (size or 0.2) / 200
     np.testing.assert_allclose(found, np.array([-90, -55, 130, -5]) * scale, atol=1e-12)
 
@@ -47,7 +47,7 @@ def test_an_enlarged_page_is_refused(tmp_path: Path) -> None:
     with pytest.raises(
         OutlineError, match=r"300 x 300 units from \(0, 0\), the drawing .* 300 x 200 units from"
     ) as told:
-        drawn_pose(drawn(), tmp_path / "pose.svg")
+        load_target_outline(drawn(), tmp_path / "pose.svg")
     assert "\n" not in str(told.value)
 
 
@@ -55,12 +55,12 @@ def test_what_cannot_be_a_pose_is_refused(tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match=r"a\.svg: a pose can be drawn over a drawing only, the body is of a mesh file"
     ):
-        drawn_pose(strip_robot(), tmp_path / "a.svg")
+        load_target_outline(strip_robot(), tmp_path / "a.svg")
     with pytest.raises(InputError, match=r"missing\.svg: there is no such file"):
-        drawn_pose(drawn(), tmp_path / "missing.svg")
+        load_target_outline(drawn(), tmp_path / "missing.svg")
     (tmp_path / "pose.svg").write_bytes(svg(30, 40, unit=2.0))
     with pytest.raises(OutlineError, match=r"pose\.svg: is an SVG drawing in units of 2 x 2 mm on a page of"):
-        drawn_pose(drawn(), tmp_path / "pose.svg")
+        load_target_outline(drawn(), tmp_path / "pose.svg")
 
 
 @pytest.mark.usefixtures("unchecked")
@@ -72,11 +72,13 @@ def test_contractions_are_found_from_the_drawing_of_a_pose() -> None:
     ring = [int(mesh.boundary[0, 0])]
     while (node := after[ring[-1]]) != ring[0]:
         ring.append(node)
-    term = ShapeGoal(outline=Outline(simulation.solve(hidden).nodes[ring])).on(simulation)
+    term = ShapeTarget(outline=Outline(simulation.solve(hidden).nodes[ring])).bind(simulation)
     found = least_squares(
-        lambda a: term.residual(posture_at(simulation, simulation.solve(a))),
+        lambda a: term.residual(state_at(simulation, simulation.solve(a))),
         [0.003, 0.003],
-        jac=lambda a: term.slopes(posture_at(simulation, pose := simulation.solve(a)), moves_at(simulation, pose)),
+        jac=lambda a: term.jacobian(
+            state_at(simulation, pose := simulation.solve(a)), state_jacobian_at(simulation, pose)
+        ),
         bounds=(0, 0.05),
         xtol=1e-14,
         ftol=1e-14,
@@ -84,4 +86,4 @@ def test_contractions_are_found_from_the_drawing_of_a_pose() -> None:
     )
     np.testing.assert_allclose(found.x, hidden, atol=1e-7)
     assert found.nfev < 25
-    assert term.errors(posture_at(simulation, simulation.solve(found.x)))["outline"] < 1e-7
+    assert term.errors(state_at(simulation, simulation.solve(found.x)))["outline"] < 1e-7

@@ -3,8 +3,8 @@
 import numpy as np
 from builders import gallery_robot
 
-from hydrostat.ik import InverseReason, ReachedPose, left_free
-from hydrostat.robot import Pose
+from hydrostat.ik import IKResult, IKStatus, unconstrained_motion
+from hydrostat.robot import PoseTarget
 from hydrostat.simulation import Simulation
 
 
@@ -17,9 +17,9 @@ def test_markers_that_nobody_asked_for_are_told_if_they_go_far() -> None:
     assert way > 0.03
 
     def told(*names: str) -> str:
-        target = Pose(name="wave", targets={name: places[name] for name in names})
-        return left_free(
-            ReachedPose(target=target, pose=pose, errors={}, reason=InverseReason.REACHED, iterations=0, solves=0)
+        target = PoseTarget(name="wave", targets={name: places[name] for name in names})
+        return unconstrained_motion(
+            IKResult(target=target, pose=pose, errors={}, status=IKStatus.REACHED, iterations=0, solves=0)
         )
 
     assert f"moves: left by {1e3 * way:.0f} mm;" in told("top")

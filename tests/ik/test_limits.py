@@ -11,7 +11,7 @@ from builders import box_robot, strip_robot
 from scipy.optimize import minimize, minimize_scalar
 
 from hydrostat.errors import InputError
-from hydrostat.ik import InverseOptions, InverseReason, Limits, solve_ik
+from hydrostat.ik import IKOptions, IKStatus, Limits, solve_ik
 from hydrostat.ik.limits import bounds
 from hydrostat.robot import Winch
 from hydrostat.simulation import Simulation
@@ -25,8 +25,8 @@ def test_a_range_in_place_of_travel() -> None:
     reached = solve_ik(simulation, FAR, limits=Limits(contraction={"up": (-0.005, 0.012), "down": (-0.004, 0.0)}))
     assert reached.pose.contractions[0] == pytest.approx(0.012, abs=1e-9)
     assert -0.004 <= reached.pose.contractions[1] <= 0.0
-    assert reached.held[0] == "up: taken in as far as it may, 12 mm"
-    assert reached.reason is InverseReason.OPTIMAL
+    assert reached.active_limits[0] == "up: taken in as far as it may, 12 mm"
+    assert reached.status is IKStatus.LOCAL_OPTIMUM
 
 
 def test_a_range_may_begin_above_rest() -> None:
@@ -41,7 +41,7 @@ def test_tension(most: float) -> None:
     simulation = Simulation(strip_robot())
     reached = solve_ik(simulation, FAR, limits=Limits(tension={"up": most}))
     assert reached.pose.tensions[0] == pytest.approx(most, rel=2e-6)
-    assert any("pulls as hard as it may" in words for words in reached.held)
+    assert any("pulls as hard as it may" in words for words in reached.active_limits)
     assert reached.optimality < 1e-5
     assert solve_ik(simulation, FAR).pose.tensions[0] > 1.2 * most
 
@@ -155,23 +155,23 @@ def test_a_winch_without_cables_keeps_out_of_it() -> None:
     simulation = Simulation(robot)
     hidden = simulation.solve(np.array([0.0, 0.02, 0.0]))
     reached = solve_ik(simulation, {"tip": tuple(hidden.markers["tip"].tolist())})
-    assert reached.reason is InverseReason.REACHED
+    assert reached.status is IKStatus.REACHED
     assert reached.pose.contractions[0] == 0.0
 
 
 def test_a_start_above_the_limit_of_tension_is_brought_below_it() -> None:
     simulation = Simulation(strip_robot())
     start = simulation.solve(np.array([0.05, 0.0]))
-    options = InverseOptions(restarts=0, unique=False)
+    options = IKOptions(restarts=0, min_tension=False)
     for most in (0.3, 2.0):
         reached = solve_ik(simulation, FAR, limits=Limits(tension=most), start=start, options=options)
         assert reached.pose.tensions.max() <= most * (1 + 1e-6)
-        assert reached.reason is InverseReason.OPTIMAL
+        assert reached.status is IKStatus.LOCAL_OPTIMUM
 
 
 def test_limits_that_cannot_be_kept_together_are_told() -> None:
     """At 30 mm the cable pulls more than it may."""
     simulation = Simulation(strip_robot())
     reached = solve_ik(simulation, FAR, limits=Limits(tension=0.3, contraction={"up": (0.03, 0.06)}))
-    assert reached.reason is InverseReason.TOO_TIGHT
+    assert reached.status is IKStatus.INFEASIBLE
     assert reached.pose.result.converged

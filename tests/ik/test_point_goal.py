@@ -1,35 +1,35 @@
-"""Any point of the body at a place. Oracles: central differences, `MarkerGoal` at the same points, `solve_ik`."""
+"""Any point of the body at a place. Oracles: central differences, `MarkerTarget` at the same points, `solve_ik`."""
 
 import numpy as np
 import pytest
 from wishes import BENT, FLAT, SPACE
 
 from hydrostat.errors import InputError
-from hydrostat.ik.objectives.marker_goal import MarkerGoal
-from hydrostat.ik.objectives.objective import posture_at
-from hydrostat.ik.objectives.point_goal import PointGoal
+from hydrostat.ik.objectives.marker_target import MarkerTarget
+from hydrostat.ik.objectives.objective import state_at
+from hydrostat.ik.objectives.point_target import PointTarget
 from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.ik.tracker import Tracker
 from hydrostat.testing import check_objective
 
 
 def test_it_conforms_in_the_plane() -> None:
-    goal = PointGoal(
+    goal = PointTarget(
         points={"one": (0.11, 0.01), "two": (0.17, -0.02)}, targets={"one": (0.1, 0.04), "two": (0.15, 0.03)}
     )
     check_objective(goal, FLAT, BENT[2])
 
 
 def test_it_conforms_in_space() -> None:
-    check_objective(PointGoal(points={"a": (0.1, 0.02, 0.03)}, targets={"a": (0.08, 0.0, 0.05)}), SPACE, BENT[3])
+    check_objective(PointTarget(points={"a": (0.1, 0.02, 0.03)}, targets={"a": (0.08, 0.0, 0.05)}), SPACE, BENT[3])
 
 
 def test_at_markers_it_is_the_goal_of_markers() -> None:
     targets = {"tip": (0.17, 0.06), "top": (0.09, 0.05)}
     points = {marker.name: marker.at for marker in FLAT.robot.markers if marker.name in targets}
-    posture = posture_at(FLAT, FLAT.solve(BENT[2]))
-    found = PointGoal(points=points, targets=targets).on(FLAT)
-    known = MarkerGoal(targets={name: targets[name] for name in points}).on(FLAT)
+    posture = state_at(FLAT, FLAT.solve(BENT[2]))
+    found = PointTarget(points=points, targets=targets).bind(FLAT)
+    known = MarkerTarget(targets={name: targets[name] for name in points}).bind(FLAT)
     assert found.residual(posture) == pytest.approx(known.residual(posture))
     assert found.errors(posture) == pytest.approx(known.errors(posture))
 
@@ -41,7 +41,7 @@ def test_a_tracker_follows_a_point_that_moves() -> None:
     tracker = Tracker(FLAT)
     shares = np.linspace(0, 1, 25)[1:]
     goals = [
-        PointGoal(points=points, targets={"grip": tuple((start + share * np.array([-0.005, 0.03])).tolist())})
+        PointTarget(points=points, targets={"grip": tuple((start + share * np.array([-0.005, 0.03])).tolist())})
         for share in shares
     ]
     reached = [tracker.update(seconds=0.03, objectives=[goal]) for goal in goals for _ in range(3)][-1]
@@ -65,4 +65,4 @@ def test_a_tracker_follows_a_point_that_moves() -> None:
 )
 def test_what_is_wrong_is_named(points: dict, targets: dict, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        PointGoal(points=points, targets=targets).on(FLAT)
+        PointTarget(points=points, targets=targets).bind(FLAT)

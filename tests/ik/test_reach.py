@@ -8,8 +8,8 @@ from builders import box_robot, strip_robot
 
 import hydrostat as hs
 from hydrostat.ik import find_reach
-from hydrostat.ik.image_length import image_length, usable_spans
 from hydrostat.ik.reach import _covered_volume
+from hydrostat.ik.reach_extent import reach_extent, usable_spans
 
 TRAVEL = 0.02  # of the strip's winches [m]
 
@@ -26,7 +26,7 @@ def boundary(simulation: hs.Simulation, count: int = 40) -> np.ndarray:
     up, none = np.linspace(0.0, TRAVEL, count), np.zeros(count)
     sides = [(up, none), (none + TRAVEL, up), (up[::-1], none + TRAVEL), (none, up[::-1])]
     taken = np.concatenate([np.column_stack(side) for side in sides])
-    return simulation.solve_many(taken, jacobians=False).markers[:, 0]
+    return simulation.solve_batch(taken, jacobians=False).markers[:, 0]
 
 
 @pytest.mark.slow
@@ -100,12 +100,12 @@ def test_nothing_to_bring_is_told() -> None:
 def test_the_length_of_an_image() -> None:
     """Oracle: an ellipse of known half-axes; a line counts as the floor across; nothing counts as the floor."""
     moves = np.array([[3.0, 0.0], [0.0, 0.5]])
-    assert image_length(moves, np.array([0.1, 0.2]), dim=2, floor=1e-9) == pytest.approx(np.sqrt(0.3 * 0.1))
-    assert image_length(moves[:, :1], np.array([0.1]), dim=2, floor=1e-3) == pytest.approx(
+    assert reach_extent(moves, np.array([0.1, 0.2]), dim=2, floor=1e-9) == pytest.approx(np.sqrt(0.3 * 0.1))
+    assert reach_extent(moves[:, :1], np.array([0.1]), dim=2, floor=1e-3) == pytest.approx(
         np.sqrt(0.3 * 1e-3), rel=1e-4
     )
-    assert image_length(np.zeros((2, 0)), np.zeros(0), dim=2, floor=1e-3) == 1e-3
-    twice = image_length(np.vstack([moves, 4 * moves]), np.array([0.1, 0.2]), dim=2, floor=1e-9)
+    assert reach_extent(np.zeros((2, 0)), np.zeros(0), dim=2, floor=1e-3) == 1e-3
+    twice = reach_extent(np.vstack([moves, 4 * moves]), np.array([0.1, 0.2]), dim=2, floor=1e-9)
     assert twice == pytest.approx(2 * np.sqrt(0.3 * 0.1)), "the geometric mean of two markers"
 
 

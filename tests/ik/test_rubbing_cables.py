@@ -7,9 +7,9 @@ import pytest
 from builders import strip_robot
 
 import hydrostat as hs
-from hydrostat import friction_band
-from hydrostat.ik.objectives.objective import moves_at
-from hydrostat.ik.reached_pose import InverseReason
+from hydrostat import friction_hysteresis
+from hydrostat.ik.ik_result import IKStatus
+from hydrostat.ik.objectives.objective import state_jacobian_at
 
 SIZE = 0.2  # about that of the strip [m]
 WAVY = (0.005, 0.018, 0.008, 0.016, 0.004, 0.012)
@@ -41,7 +41,7 @@ def test_a_way_may_begin_in_another_pose() -> None:
     simulation = rubbing(0.3)
     start = simulation.solve(np.array([0.02, 0.0]))
     target = simulation.solve(np.array([0.012, 0.0]), start=start).markers["tip"]
-    reached = hs.solve_ik(simulation, {"tip": tuple(target)}, start=start, options=hs.InverseOptions(unique=False))
+    reached = hs.solve_ik(simulation, {"tip": tuple(target)}, start=start, options=hs.IKOptions(min_tension=False))
     played = simulation.solve(reached.pose.contractions, start=start)
     assert np.abs(played.nodes - reached.pose.nodes).max() < 1e-9
     assert np.abs(simulation.solve(reached.pose.contractions).nodes - played.nodes).max() > 1e-5
@@ -51,15 +51,15 @@ def test_next_to_no_friction_is_none() -> None:
     plain, rough = rubbing(0.0), rubbing(1e-12)
     target = {"tip": tuple(plain.solve(np.array([0.01, 0.0])).markers["tip"])}
     one, other = (hs.solve_ik(simulation, target) for simulation in (plain, rough))
-    assert not one.friction_band
-    assert max(other.friction_band.values()) < 1e-8
+    assert not one.friction_hysteresis
+    assert max(other.friction_hysteresis.values()) < 1e-8
     assert np.abs(one.pose.nodes - other.pose.nodes).max() < 1e-5 * SIZE
 
 
 def test_slopes_of_tensions_and_elongations_are_differences() -> None:
     simulation, step = rubbing(0.3), 1e-6
     middle = np.array([0.012, 0.0])
-    moves = moves_at(simulation, simulation.solve(middle))
+    moves = state_jacobian_at(simulation, simulation.solve(middle))
     up, down = (simulation.solve(middle * (1 + sign * step)) for sign in (1, -1))
     along = middle * 2 * step
     assert moves.tensions @ along == pytest.approx(up.tensions - down.tensions, rel=1e-4, abs=1e-9)
@@ -69,12 +69,12 @@ def test_slopes_of_tensions_and_elongations_are_differences() -> None:
 def test_the_band_is_that_of_coming_from_above() -> None:
     simulation = rubbing(0.3)
     pose = simulation.solve(np.array([0.012, 0.0]))
-    band = friction_band(simulation, pose, overshoot=0.25)
+    band = friction_hysteresis(simulation, pose, overshoot=0.25)
     back = simulation.solve(pose.contractions, start=simulation.solve(np.array([0.015, 0.0]), start=pose))
     assert band["tip"] == pytest.approx(float(np.linalg.norm(back.markers["tip"] - pose.markers["tip"])), abs=1e-9)
-    assert band["tip"] > friction_band(simulation, pose, overshoot=0.02)["tip"] > 1e-6
+    assert band["tip"] > friction_hysteresis(simulation, pose, overshoot=0.02)["tip"] > 1e-6
     with pytest.raises(hs.InputError, match="overshoot must be a share above 0, not 0"):
-        friction_band(simulation, pose, overshoot=0.0)
+        friction_hysteresis(simulation, pose, overshoot=0.0)
 
 
 def test_a_tracker_goes_on_from_pose_to_pose() -> None:
@@ -93,10 +93,10 @@ def test_a_tracker_that_must_turn_back_never_says_that_there_is_no_equilibrium()
     simulation = rubbing(0.3)
     tracker = hs.Tracker(simulation)
     there, back = (simulation.solve(np.array([pull, 0.0])).markers["tip"] for pull in (0.012, 0.0117))
-    reasons = [tracker.update({"tip": tuple(there)}, seconds=0.03).reason for _ in range(6)]
-    reasons += [tracker.update({"tip": tuple(back)}, seconds=0.03).reason for _ in range(8)]
-    assert InverseReason.STUCK in reasons
-    assert InverseReason.NO_EQUILIBRIUM not in reasons
+    reasons = [tracker.update({"tip": tuple(there)}, seconds=0.03).status for _ in range(6)]
+    reasons += [tracker.update({"tip": tuple(back)}, seconds=0.03).status for _ in range(8)]
+    assert IKStatus.STALLED in reasons
+    assert IKStatus.NO_EQUILIBRIUM not in reasons
 
 
 def test_a_trajectory_remembers_its_way() -> None:

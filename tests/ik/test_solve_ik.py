@@ -10,13 +10,13 @@ from scipy.optimize import least_squares, minimize
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import find_crossings
-from hydrostat.ik import InverseOptions, InverseReason, ReachedPose, solve_ik
+from hydrostat.ik import IKOptions, IKResult, IKStatus, solve_ik
 from hydrostat.ik.limits import Limits, bounds
-from hydrostat.ik.objectives.marker_goal import MarkerGoal
+from hydrostat.ik.objectives.marker_target import MarkerTarget
 from hydrostat.ik.search.inverse_search import InverseSearch
 from hydrostat.ik.search.problem import InverseProblem
 from hydrostat.mechanics import NewtonOptions
-from hydrostat.robot import Marker, Pose, Robot, load_robot
+from hydrostat.robot import Marker, PoseTarget, Robot, load_robot
 from hydrostat.simulation import Simulation
 
 TIGHT = NewtonOptions(tolerance=1e-13)
@@ -37,8 +37,8 @@ def targets(simulation: Simulation, contractions: list[float]) -> dict[str, tupl
 
 
 def marker_search(simulation: Simulation, goals: dict[str, tuple[float, ...]]) -> InverseSearch:
-    terms = [MarkerGoal(targets=goals).on(simulation)]
-    return InverseSearch(InverseProblem(simulation, terms, bounds(simulation, Limits()), InverseOptions()))
+    terms = [MarkerTarget(targets=goals).bind(simulation)]
+    return InverseSearch(InverseProblem(simulation, terms, bounds(simulation, Limits()), IKOptions()))
 
 
 def size(simulation: Simulation) -> float:
@@ -62,15 +62,15 @@ def test_hidden_contractions_are_found(name: str) -> None:
     reached = solve_ik(simulation, targets(simulation, hidden))
     assert max(reached.errors.values()) < 1e-6 * size(simulation)
     assert np.abs(reached.pose.contractions - hidden).max() < 1e-4 * max(hidden)
-    assert reached.reason is InverseReason.REACHED
+    assert reached.status is IKStatus.REACHED
 
 
 def test_the_regulariser_hides_no_target() -> None:
     """It falls with the error, so that any tolerance can be met."""
     simulation = Simulation(two_markers(strip_robot()))
-    options = InverseOptions(tolerance=1e-9)
+    options = IKOptions(tolerance=1e-9)
     reached = solve_ik(simulation, targets(simulation, [0.02, 0.008]), options=options)
-    assert reached.reason is InverseReason.REACHED
+    assert reached.status is IKStatus.REACHED
     assert max(reached.errors.values()) < 1e-9 * size(simulation)
     assert reached.pose.contractions == pytest.approx([0.02, 0.008], rel=1e-6)
 
@@ -87,7 +87,7 @@ def test_the_gradient_of_the_objective(contractions: list[float]) -> None:
         return search.problem.objective(search.begin(simulation.solve(contractions, start=start)), 0.0)
 
     here = search.begin(start)
-    gradient = search.problem.slopes(here).T @ here.residual
+    gradient = search.problem.jacobian(here).T @ here.residual
     found = [(objective(given + d) - objective(given - d)) / (2 * step) for d in step * np.eye(2)]
     assert gradient == pytest.approx(found, rel=1e-5, abs=1e-7 * np.abs(gradient).max())
 
@@ -107,7 +107,7 @@ def test_scipy_finds_nothing_better(name: str, unchecked: None) -> None:
     """Our objective is at most that of two bounded optimisers of another kind, begun at our answer and elsewhere."""
     robot, goals = OPTIMA[name]
     simulation = Simulation(robot)
-    reached = solve_ik(simulation, Pose(name="any", targets=goals))
+    reached = solve_ik(simulation, PoseTarget(name="any", targets=goals))
     ours = sum(error**2 for error in reached.errors.values()) / 2
     low = np.array([-winch.release for winch in robot.winches])
     high = np.array([winch.travel for winch in robot.winches])
@@ -125,7 +125,7 @@ def test_scipy_finds_nothing_better(name: str, unchecked: None) -> None:
     free = minimize(objective, inner, method="Nelder-Mead", bounds=bounds, options={"maxfev": 60})
     elsewhere = least_squares(residual, np.full(len(inner), 0.01), bounds=bounds.T, x_scale=0.01, diff_step=1e-4)
     assert ours <= min(squares.cost, free.fun, elsewhere.cost) * (1 + 1e-4)
-    assert reached.reason is InverseReason.OPTIMAL
+    assert reached.status is IKStatus.LOCAL_OPTIMUM
     assert reached.optimality < 1e-3
 
 
@@ -133,13 +133,13 @@ def test_optimality_tells_an_optimum_from_a_pose_on_the_way() -> None:
     """The check can fail."""
     simulation = Simulation(strip_robot())
     goals = {"tip": (0.18, 0.06)}
-    early = solve_ik(simulation, goals, options=InverseOptions(iterations=1, restarts=0))
-    assert early.reason is InverseReason.ITERATION_LIMIT
+    early = solve_ik(simulation, goals, options=IKOptions(iterations=1, restarts=0))
+    assert early.status is IKStatus.ITERATION_LIMIT
     assert early.optimality > 0.1
     assert early.optimality > 100 * solve_ik(simulation, goals).optimality
 
 
-def kept(simulation: Simulation, reached: ReachedPose) -> bool:
+def kept(simulation: Simulation, reached: IKResult) -> bool:
     winches = simulation.robot.winches
     pairs = zip(reached.pose.contractions, winches, strict=True)
     return all(-winch.release <= value <= winch.travel for value, winch in pairs)
@@ -154,7 +154,7 @@ def test_contractions_stay_within_travel_and_release(release: float) -> None:
     reached = solve_ik(simulation, {"tip": (0.05, 0.2)})
     assert kept(simulation, reached)
     assert reached.pose.contractions[0] == 0.02
-    assert reached.reason is InverseReason.OPTIMAL
+    assert reached.status is IKStatus.LOCAL_OPTIMUM
     # The lower cable is in the way: it lets out until it is slack or at its end.
     assert reached.pose.tensions[1] < 1e-3 * reached.pose.tensions[0] or reached.pose.contractions[1] == -release
 
@@ -179,14 +179,14 @@ def test_the_antagonist_stays_at_rest() -> None:
 def test_a_pose_that_cables_cannot_push_to_ends_at_rest() -> None:
     simulation = Simulation(strip_robot())
     reached = solve_ik(simulation, {"tip": (0.25, 0.0)})
-    assert reached.reason is InverseReason.OPTIMAL
+    assert reached.status is IKStatus.LOCAL_OPTIMUM
     assert reached.pose.contractions == pytest.approx([0.0, 0.0], abs=1e-6)
     assert reached.rms_error == pytest.approx(0.05, rel=1e-3)
 
 
 def test_at_rest_already() -> None:
     reached = solve_ik(Simulation(strip_robot()), {"tip": (0.2, 0.0)})
-    assert (reached.reason, reached.iterations, reached.solves) == (InverseReason.REACHED, 0, 0)
+    assert (reached.status, reached.iterations, reached.solves) == (IKStatus.REACHED, 0, 0)
 
 
 @pytest.mark.parametrize("begin", [[0.05, 0.0], [0.0, 0.02], [0.08, -0.01]])
@@ -197,7 +197,7 @@ def test_a_start_is_taken_up_within_the_bounds(begin: list[float]) -> None:
     reached = solve_ik(simulation, goals, start=start)
     assert kept(simulation, reached)
     assert reached.rms_error < 1e-6 * size(simulation)
-    none = solve_ik(simulation, goals, start=start, options=InverseOptions(iterations=0, restarts=0))
+    none = solve_ik(simulation, goals, start=start, options=IKOptions(iterations=0, restarts=0))
     assert none.pose.contractions == pytest.approx(np.clip(begin, 0.0, 0.06))
 
 
@@ -232,7 +232,7 @@ def test_all_poses_of_all_examples(folder, unchecked: None) -> None:
     for pose in robot.poses.values():
         reached = solve_ik(simulation, pose)
         rest = np.sqrt(np.mean([np.sum((places[name] - at) ** 2) for name, at in pose.targets.items()]))
-        assert reached.reason in (InverseReason.REACHED, InverseReason.OPTIMAL)
+        assert reached.status in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM)
         assert reached.optimality < 1e-4
         assert reached.rms_error <= rest * (1 + 1e-12)
         assert kept(simulation, reached)
@@ -259,8 +259,8 @@ def test_targets_far_out_of_reach_take_few_steps() -> None:
     draw = np.random.default_rng(0)
     for _ in range(4):
         goals = {m.name: tuple((np.array(m.at) + draw.normal(0, 0.05, 2)).tolist()) for m in simulation.robot.markers}
-        reached = solve_ik(simulation, goals, options=InverseOptions(restarts=0))
-        assert reached.reason is InverseReason.OPTIMAL
+        reached = solve_ik(simulation, goals, options=IKOptions(restarts=0))
+        assert reached.status is IKStatus.LOCAL_OPTIMUM
         assert reached.optimality < 1e-4
         assert reached.iterations < 40
 
@@ -274,7 +274,7 @@ def test_a_start_of_another_material_is_relaxed_first(unchecked: None) -> None:
     goals = {name: tuple(place.tolist()) for name, place in start.markers.items()}
     reached = solve_ik(simulation, goals, start=start)
     force = np.abs(simulation.assembly.gradient(reached.pose.nodes, reached.pose.contractions)).max()
-    assert force <= simulation.solver.allowed(reached.pose.nodes, reached.pose.contractions)
+    assert force <= simulation.solver.force_tolerance(reached.pose.nodes, reached.pose.contractions)
     with pytest.raises(InputError, match="pose of this robot"):
         solve_ik(simulation, goals, start=Simulation(strip_robot(columns=8)).solve(np.zeros(2)))
     with pytest.raises(InputError, match="a result's"):
@@ -289,7 +289,7 @@ def test_a_start_of_another_material_is_relaxed_first(unchecked: None) -> None:
 )  # fmt: skip
 def test_wrong_options_are_told_in_one_line(wrong: dict, unchecked: None) -> None:
     with pytest.raises(InputError, match=next(iter(wrong))):
-        InverseOptions(**wrong)
+        IKOptions(**wrong)
 
 
 def test_every_answer_rests_within_its_limits() -> None:
@@ -298,8 +298,8 @@ def test_every_answer_rests_within_its_limits() -> None:
     draw = np.random.default_rng(1)
     for steps in (0, 1, 2, 3, 100):
         goals = {"tip": tuple(draw.uniform(0.05, 0.2, 2).tolist())}
-        reached = solve_ik(simulation, goals, options=InverseOptions(iterations=steps, restarts=0))
+        reached = solve_ik(simulation, goals, options=IKOptions(iterations=steps, restarts=0))
         force = np.abs(simulation.assembly.gradient(reached.pose.nodes, reached.pose.contractions)).max()
-        assert force <= simulation.solver.allowed(reached.pose.nodes, reached.pose.contractions)
+        assert force <= simulation.solver.force_tolerance(reached.pose.nodes, reached.pose.contractions)
         assert simulation.assembly.stiffness(reached.pose.nodes, reached.pose.contractions).definite
         assert kept(simulation, reached)

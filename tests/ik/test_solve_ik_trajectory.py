@@ -8,10 +8,10 @@ from arches import arch
 from builders import strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.ik import InverseOptions, Keyframe, Limits, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
-from hydrostat.ik.trajectory.trajectory import stray
-from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import Simulation, SolvedPose, follow_branch
+from hydrostat.ik import IKOptions, Keyframe, Limits, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
+from hydrostat.ik.trajectory.trajectory import path_deviation
+from hydrostat.robot import PoseTarget, Robot
+from hydrostat.simulation import Equilibrium, Simulation, continue_branch
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -27,11 +27,11 @@ def simulation() -> Simulation:
     return Simulation(strip())
 
 
-def poses(simulation: Simulation) -> list[Pose]:
+def poses(simulation: Simulation) -> list[PoseTarget]:
     """Poses with contractions that are known."""
     hidden = {"up": [0.03, 0.0], "half": [0.015, 0.0], "down": [0.0, 0.02]}
     return [
-        Pose(name=name, targets={"tip": tuple(simulation.solve(np.array(values)).markers["tip"].tolist())})
+        PoseTarget(name=name, targets={"tip": tuple(simulation.solve(np.array(values)).markers["tip"].tolist())})
         for name, values in hidden.items()
     ]
 
@@ -45,8 +45,8 @@ def test_every_keyframe_is_the_pose_that_inverse_kinematics_finds(simulation: Si
     wanted = poses(simulation)
     found = solve_ik_trajectory(simulation, wanted, path=path, options=COARSE)
     start = None
-    for key, pose in zip(found.keys, wanted, strict=True):
-        alone = solve_ik(simulation, pose, start=start, options=InverseOptions(restarts=0))
+    for key, pose in zip(found.keyframes, wanted, strict=True):
+        alone = solve_ik(simulation, pose, start=start, options=IKOptions(restarts=0))
         start = alone.pose
         assert key.name == pose.name
         assert key.same
@@ -54,8 +54,8 @@ def test_every_keyframe_is_the_pose_that_inverse_kinematics_finds(simulation: Si
         assert found.times[key.index] == key.time
         assert np.abs(key.pose.nodes - alone.pose.nodes).max() < 1e-5
         assert (found.poses[key.index].nodes == key.pose.nodes).all()
-    assert found.snaps == ()
-    assert found.keys[-1].time == found.seconds
+    assert found.branch_jumps == ()
+    assert found.keyframes[-1].time == found.seconds
 
 
 def test_each_sample_is_an_equilibrium_at_its_contractions(simulation: Simulation) -> None:
@@ -93,13 +93,13 @@ def test_the_profile_is_what_a_motion_plays(simulation: Simulation) -> None:
     for time, contractions in zip(found.times, found.contractions, strict=True):
         assert profile.at(float(time)) == pytest.approx(contractions, abs=1e-15)
     *_, last = simulation.play(profile, found.seconds + 1.0, 0.05)
-    assert last.markers["tip"] == pytest.approx(found.keys[-1].pose.markers["tip"], abs=2e-3)
+    assert last.markers["tip"] == pytest.approx(found.keyframes[-1].pose.markers["tip"], abs=2e-3)
 
 
 def test_times_are_kept_or_refused(simulation: Simulation) -> None:
     up, _, down = poses(simulation)
     found = solve_ik_trajectory(simulation, [(2.0, up), (5.0, down)], options=COARSE)
-    assert [key.time for key in found.keys] == pytest.approx([2.0, 5.0])
+    assert [key.time for key in found.keyframes] == pytest.approx([2.0, 5.0])
     with pytest.raises(InputError, match=r"0\.3 s on the way to up are too short .* it takes about 1\.\d* s"):
         solve_ik_trajectory(simulation, [(0.3, up)], options=COARSE)
 
@@ -107,10 +107,10 @@ def test_times_are_kept_or_refused(simulation: Simulation) -> None:
 def test_a_hold_stays_and_a_loop_comes_back(simulation: Simulation) -> None:
     up, _, down = poses(simulation)
     found = solve_ik_trajectory(simulation, [up, down], hold=0.5, loop=True, options=COARSE)
-    stays = (found.times >= found.keys[0].time) & (found.times <= found.keys[0].time + 0.5)
-    assert (found.contractions[stays] == found.contractions[found.keys[0].index]).all()
+    stays = (found.times >= found.keyframes[0].time) & (found.times <= found.keyframes[0].time + 0.5)
+    assert (found.contractions[stays] == found.contractions[found.keyframes[0].index]).all()
     assert np.ptp(found.times[stays]) == pytest.approx(0.5)
-    assert found.keys[-1].name == "rest"
+    assert found.keyframes[-1].name == "rest"
     assert not found.contractions[-1].any()
     assert np.abs(found.poses[-1].nodes - simulation.rest.nodes).max() < 1e-7
 
@@ -122,29 +122,29 @@ def test_markers_go_straight(simulation: Simulation) -> None:
     tip = free.solve({"up": 0.03, "down": 0.01}).markers["tip"]
     first = solve_ik(free, {"tip": tuple(tip.tolist())}).pose
     target = {"tip": (float(tip[0]), float(tip[1]) - 0.02)}
-    straight = solve_ik_trajectory(free, [target], start=first, path="straight", options=COARSE).keys[0]
-    smooth = solve_ik_trajectory(free, [target], start=first, options=COARSE).keys[0]
-    assert straight.stray < 2e-5
-    assert smooth.stray > 10 * straight.stray
+    straight = solve_ik_trajectory(free, [target], start=first, path="straight", options=COARSE).keyframes[0]
+    smooth = solve_ik_trajectory(free, [target], start=first, options=COARSE).keyframes[0]
+    assert straight.path_deviation < 2e-5
+    assert smooth.path_deviation > 10 * straight.path_deviation
     assert straight.rms_error < 1e-5
 
 
 def test_stray_is_the_distance_from_the_line() -> None:
     places = np.array([[0.0, 0.0], [1.0, 0.5], [2.0, -0.75], [3.0, 0.0]])
-    assert stray({"tip": places}) == pytest.approx(0.75)
-    assert stray({"tip": places[:1], "nose": places[[0, 3]]}) == 0.0
-    assert stray({"tip": places[[0, 1, 0]]}) == pytest.approx(np.hypot(1.0, 0.5))
+    assert path_deviation({"tip": places}) == pytest.approx(0.75)
+    assert path_deviation({"tip": places[:1], "nose": places[[0, 3]]}) == 0.0
+    assert path_deviation({"tip": places[[0, 1, 0]]}) == pytest.approx(np.hypot(1.0, 0.5))
 
 
 def test_a_snap_is_told_where_the_branch_folds() -> None:
     """Oracle: the fold of the same branch, followed by arclength."""
     simulation = Simulation(arch())
     goal = np.array([0.25])
-    branch = follow_branch(simulation, simulation.rest, goal)
+    branch = continue_branch(simulation, simulation.rest, goal)
     assert len(branch.folds) == 1
     through = simulation.solve(goal, start=simulation.rest)
     found = solve_ik_trajectory(simulation, [through], path="linear", options=COARSE)
-    (snap,) = found.snaps
+    (snap,) = found.branch_jumps
     fold = branch.folds[0] * goal[0]
     sample = int(np.flatnonzero(found.times == snap.time)[0])
     assert found.contractions[sample - 1, 0] < fold <= found.contractions[sample, 0] + 1e-4
@@ -155,33 +155,33 @@ def test_a_snap_is_told_where_the_branch_folds() -> None:
 def test_a_branch_without_folds_does_not_snap() -> None:
     """Half the way to the fold, at so few samples that steps have to be halved."""
     simulation = Simulation(arch())
-    branch = follow_branch(simulation, simulation.rest, np.array([0.25]))
+    branch = continue_branch(simulation, simulation.rest, np.array([0.25]))
     near = simulation.solve(np.array([0.5 * branch.folds[0] * 0.25]))
     options = TrajectoryOptions(rate=1, compare=False)
     found = solve_ik_trajectory(simulation, [near], speed=1.0, acceleration=10.0, options=options)
     assert len(found.times) == 2
-    assert found.snaps == ()
-    assert found.keys[0].same
+    assert found.branch_jumps == ()
+    assert found.keyframes[0].same
 
 
 def test_what_a_search_from_rest_comes_nearer_to_is_taken_on_the_same_branch(simulation: Simulation) -> None:
     """In one step a search from the pose before misses by far; from where the way to the answer from rest ends, not."""
     down = poses(simulation)[2]
     start = simulation.solve({"up": 0.03})
-    one = InverseOptions(iterations=1, restarts=0)
+    one = IKOptions(iterations=1, restarts=0)
     alone = solve_ik(simulation, down, start=start, options=one)
     free = solve_ik(simulation, down, options=one)
     assert free.rms_error < 0.5 * alone.rms_error
     options = TrajectoryOptions(rate=20, inverse=one)
-    key = solve_ik_trajectory(simulation, [down], start=start, options=options).keys[0]
+    key = solve_ik_trajectory(simulation, [down], start=start, options=options).keyframes[0]
     assert key.rms_error < 0.1 * free.rms_error
     assert key.free_error is None
     assert key.same
-    unled = solve_ik_trajectory(simulation, [down], start=start, options=replace(options, compare=False)).keys[0]
+    unled = solve_ik_trajectory(simulation, [down], start=start, options=replace(options, compare=False)).keyframes[0]
     assert unled.rms_error == pytest.approx(alone.rms_error, rel=1e-2)
 
 
-def two_poses() -> tuple[Simulation, SolvedPose, SolvedPose]:
+def two_poses() -> tuple[Simulation, Equilibrium, Equilibrium]:
     """The arch up, and snapped through, at the same contractions."""
     simulation = Simulation(arch())
     up = simulation.solve({"down": 0.145})
@@ -196,8 +196,8 @@ def test_what_only_another_branch_reaches_is_told() -> None:
     target = {"top": tuple(up.markers["top"].tolist())}
     limits = Limits(contraction={"down": (0.143, 0.3)})
     found = solve_ik_trajectory(simulation, [target], start=through, limits=limits, options=COARSE)
-    (key,) = found.keys
-    assert found.snaps == ()
+    (key,) = found.keyframes
+    assert found.branch_jumps == ()
     assert key.same
     assert key.rms_error > 0.01
     assert key.free_error is not None
@@ -210,11 +210,11 @@ def test_a_way_that_leads_to_another_pose_is_told() -> None:
     simulation, up, through = two_poses()
     line = "  the way leads to another pose than the one that was sought: contractions do not decide here"
     found = solve_ik_trajectory(simulation, [through], options=COARSE)
-    assert not found.keys[0].same
+    assert not found.keyframes[0].same
     assert line in found.lines()
     assert np.abs(found.poses[-1].nodes - up.nodes).max() < 1e-6
     found = solve_ik_trajectory(simulation, [up], options=COARSE)
-    assert found.keys[0].same
+    assert found.keyframes[0].same
     assert line not in found.lines()
 
 
@@ -222,7 +222,7 @@ def test_a_limit_on_the_tension_holds_in_keyframes_and_is_told_between(simulatio
     up, _, down = poses(simulation)
     most = 0.5 * float(simulation.solve({"up": 0.03}).tensions.max())
     found = solve_ik_trajectory(simulation, [up, down], limits=Limits(tension=most), options=COARSE)
-    for key in found.keys:
+    for key in found.keyframes:
         assert key.pose.tensions.max() <= most * (1 + 1e-5)
     assert any("pulls as hard as it may" in line for line in found.lines())
     assert not any("more than" in line for line in found.lines())
@@ -236,12 +236,12 @@ def test_a_tension_above_its_limit_is_told_with_its_place() -> None:
     limits = Limits(tension=float(past.tensions[0]) * 1.02)
     found = solve_ik_trajectory(simulation, [past], limits=limits, options=COARSE)
     sample = int(np.argmax(found.tensions[:, 0]))
-    assert 0 < sample < found.keys[0].index
+    assert 0 < sample < found.keyframes[0].index
     words = f"cable 1 (down) pulls with {found.tensions.max():.3g} N, more than {limits.tension:.3g} N"
     assert f"at {found.times[sample]:.2f} s, on the way to keyframe 1, {words}" in found.lines()
     words = f"cable 1 (down) pulls with {far.tensions[0]:.3g} N, more than {limits.tension:.3g} N"
     found = solve_ik_trajectory(simulation, [past, far, past], limits=limits, options=COARSE)
-    assert f"at {found.keys[1].time:.2f} s, in keyframe 2, {words}" in found.lines()
+    assert f"at {found.keyframes[1].time:.2f} s, in keyframe 2, {words}" in found.lines()
     found = solve_ik_trajectory(simulation, [past], start=far, limits=limits, options=COARSE)
     assert f"at 0.00 s, at the start, {words}" in found.lines()
 
@@ -256,8 +256,8 @@ def test_peaks_between_samples_are_told(simulation: Simulation, path: str) -> No
         (line,) = (line for line in found.lines() if line.startswith(f"largest {what}: "))
         told = line.removeprefix(f"largest {what}: ").split(f" of {limit} mm/s")[0]
         assert float(told) == pytest.approx(limit, rel=2e-3)
-    assert (np.abs(found.speeds).max(axis=0) <= found.fastest * (1 + 1e-9)).all()
-    assert (np.abs(found.accelerations).max(axis=0) <= found.hardest * (1 + 1e-9)).all()
+    assert (np.abs(found.speeds).max(axis=0) <= found.peak_speeds * (1 + 1e-9)).all()
+    assert (np.abs(found.accelerations).max(axis=0) <= found.peak_accelerations * (1 + 1e-9)).all()
 
 
 @pytest.mark.parametrize("as_start", [False, True])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
+from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.robot import gallery_folder, load_robot
 from hydrostat.simulation import Simulation
 
@@ -11,20 +11,20 @@ SIMULATION = Simulation(load_robot(gallery_folder("starfish")))
 PLACES = {marker.name: marker.at for marker in SIMULATION.robot.markers}
 
 
-def answers(targets: dict[str, tuple[float, float]]) -> tuple[ReachedPose, ReachedPose]:
+def answers(targets: dict[str, tuple[float, float]]) -> tuple[IKResult, IKResult]:
     """Without minding the others, and with."""
-    free, minding = (solve_ik(SIMULATION, targets, options=InverseOptions(stay=stay)) for stay in (False, True))
+    free, minding = (solve_ik(SIMULATION, targets, options=IKOptions(hold_free_markers=stay)) for stay in (False, True))
     return free, minding
 
 
-def strayed(reached: ReachedPose) -> float:
+def strayed(reached: IKResult) -> float:
     """How far the markers that are not named have gone from rest, in all [m]."""
     places = reached.pose.markers
     others = [marker for marker in SIMULATION.robot.markers if marker.name not in reached.wanted.targets]
     return float(np.linalg.norm([np.linalg.norm(places[marker.name] - marker.at) for marker in others]))
 
 
-def worth(reached: ReachedPose) -> float:
+def worth(reached: IKResult) -> float:
     """What should be least [m]."""
     size = SIMULATION.robot.body.mesh.size
     return float(np.linalg.norm(list(reached.errors.values()))) + strayed(reached) ** 2 / (4 * size)
@@ -45,8 +45,8 @@ def test_out_of_reach_others_move_only_for_what_they_gain(name: str) -> None:
                 continue
             pose = SIMULATION.solve(near, start=minding.pose)
             missed = {name: float(np.linalg.norm(pose.markers[name] - minding.wanted.targets[name]))}
-            other = ReachedPose(
-                target=minding.target, pose=pose, errors=missed, reason=minding.reason, iterations=0, solves=0
+            other = IKResult(
+                target=minding.target, pose=pose, errors=missed, status=minding.status, iterations=0, solves=0
             )
             assert worth(other) > worth(minding) - 2e-5
 
@@ -60,5 +60,5 @@ def test_in_reach_nothing_changes() -> None:
 
 def test_a_pose_of_all_markers_has_no_others() -> None:
     pose = SIMULATION.robot.pose("wave")
-    free, minding = (solve_ik(SIMULATION, pose, options=InverseOptions(stay=stay)) for stay in (False, True))
+    free, minding = (solve_ik(SIMULATION, pose, options=IKOptions(hold_free_markers=stay)) for stay in (False, True))
     np.testing.assert_array_equal(free.pose.contractions, minding.pose.contractions)

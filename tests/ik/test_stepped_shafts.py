@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.ik import Effort, EffortKind, InverseOptions, Limits, MarkerGoal, solve_ik
+from hydrostat.ik import Effort, EffortKind, IKOptions, Limits, MarkerTarget, solve_ik
 from hydrostat.ik.limits import bounds
-from hydrostat.ik.objectives.objective import moves_at, posture_at, posture_of
+from hydrostat.ik.objectives.objective import posture_of, state_at, state_jacobian_at
 from hydrostat.ik.search.inverse_search import InverseSearch
-from hydrostat.ik.search.linear_model import channels, slopes
+from hydrostat.ik.search.linear_model import channels, stack_jacobians
 from hydrostat.ik.search.problem import InverseProblem, _full_tension
 from hydrostat.robot import Cable, Robot, Winch
 from hydrostat.simulation import Simulation
@@ -49,14 +49,14 @@ def test_slopes_of_effort(kind: EffortKind) -> None:
 
 
 def test_slopes_of_markers() -> None:
-    check_objective(MarkerGoal(targets={"tip": (0.18, 0.03)}), Simulation(stepped()), PULLED)
+    check_objective(MarkerTarget(targets={"tip": (0.18, 0.03)}), Simulation(stepped()), PULLED)
 
 
 def test_a_model_has_the_slopes_of_the_pose() -> None:
     simulation = Simulation(stepped())
     pose = simulation.solve(PULLED)
-    expected = moves_at(simulation, pose)
-    found = slopes(simulation, posture_at(simulation, pose), simulation.stiffness(pose), np.array([0, 2]))
+    expected = state_jacobian_at(simulation, pose)
+    found = stack_jacobians(simulation, state_at(simulation, pose), simulation.stiffness(pose), np.array([0, 2]))
     for part in ("nodes", "elongations", "tensions"):
         want = getattr(expected, part)
         assert np.abs(getattr(found, part) - want).max() < 1e-6 * np.abs(want).max()
@@ -100,12 +100,12 @@ def test_a_shaft_that_hardly_pulls_is_let_go() -> None:
     robot = robot.with_network(robot.winches, [replace(cable, spool_radius=0.005) for cable in robot.cables])
     simulation = Simulation(robot)
     pose = simulation.solve(np.array([0.01665, 0.028]))
-    goal = MarkerGoal(targets={"tip": tuple(pose.markers["tip"])}).on(simulation)
-    options = InverseOptions(tolerance=1e-3)
+    goal = MarkerTarget(targets={"tip": tuple(pose.markers["tip"])}).bind(simulation)
+    options = IKOptions(tolerance=1e-3)
     search = InverseSearch(InverseProblem(simulation, [goal], bounds(simulation, Limits()), options))
     state = search.begin(pose)
     assert 0 < state.posture.tensions[0] < 1e-3 * state.posture.tensions[2]
-    tidied = search.tidied(state)
+    tidied = search.drop_slack(state)
     assert tidied.posture.elongations[:2].max() <= 0
     assert tidied.values[0] == pytest.approx(0.0)
 
@@ -120,8 +120,8 @@ def test_weights_count_what_cables_take_in() -> None:
     cables = [replace(cable, winch=str(number), spool_radius=None) for number, cable in enumerate(robot.cables)]
     shared, apart = Simulation(robot), Simulation(robot.with_network(winches, cables))
     assert _full_tension(shared) == pytest.approx(_full_tension(apart), rel=1e-9)
-    slack = posture_at(shared, shared.solve(np.array([0.0, 0.005])))
-    found, expected = (Effort(of="slack").on(simulation).residual(slack) for simulation in (shared, apart))
+    slack = state_at(shared, shared.solve(np.array([0.0, 0.005])))
+    found, expected = (Effort(of="slack").bind(simulation).residual(slack) for simulation in (shared, apart))
     assert found == pytest.approx(expected, rel=1e-12)
     assert (found != 0).sum() == 2
 

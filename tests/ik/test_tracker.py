@@ -9,7 +9,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.ik import InverseOptions, InverseReason, Limits, Tracker, solve_ik
+from hydrostat.ik import IKOptions, IKStatus, Limits, Tracker, solve_ik
 from hydrostat.simulation import Simulation
 
 INTERVAL = 1 / 30
@@ -34,7 +34,7 @@ def test_a_moving_target_is_followed_by_real_poses(robot) -> None:
         assert max(reached.errors.values()) < 5e-3 * robot.body.mesh.size
     for _ in range(6):
         reached = tracker.update(targets, seconds=INTERVAL)
-    assert reached.reason is InverseReason.REACHED
+    assert reached.status is IKStatus.REACHED
     assert max(reached.errors.values()) < 1e-6 * robot.body.mesh.size
 
 
@@ -122,7 +122,7 @@ def test_a_start_above_the_limit_of_tension_is_brought_below_it() -> None:
 @pytest.mark.slow
 def test_a_target_that_moves_on_after_long_rest_is_followed() -> None:
     simulation = Simulation(strip_robot())
-    tracker = Tracker(simulation, options=InverseOptions(tolerance=1e-15))
+    tracker = Tracker(simulation, options=IKOptions(tolerance=1e-15))
     here, there = (
         {"tip": tuple(simulation.solve(np.array(a)).markers["tip"].tolist())} for a in ([0.01, 0.0], [0.03, 0.0])
     )
@@ -139,7 +139,7 @@ class Known:
 
     contractions: np.ndarray
     error: float = 0.0
-    doubt: float = 0.0
+    uncertainty: float = 0.0
     robot: str = "strip"
 
     def check(self, robot) -> None:
@@ -158,7 +158,7 @@ def test_a_tracker_goes_at_once_where_a_model_leads() -> None:
     robot = strip_robot()
     simulation = Simulation(robot)
     target = {"tip": tuple(simulation.solve(HIDDEN).markers["tip"].tolist())}
-    short = InverseOptions(largest_step=0.02)
+    short = IKOptions(largest_step=0.02)
     alone = Tracker(simulation, options=short).update(target, seconds=INTERVAL)
     model = Known(0.99 * HIDDEN, robot=robot.name)
     led = Tracker(simulation, options=short, model=model).update(target, seconds=INTERVAL)
@@ -173,7 +173,7 @@ def test_what_a_model_says_in_vain_changes_nothing() -> None:
     simulation = Simulation(robot)
     target = {"tip": tuple(simulation.solve(HIDDEN).markers["tip"].tolist())}
     alone = Tracker(simulation).update(target, seconds=INTERVAL).pose.contractions
-    lying, doubting = Known(HIDDEN[::-1].copy(), robot=robot.name), Known(HIDDEN, doubt=1.0, robot=robot.name)
+    lying, doubting = Known(HIDDEN[::-1].copy(), robot=robot.name), Known(HIDDEN, uncertainty=1.0, robot=robot.name)
     for model in (lying, doubting):
         found = Tracker(simulation, model=model).update(target, seconds=INTERVAL).pose.contractions
         assert (found == alone).all()
@@ -203,10 +203,10 @@ def test_an_outlook_tells_the_step_that_the_next_update_takes() -> None:
     limits = Limits(rate=0.05)
     tracker, targets = Tracker(simulation, limits=limits), path(simulation, [0.012, 0.004], 12)
     with pytest.raises(InputError, match="needs an update"):
-        tracker.outlook(seconds=INTERVAL)
+        tracker.linearize(seconds=INTERVAL)
     for before, after in pairwise(targets):
         tracker.update(before, seconds=INTERVAL)
-        outlook = pickle.loads(pickle.dumps(tracker.outlook(seconds=INTERVAL)))
+        outlook = pickle.loads(pickle.dumps(tracker.linearize(seconds=INTERVAL)))
         told, here = outlook.towards(after), tracker.pose.contractions
         assert np.abs(told - here).max() <= 0.05 * INTERVAL * (1 + 1e-9)
         assert tracker.update(after, seconds=INTERVAL).pose.contractions == pytest.approx(told, abs=1e-9)

@@ -8,12 +8,12 @@ import trimesh
 from builders import box_robot, strip_robot
 
 from hydrostat.geometry import Outline, Surface
-from hydrostat.ik.objectives.centre_goal import CentreGoal
-from hydrostat.ik.objectives.closeness import Closeness
+from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
 from hydrostat.ik.objectives.effort import Effort
-from hydrostat.ik.objectives.marker_goal import MarkerGoal
+from hydrostat.ik.objectives.marker_target import MarkerTarget
 from hydrostat.ik.objectives.objective import Objective
-from hydrostat.ik.objectives.shape_goal import ShapeGoal
+from hydrostat.ik.objectives.pose_regularizer import PoseRegularizer
+from hydrostat.ik.objectives.shape_target import ShapeTarget
 from hydrostat.robot import Marker, Robot
 from hydrostat.simulation import Simulation
 
@@ -77,31 +77,31 @@ def capsule() -> Surface:
 
 
 PLANE: Mapping[str, Objective] = {
-    "markers": MarkerGoal(targets={"tip": (0.17, 0.06), "top": (0.09, 0.05)}),
-    "weighted markers": MarkerGoal(
+    "markers": MarkerTarget(targets={"tip": (0.17, 0.06), "top": (0.09, 0.05)}),
+    "weighted markers": MarkerTarget(
         targets={"tip": (0.17, 0.06), "top": (0.09, 0.05)}, weights={"tip": 3.0, "top": 0.0}, free={"tip": "x"}
     ),
-    "outline": ShapeGoal(outline=arc()),
-    "outline with a hole": ShapeGoal(outline=ring(), weight=2.5, samples=77),
-    "centre": CentreGoal(target=(0.09, 0.02), weight=0.7),
+    "outline": ShapeTarget(outline=arc()),
+    "outline with a hole": ShapeTarget(outline=ring(), weight=2.5, samples=77),
+    "centre": CenterOfMassTarget(target=(0.09, 0.02), weight=0.7),
     "contraction": Effort(weight=1e-2),
     "tension": Effort(of="tension", scale=3.0),
     "slack": Effort(of="slack"),
-    "as before": Closeness(pose=BEFORE[2]),
-    "contractions as before": Closeness(pose=BEFORE[2], of="contractions"),
-    "body as before": Closeness(pose=BEFORE[2], of="nodes", weight=0.3),
-    "markers as before": Closeness(pose=BEFORE[2], of="markers", weight=0.3),
-    "a marker as before": Closeness(pose=BEFORE[2], of="markers", markers=("top",)),
+    "as before": PoseRegularizer(pose=BEFORE[2]),
+    "contractions as before": PoseRegularizer(pose=BEFORE[2], of="contractions"),
+    "body as before": PoseRegularizer(pose=BEFORE[2], of="nodes", weight=0.3),
+    "markers as before": PoseRegularizer(pose=BEFORE[2], of="markers", weight=0.3),
+    "a marker as before": PoseRegularizer(pose=BEFORE[2], of="markers", markers=("top",)),
 }
 BODIES: Mapping[str, Objective] = {
-    "markers": MarkerGoal(targets={"tip": (0.1, 0.03, 0.05), "top": (0.05, 0.02, 0.05)}),
-    "weighted markers": MarkerGoal(targets={"tip": (0.1, 0.03, 0.05)}, weights={"tip": 0.2}, free={"tip": "xz"}),
-    "surface": ShapeGoal(surface=capsule()),
-    "box": ShapeGoal(surface=box(low=(0.003, -0.002, 0.005)), weight=0.5, samples=150),
-    "centre": CentreGoal(target=(0.05, 0.02, 0.03)),
+    "markers": MarkerTarget(targets={"tip": (0.1, 0.03, 0.05), "top": (0.05, 0.02, 0.05)}),
+    "weighted markers": MarkerTarget(targets={"tip": (0.1, 0.03, 0.05)}, weights={"tip": 0.2}, free={"tip": "xz"}),
+    "surface": ShapeTarget(surface=capsule()),
+    "box": ShapeTarget(surface=box(low=(0.003, -0.002, 0.005)), weight=0.5, samples=150),
+    "centre": CenterOfMassTarget(target=(0.05, 0.02, 0.03)),
     "contraction": Effort(),
     "tension": Effort(of="tension"),
     "slack": Effort(of="slack", scale=0.02),
-    "contractions as before": Closeness(pose=BEFORE[3], of="contractions"),
-    "body as before": Closeness(pose=BEFORE[3], of="nodes"),
+    "contractions as before": PoseRegularizer(pose=BEFORE[3], of="contractions"),
+    "body as before": PoseRegularizer(pose=BEFORE[3], of="nodes"),
 }

@@ -12,8 +12,8 @@ from plain_model import plain
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.learning import Tier, certify, load_model, plan_samples, read_samples, sample_robot, save_model
-from hydrostat.learning.draw import Draw, contractions, shared_numbers
+from hydrostat.learning import Tier, load_model, plan_samples, read_samples, sample_robot, save_model, verify
+from hydrostat.learning.draw import SamplingScheme, contractions, shared_numbers
 from hydrostat.learning.learn_model import kept_facts
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.robot import Robot
@@ -36,21 +36,21 @@ def test_an_answer_is_certified_by_the_simulator_that_is_asked(robot: Robot, sim
     soft = replace(robot, body=replace(robot.body, material=replace(robot.body.material, density=3000.0)))
     soft = replace(soft, gravity=(0.0, -9.81))
     other, target = hs.Simulation(soft), {"tip": (0.15, -0.02)}
-    answer = certify(simulation, plain(robot), plain(robot).solve(target))
-    found = certify(other, plain(soft), answer)
+    answer = verify(simulation, plain(robot), plain(robot).solve(target))
+    found = verify(other, plain(soft), answer)
     want = np.linalg.norm(other.solve(answer.contractions).markers["tip"] - target["tip"])
     assert found.error == pytest.approx(want, rel=1e-9)
     assert abs(found.error - answer.error) > 1e-4
-    assert certify(hs.Simulation(replace(robot, name="renamed")), plain(robot), answer).pose is answer.pose
+    assert verify(hs.Simulation(replace(robot, name="renamed")), plain(robot), answer).pose is answer.pose
 
 
 def test_an_answer_is_of_steps_only_where_one_was_taken(robot: Robot, simulation: hs.Simulation) -> None:
     model, target = plain(robot), {"tip": (0.15, -0.02)}
     answer = model.solve(target)
-    assert certify(simulation, model, answer, steps=3, enough=1.0).tier is Tier.SEARCH
-    stepped = certify(simulation, model, answer, steps=1)
-    assert stepped.tier is certify(simulation, model, stepped).tier is Tier.STEP
-    again = certify(simulation, model, replace(stepped, pose=None))
+    assert verify(simulation, model, answer, steps=3, enough=1.0).tier is Tier.SEARCH
+    stepped = verify(simulation, model, answer, steps=1)
+    assert stepped.tier is verify(simulation, model, stepped).tier is Tier.STEP
+    again = verify(simulation, model, replace(stepped, pose=None))
     assert again.pose is not None
     assert np.array_equal(again.pose.nodes, simulation.solve(stepped.contractions).nodes)
 
@@ -107,11 +107,13 @@ def test_answers_hold_what_samples_held(robot: Robot, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="pairs are none of its winches"):
         load_model(save_model(replace(free, facts={**free.facts, "pairs": [["W1", "nobody"]]}), tmp_path / "b"))
     rows = np.random.default_rng(4).uniform(0, 1, (20, 2)) * held.high
-    again = contractions(Draw.ANTAGONIST, shared_numbers(rows, held.high, [(0, 1)]), held.low, held.high, [(0, 1)])
+    again = contractions(
+        SamplingScheme.ANTAGONIST, shared_numbers(rows, held.high, [(0, 1)]), held.low, held.high, [(0, 1)]
+    )
     assert np.array([held._held(row) for row in rows]) == pytest.approx(again, abs=1e-15)
     sides = np.linspace(0, 1, 201)[:, None] * np.diag(free.high)[:, None]
     left = []
-    places = np.array([held.expect(row)[0][:2] for row in sides.reshape(-1, 2)])
+    places = np.array([held.predict(row)[0][:2] for row in sides.reshape(-1, 2)])
     for target in np.random.default_rng(3).uniform(-2, 2, (20, 2)):
         before, after = (one.solve({"tip": target}, search=False) for one in (free, held))
         share = before.contractions / free.high
@@ -252,7 +254,7 @@ def test_another_robot_is_refused(robot: Robot, simulation: hs.Simulation) -> No
     with pytest.raises(InputError, match="robot knows contact and the model does not"):
         model.check(replace(robot, contact=hs.Contact()))
     with pytest.raises(InputError, match="learned of another robot"):
-        certify(hs.Simulation(strip_robot(columns=8, rows=2, stiffness=3e3)), model, model.solve({"tip": (0.1, 0.0)}))
+        verify(hs.Simulation(strip_robot(columns=8, rows=2, stiffness=3e3)), model, model.solve({"tip": (0.1, 0.0)}))
 
 
 @pytest.mark.parametrize(

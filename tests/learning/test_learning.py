@@ -14,14 +14,13 @@ from builders import strip_robot
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.ik import InverseReason
+from hydrostat.ik import IKStatus
 from hydrostat.learning import (
     METHODS,
     LearnedModel,
     LearnOptions,
     Samples,
     Tier,
-    certify,
     compare,
     correct_model,
     learn_model,
@@ -31,6 +30,7 @@ from hydrostat.learning import (
     sample_robot,
     save_model,
     solve_exactly,
+    verify,
 )
 from hydrostat.learning.certify import exact_steps
 from hydrostat.learning.compare import WAYS, targets_of
@@ -73,7 +73,7 @@ def simulation(robot: Robot) -> hs.Simulation:
 def test_networks_expect_what_the_simulator_finds(model: LearnedModel, samples: Samples) -> None:
     """Oracle: samples that nothing was learned from; ridge regression of the others errs many times as much."""
     known, new = samples.first(60), samples.only(np.arange(60, 80))
-    found = np.array([model.expect(row)[0][:2] for row in new.contractions])
+    found = np.array([model.predict(row)[0][:2] for row in new.contractions])
     missed = np.linalg.norm(found - new.markers[:, 0], axis=1).mean()
     linear = linear_map(known.contractions, known.markers.reshape(60, -1))
     ridge = np.hstack([new.contractions, np.ones((20, 1))]) @ linear
@@ -96,9 +96,9 @@ def test_answers_rolled_out_in_the_simulator(model: LearnedModel, samples: Sampl
         fast, slow = model.solve(target, search=False), model.solve(target)
         assert fast.tier is Tier.NETWORK
         answers = {
-            "network": certify(simulation, model, fast),
-            "search": certify(simulation, model, slow),
-            "step": certify(simulation, model, slow, steps=1),
+            "network": verify(simulation, model, fast),
+            "search": verify(simulation, model, slow),
+            "step": verify(simulation, model, slow, steps=1),
             "exact": solve_exactly(simulation, model, slow),
         }
         for name, answer in answers.items():
@@ -110,7 +110,7 @@ def test_answers_rolled_out_in_the_simulator(model: LearnedModel, samples: Sampl
             assert (answer.contractions >= model.low).all()
             assert (answer.contractions <= model.high).all()
         assert answers["search"].reason is Reason.CONVERGED
-        assert answers["exact"].reason is InverseReason.REACHED
+        assert answers["exact"].reason is IKStatus.REACHED
         assert answers["step"].error <= answers["search"].error
     means = {name: np.mean(values) for name, values in errors.items()}
     assert means["search"] <= 1.05 * means["network"]
@@ -136,7 +136,7 @@ def test_ways_to_learn_side_by_side(samples: Samples, simulation: hs.Simulation,
     assert means["search, steps"] <= means["search, step"]
     assert 0 < rows["search, step"].facts["steps"] <= 1
     assert [name for name, found in rows.items() if found.curve is not None] == ["thesis"]
-    answer = certify(simulation, model, model.solve(targets_of(new)[0]))
+    answer = verify(simulation, model, model.solve(targets_of(new)[0]))
     assert rows["search"].distances[0, 0] == pytest.approx(answer.error, rel=1e-6)
     with pytest.raises(InputError, match="no way to learn called 'magic'"):
         next(compare(simulation, known, new, ["magic"]))
@@ -154,7 +154,7 @@ def test_a_few_samples_of_a_finer_mesh_correct_a_model(
     better.check(finer)
     missed = [
         np.linalg.norm(
-            np.array([one.expect(row)[0][:2] for row in new.contractions]) - new.markers[:, 0], axis=1
+            np.array([one.predict(row)[0][:2] for row in new.contractions]) - new.markers[:, 0], axis=1
         ).mean()
         for one in (model, better)
     ]
@@ -185,7 +185,7 @@ def test_a_step_that_finds_nothing_is_tried_shorter(simulation: hs.Simulation, m
         if len(calls) > 2:
             return update(self, target, seconds=seconds)  # type: ignore[arg-type]
         stayed = update(hs.Tracker(simulation, start=self.pose), target, seconds=seconds)  # type: ignore[arg-type]
-        return replace(stayed, pose=self.pose, reason=InverseReason.STUCK)
+        return replace(stayed, pose=self.pose, reason=IKStatus.STALLED)
 
     monkeypatch.setattr(hs.Tracker, "update", lazy)
     pose, taken = exact_steps(simulation, simulation.rest, goal, 1)
@@ -197,7 +197,7 @@ def test_a_step_that_finds_nothing_is_tried_shorter(simulation: hs.Simulation, m
 @pytest.mark.slow
 def test_a_tracker_begins_from_an_answer(model: LearnedModel, samples: Samples, simulation: hs.Simulation) -> None:
     target = targets_of(samples)[70]
-    begun = certify(simulation, model, model.solve(target), steps=1)
+    begun = verify(simulation, model, model.solve(target), steps=1)
     tracker = hs.Tracker(simulation, start=begun.pose)
     assert tracker.update(target, seconds=1.0).errors["tip"] <= begun.error
     led, alone = (hs.Tracker(simulation, model=known).update(target, seconds=1.0) for known in (model, None))
@@ -264,10 +264,10 @@ def test_what_cannot_be_certified_is_told(simulation: hs.Simulation, model: Lear
         ((simulation, model, None), "what model.solve gives, not None"),
     ):
         with pytest.raises(InputError, match=words):
-            certify(*given)  # type: ignore[arg-type]
+            verify(*given)  # type: ignore[arg-type]
     for steps in (-1, "a"):
         with pytest.raises(InputError, match="steps must be a whole number of 0 or more"):
-            certify(simulation, model, answer, steps=steps)  # type: ignore[arg-type]
+            verify(simulation, model, answer, steps=steps)  # type: ignore[arg-type]
 
 
 @pytest.mark.slow
@@ -294,7 +294,7 @@ def test_the_commands(
     assert ended.value.exit_code == 130
     assert capsys.readouterr().out.endswith("It was stopped early: this is the best so far\n")
     place = tuple(read_samples(folder).markers[70, 0].tolist())
-    posed = replace(robot, poses={"far": hs.Pose(name="far", targets={"tip": place})})
+    posed = replace(robot, poses={"far": hs.PoseTarget(name="far", targets={"tip": place})})
     monkeypatch.setattr("hydrostat.cli.pose.read_robot", lambda path: posed)
     pose(tmp_path / "strip", tmp_path / "out", model=save_model(model, tmp_path / "good.model"))
     assert "far: networks expect an rms error of" in (printed := capsys.readouterr().out)

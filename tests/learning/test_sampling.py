@@ -19,7 +19,15 @@ from builders import gallery_robot, strip_robot
 import hydrostat as hs
 from hydrostat.cli.sample import sample
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.learning import Draw, SamplePlan, export_samples, plan_samples, read_samples, sample_robot, sample_shard
+from hydrostat.learning import (
+    SamplePlan,
+    SamplingScheme,
+    export_samples,
+    plan_samples,
+    read_samples,
+    sample_robot,
+    sample_shard,
+)
 from hydrostat.learning.draw import contractions as drawn
 from hydrostat.learning.draw import shared_numbers
 from hydrostat.learning.sample_folder import SampleFolder
@@ -31,7 +39,7 @@ pytestmark = pytest.mark.usefixtures("unchecked")
 
 @pytest.fixture(scope="module")
 def plan() -> SamplePlan:
-    return plan_samples(strip_robot(columns=8, rows=2), 22, shard=5, draws=tuple(Draw)[:3], seed=3)
+    return plan_samples(strip_robot(columns=8, rows=2), 22, shard=5, draws=tuple(SamplingScheme)[:3], seed=3)
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +126,7 @@ def test_a_number_decides_about_a_sample_however_many_there_are(plan: SamplePlan
 
 def test_draws_keep_to_what_they_say() -> None:
     robot = gallery_robot("cupping_hand")
-    plan = plan_samples(robot, 96, draws=[Draw.ANTAGONIST, Draw.FACES, Draw.BOX])
+    plan = plan_samples(robot, 96, draws=[SamplingScheme.ANTAGONIST, SamplingScheme.FACES, SamplingScheme.BOX])
     assert sorted(plan.pairs) == [(2 * finger, 2 * finger + 1) for finger in range(5)]  # flexor and extensor
     rows, travel = plan.contractions(range(96)), np.array([winch.travel for winch in robot.winches])
     assert (rows >= 0).all()
@@ -134,13 +142,13 @@ def test_numbers_that_two_winches_share_are_found_again() -> None:
     """Oracle: the points that contractions were made of; a winch without partner has a number of its own."""
     points, high = np.random.default_rng(0).random((50, 2)), np.array([0.03, 0.05, 0.04])
     pairs = ((0, 2), (1,))
-    rows = drawn(Draw.ANTAGONIST, points, np.zeros(3), high, pairs)
+    rows = drawn(SamplingScheme.ANTAGONIST, points, np.zeros(3), high, pairs)
     assert shared_numbers(rows, high, pairs) == pytest.approx(points, abs=1e-12)
 
 
 def test_samples_drawn_by_tension_pull_no_harder(tmp_path: Path) -> None:
-    plan = plan_samples(strip_robot(columns=8, rows=2), 8, draws=[Draw.TENSION], tension=0.5)
-    free = hs.Simulation(plan.robot).solve_many(plan.contractions(range(8)), jacobians=False)
+    plan = plan_samples(strip_robot(columns=8, rows=2), 8, draws=[SamplingScheme.TENSION], tension=0.5)
+    free = hs.Simulation(plan.robot).solve_batch(plan.contractions(range(8)), jacobians=False)
     assert free.tensions.max() > 0.6
     samples = read_samples(sample_robot(plan, tmp_path).path)
     assert samples.tensions.max() <= 0.5
@@ -164,7 +172,7 @@ def test_a_pose_that_is_not_found_is_a_row_with_its_reason(plan: SamplePlan, mon
 
 def test_contact_is_told(tmp_path: Path) -> None:
     hand = gallery_robot("starfish")
-    draws = [Draw.BOX]
+    draws = [SamplingScheme.BOX]
     apart = read_samples(sample_robot(plan_samples(hand, 24, contact=True, draws=draws), tmp_path / "a").path)
     through = read_samples(sample_robot(plan_samples(hand, 24, draws=draws), tmp_path / "b").path)
     assert apart.touches.any()
@@ -326,7 +334,7 @@ def test_damaged_files_are_told(plan: SamplePlan, tmp_path: Path) -> None:
         ({"shard": 0}, "shard must be 1 or more"),
         ({"seed": -1}, "seed must be 0 or more"),
         ({"draws": ()}, "there must be a way"),
-        ({"draws": (Draw.TENSION,)}, "needs the most that a cable"),
+        ({"draws": (SamplingScheme.TENSION,)}, "needs the most that a cable"),
     ],
 )
 def test_a_wrong_plan_is_one_line(plan: SamplePlan, wrong: dict, words: str) -> None:

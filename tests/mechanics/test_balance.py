@@ -29,7 +29,7 @@ def test_tensions_settle_where_scipy_says(seed: int, cables: int) -> None:
         return 1e3 * float(value), 1e3 * (z - root.T @ law.tension(remaining))
 
     expected = minimize(cost, np.zeros(cables), jac=True, method="BFGS", options={"gtol": 1e-11, "maxiter": 5000})
-    found = law.balance(elongations, compliance)
+    found = law.solve_slack_complementarity(elongations, compliance)
     assert found is not None
     reached = root.T @ found
     assert cost(reached)[0] <= expected.fun + 1e-9 * abs(expected.fun) + 1e-15
@@ -42,7 +42,7 @@ def test_tensions_settle_where_scipy_says(seed: int, cables: int) -> None:
 def test_each_cable_keeps_its_law_and_none_pushes(seed: int, cables: int) -> None:
     """Complementarity: T >= 0, T = 0 where what is left of the elongation is negative, T = law(s - C T) everywhere."""
     law, elongations, compliance = problem(seed, cables)
-    tensions = law.balance(elongations, compliance)
+    tensions = law.solve_slack_complementarity(elongations, compliance)
     assert tensions is not None
     remaining = elongations - compliance @ tensions
     largest = tensions.max(initial=0.0)
@@ -57,7 +57,7 @@ def test_a_linear_law_would_let_a_cable_push() -> None:
     compliance = 1e-3 * np.array([[1.0, 0.9], [0.9, 1.0]])
     elongations = np.array([0.02, 0.005])
     linear = np.linalg.solve(np.eye(2) / 1e4 + compliance, elongations - 1e-4)
-    found = law.balance(elongations, compliance)
+    found = law.solve_slack_complementarity(elongations, compliance)
     assert found is not None
     assert linear[1] < -1.0
     assert found[1] == 0.0
@@ -66,6 +66,6 @@ def test_a_linear_law_would_let_a_cable_push() -> None:
 
 def test_slack_cables_stay_slack() -> None:
     law, _, compliance = problem(0, 4)
-    found = law.balance(np.full(4, -0.01), compliance)
+    found = law.solve_slack_complementarity(np.full(4, -0.01), compliance)
     assert found is not None
     assert not found.any()

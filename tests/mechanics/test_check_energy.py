@@ -8,7 +8,7 @@ import pytest
 from states import LAW, cables, deform, element_fibres, neo_hookean, pins, rough_mesh, weight
 
 from hydrostat.mechanics import CableEnergy, CableSegments, FibreEnergy, NeoHookean, PinEnergy, WeightEnergy
-from hydrostat.mechanics.energy import Coupling, Energy
+from hydrostat.mechanics.energy import Energy, LowRankStiffness
 from hydrostat.testing import ConformanceError, check_energy
 
 
@@ -109,14 +109,14 @@ class CableOfAnotherTangent(CableEnergy):
         found = super().coupling(nodes, controls)
         columns, weights = found.columns, found.weights
         weights[1, 1] *= 1.001
-        return Coupling(columns=columns, weights=weights)
+        return LowRankStiffness(columns=columns, weights=weights)
 
 
 class CableOfSwappedColumns(CableEnergy):
     def coupling(self, nodes, controls):
         found = super().coupling(nodes, controls)
         columns, weights = found.columns, found.weights
-        return Coupling(columns=columns[:, ::-1].copy(), weights=weights)
+        return LowRankStiffness(columns=columns[:, ::-1].copy(), weights=weights)
 
 
 class LowRankNegative(CableEnergy):
@@ -126,7 +126,9 @@ class LowRankNegative(CableEnergy):
         found = super().coupling(nodes, controls)
         columns, weights = found.columns, found.weights
         weights = np.block([[weights, np.zeros((4, 2))], [np.zeros((2, 4)), np.diag([1.0, -1.0])]])
-        return Coupling(columns=np.concatenate([columns, columns[:, :1], columns[:, :1]], axis=1), weights=weights)
+        return LowRankStiffness(
+            columns=np.concatenate([columns, columns[:, :1], columns[:, :1]], axis=1), weights=weights
+        )
 
 
 class LowRankNotSymmetric(CableEnergy):
@@ -136,14 +138,14 @@ class LowRankNotSymmetric(CableEnergy):
         found = super().coupling(nodes, controls)
         columns, weights = found.columns, found.weights
         weights = np.block([[weights, np.zeros((4, 2))], [np.zeros((2, 4)), np.array([[1.0, 0.5], [-0.5, 1.0]])]])
-        return Coupling(columns=np.concatenate([columns, np.zeros((nodes.size, 2))], axis=1), weights=weights)
+        return LowRankStiffness(columns=np.concatenate([columns, np.zeros((nodes.size, 2))], axis=1), weights=weights)
 
 
 class LowRankOfWrongShape(CableEnergy):
     def coupling(self, nodes, controls):
         found = super().coupling(nodes, controls)
         columns, weights = found.columns, found.weights
-        return Coupling(columns=columns[1:], weights=weights)
+        return LowRankStiffness(columns=columns[1:], weights=weights)
 
 
 class CableControlForgotten(CableEnergy):
@@ -184,7 +186,7 @@ class StepOfNothing(PinEnergy):
 class TermsThatNeverRest(PinEnergy):
     """Near the same nodes it loses a term each time it is asked."""
 
-    def near(self, nodes):
+    def with_active_terms(self, nodes):
         other = copy(self)
         other.stencils = self.stencils[1:]
         return other
@@ -210,7 +212,7 @@ class LoadOfNoWork(WeightEnergy):
 class SilentMemory(PinEnergy):
     """It changes along the path and does not say so."""
 
-    def after(self, nodes, controls):
+    def with_advanced_history(self, nodes, controls):
         return copy(self)
 
 
@@ -223,7 +225,7 @@ class ForgetsItsSlips(PinEnergy):
     def history(self):
         return np.ones(1)
 
-    def resumed(self, history, nodes, controls):
+    def with_history(self, history, nodes, controls):
         other = copy(self)
         other.targets = self.targets + 0.01
         return other

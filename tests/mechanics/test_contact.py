@@ -19,14 +19,14 @@ from hydrostat.mechanics import (
     RoundOff,
     minimise,
 )
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.testing import check_energy
 
 IDLE = np.zeros(2)
 
 
 @cache
-def closed(dim: int) -> SolvedPose:
+def closed(dim: int) -> Equilibrium:
     """The fork with its prongs pulled against each other."""
     return Simulation(fork_robot(dim)).solve({"up": 0.012, "down": 0.01})
 
@@ -41,7 +41,7 @@ def own(dim: int) -> ContactEnergy:
 @pytest.mark.parametrize("dim", [2, 3])
 def test_derivatives_where_prongs_touch(dim: int) -> None:
     nodes = closed(dim).nodes
-    energy = own(dim).near(nodes)
+    energy = own(dim).with_active_terms(nodes)
     assert energy.value(nodes, IDLE) > 0
     check_energy(energy, nodes, IDLE)
 
@@ -51,7 +51,7 @@ def test_forces_balance(dim: int) -> None:
     """Parts push one another off: no force and no torque on the whole."""
     nodes = closed(dim).nodes
     forces = np.zeros_like(nodes)
-    own(dim).near(nodes).add_gradient(nodes, IDLE, forces)
+    own(dim).with_active_terms(nodes).add_gradient(nodes, IDLE, forces)
     scale = np.abs(forces).sum()
     assert scale > 0.01
     assert np.abs(forces.sum(axis=0)).max() < 1e-12 * scale
@@ -63,7 +63,7 @@ def test_forces_balance(dim: int) -> None:
 def test_nothing_is_felt_at_rest(dim: int) -> None:
     """Not even in a slot narrower than the distance, nor between parts of one mesh that lie near."""
     mesh = fork_robot(dim).body.mesh
-    energy = ContactEnergy.of(mesh, distance=0.05, young=3e4).near(mesh.nodes)
+    energy = ContactEnergy.of(mesh, distance=0.05, young=3e4).with_active_terms(mesh.nodes)
     assert energy.watch is not None
     energy = ContactEnergy(energy.skin, energy.watch.pairs)
     assert len(energy.stencils) > 100
@@ -74,11 +74,11 @@ def test_nothing_is_felt_at_rest(dim: int) -> None:
 @pytest.mark.parametrize("dim", [2, 3])
 def test_what_is_kept_serves(dim: int) -> None:
     """An energy that has gone along with small moves is the one found anew, to the same forces."""
-    nodes, energy = closed(dim).nodes, own(dim).near(closed(dim).nodes)
+    nodes, energy = closed(dim).nodes, own(dim).with_active_terms(closed(dim).nodes)
     random = np.random.default_rng(2)
     for _ in range(12):
         nodes = nodes + 1e-4 * random.uniform(-1, 1, nodes.shape)
-        energy, fresh = energy.near(nodes), own(dim).near(nodes)
+        energy, fresh = energy.with_active_terms(nodes), own(dim).with_active_terms(nodes)
         forces, anew = np.zeros_like(nodes), np.zeros_like(nodes)
         energy.add_gradient(nodes, IDLE, forces)
         fresh.add_gradient(nodes, IDLE, anew)

@@ -7,7 +7,7 @@ import pytest
 from states import SIZE, State, deform, rough_mesh
 
 from hydrostat.geometry import locate
-from hydrostat.mechanics import CableEnergy, CableSegments, ChainLaw, FrictionCableEnergy, TensionLaw, Turns
+from hydrostat.mechanics import CableEnergy, CableSegments, ChainLaw, FrictionCableEnergy, TensionLaw, ViaPointTurns
 from hydrostat.testing import central_differences, check_energy
 
 LAW = TensionLaw(stiffness=np.array([4e3, 2e3]), smoothing=np.array([0.5e-3, 0.2e-3]))
@@ -113,7 +113,7 @@ def rubbing(
         slack=np.array([0.002, 0.001]),
         friction=MU,
         ratios=RATIOS,
-        turns=Turns(
+        turns=ViaPointTurns(
             **{name: np.stack([rough[before], rough[after]]) for name, (rough, _) in parts.items()},
             points=np.array([1, 2, 2]),
         ),
@@ -216,7 +216,7 @@ def arc() -> tuple[FrictionCableEnergy, np.ndarray]:
         winches=np.array([0]),
         slack=np.zeros(1),
         friction=np.array([0.25]),
-        turns=Turns(stencils=pairs[0], weights=pairs[1], offsets=pairs[2], points=np.arange(1, SEGMENTS)),
+        turns=ViaPointTurns(stencils=pairs[0], weights=pairs[1], offsets=pairs[2], points=np.arange(1, SEGMENTS)),
     )
     return energy, nodes
 
@@ -231,7 +231,7 @@ def pull(energy: FrictionCableEnergy, nodes: np.ndarray, contraction: float) -> 
         energy = energy.with_limits(limits)
     else:
         raise AssertionError("the limits do not settle")
-    return energy.after(nodes, controls), energy.span_tensions(nodes, controls)
+    return energy.with_advanced_history(nodes, controls), energy.span_tensions(nodes, controls)
 
 
 def test_capstan_while_a_cable_is_taken_in_and_let_out() -> None:
@@ -267,6 +267,6 @@ def test_a_cable_that_rests_at_its_limits_stays() -> None:
     """A state that is resumed from its slips alone has the tensions it had."""
     energy, nodes = arc()
     energy, tensions = pull(energy, nodes, 0.004)
-    fresh = arc()[0].resumed(energy.slips, nodes, np.array([0.004]))
+    fresh = arc()[0].with_history(energy.slips, nodes, np.array([0.004]))
     assert fresh.span_tensions(nodes, np.array([0.004])) == pytest.approx(tensions, rel=1e-9)
     assert fresh.law.limits == pytest.approx(energy.law.limits, rel=1e-9)

@@ -6,7 +6,7 @@ from builders import box_mesh, strip_mesh
 
 from hydrostat.geometry import DistanceField, Mesh, box_field, sphere_field
 from hydrostat.mechanics import ObstacleEnergy
-from hydrostat.mechanics.rigid import Carriage, CarriedWarp, GuideEnergy, RigidEnergy
+from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
 from hydrostat.testing import check_energy
 
 IDLE = np.zeros(1)
@@ -16,10 +16,10 @@ def meshes(dim: int) -> Mesh:
     return strip_mesh(4, 2) if dim == 2 else box_mesh((3, 2, 2))
 
 
-def scene(dim: int, *, up: float = 0.0) -> tuple[Mesh, Carriage, np.ndarray]:
+def scene(dim: int, *, up: float = 0.0) -> tuple[Mesh, RigidBodyDofs, np.ndarray]:
     """A body, and a thing that leans on the middle of its upper side, turned and a little strained."""
     mesh, random = meshes(dim), np.random.default_rng(0)
-    carriage = Carriage(len(mesh.nodes), 0.03, dim)
+    carriage = RigidBodyDofs(len(mesh.nodes), 0.03, dim)
     at = mesh.nodes.mean(axis=0)
     at[1] = mesh.nodes[:, 1].max() + 0.0205 + up
     axes = np.linalg.qr(np.eye(dim) + 0.2 * random.normal(size=(dim, dim)))[0]
@@ -56,7 +56,7 @@ def test_derivatives_by_nodes_place_and_axes(dim: int, shape: str) -> None:
 def test_derivatives_where_it_sticks_and_where_it_slips(dim: int, way: float) -> None:
     energy, unknowns = met(dim, "box", 0.5)
     anchors = energy.history + way * np.random.default_rng(1).normal(size=energy.history.shape)
-    energy = energy.resumed(anchors, unknowns, IDLE)
+    energy = energy.with_history(anchors, unknowns, IDLE)
     assert energy.grip is not None
     slips = energy.grip.slipping(energy.places(unknowns))[energy.grip.limits > 0]
     assert slips.any() == (way > 1e-4)
@@ -77,7 +77,7 @@ def test_what_keeps_it_rigid_and_what_guides_it(dim: int) -> None:
 @pytest.mark.parametrize("dim", [2, 3])
 def test_body_and_thing_push_each_other_equally(dim: int) -> None:
     energy, unknowns = met(dim, "box", 0.5)
-    energy = energy.resumed(energy.history + 1e-3, unknowns, IDLE)
+    energy = energy.with_history(energy.history + 1e-3, unknowns, IDLE)
     forces = np.zeros_like(unknowns)
     energy.add_gradient(unknowns, IDLE, forces)
     row = energy.stencils[0, -1 - dim]
@@ -90,7 +90,7 @@ def test_body_and_thing_push_each_other_equally(dim: int) -> None:
 def test_energy_does_not_care_how_both_lie_in_the_world(dim: int) -> None:
     """Turned and moved together, body and thing feel the same, friction included."""
     energy, unknowns = met(dim, "box", 0.5)
-    energy = energy.resumed(energy.history + 1e-3, unknowns, IDLE)
+    energy = energy.with_history(energy.history + 1e-3, unknowns, IDLE)
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(dim, dim)))[0]
     moved, row = unknowns @ turn.T, energy.stencils[0, -1 - dim]
     moved[: row + 1] += 0.3

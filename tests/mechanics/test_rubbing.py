@@ -19,12 +19,12 @@ from hydrostat.mechanics import (
     NewtonResult,
     PinEnergy,
     RoundOff,
-    RubbingEnergy,
+    SelfFrictionEnergy,
     Stiffness,
     minimise,
 )
 from hydrostat.robot import Contact
-from hydrostat.simulation import Simulation, balanced, touches
+from hydrostat.simulation import Simulation, find_contacts, find_history_equilibrium
 from hydrostat.testing import check_energy
 
 IDLE, FRICTION, YOUNG, PRESS = np.zeros(0), 0.4, 1e5, 1.4e-3
@@ -77,9 +77,9 @@ class Pressed:
         body = NeoHookean(
             mesh.nodes, mesh.elements, mu=YOUNG / 2.6, lame=YOUNG, thickness=0.02 if self.dim == 2 else 1.0
         )
-        rubbing = RubbingEnergy.of(mesh, contact, FRICTION)
+        rubbing = SelfFrictionEnergy.of(mesh, contact, FRICTION)
         grip = replace(rubbing.clasp.grip, springs=self.springs * rubbing.clasp.grip.springs)
-        rubbing = RubbingEnergy(contact, rubbing.clasp.with_grip(grip))
+        rubbing = SelfFrictionEnergy(contact, rubbing.clasp.with_grip(grip))
         self.assembly = Assembly([body, self.pins, rubbing], rest=mesh.nodes, control_count=0)
         self.nodes, self.at = mesh.nodes, np.zeros(self.dim)
 
@@ -87,16 +87,16 @@ class Pressed:
         """Force [N] on the upper side after a step there."""
         pins = self.pins.with_supports_moved(np.array([np.zeros(self.dim), place]))
         body, _, rubbing = self.assembly.energies
-        start = self.assembly.near(self.nodes).with_energies([body, pins, rubbing])
+        start = self.assembly.with_active_terms(self.nodes).with_energies([body, pins, rubbing])
 
         def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
             noise = RoundOff(force=1e-11, energy=1e-16)
             return minimise(assembly, nodes, IDLE, round_off=noise, options=NewtonOptions(tolerance=1e-9))
 
-        found, result = balanced(start, (self.nodes, None), IDLE, relax, 1e-9)
+        found, result = find_history_equilibrium(start, (self.nodes, None), IDLE, relax, 1e-9)
         assert result.converged, result.reason
         self.nodes, self.at = result.nodes, np.array(place)
-        self.assembly = found.after(self.nodes, IDLE)
+        self.assembly = found.with_advanced_history(self.nodes, IDLE)
         forces = pins.gradient(self.nodes, IDLE)[:, 0]
         return -(self.moved[:, None] * forces).sum(axis=0)
 
@@ -120,9 +120,9 @@ class Pressed:
         return blocks
 
     @property
-    def rubbing(self) -> RubbingEnergy:
-        energy = self.assembly.near(self.nodes).energies[2]
-        assert isinstance(energy, RubbingEnergy)
+    def rubbing(self) -> SelfFrictionEnergy:
+        energy = self.assembly.with_active_terms(self.nodes).energies[2]
+        assert isinstance(energy, SelfFrictionEnergy)
         return energy
 
 
@@ -132,11 +132,11 @@ def test_derivatives_and_balance_of_forces(dim: int) -> None:
     blocks = Pressed.begun(dim, step=7e-4)
     blocks.along(2e-4)
     nodes = blocks.nodes + 2e-5 * np.random.default_rng(1).normal(size=blocks.nodes.shape)
-    energy = blocks.rubbing.near(nodes)
+    energy = blocks.rubbing.with_active_terms(nodes)
     grip = energy.clasp.grip
     lengths = grip.ways(energy.clasp.places(nodes))[1]
     limits = grip.springs * lengths * np.where(np.arange(len(lengths)) % 2, 2.0, 0.5)
-    energy = RubbingEnergy(energy.contact, energy.clasp.with_grip(replace(grip, limits=limits)))
+    energy = SelfFrictionEnergy(energy.contact, energy.clasp.with_grip(replace(grip, limits=limits)))
     check_energy(energy, nodes, IDLE)
     forces = energy.clasp.forces(nodes)
     assert np.abs(forces.sum(axis=0)).max() < 1e-12 * np.abs(forces).sum()
@@ -180,7 +180,7 @@ def test_what_is_remembered_is_enough() -> None:
     for blocks in (one, other):
         blocks.along(1e-3)
     fresh = Pressed(2)
-    other.assembly = fresh.assembly.near(other.nodes).resumed(one.assembly.history, other.nodes, IDLE)
+    other.assembly = fresh.assembly.with_active_terms(other.nodes).with_history(one.assembly.history, other.nodes, IDLE)
     assert other.along(6e-4) == pytest.approx(one.along(6e-4), rel=1e-6)
 
 
@@ -192,8 +192,8 @@ def test_robots(dim: int) -> None:
     pulled = {"up": 0.012, "down": 0.01}
     ends = [simulation.solve(pulled) for simulation in (smooth, rough)]
     assert np.linalg.norm(ends[0].markers["tip"] - ends[1].markers["tip"]) > 1e-3
-    assert touches(rough, ends[1])
-    motion = rough.still(ends[1])
+    assert find_contacts(rough, ends[1])
+    motion = rough.motion_at_rest(ends[1])
     for _ in range(3):
         motion = rough.step(motion, pulled, 0.01)
     assert motion.nodes == pytest.approx(ends[1].nodes, abs=1e-5)

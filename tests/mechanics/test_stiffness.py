@@ -6,7 +6,7 @@ from builders import strip_mesh
 from scipy.sparse import csc_array
 
 from hydrostat.mechanics import Analysis, Stiffness
-from hydrostat.mechanics.energy import Coupling
+from hydrostat.mechanics.energy import LowRankStiffness
 from hydrostat.mechanics.tension_law import TensionLaw
 
 MESH = strip_mesh(5, 2)
@@ -32,7 +32,7 @@ def made(matrix: np.ndarray, columns: np.ndarray, weights: np.ndarray) -> Stiffn
     pattern.sort_indices()
     values = matrix.T[pattern.T.toarray() != 0]
     analysis = Analysis(pattern.indptr, pattern.indices, dim=2, points=MESH.nodes)
-    return Stiffness(analysis.factorise(values), Coupling(columns=columns, weights=weights))
+    return Stiffness(analysis.factorise(values), LowRankStiffness(columns=columns, weights=weights))
 
 
 def weights_of(kind: str, random: np.random.Generator) -> np.ndarray:
@@ -120,7 +120,7 @@ def test_springs_that_came_since_count_whole() -> None:
     random = np.random.default_rng(6)
     matrix, columns = body(0.5), random.standard_normal((SIZE, RANK + 2))
     found = made(matrix, columns[:, :RANK], np.eye(RANK))
-    other = found.with_coupling(Coupling(columns=columns, weights=2.0 * np.eye(RANK + 2)))
+    other = found.with_coupling(LowRankStiffness(columns=columns, weights=2.0 * np.eye(RANK + 2)))
     right = random.standard_normal(SIZE)
     expected = np.linalg.solve(matrix + 2.0 * columns @ columns.T, right)
     assert other.solve(right) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
@@ -132,7 +132,7 @@ def test_a_move_knows_that_cables_go_slack_and_taut(seed: int) -> None:
     random = np.random.default_rng(seed)
     matrix, columns = body(0.5, seed), random.standard_normal((SIZE, RANK))
     law = TensionLaw(stiffness=np.full(RANK, 50.0), smoothing=np.full(RANK, 1e-3))
-    springs = Coupling(
+    springs = LowRankStiffness(
         columns=columns, weights=np.zeros((RANK, RANK)), elongations=np.array([-2.0, -0.1, 1.0]), law=law
     )
     forces = random.standard_normal(SIZE)

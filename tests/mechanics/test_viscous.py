@@ -5,7 +5,7 @@ import pytest
 from states import deform, rough_mesh
 
 from hydrostat.mechanics import NeoHookean
-from hydrostat.mechanics.viscous import Memory, ViscousEnergy, roots
+from hydrostat.mechanics.viscous import MaxwellBranches, ViscousEnergy, roots
 from hydrostat.testing import check_energy
 
 ETA = 300.0
@@ -17,11 +17,13 @@ def metrics(count: int, dim: int, random: np.random.Generator) -> np.ndarray:
     return (turns * random.uniform(0.4, 2.0, (count, 1, dim))) @ np.swapaxes(turns, 1, 2)
 
 
-def memory(dim: int, random: np.random.Generator, *, time: float = 0.0) -> tuple[Memory, NeoHookean, np.ndarray]:
+def memory(
+    dim: int, random: np.random.Generator, *, time: float = 0.0
+) -> tuple[MaxwellBranches, NeoHookean, np.ndarray]:
     """One branch on a small body, the body, and a deformed state."""
     mesh = rough_mesh(dim, random)
     body = NeoHookean(mesh.nodes, mesh.elements, mu=1e4, lame=1e4)
-    branch = Memory(mesh.nodes, body, viscosities=np.array([ETA]), times=np.array([time]))
+    branch = MaxwellBranches(mesh.nodes, body, viscosities=np.array([ETA]), times=np.array([time]))
     return branch, body, deform(mesh, random)
 
 

@@ -21,8 +21,8 @@ from hydrostat.design import (
     TreeTrace,
     edge_fibres,
 )
-from hydrostat.ik import InverseReason, ReachedPose
-from hydrostat.robot import Cable, Marker, Mount, Pin, Pose, Robot, Winch, mesh_body
+from hydrostat.ik import IKResult, IKStatus
+from hydrostat.robot import Cable, Marker, Mount, Pin, PoseTarget, Robot, Winch, mesh_body
 from hydrostat.simulation import Simulation
 
 SCRIPT = "<script>alert(1)</script>"
@@ -43,7 +43,7 @@ def hostile_robot() -> Robot:
             for name, cable in zip((SCRIPT, FORMULA), robot.cables, strict=True)
         ),
         markers=(Marker(name=SCRIPT, at=(0.2, 0.0)), Marker(name=FORMULA, at=(0.1, 0.025))),
-        poses={"<b>": Pose(name="<b>", targets={SCRIPT: (0.19, 0.03), FORMULA: (0.1, 0.03)})},
+        poses={"<b>": PoseTarget(name="<b>", targets={SCRIPT: (0.19, 0.03), FORMULA: (0.1, 0.03)})},
     )
 
 
@@ -62,7 +62,7 @@ def hostile_network() -> Network:
 @cache
 def plain_network() -> Network:
     """The strip of the other tests, grown in stages, as it can be written and read."""
-    pose = Pose(name="up", targets={"tip": (0.19, 0.03)})
+    pose = PoseTarget(name="up", targets={"tip": (0.19, 0.03)})
     robot = written(replace(strip_robot(columns=10, rows=3), poses={"up": pose}))
     return grown(_network(robot, pose, np.array([[0.02, 0.01], [0.1, 0.01]])))
 
@@ -78,14 +78,14 @@ def written(robot: Robot) -> Robot:
     return replace(robot, body=made)
 
 
-def _network(robot: Robot, target: Pose, tree: np.ndarray) -> Network:
+def _network(robot: Robot, target: PoseTarget, tree: np.ndarray) -> Network:
     """A network as winch trees would have led to it, its first winch taken in by a centimetre."""
     pose = Simulation(robot).solve(np.array([0.01, 0.0]))
     errors = {name: float(np.linalg.norm(pose.markers[name] - np.array(at))) for name, at in target.targets.items()}
     fibres = edge_fibres(robot.body.mesh)
     tensions = np.linspace(0.0, 2.0, len(fibres))
     activation = Activation(target=target, fibres=fibres, tensions=tensions, nodes=pose.nodes, errors=errors)
-    reached = ReachedPose(target=target, pose=pose, errors=errors, reason=InverseReason.OPTIMAL, iterations=3, solves=5)
+    reached = IKResult(target=target, pose=pose, errors=errors, status=IKStatus.LOCAL_OPTIMUM, iterations=3, solves=5)
     return Network(
         robot=robot,
         source=robot,
@@ -139,6 +139,6 @@ def space_network() -> Network:
         pins=(*robot.pins, Pin(at=(0.02, 0.0, 0.0), radius=0.001)),
         winches=(Winch(name="one", at=outside, mount=Mount.WORLD), robot.winches[1]),
         cables=(Cable(winch="one", points=(outside, *one.points)), replace(two, sheathed=((0, 1),))),
-        poses={"nod": Pose(name="nod", targets={"tip": (0.11, 0.03, 0.03)})},
+        poses={"nod": PoseTarget(name="nod", targets={"tip": (0.11, 0.03, 0.03)})},
     )
     return _network(robot, robot.poses["nod"], np.array([[0.02, 0.01, 0.02], [0.1, 0.01, 0.02], [0.11, 0.02, 0.03]]))

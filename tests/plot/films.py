@@ -6,11 +6,11 @@ import numpy as np
 from builders import box_robot, strip_robot
 
 from hydrostat.plot import Film, Frame, Stop, film
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
-NOD = Pose(name="nod", targets={"tip": (0.11, 0.03, 0.03)})
-DIP = Pose(name="dip", targets={"tip": (0.19, 0.03)})
+NOD = PoseTarget(name="nod", targets={"tip": (0.11, 0.03, 0.03)})
+DIP = PoseTarget(name="dip", targets={"tip": (0.19, 0.03)})
 
 
 @cache

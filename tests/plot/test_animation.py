@@ -164,7 +164,7 @@ def test_where_there_is_no_equilibrium_the_frame_before_stands(monkeypatch: pyte
         pose = solve(self, contractions, **options)
         from hydrostat.mechanics import Reason
 
-        if self.contractions(contractions).max() <= 0.006:
+        if self.as_contractions(contractions).max() <= 0.006:
             return pose
         return replace(pose, nodes=pose.nodes + 1.0, result=replace(pose.result, reason=Reason.NO_DESCENT))
 

@@ -10,7 +10,7 @@ from matplotlib.colors import to_hex
 
 from hydrostat.drawing import ERROR, winch_colours
 from hydrostat.geometry import Outline
-from hydrostat.ik import CentreGoal, ShapeGoal, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
+from hydrostat.ik import CenterOfMassTarget, ShapeTarget, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
 from hydrostat.plot import draw_reached, draw_trajectory, inline_svg, trajectory_frames
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
@@ -63,7 +63,7 @@ def test_frames_are_samples_at_equal_times() -> None:
     _, trajectory = made()
     frames, step = trajectory_frames(trajectory)
     assert frames[0].nodes is trajectory.poses[0].nodes
-    assert (frames[-1].nodes == trajectory.keys[-1].pose.nodes).all()
+    assert (frames[-1].nodes == trajectory.keyframes[-1].pose.nodes).all()
     number = len(frames) // 2
     time = number * step
     nearest = trajectory.poses[int(np.argmin(np.abs(trajectory.times - time)))]
@@ -75,7 +75,7 @@ def test_frames_are_samples_at_equal_times() -> None:
 def test_a_pose_without_markers_shows_the_shape_that_is_wanted() -> None:
     robot = strip_robot(columns=10, rows=2)
     outline = Outline(exterior=RECTANGLE)
-    reached = solve_ik(Simulation(robot), objectives=[ShapeGoal(outline=outline)])
+    reached = solve_ik(Simulation(robot), objectives=[ShapeTarget(outline=outline)])
     assert reached.target is None
     figure = draw_reached(robot, reached, outline=outline)
     dashed = [line for line in figure.axes[0].lines if line.is_dashed() and to_hex(line.get_color()) == ERROR]
@@ -89,5 +89,5 @@ def test_a_pose_without_markers_shows_the_shape_that_is_wanted() -> None:
 
 def test_a_pose_of_any_goal_can_be_drawn() -> None:
     robot = strip_robot(columns=10, rows=2)
-    reached = solve_ik(Simulation(robot), objectives=[CentreGoal(target=(0.1, 0.01))])
+    reached = solve_ik(Simulation(robot), objectives=[CenterOfMassTarget(target=(0.1, 0.01))])
     assert "centre of mass error" in inline_svg(draw_reached(robot, reached), name="it", label="")

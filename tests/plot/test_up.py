@@ -11,7 +11,7 @@ from hydrostat import plot
 from hydrostat.drawing import Camera, along_an_axis, three_quarter, upright
 from hydrostat.geometry import Mesh
 from hydrostat.plot.open_sheet import open_sheet, way_up
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 
 WAYS = ([0.0, 0, 1], [0, 1, 0], [1, 0, 0], [0, 0, -1], [0, -1, 0], [-1, 0, 0], [0.3, -0.5, 0.8], [1e-9, 0, -1])
 
@@ -136,7 +136,7 @@ def test_targets_of_poses_decide_where_the_eye_is() -> None:
     robot = replace(box_robot(), winches=(), cables=())
     eyes = []
     for way in (0.3, -0.3):
-        pose = Pose(name="away", targets={"tip": (0.12, 0.02 + way, 0.02)})
+        pose = PoseTarget(name="away", targets={"tip": (0.12, 0.02 + way, 0.02)})
         posed = replace(robot, poses={"away": pose})
         (pane,) = open_sheet(posed, [posed.body.mesh.nodes], ruled=False)[1]
         eyes.append(pane.camera.axes[2, 1])  # pyright: ignore[reportAttributeAccessIssue]

@@ -7,14 +7,14 @@ import pytest
 from robot_files import RECTANGLE, SVG
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.robot import find_risks, gallery_folder, gallery_names, load_robot, robot_text, save_robot, sketch_robot
+from hydrostat.robot import find_risks, gallery_folder, list_gallery, load_robot, robot_text, save_robot, sketch_robot
 
 
 def test_gallery_names() -> None:
     """Oracle: the folders of examples that hold a robot.toml, each with the name of its robot."""
     examples = Path(__file__).parents[2] / "examples"
-    assert gallery_names() == sorted(path.parent.name for path in examples.glob("*/robot.toml"))
-    for name in gallery_names():
+    assert list_gallery() == sorted(path.parent.name for path in examples.glob("*/robot.toml"))
+    for name in list_gallery():
         assert f'name = "{name}"' in (gallery_folder(name) / "robot.toml").read_text(encoding="utf-8")
 
 

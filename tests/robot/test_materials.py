@@ -11,7 +11,7 @@ from robot_files import GOOD, edit, load
 
 from hydrostat.cli.main import main
 from hydrostat.errors import InputError
-from hydrostat.robot import MATERIALS, Material, Volume, find_material, robot_text
+from hydrostat.robot import MATERIALS, Material, Volume, get_material, robot_text
 from hydrostat.simulation import Simulation
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -47,7 +47,7 @@ def test_stress_of_rubbers_at_twice_their_length(name: str, psi: float) -> None:
 
     The Neo-Hookean energy of the body (ARCHITECTURE.md) at stretch 2, sideways free: slightly compressible at 0.49.
     """
-    mu, lam = find_material(name).lame
+    mu, lam = get_material(name).lame
     sideways = np.linspace(0.5, 1.0, 200_001)
     volume = 2 * sideways**2
     energy = mu / 2 * (4 + 2 * sideways**2 - 3) - mu * np.log(volume) + lam / 2 * np.log(volume) ** 2
@@ -58,7 +58,7 @@ def test_stress_of_rubbers_at_twice_their_length(name: str, psi: float) -> None:
 
 def test_lattices_scale_with_the_square_of_density() -> None:
     """Oracle: Gibson and Ashby's law for open cells."""
-    solid, thin, thick = (find_material(f"tpu 85a{share}") for share in ("", " gyroid 10%", " gyroid 20%"))
+    solid, thin, thick = (get_material(f"tpu 85a{share}") for share in ("", " gyroid 10%", " gyroid 20%"))
     for lattice in (thin, thick):
         assert lattice.young / solid.young == pytest.approx((lattice.density / solid.density) ** 2)
     assert thick.young / thin.young == pytest.approx(4)
@@ -99,9 +99,9 @@ def test_rubber_can_be_simulated(tmp_path: Path) -> None:
 def test_unknown_name_suggests_the_nearest() -> None:
     """Oracle: a misspelt name and one that is like none."""
     with pytest.raises(InputError, match='did you mean "dragon skin 10"'):
-        find_material("Dragonskin 10")
+        get_material("Dragonskin 10")
     with pytest.raises(InputError, match='unknown material "granite"; `hydrostat materials` lists all'):
-        find_material("granite")
+        get_material("granite")
 
 
 @pytest.mark.parametrize(

@@ -19,13 +19,13 @@ from hydrostat.robot import (
     Material,
     Mount,
     Pin,
-    Pose,
+    PoseTarget,
     Relaxation,
     Robot,
     Source,
     Volume,
     Winch,
-    find_material,
+    get_material,
 )
 
 INF, NAN = float("inf"), float("nan")
@@ -78,7 +78,7 @@ def test_not_negative(kind: type, field: str, others: dict, value: float) -> Non
         lambda point: Winch(name="w", at=point),
         lambda point: Pin(at=point),
         lambda point: Pin(box=((0.0, 0.0), point)),
-        lambda point: Pose(name="p", targets={"m": point}),
+        lambda point: PoseTarget(name="p", targets={"m": point}),
         lambda point: Cable(winch="w", points=(point, (1.0, 1.0))),
     ],
 )
@@ -91,7 +91,7 @@ def test_points(make, point: tuple) -> None:
 @pytest.mark.parametrize("point", [0.1, None, "ab", ("a", "b"), (None, 0.0), (1j, 0.0)])
 def test_what_is_no_place_is_told_in_one_line(point: Any, unchecked: None) -> None:
     with pytest.raises(InputError, match=r"^targets\.m must be two or three coordinates \[m\], not [^\n]*$"):
-        Pose(name="p", targets={"m": point})
+        PoseTarget(name="p", targets={"m": point})
 
 
 @pytest.mark.parametrize(
@@ -107,11 +107,11 @@ def test_what_is_no_place_is_told_in_one_line(point: Any, unchecked: None) -> No
         (lambda: Cable(winch="w", points=LINE, friction=-0.01), "friction must be at least 0 and at most 2, not -0.01"),
         (lambda: Cable(winch="w", points=LINE, friction=2.01), "friction must be at least 0 and at most 2, not 2.01"),
         (lambda: Cable(winch="w", points=LINE, friction=NAN), "friction must be at least 0 and at most 2, not nan"),
-        (lambda: find_material("steel"), 'unknown material "steel"; `hydrostat materials` lists all'),
+        (lambda: get_material("steel"), 'unknown material "steel"; `hydrostat materials` lists all'),
         (lambda: Winch(name="", at=(0.0, 0.0)), "name must not be empty"),
         (lambda: Marker(name="", at=(0.0, 0.0)), "name must not be empty"),
-        (lambda: Pose(name="", targets={"m": (0.0, 0.0)}), "name must not be empty"),
-        (lambda: Pose(name="p", targets={}), "targets must name at least one marker"),
+        (lambda: PoseTarget(name="", targets={"m": (0.0, 0.0)}), "name must not be empty"),
+        (lambda: PoseTarget(name="p", targets={}), "targets must name at least one marker"),
         (lambda: Pin(), "either at .* or box"),
         (lambda: Pin(at=(0.0, 0.0), box=((0.0, 0.0), (1.0, 1.0))), "either at .* or box"),
         (lambda: Pin(box=((0.0, 0.0), (1.0, 1.0)), radius=1.0), "radius goes with at"),
@@ -137,7 +137,7 @@ def test_refused(make, message: str) -> None:
     assert str(caught.value).isprintable()
 
 
-POSE = Pose(name="p", targets={"tip": (0.2, 0.0)})
+POSE = PoseTarget(name="p", targets={"tip": (0.2, 0.0)})
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,7 @@ POSE = Pose(name="p", targets={"tip": (0.2, 0.0)})
         ({"markers": (), "poses": {"p": POSE}}, r'pose\[0\].targets.tip: there is no marker "tip"; it has no markers'),
         ({"poses": {"q": POSE}}, r'pose\[0\].name: a pose called "p" is filed under "q"'),
         (
-            {"poses": {"p": Pose(name="p", targets={"tip": (0.1, 0.0, 0.0)})}},
+            {"poses": {"p": PoseTarget(name="p", targets={"tip": (0.1, 0.0, 0.0)})}},
             r"pose\[0\].targets.tip has 3 coordinates",
         ),
     ],
@@ -180,7 +180,7 @@ def test_texts_of_a_closed_set(unchecked: None) -> None:
     assert winch.mount is Mount.WORLD
     assert (named.volume, named.source) == (Volume.PATCH, Source.MESH)
     assert named.volume is Volume.PATCH
-    assert named.material is find_material("flexfoam-it x")
+    assert named.material is get_material("flexfoam-it x")
     assert replace(strip_robot(columns=4, rows=2), gravity="-y").gravity == (0.0, -9.80665)
     with pytest.raises(InputError, match=r'^gravity: "down" is no direction of this body; .* -x, .x, -y, .y$'):
         replace(strip_robot(columns=4, rows=2), gravity="down")

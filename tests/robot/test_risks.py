@@ -14,18 +14,7 @@ from test_risks_in_space import solid_robot
 from touching import fork_mesh, fork_robot
 
 from hydrostat.geometry import Mesh
-from hydrostat.robot import (
-    Body,
-    Cable,
-    Marker,
-    Mount,
-    Pin,
-    Pose,
-    Robot,
-    Volume,
-    Winch,
-    find_risks,
-)
+from hydrostat.robot import Body, Cable, Marker, Mount, Pin, PoseTarget, Robot, Volume, Winch, find_risks
 
 
 @pytest.fixture(scope="module")
@@ -163,7 +152,7 @@ def test_world_winch_is_outside(good: Robot) -> None:
 
 def test_pose_out_of_reach(good: Robot) -> None:
     """Oracle: a target farther from its marker than the body is long, which is 60 mm."""
-    poses = {name: Pose(name=name, targets={"tip": (x, 0.0)}) for name, x in (("near", 0.08), ("far", 0.1))}
+    poses = {name: PoseTarget(name=name, targets={"tip": (x, 0.0)}) for name, x in (("near", 0.08), ("far", 0.1))}
     held = replace(good, poses=poses, body=with_range(good, stretch=4.0))
     assert find_risks(held) == ["pose far: tip should move 75 mm, farther than the body is long"]
     assert np.isclose(good.body.mesh.size, 0.06)
@@ -270,12 +259,12 @@ def test_full_travel_squeezes_too_far(good: Robot) -> None:
 def test_pose_that_stretches_too_far(good: Robot) -> None:
     """Oracle: a strip held at its end, its tip 200 mm away, which should be 240 and 320 mm from there."""
     strip = replace(strip_robot(), winches=(), cables=())
-    poses = {name: Pose(name=name, targets={"tip": (x, 0.0)}) for name, x in (("near", 0.24), ("far", 0.32))}
+    poses = {name: PoseTarget(name=name, targets={"tip": (x, 0.0)}) for name, x in (("near", 0.24), ("far", 0.32))}
     (line,) = find_risks(replace(strip, poses=poses, body=with_range(strip, stretch=1.5)))
     assert line.startswith(
         "pose far: tip should be 320 mm from a pinned place, at rest it is 200 mm through the body: 1.60"
     )
-    curled = {"curl": Pose(name="curl", targets={"tip": (0.05, 0.1)})}
+    curled = {"curl": PoseTarget(name="curl", targets={"tip": (0.05, 0.1)})}
     assert find_risks(replace(strip, poses=curled, body=with_range(strip, stretch=1.1))) == []
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hydrostat.robot import gallery_folder, gallery_names
+from hydrostat.robot import gallery_folder, list_gallery
 from hydrostat.robot.merge import comments, split_blocks
 
 TRICKY = '''\
@@ -60,7 +60,7 @@ def test_each_table_has_its_comments() -> None:
     assert comments(TRICKY) == told
 
 
-@pytest.mark.parametrize("name", gallery_names())
+@pytest.mark.parametrize("name", list_gallery())
 @pytest.mark.parametrize("ends", ["\n", "\r\n"])
 def test_blocks_are_all_of_the_text(name: str, ends: str) -> None:
     text = (gallery_folder(name) / "robot.toml").read_text(encoding="utf-8").replace("\n", ends)

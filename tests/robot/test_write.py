@@ -21,13 +21,13 @@ from hydrostat.robot import (
     Material,
     Mount,
     Pin,
-    Pose,
+    PoseTarget,
     Relaxation,
     Robot,
     Volume,
     Winch,
     gallery_folder,
-    gallery_names,
+    list_gallery,
     load_robot,
     robot_hash,
     robot_text,
@@ -70,7 +70,7 @@ def check_round_trip(robot: Robot, folder: Path) -> str:
     return robot_text(robot)
 
 
-@pytest.mark.parametrize("name", gallery_names())
+@pytest.mark.parametrize("name", list_gallery())
 @pytest.mark.slow
 def test_gallery(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: the robot itself, read again; and the gallery's own file, number by number."""
@@ -201,7 +201,7 @@ def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
         winches=(winch,),
         cables=(cable,),
         markers=(Marker(name="tip", at=at),),
-        poses={"pose": Pose(name="pose", targets={"tip": target})},
+        poses={"pose": PoseTarget(name="pose", targets={"tip": target})},
         length_unit=unit,
         gravity=draw(st.none() | GRAVITY),
     )

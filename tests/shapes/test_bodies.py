@@ -6,16 +6,7 @@ import numpy as np
 import pytest
 
 from hydrostat.geometry import Surface, contour
-from hydrostat.shapes import (
-    Shape,
-    caging_gripper,
-    cupping_hand,
-    extended_hand,
-    fish_tail,
-    octopus_arm,
-    tongue,
-    trunk,
-)
+from hydrostat.shapes import Shape, caging_gripper, cupping_hand, extended_hand, fish_tail, octopus_arm, tongue, trunk
 
 SHAPES = [cupping_hand, extended_hand, caging_gripper, trunk, octopus_arm, tongue, fish_tail]
 

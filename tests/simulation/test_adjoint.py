@@ -14,8 +14,8 @@ from hydrostat.geometry import Outline, locate
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Volume, Winch
 from hydrostat.simulation import Sensitivity, Simulation
-from hydrostat.simulation.adjoint import sensitivity
 from hydrostat.simulation.route_points import route_points
+from hydrostat.simulation.sensitivities.adjoint import sensitivity
 
 TIGHT = NewtonOptions(tolerance=1e-13)
 RUBBER = replace(FOAM, poisson=0.47)
@@ -313,7 +313,7 @@ def test_what_does_not_fit_is_refused() -> None:
 @pytest.mark.parametrize("pose", [None, {"up": 0.02}])
 def test_only_a_solved_pose_has_an_adjoint(pose: Any, unchecked: None) -> None:
     simulation = Simulation(strip())
-    with pytest.raises(InputError, match=f"needs a SolvedPose, as solve.. returns it, not a {type(pose).__name__}"):
+    with pytest.raises(InputError, match=f"needs a Equilibrium, as solve.. returns it, not a {type(pose).__name__}"):
         simulation.adjoint(pose, simulation.rest.nodes)
     words: Any = "up"
     with pytest.raises(InputError, match=r"cotangent of nodes must be numbers of shape .*, not 'up'"):

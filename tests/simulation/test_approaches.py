@@ -10,8 +10,8 @@ from builders import strip_robot
 
 from hydrostat.arrays import Vector
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, SolvedPose
-from hydrostat.simulation.approaches import Approach, approaches_to, follow_approach
+from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.simulation.branches.loading_paths import Approach, follow_approach, loading_paths_to
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -21,10 +21,10 @@ class Recording(Simulation):
 
     def __init__(self, robot: Robot) -> None:
         super().__init__(robot)
-        self.starts: list[SolvedPose | None] = []
+        self.starts: list[Equilibrium | None] = []
         self.goals: list[Any] = []
 
-    def solve(self, contractions: Any, *, start: SolvedPose | None = None, strict: bool = True) -> SolvedPose:
+    def solve(self, contractions: Any, *, start: Equilibrium | None = None, strict: bool = True) -> Equilibrium:
         self.starts.append(start)
         self.goals.append(contractions)
         return super().solve(contractions, start=start, strict=strict)
@@ -38,13 +38,13 @@ def wound(travel: float, release: float) -> Recording:
 
 
 def names(robot: Robot, goal: Vector) -> list[str]:
-    return [way.name for way in approaches_to(Simulation(robot), goal, 5, seed=0)]
+    return [way.name for way in loading_paths_to(Simulation(robot), goal, 5, seed=0)]
 
 
 def test_winches_that_mostly_let_out_go_in_as_few_steps() -> None:
     """Ten steps are the whole range, at whatever end of it rest lies; then ten back from its other end."""
     simulation, goal = wound(1e-6, 0.03), np.full(2, -0.03)
-    for way in approaches_to(simulation, goal, 3, seed=0):
+    for way in loading_paths_to(simulation, goal, 3, seed=0):
         simulation.goals.clear()
         pose = follow_approach(simulation, way)
         assert pose.result.converged
@@ -64,7 +64,7 @@ def test_where_cable_is_let_out_there_is_a_way_back_from_there() -> None:
     goal = np.array([0.01, 0.0])
     assert "back from full release" not in names(wound(0.06, 0.0).robot, goal)
     simulation = wound(0.06, 0.02)
-    back = next(way for way in approaches_to(simulation, goal, 5, seed=0) if way.name == "back from full release")
+    back = next(way for way in loading_paths_to(simulation, goal, 5, seed=0) if way.name == "back from full release")
     np.testing.assert_array_equal(back.stops, [[-0.02, -0.02], goal])
     assert follow_approach(simulation, back).contractions == pytest.approx(goal)
     assert any((np.asarray(stop) == -0.02).all() for stop in simulation.goals)

@@ -57,7 +57,7 @@ def test_free_fall(dim: int, scheme: str) -> None:
     """Oracle: closed form, g t^2 / 2; of implicit Euler g t (t + dt) / 2."""
     down = np.array([0.0, -GRAVITY, 0.0][:dim])
     simulation = free(dim, tuple(down))
-    start = simulation.still()
+    start = simulation.motion_at_rest()
     *_, end = steps(simulation, start, 10, 0.01, scheme)
     late = 0.01 if scheme == "euler" else 0.0
     fallen = 0.5 * down * end.time * (end.time + late)
@@ -72,7 +72,7 @@ def test_fall_with_drag_converges_at_second_order() -> None:
     expected = -GRAVITY / drag * (time - (1 - exp(-drag * time)) / drag)
     errors = []
     for count in (4, 8, 16):
-        start = simulation.still()
+        start = simulation.motion_at_rest()
         *_, end = steps(simulation, start, count, time / count, drag=drag)
         errors.append(abs(float((end.nodes - start.nodes)[:, 1].mean()) - expected))
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx(2.0, abs=0.2)
@@ -88,7 +88,7 @@ def test_a_pendulum_swings_with_its_period() -> None:
     expected = 2 * pi * np.sqrt(inertia / (moment * GRAVITY))
     spin = 0.05 * np.stack([-arms[:, 1], arms[:, 0]], axis=1)
     times, heights = [0.0], [0.0]
-    for motion in steps(simulation, simulation.still(velocities=spin), int(2.2 * expected / 4e-3), 4e-3):
+    for motion in steps(simulation, simulation.motion_at_rest(velocities=spin), int(2.2 * expected / 4e-3), 4e-3):
         times.append(motion.time)
         heights.append(float(masses @ motion.nodes[:, 1]))
     rising = [
@@ -105,8 +105,8 @@ def test_a_pendulum_swings_with_its_period() -> None:
 @pytest.mark.slow
 def test_convergence_with_the_time_step(viscous_strip: hs.Simulation, scheme: str) -> None:
     """Oracle: a far finer solution by the method of third order. Cables, gravity and viscosity at once."""
-    profile = hs.Profile.ramp(np.array([0.01, 0.0]), 0.15)
-    start = viscous_strip.still(viscous_strip.solve({}))
+    profile = hs.ContractionProfile.ramp(np.array([0.01, 0.0]), 0.15)
+    start = viscous_strip.motion_at_rest(viscous_strip.solve({}))
 
     def end(dt: float, scheme: str) -> hs.Motion:
         *_, motion = viscous_strip.play(profile, 0.1, dt, start=start, options=hs.StepOptions(scheme=scheme))
@@ -143,7 +143,7 @@ def test_a_free_body_keeps_its_momentum(dim: int, viscosity: float) -> None:
     velocities = np.full(rest.shape, 0.3)
     velocities[:, :2] += 4.0 * np.stack([-arms[:, 1], arms[:, 0]], axis=1)
     velocities[:, 0] += 3.0 * arms[:, 0]
-    start = simulation.still(velocities=velocities)
+    start = simulation.motion_at_rest(velocities=velocities)
     linear, angular = momenta(simulation, start)
     for scheme, order in (("euler", 1), ("sdirk2", 2)):
         losses = []
@@ -159,7 +159,7 @@ def test_a_free_body_keeps_its_momentum(dim: int, viscosity: float) -> None:
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_energy_falls_all_the_time(viscous_strip: hs.Simulation, scheme: str) -> None:
     """Oracle: second law, for a viscous body that is let go, with its winches still."""
-    start = viscous_strip.still()
+    start = viscous_strip.motion_at_rest()
     energies = [start.energy, *(motion.energy for motion in steps(viscous_strip, start, 40, 5e-3, scheme))]
     assert (np.diff(energies) < 0).all()
     assert energies[-1] < energies[0] - 1e-4
@@ -181,7 +181,7 @@ def test_it_settles_to_the_statics_at_any_step(make: object) -> None:
     goal = np.array([0.012, 0.0])
     pose = simulation.solve(goal)
     for dt in (0.02, 0.033):
-        *_, end = simulation.play(hs.Profile.ramp(goal, 0.2), 2.0, dt)
+        *_, end = simulation.play(hs.ContractionProfile.ramp(goal, 0.2), 2.0, dt)
         assert end.nodes == pytest.approx(pose.nodes, abs=1e-6 * robot.body.mesh.size)
         assert end.tensions == pytest.approx(pose.tensions, rel=1e-6)
         assert end.potential == pytest.approx(pose.energy, rel=1e-8)
@@ -191,7 +191,7 @@ def test_it_settles_to_the_statics_at_any_step(make: object) -> None:
 def test_a_body_at_rest_stays_at_rest(viscous_strip: hs.Simulation) -> None:
     """Oracle: the equilibrium itself."""
     pose = viscous_strip.solve({"up": 0.01})
-    *_, end = steps(viscous_strip, viscous_strip.still(pose), 5, 0.01)
+    *_, end = steps(viscous_strip, viscous_strip.motion_at_rest(pose), 5, 0.01)
     assert end.nodes == pytest.approx(pose.nodes, abs=1e-10)
     assert end.tensions == pytest.approx(pose.tensions, abs=1e-7)
 
@@ -228,7 +228,7 @@ def test_a_sudden_shear_relaxes_as_a_zener_solid() -> None:
     carried = modulus * time / ramp * (1 - exp(-ramp / time))
     worst = []
     for count in (2, 4, 8):
-        motion, errors = simulation.still(), []
+        motion, errors = simulation.motion_at_rest(), []
         for step in range(1, 4 * count + 1):
             motion = shear(simulation, motion, strain * min(step / count, 1.0), ramp / count)
             if step > count:
@@ -243,7 +243,7 @@ def test_an_even_shear_feels_the_viscosity() -> None:
     """Oracle: closed form of Kelvin and Voigt, mu strain + eta rate, at small strain."""
     viscosity, rate = 400.0, 0.02
     simulation = sheared(viscosity=viscosity)
-    motion = simulation.still()
+    motion = simulation.motion_at_rest()
     for step in range(1, 21):
         motion = shear(simulation, motion, rate * 5e-3 * step, 5e-3)
         if step > 3:
@@ -258,7 +258,7 @@ def test_a_cycle_has_a_loop_unless_it_is_slow_or_fast() -> None:
     areas = []
     for pace in (0.03, 1.0, 30.0):
         period = 2 * pi * time / pace
-        motion, path = simulation.still(), []
+        motion, path = simulation.motion_at_rest(), []
         for step in range(1, 3 * count + 1):
             strained = strain * sin(2 * pi * step / count)
             motion = shear(simulation, motion, strained, period / count)
@@ -282,7 +282,7 @@ def test_a_hanging_body_creeps_as_a_zener_solid() -> None:
     body = mesh_body(strip_mesh(4, 2), material=material)
     simulation = held(body, (Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=1e8),), (0.1, 0.0))
     mu = young / 2
-    rest, settled = simulation.still(), simulation.solve({})
+    rest, settled = simulation.motion_at_rest(), simulation.solve({})
     tip = np.argmax(rest.nodes[:, 0])
     whole = settled.nodes[tip, 0] - rest.nodes[tip, 0]
     assert whole > 1e-8
@@ -296,7 +296,7 @@ def test_a_hanging_body_creeps_as_a_zener_solid() -> None:
 def test_pins_carry_the_body_along(viscous_strip: hs.Simulation) -> None:
     """Oracle: the equilibrium, moved as a whole; pins that are not named stay where they are."""
     pose = viscous_strip.solve({})
-    motion, shift = viscous_strip.still(pose), np.array([0.03, -0.02])
+    motion, shift = viscous_strip.motion_at_rest(pose), np.array([0.03, -0.02])
     for step in range(1, 6):
         motion = viscous_strip.step(motion, {}, 0.02, pin_shifts={0: shift * step / 5})
     *_, end = steps(viscous_strip, motion, 80, 0.05)
@@ -306,7 +306,7 @@ def test_pins_carry_the_body_along(viscous_strip: hs.Simulation) -> None:
 
 def test_a_step_that_fails_is_cut_in_two(viscous_strip: hs.Simulation) -> None:
     """Oracle: shorter steps, asked for by hand."""
-    start = viscous_strip.still()
+    start = viscous_strip.motion_at_rest()
     whole = viscous_strip.step(start, {"up": 0.02}, 0.04)
     assert whole.result.iterations > 8
     hasty = hs.Simulation(viscous_strip.robot, options=hs.NewtonOptions(iterations=5))
@@ -328,19 +328,19 @@ def test_a_step_that_fails_is_cut_in_two(viscous_strip: hs.Simulation) -> None:
 
 def test_a_step_depends_on_the_motion_alone(viscous_strip: hs.Simulation) -> None:
     """Oracle: the same step again, after others; bit by bit."""
-    first = viscous_strip.step(viscous_strip.still(), {"up": 0.005}, 0.01)
+    first = viscous_strip.step(viscous_strip.motion_at_rest(), {"up": 0.005}, 0.01)
     viscous_strip.step(first, {"up": 0.01}, 0.02)
-    again = viscous_strip.step(viscous_strip.still(), {"up": 0.005}, 0.01)
+    again = viscous_strip.step(viscous_strip.motion_at_rest(), {"up": 0.005}, 0.01)
     assert (first.nodes == again.nodes).all()
 
 
 def test_what_cannot_be_is_refused(viscous_strip: hs.Simulation) -> None:
-    still = viscous_strip.still()
+    still = viscous_strip.motion_at_rest()
     for dt in (0.0, -1.0, np.nan):
         with pytest.raises(hs.InputError, match="time step must be above 0"):
             viscous_strip.step(still, {}, dt)
     with pytest.raises(hs.InputError, match="duration and time step"):
-        list(viscous_strip.play(hs.Profile.ramp(np.zeros(2), 1.0), 1.0, 0.0))
+        list(viscous_strip.play(hs.ContractionProfile.ramp(np.zeros(2), 1.0), 1.0, 0.0))
     with pytest.raises(hs.InputError, match="no pin 3"):
         viscous_strip.step(still, {}, 0.01, pin_shifts={3: np.zeros(2)})
     with pytest.raises(hs.InputError, match="shift of pin 0"):

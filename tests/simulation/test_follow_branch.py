@@ -14,9 +14,9 @@ from hydrostat.simulation import (
     BranchOptions,
     BranchReason,
     CriticalKind,
+    Equilibrium,
     Simulation,
-    SolvedPose,
-    follow_branch,
+    continue_branch,
 )
 
 GOAL = 0.3
@@ -24,7 +24,7 @@ BETWEEN = 0.145
 """Contraction [m] at which the arch can rest up or down."""
 
 
-def stepped(simulation: Simulation, first: float, last: float) -> SolvedPose:
+def stepped(simulation: Simulation, first: float, last: float) -> Equilibrium:
     """The pose after small load steps between contractions of the arch [m]."""
     pose = simulation.solve({"down": first})
     for contraction in np.linspace(first, last, 61)[1:]:
@@ -32,7 +32,7 @@ def stepped(simulation: Simulation, first: float, last: float) -> SolvedPose:
     return pose
 
 
-def least(simulation: Simulation, pose: SolvedPose) -> float:
+def least(simulation: Simulation, pose: Equilibrium) -> float:
     """Least eigenvalue of the dense Hessian [N/m]."""
     return float(np.linalg.eigvalsh(hessian(simulation, pose.nodes, pose.contractions))[0])
 
@@ -40,7 +40,7 @@ def least(simulation: Simulation, pose: SolvedPose) -> float:
 def through(simulation: Simulation, **options: float) -> Branch:
     """The branch of the arch from rest to full travel."""
     rest = simulation.solve({})
-    return follow_branch(simulation, rest, {"down": GOAL}, around_folds=True, options=BranchOptions(**options))
+    return continue_branch(simulation, rest, {"down": GOAL}, around_folds=True, options=BranchOptions(**options))
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,7 @@ def test_load_steps_from_both_sides_end_on_the_same_branch(simulation: Simulatio
     up, down = stepped(simulation, 0.0, BETWEEN), stepped(simulation, GOAL, BETWEEN)
     assert np.linalg.norm(up.markers["top"] - down.markers["top"]) > 0.01
     for start, pose in ((rest, up), (full, down)):
-        found = follow_branch(simulation, start, {"down": BETWEEN})
+        found = continue_branch(simulation, start, {"down": BETWEEN})
         assert found.arrived
         assert found.critical == ()
         assert np.abs(found.end.nodes - pose.nodes).max() < 1e-8
@@ -91,7 +91,7 @@ def test_folds_are_where_the_hessian_is_singular_and_where_the_arch_snaps(
     first, second = (point.share * GOAL for point in branch.critical)
     assert [first, second] == pytest.approx([0.1508, 0.1390], abs=5e-5)  # as docs/theory/multistability.md says
     for fold, begin, sign in ((first, branch.points[0].pose, -1), (second, branch.end, 1)):
-        near = follow_branch(simulation, begin, {"down": fold + sign * 1e-5}).end
+        near = continue_branch(simulation, begin, {"down": fold + sign * 1e-5}).end
         low, high = fold + sign * 1e-5, fold - sign * 1e-5
         while abs(high - low) > 1e-7:
             middle = 0.5 * (low + high)
@@ -141,7 +141,7 @@ def test_the_tension_is_the_derivative_of_the_energy(simulation: Simulation, bra
 
 
 def test_the_way_back_is_the_way_there(simulation: Simulation, branch: Branch) -> None:
-    back = follow_branch(simulation, branch.end, {}, around_folds=True)
+    back = continue_branch(simulation, branch.end, {}, around_folds=True)
     assert back.arrived
     assert [1 - share for share in back.folds[::-1]] == pytest.approx(branch.folds, abs=1e-8)
     assert np.abs(back.end.nodes - branch.points[0].pose.nodes).max() < 1e-9
@@ -149,7 +149,7 @@ def test_the_way_back_is_the_way_there(simulation: Simulation, branch: Branch) -
 
 
 def test_it_stops_at_a_fold_and_says_where(simulation: Simulation, branch: Branch) -> None:
-    found = follow_branch(simulation, simulation.solve({}), {"down": GOAL})
+    found = continue_branch(simulation, simulation.solve({}), {"down": GOAL})
     assert found.reason is BranchReason.FOLD
     assert found.points[-1].share == found.folds[0] == pytest.approx(branch.folds[0], abs=1e-9)
     assert all(point.stable for point in found.points[:-1])
@@ -160,7 +160,7 @@ def test_it_stops_at_a_fold_and_says_where(simulation: Simulation, branch: Branc
 def test_a_goal_between_the_folds_is_reached_on_the_branch_first_met(simulation: Simulation) -> None:
     """A long step may lead around the fold beyond the goal; the branch still ends before it."""
     fold = 0.15078
-    found = follow_branch(simulation, simulation.solve({}), {"down": fold - 1e-5}, around_folds=True)
+    found = continue_branch(simulation, simulation.solve({}), {"down": fold - 1e-5}, around_folds=True)
     assert found.arrived
     assert found.critical == ()
     assert all(point.stable for point in found.points)
@@ -171,29 +171,29 @@ def test_a_fold_in_the_last_step_is_found(simulation: Simulation, branch: Branch
     fold = branch.critical[0]
     start = branch.points[fold.index + 1].pose
     assert not start.result.stable
-    back = follow_branch(simulation, start, {"down": GOAL}, around_folds=True)
+    back = continue_branch(simulation, start, {"down": GOAL}, around_folds=True)
     assert back.reason is BranchReason.BACK
     assert len(back.points) == 3
     assert [point.kind for point in back.critical] == [CriticalKind.FOLD]
     assert back.points[1].pose.contractions == pytest.approx([fold.share * GOAL], abs=1e-9)
-    stable = follow_branch(simulation, branch.points[0].pose, start.contractions)
+    stable = continue_branch(simulation, branch.points[0].pose, start.contractions)
     assert stable.arrived
     assert np.abs(back.end.nodes - stable.end.nodes).max() < 1e-8
     assert np.abs(back.end.nodes - start.nodes).max() > 1e-6
-    assert follow_branch(simulation, start, {"down": GOAL}).reason is BranchReason.FOLD
+    assert continue_branch(simulation, start, {"down": GOAL}).reason is BranchReason.FOLD
 
 
 def test_a_bifurcation_in_the_last_step_is_found() -> None:
     """The way ends a thousandth behind the load at which the straight column is no longer stable."""
     simulation = Simulation(column(4))
     rest = simulation.solve({})
-    load = follow_branch(simulation, rest, np.full(2, 0.014)).points[-1].share * 0.014
-    found = follow_branch(simulation, rest, np.full(2, 1.001 * load), around_folds=True)
+    load = continue_branch(simulation, rest, np.full(2, 0.014)).points[-1].share * 0.014
+    found = continue_branch(simulation, rest, np.full(2, 1.001 * load), around_folds=True)
     assert found.arrived
     assert [point.kind for point in found.critical] == [CriticalKind.BIFURCATION]
     assert found.critical[0].index == len(found.points) - 2
     assert found.critical[0].share == pytest.approx(1 / 1.001, abs=1e-8)
-    assert follow_branch(simulation, rest, np.full(2, 1.001 * load)).reason is BranchReason.BIFURCATION
+    assert continue_branch(simulation, rest, np.full(2, 1.001 * load)).reason is BranchReason.BIFURCATION
 
 
 @pytest.mark.parametrize("name", ["first_step", "largest_step", "smallest_step", "steps", "distance", "iterations"])
@@ -215,7 +215,7 @@ def test_without_its_guard_it_jumps(simulation: Simulation, branch: Branch) -> N
 def test_a_beam_has_no_fold() -> None:
     simulation = Simulation(strip_robot())
     goal = np.array([0.03, 0.0])
-    found = follow_branch(simulation, simulation.solve({}), goal, around_folds=True)
+    found = continue_branch(simulation, simulation.solve({}), goal, around_folds=True)
     assert found.arrived
     assert found.critical == ()
     assert all(point.stable for point in found.points)
@@ -228,7 +228,7 @@ def test_a_column_splits_where_its_straight_shape_becomes_a_saddle() -> None:
     """Oracle: least dense eigenvalue of the straight column, whose root is found by its secant."""
     simulation = Simulation(column(4))
     goal = np.full(2, 0.014)
-    found = follow_branch(simulation, simulation.solve({}), goal, around_folds=True)
+    found = continue_branch(simulation, simulation.solve({}), goal, around_folds=True)
     assert found.arrived
     assert [point.kind for point in found.critical] == [CriticalKind.BIFURCATION]
     load = found.critical[0].share * 0.014
@@ -239,7 +239,7 @@ def test_a_column_splits_where_its_straight_shape_becomes_a_saddle() -> None:
     assert not found.points[-1].stable
     assert np.abs(mirrored(simulation.robot, found.end.nodes) - found.end.nodes).max() < 1e-6
     assert np.abs(saddle(simulation, 0.014) - found.end.nodes).max() < 1e-6
-    stopped = follow_branch(simulation, simulation.solve({}), goal)
+    stopped = continue_branch(simulation, simulation.solve({}), goal)
     assert stopped.reason is BranchReason.BIFURCATION
     assert stopped.points[-1].share == pytest.approx(found.critical[0].share, abs=1e-9)
 
@@ -248,8 +248,8 @@ def test_buckled_poses_end_in_a_fold_of_their_own() -> None:
     """On the way back a bent column stays bent far below the load at which it left the straight shape, then snaps."""
     simulation = Simulation(column(4))
     both = np.full(2, 0.014)
-    load = follow_branch(simulation, simulation.solve({}), both).points[-1].share * 0.014
-    back = follow_branch(simulation, simulation.solve(both), {})
+    load = continue_branch(simulation, simulation.solve({}), both).points[-1].share * 0.014
+    back = continue_branch(simulation, simulation.solve(both), {})
     assert back.reason is BranchReason.FOLD
     fold = float(back.end.contractions[0])
     assert [load, fold] == pytest.approx([10.86e-3, 7.06e-3], abs=5e-6)  # as docs/theory/multistability.md says
@@ -267,18 +267,18 @@ def test_buckled_poses_end_in_a_fold_of_their_own() -> None:
 def test_what_cannot_be_followed_is_refused(simulation: Simulation) -> None:
     rest = simulation.solve({})
     with pytest.raises(InputError, match="must be an equilibrium"):
-        follow_branch(simulation, replace(rest, contractions=np.array([0.1])), {"down": 0.2})
+        continue_branch(simulation, replace(rest, contractions=np.array([0.1])), {"down": 0.2})
     with pytest.raises(InputError, match="must be a pose of this robot"):
-        follow_branch(simulation, replace(rest, nodes=rest.nodes[1:]), {"down": 0.2})
+        continue_branch(simulation, replace(rest, nodes=rest.nodes[1:]), {"down": 0.2})
     robot = strip_robot(columns=8, rows=2)
     rubbing = Simulation(replace(robot, cables=tuple(replace(cable, friction=0.2) for cable in robot.cables)))
     with pytest.raises(InputError, match="with friction"):
-        follow_branch(rubbing, rubbing.solve({}), {"down": 0.01})
+        continue_branch(rubbing, rubbing.solve({}), {"down": 0.01})
 
 
 def test_a_way_of_no_length_is_a_point(simulation: Simulation) -> None:
     rest = simulation.solve({})
-    found = follow_branch(simulation, rest, {})
+    found = continue_branch(simulation, rest, {})
     assert found.arrived
     assert len(found.points) == 1
     assert found.runs() == []
@@ -290,8 +290,8 @@ def test_small_snaps_of_one_limb_are_not_passed_over() -> None:
     """The starfish snaps by 1.6 mm of 280. A looser limit on the mean displacement saw it on the way there only."""
     simulation = Simulation(gallery_robot("starfish"))
     rest, full = simulation.solve({}), np.array([winch.travel for winch in simulation.robot.winches])
-    there = follow_branch(simulation, rest, full, around_folds=True)
-    back = follow_branch(simulation, there.end, {}, around_folds=True)
+    there = continue_branch(simulation, rest, full, around_folds=True)
+    back = continue_branch(simulation, there.end, {}, around_folds=True)
     assert len(there.folds) == 2
     assert [1 - share for share in back.folds[::-1]] == pytest.approx(there.folds, abs=1e-8)
     assert np.abs(back.end.nodes - rest.nodes).max() < 1e-9

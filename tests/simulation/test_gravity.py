@@ -7,13 +7,13 @@ import pytest
 from builders import box_mesh, box_robot, mesh_body, strip_mesh, strip_robot
 
 from hydrostat.robot import Material, Pin, Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 GRAVITY = {2: (1.5, -9.81), 3: (1.5, -2.0, -9.81)}
 ROBOTS = {"strip": strip_robot, "box": box_robot}
 
 
-def reactions(simulation: Simulation, pose: SolvedPose) -> tuple[np.ndarray, np.ndarray]:
+def reactions(simulation: Simulation, pose: Equilibrium) -> tuple[np.ndarray, np.ndarray]:
     """Points where the pins hold, and their forces on the body [N], from its springs (F = -k u) alone."""
     pins = simulation.assembly.energies[1]
     forces = -pins.gradient(pose.nodes, pose.contractions)

@@ -10,16 +10,16 @@ from builders import FOAM, box_mesh, box_robot, mesh_body, strip_mesh, strip_rob
 import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import Carriage, GuideEnergy, WeightEnergy
+from hydrostat.mechanics import GuideEnergy, RigidBodyDofs, WeightEnergy
 from hydrostat.robot import Contact, Marker, Obstacle, Pin, Robot
 from hydrostat.simulation import (
     BodyPhysics,
+    Equilibrium,
     Motion,
     Simulation,
-    SolvedPose,
     StepOptions,
     obstacle_forces,
-    replacing,
+    with_replaced,
 )
 
 FRICTION, MASS, WEIGHT = 0.4, 0.05, 0.05 * 9.81
@@ -65,7 +65,7 @@ class Drag:
 
     def __init__(self, robot: Robot) -> None:
         body = BodyPhysics(robot)
-        self.carriage: Carriage = body.carriages[0]
+        self.carriage: RigidBodyDofs = body.carriages[0]
         self.at, self.axes = robot.obstacles[0].frame()
         across = np.eye(len(self.at))
         across[-1, -1] = 0.0
@@ -76,7 +76,7 @@ class Drag:
     def to(self, way: float) -> np.ndarray:
         """Force [N] that drags when the spring's end has gone so far [m]."""
         guide = self.guide.moved(self.at + way * np.eye(len(self.at))[0], self.axes)
-        self.pose = replacing(self.simulation, self.guide, guide).solve({}, start=self.pose)
+        self.pose = with_replaced(self.simulation, self.guide, guide).solve({}, start=self.pose)
         return guide.pull(self.pose.unknowns)
 
 
@@ -144,7 +144,7 @@ def test_a_belt_round_a_drum_is_the_capstan() -> None:
 @cache
 def _leaning(lean: float) -> list[Motion]:
     simulation = Simulation(pad(2, viscosity=2000.0, lean=lean))
-    motion, motions = simulation.still(), []
+    motion, motions = simulation.motion_at_rest(), []
     for _ in range(60):
         motion = simulation.step(motion, {}, 5e-3, options=StepOptions(scheme="euler"))
         motions.append(motion)
@@ -167,7 +167,7 @@ def test_it_flies_as_newton_says() -> None:
         block, at=(*block.at[:2], block.at[2] + 0.5), to=(*(block.to or ())[:2], (block.to or ())[2] + 0.5)
     )
     simulation = Simulation(replace(robot, obstacles=(lifted,)))
-    carriage, motion = simulation.body.carriages[0], simulation.still()
+    carriage, motion = simulation.body.carriages[0], simulation.motion_at_rest()
     assert motion.carried is not None
     places, speeds, others = motion.carried
     spin = np.cross(np.eye(3), np.array([3.0, 5.0, 2.0]))
@@ -222,7 +222,7 @@ def test_inverse_kinematics_leaves_friction_out_and_follows_the_way() -> None:
     marker: Marker = robot.markers[0]
     target = {marker.name: (marker.at[0] - 2e-3, marker.at[1] - 4e-3)}
     found = hs.solve_ik(simulation, target)
-    again: SolvedPose = simulation.solve(found.pose.contractions)
+    again: Equilibrium = simulation.solve(found.pose.contractions)
     assert np.array_equal(found.pose.nodes, again.nodes)
     miss = np.linalg.norm(again.markers[marker.name] - target[marker.name])
     assert found.errors[marker.name] == pytest.approx(miss)
@@ -241,7 +241,7 @@ def test_a_thing_that_nothing_holds_is_told_and_falls_in_time() -> None:
     simulation = Simulation(replace(strip_robot(columns=8, rows=2), obstacles=(ball,), gravity=(0.0, -9.81)))
     with pytest.raises(InputError, match='nothing holds "ball", which has a mass'):
         simulation.solve({})
-    motion = simulation.still()
+    motion = simulation.motion_at_rest()
     for _ in range(20):
         motion = simulation.step(motion, {}, 1e-3)
     assert motion.carried is not None

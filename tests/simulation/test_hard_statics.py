@@ -88,7 +88,7 @@ def test_limits_of_slack_cables_are_corrected_to_none() -> None:
     assert cables is not None
     held = cables.with_limits(np.ones(len(cables.slips)))
     compliance = simulation.stiffness(simulation.rest).compliance_to(held.span_columns(nodes))
-    assert not held.corrected(nodes, slack, compliance).law.limits.any()
+    assert not held.with_corrected_history(nodes, slack, compliance).law.limits.any()
 
 
 @pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan")])

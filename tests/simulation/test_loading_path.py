@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 from hydrostat.cli.main import app
 from hydrostat.mechanics import FrictionCableEnergy
 from hydrostat.robot import Cable, Mount, Pin, Robot, Winch, load_robot, save_robot
-from hydrostat.simulation import Simulation, SolvedPose, loading_path
+from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.simulation.statics import loading_path
 
 WAVY = (0.005, 0.018, 0.008, 0.016, 0.004, 0.012)
 
@@ -42,12 +43,12 @@ ROBOTS = {
 PULL = np.array([0.02, 0.008])
 
 
-def settled(simulation: Simulation, pose: SolvedPose) -> FrictionCableEnergy:
+def settled(simulation: Simulation, pose: Equilibrium) -> FrictionCableEnergy:
     assert simulation.friction is not None
-    return simulation.friction.resumed(pose.history, pose.nodes, pose.contractions)
+    return simulation.friction.with_history(pose.history, pose.nodes, pose.contractions)
 
 
-def span_tensions(simulation: Simulation, pose: SolvedPose) -> np.ndarray:
+def span_tensions(simulation: Simulation, pose: Equilibrium) -> np.ndarray:
     return settled(simulation, pose).span_tensions(pose.nodes, pose.contractions)
 
 

@@ -37,7 +37,7 @@ def slab(*, lean: float = 0.0, dim: int = 2) -> Robot:
 
 def moved(simulation: hs.Simulation, seconds: float, dt: float = 5e-3) -> Motion:
     """Where it is after some time."""
-    motion = simulation.still()
+    motion = simulation.motion_at_rest()
     for _ in range(round(seconds / dt)):
         motion = simulation.step(motion, {}, dt, options=StepOptions(scheme="euler"))
     return motion
@@ -47,7 +47,7 @@ def moved(simulation: hs.Simulation, seconds: float, dt: float = 5e-3) -> Motion
 def test_the_ground_carries_its_weight_and_friction_holds_it_on_a_slope(dim: int) -> None:
     simulation = hs.Simulation(slab(lean=0.3, dim=dim))  # tan(0.3) = 0.31 < 0.4
     motion = moved(simulation, 0.5)
-    ground = simulation.path.resumed(motion.pose).energies[simulation.body.obstacles[0]]
+    ground = simulation.path.with_history(motion.pose).energies[simulation.body.obstacles[0]]
     assert isinstance(ground, ObstacleEnergy)
     push = ground.push(motion.nodes)
     weight = simulation.body.masses.sum() * np.array(simulation.robot.gravity)
@@ -72,7 +72,7 @@ def test_what_needs_a_hold_says_so() -> None:
     with pytest.raises(InputError, match=r"no pin holds the robot: .* so let it move"):
         hs.Simulation(robot).solve({})
     with pytest.raises(InputError, match="no pin holds the robot"):
-        hs.Simulation(robot).solve_many([{}])
+        hs.Simulation(robot).solve_batch([{}])
     for other in ({"gravity": None}, {"gravity": "+y"}, {"obstacles": ()}):
         with pytest.raises(InputError, match="or let it lie on the ground by gravity"):
             replace(robot, **other)

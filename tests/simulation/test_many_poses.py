@@ -15,7 +15,7 @@ from builders import box_robot, strip_robot
 
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonOptions, Reason
-from hydrostat.simulation import ManyPoses, Simulation, SolvedPose
+from hydrostat.simulation import BatchResult, Equilibrium, Simulation
 from hydrostat.simulation import simulation as room
 
 pytestmark = pytest.mark.usefixtures("unchecked")
@@ -38,7 +38,7 @@ def goals_of(simulation: Simulation, size: int) -> np.ndarray:
     return np.random.default_rng(3).uniform(0.0, 0.01, (size, len(simulation.robot.winches)))
 
 
-def all_bytes(found: ManyPoses) -> bytes:
+def all_bytes(found: BatchResult) -> bytes:
     assert found.jacobians is not None
     assert found.nodes is not None
     parts = (found.contractions, found.markers, found.tensions, found.jacobians, found.nodes, found.stable)
@@ -47,7 +47,7 @@ def all_bytes(found: ManyPoses) -> bytes:
 
 def test_any_number_of_threads_finds_the_bytes_of_one_solve_after_the_other(simulation: Simulation) -> None:
     goals = goals_of(simulation, 12)
-    found = simulation.solve_many(goals, nodes=True, threads=1)
+    found = simulation.solve_batch(goals, nodes=True, threads=1)
     assert found.converged.all()
     assert found.stable.all()
     for number, goal in enumerate(goals):
@@ -60,7 +60,7 @@ def test_any_number_of_threads_finds_the_bytes_of_one_solve_after_the_other(simu
         slopes = np.einsum("mn,ndw->mdw", weights(simulation), simulation.jacobian(pose))
         assert np.abs(found.jacobians[number] - slopes).max() <= 1e-14 * np.abs(slopes).max()
     for threads in (2, 3, 8):
-        assert all_bytes(simulation.solve_many(goals, nodes=True, threads=threads)) == all_bytes(found)
+        assert all_bytes(simulation.solve_batch(goals, nodes=True, threads=threads)) == all_bytes(found)
 
 
 def weights(simulation: Simulation) -> np.ndarray:
@@ -70,12 +70,12 @@ def weights(simulation: Simulation) -> np.ndarray:
 def test_jacobians_are_the_slopes_of_the_markers(simulation: Simulation) -> None:
     """Central differences of step h err by h^2: halved steps leave a quarter."""
     goal = goals_of(simulation, 1)[0]
-    slopes = simulation.solve_many([goal]).jacobians
+    slopes = simulation.solve_batch([goal]).jacobians
     assert slopes is not None
     errors = []
     for step in (1e-4, 5e-5):
         moves = step * np.eye(len(goal))
-        sides = simulation.solve_many(np.concatenate([goal + moves, goal - moves]), jacobians=False)
+        sides = simulation.solve_batch(np.concatenate([goal + moves, goal - moves]), jacobians=False)
         assert sides.jacobians is None
         ahead, behind = np.split(sides.markers, 2)
         differences = np.moveaxis((ahead - behind) / (2 * step), 0, -1)
@@ -88,11 +88,11 @@ def test_a_pose_that_is_not_found_leaves_nan_and_its_reason(simulation: Simulati
     too_much = {2: 1.0, 3: 0.2}[simulation.robot.body.mesh.dim]  # [m], but less than what is taken for millimetres
     goals = np.concatenate([goals_of(simulation, 2), goals_of(simulation, 3)[2:] + too_much])
     hasty = Simulation(simulation.robot, options=NewtonOptions(iterations=7), body=simulation.body)
-    found = hasty.solve_many(goals, nodes=True)
+    found = hasty.solve_batch(goals, nodes=True)
     assert found.converged.tolist() == [True, True, False]
     assert found.reasons[2] not in (None, Reason.CONVERGED)
-    assert found.troubles[:2] == ("", "")
-    assert found.troubles[2].startswith(str(found.reasons[2]))
+    assert found.errors[:2] == ("", "")
+    assert found.errors[2].startswith(str(found.reasons[2]))
     assert found.jacobians is not None
     assert found.nodes is not None
     for part in (found.markers, found.tensions, found.jacobians, found.nodes):
@@ -103,16 +103,16 @@ def test_a_pose_that_is_not_found_leaves_nan_and_its_reason(simulation: Simulati
 def test_an_error_in_one_pose_does_not_lose_the_others(simulation: Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
     goals, solve = goals_of(simulation, 5), simulation.solve
 
-    def fragile(goal: np.ndarray, **options: Any) -> SolvedPose:
+    def fragile(goal: np.ndarray, **options: Any) -> Equilibrium:
         if (goal == goals[1]).all():
             raise ZeroDivisionError("put in on purpose")
         return solve(goal, **options)
 
     monkeypatch.setattr(simulation, "solve", fragile)
-    found = simulation.solve_many(goals)
+    found = simulation.solve_batch(goals)
     assert found.converged.tolist() == [True, False, True, True, True]
     assert found.reasons[1] is None
-    assert found.troubles[1] == "ZeroDivisionError: put in on purpose"
+    assert found.errors[1] == "ZeroDivisionError: put in on purpose"
     assert np.isnan(found.markers[1]).all()
 
 
@@ -120,14 +120,14 @@ def test_it_begins_from_a_pose(simulation: Simulation) -> None:
     """From the pose that is asked for there is nothing left to do."""
     goal = goals_of(simulation, 1)[0]
     pose = simulation.solve(goal)
-    found = simulation.solve_many([goal, goal], nodes=True, start=pose)
+    found = simulation.solve_batch([goal, goal], nodes=True, start=pose)
     assert found.nodes is not None
     assert np.abs(found.nodes - pose.nodes).max() <= 1e-9 * simulation.robot.body.mesh.size
 
 
 def test_names_of_winches_will_do(simulation: Simulation) -> None:
     winch = simulation.robot.winches[0].name
-    found = simulation.solve_many([{winch: 0.004}, {}])
+    found = simulation.solve_batch([{winch: 0.004}, {}])
     assert found.contractions[0, 0] == 0.004
     assert not found.contractions[:, 1:].any()
     assert len(found) == 2
@@ -140,28 +140,28 @@ def test_one_thread_solves_small_bodies(
     """Two would mostly wait for Python's lock."""
     names, solve = set(), simulation.solve
 
-    def told(goal: np.ndarray, **options: Any) -> SolvedPose:
+    def told(goal: np.ndarray, **options: Any) -> Equilibrium:
         names.add(threading.current_thread().name)
         time.sleep(0.01)
         return solve(goal, **options)
 
     monkeypatch.setattr(simulation, "solve", told)
     monkeypatch.setattr(room, "LONG_ENOUGH", least)
-    simulation.solve_many(goals_of(simulation, 6), threads=2)
+    simulation.solve_batch(goals_of(simulation, 6), threads=2)
     assert len(names) == (2 if several else 1)
 
 
 def test_no_pose_and_no_marker(simulation: Simulation) -> None:
     bare = Simulation(replace(simulation.robot, markers=()), body=simulation.body)
     winches = len(simulation.robot.winches)
-    assert bare.solve_many(np.zeros((0, winches))).markers.shape == (0, 0, simulation.robot.body.mesh.dim)
-    assert bare.solve_many(goals_of(bare, 2)).markers.shape == (2, 0, simulation.robot.body.mesh.dim)
+    assert bare.solve_batch(np.zeros((0, winches))).markers.shape == (0, 0, simulation.robot.body.mesh.dim)
+    assert bare.solve_batch(goals_of(bare, 2)).markers.shape == (2, 0, simulation.robot.body.mesh.dim)
 
 
 @pytest.mark.parametrize("wrong", [0, -1, 1.5, True])
 def test_threads_are_counted_from_one(simulation: Simulation, wrong: object) -> None:
     with pytest.raises(InputError, match="threads must be a whole number"):
-        simulation.solve_many(goals_of(simulation, 2), threads=wrong)  # pyright: ignore[reportArgumentType]
+        simulation.solve_batch(goals_of(simulation, 2), threads=wrong)  # pyright: ignore[reportArgumentType]
 
 
 @pytest.mark.parametrize(
@@ -173,12 +173,12 @@ def test_threads_are_counted_from_one(simulation: Simulation, wrong: object) -> 
 )
 def test_wrong_contractions_are_refused_at_once(simulation: Simulation, change: Callable, text: str) -> None:
     with pytest.raises(InputError, match=text):
-        simulation.solve_many(change(goals_of(simulation, 20)))
+        simulation.solve_batch(change(goals_of(simulation, 20)))
 
 
 def test_a_wrong_limit_is_refused_at_once(simulation: Simulation) -> None:
     with pytest.raises(InputError, match="seconds must be above 0"):
-        simulation.solve_many(goals_of(simulation, 2), seconds=0.0)
+        simulation.solve_batch(goals_of(simulation, 2), seconds=0.0)
 
 
 @pytest.mark.parametrize("threads", [1, 2])
@@ -186,7 +186,7 @@ def test_an_interrupt_ends_it(simulation: Simulation, monkeypatch: pytest.Monkey
     """Of ten thousand poses that take a hundredth of a second each only the first few are solved."""
     solved, solve, numbers = [], simulation.solve, count()
 
-    def slow(goal: np.ndarray, **options: Any) -> SolvedPose:
+    def slow(goal: np.ndarray, **options: Any) -> Equilibrium:
         solved.append(goal)
         time.sleep(0.01)
         if next(numbers) == 10:  # exactly one of the threads
@@ -197,7 +197,7 @@ def test_an_interrupt_ends_it(simulation: Simulation, monkeypatch: pytest.Monkey
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background it comes ignored
     try:
         with pytest.raises(KeyboardInterrupt):
-            simulation.solve_many(np.zeros((10_000, len(simulation.robot.winches))), threads=threads)
+            simulation.solve_batch(np.zeros((10_000, len(simulation.robot.winches))), threads=threads)
     finally:
         signal.signal(signal.SIGINT, before)
     assert len(solved) < 1000
@@ -206,4 +206,4 @@ def test_an_interrupt_ends_it(simulation: Simulation, monkeypatch: pytest.Monkey
 def test_what_is_no_row_of_contractions_is_told(simulation: Simulation, unchecked: None) -> None:
     for given, words in ((None, "a row for each pose, not None"), ([{simulation.robot.winches[0].name: "a"}], "'a'")):
         with pytest.raises(InputError, match=words):
-            simulation.solve_many(given)  # pyright: ignore[reportArgumentType]
+            simulation.solve_batch(given)  # pyright: ignore[reportArgumentType]

@@ -18,7 +18,7 @@ from hydrostat.simulation import write_motion
 def test_table_and_frames_hold_the_motion(tmp_path: Path, make: object) -> None:
     robot = make()
     simulation = hs.Simulation(robot)
-    motions = list(simulation.play(hs.Profile.ramp(np.array([0.004, 0.001]), 0.05), 0.1, 0.01))
+    motions = list(simulation.play(hs.ContractionProfile.ramp(np.array([0.004, 0.001]), 0.05), 0.1, 0.01))
     files, table, last = write_motion(robot, iter(motions), tmp_path / "new")
     assert last is motions[-1]
     assert table.times == pytest.approx(0.01 * np.arange(11))
@@ -47,8 +47,8 @@ def test_a_motion_that_stops_is_written_as_far_as_it_got(tmp_path: Path) -> None
     simulation = hs.Simulation(robot)
 
     def stopping() -> Iterator[hs.Motion]:
-        yield simulation.still()
-        yield simulation.step(simulation.still(), {}, 0.01)
+        yield simulation.motion_at_rest()
+        yield simulation.step(simulation.motion_at_rest(), {}, 0.01)
         raise hs.NotConvergedError("stuck", None)
 
     with pytest.raises(hs.NotConvergedError, match="stuck"):

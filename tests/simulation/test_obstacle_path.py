@@ -9,7 +9,15 @@ from builders import FOAM, mesh_body, strip_mesh
 
 from hydrostat.mechanics import GuideEnergy
 from hydrostat.robot import Contact, Marker, Obstacle, Pin, Robot
-from hydrostat.simulation import BodyPhysics, Profile, Simulation, StepOptions, carried_frames, replacing, write_motion
+from hydrostat.simulation import (
+    BodyPhysics,
+    ContractionProfile,
+    Simulation,
+    StepOptions,
+    carried_frames,
+    with_replaced,
+    write_motion,
+)
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -33,7 +41,7 @@ def pressed(obstacle: Obstacle, *, viscosity: float = 0.0, friction: float = 0.0
 DISC = Obstacle(name="disc", shape="sphere", at=(0.08, 0.037), radius=0.02)
 PRESS = Obstacle(name="press", shape="plane", at=(0.08, 0.017), normal=(0.0, -1.0))
 BLOCK = Obstacle(name="block", shape="box", at=(-0.1, 0.017), to=(0.26, 0.06))
-NONE = Profile.ramp(np.zeros(0), 1.0)
+NONE = ContractionProfile.ramp(np.zeros(0), 1.0)
 
 
 def down(obstacle: Obstacle, way: float) -> Obstacle:
@@ -55,7 +63,7 @@ def guided(obstacle: Obstacle, way: float) -> np.ndarray:
     simulation, pose = Simulation(robot, body=body, energies=[guide]), None
     for share in np.linspace(0, 1, 9):
         moved = guide.moved(place - (0.0, share * way), axes)
-        pose = replacing(simulation, guide, moved).solve({}, start=pose)
+        pose = with_replaced(simulation, guide, moved).solve({}, start=pose)
     assert pose is not None
     return pose.markers["top"]
 
@@ -85,7 +93,7 @@ def test_what_rubs_is_taken_along_and_a_later_motion_goes_on() -> None:
     ends = []
     for friction in (0.0, 1.0):
         simulation = Simulation(pressed(sideways, viscosity=300.0, friction=friction))
-        start = simulation.still(simulation.solve({}))
+        start = simulation.motion_at_rest(simulation.solve({}))
         options = StepOptions(scheme="euler", drag=40.0)
         ends.append(list(simulation.play(NONE, 0.6, 0.04, start=start, options=options))[-1].markers["top"][0])
     assert ends[0] == pytest.approx(0.08, abs=1e-4)

@@ -10,12 +10,12 @@ from test_buckling import column, mirrored  # pyright: ignore[reportMissingImpor
 
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonOptions
-from hydrostat.simulation import Simulation, SolvedPose, path_dependence
+from hydrostat.simulation import Equilibrium, Simulation, find_equilibria
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
 
-def stepped(simulation: Simulation, first: float, last: float) -> SolvedPose:
+def stepped(simulation: Simulation, first: float, last: float) -> Equilibrium:
     """The pose after small load steps between contractions of the arch [m]."""
     pose = simulation.solve({"down": first})
     for contraction in np.linspace(first, last, 61)[1:]:
@@ -25,7 +25,7 @@ def stepped(simulation: Simulation, first: float, last: float) -> SolvedPose:
 
 def test_an_arch_rests_up_or_down() -> None:
     simulation = Simulation(arch())
-    found = path_dependence(simulation, {"down": 0.145})
+    found = find_equilibria(simulation, {"down": 0.145})
     both = [stepped(simulation, 0.0, 0.145), stepped(simulation, 0.3, 0.145)]
     both.sort(key=lambda pose: pose.energy)
     assert len(found.poses) == 2
@@ -45,7 +45,7 @@ def test_an_arch_rests_up_or_down() -> None:
 
 @pytest.mark.parametrize("contraction", [0.13, 0.16])
 def test_beyond_its_folds_the_arch_has_one_pose(contraction: float) -> None:
-    found = path_dependence(Simulation(arch()), {"down": contraction})
+    found = find_equilibria(Simulation(arch()), {"down": contraction})
     assert found.unique
     assert found.lines() == ["one pose from 16 starts: the contractions alone decide"]
 
@@ -53,7 +53,7 @@ def test_beyond_its_folds_the_arch_has_one_pose(contraction: float) -> None:
 def test_a_column_is_straight_or_bent_to_either_side() -> None:
     """At 9 mm it is straight on the way there and bent on the way back; the bent ones are mirror images."""
     simulation = Simulation(column(4))
-    found = path_dependence(simulation, np.full(2, 0.009))
+    found = find_equilibria(simulation, np.full(2, 0.009))
     bent = [pose.pose for pose in found.poses if np.abs(pose.pose.nodes[:, 1]).mean() > 0.012]
     straight = [pose.pose for pose in found.poses if pose.pose not in bent]
     assert len(straight) == 1
@@ -67,7 +67,7 @@ def test_a_column_is_straight_or_bent_to_either_side() -> None:
 
 def test_a_beam_has_one_pose() -> None:
     simulation = Simulation(strip_robot())
-    found = path_dependence(simulation, {"up": 0.03, "down": 0.01})
+    found = find_equilibria(simulation, {"up": 0.03, "down": 0.01})
     assert found.unique
     assert found.lost == ()
     assert found.spread == {"tip": 0.0}
@@ -91,13 +91,13 @@ def test_the_tolerance_tells_poses_apart() -> None:
     """What is one pose at the usual tolerance are many at one below the solver's own."""
     simulation = Simulation(strip_robot(), options=NewtonOptions(tolerance=1e-5))
     goal = {"up": 0.03, "down": 0.01}
-    assert path_dependence(simulation, goal, count=8).unique
-    assert len(path_dependence(simulation, goal, count=8, tolerance=1e-15).poses) > 1
+    assert find_equilibria(simulation, goal, count=8).unique
+    assert len(find_equilibria(simulation, goal, count=8, tolerance=1e-15).poses) > 1
 
 
 def test_the_same_seed_gives_the_same_ways() -> None:
     simulation = Simulation(arch())
-    one, same, other = (path_dependence(simulation, {"down": 0.145}, count=9, seed=seed) for seed in (0, 0, 3))
+    one, same, other = (find_equilibria(simulation, {"down": 0.145}, count=9, seed=seed) for seed in (0, 0, 3))
     assert [pose.ways for pose in one.poses] == [pose.ways for pose in same.poses]
     assert one.starts == other.starts == 9
 
@@ -105,16 +105,16 @@ def test_the_same_seed_gives_the_same_ways() -> None:
 def test_with_friction_the_way_matters() -> None:
     robot = strip_robot(columns=8, rows=2)
     rubbing = Simulation(replace(robot, cables=tuple(replace(cable, friction=0.3) for cable in robot.cables)))
-    found = path_dependence(rubbing, {"up": 0.02, "down": 0.005}, count=5)
+    found = find_equilibria(rubbing, {"up": 0.02, "down": 0.005}, count=5)
     assert found.friction
     assert len(found.poses) > 1
     assert "cables rub, so the way there matters by nature" in found.lines()
-    assert path_dependence(Simulation(robot), {"up": 0.02, "down": 0.005}, count=5).unique
+    assert find_equilibria(Simulation(robot), {"up": 0.02, "down": 0.005}, count=5).unique
 
 
 def test_ways_that_lead_nowhere_are_told() -> None:
     simulation = Simulation(arch(), options=NewtonOptions(iterations=1))
-    found = path_dependence(simulation, {"down": 0.145}, count=4)
+    found = find_equilibria(simulation, {"down": 0.145}, count=4)
     assert len(found.lost) + found.starts == 4
     assert found.lost
     assert found.lines()[-1].startswith(f"{len(found.lost)} start")
@@ -122,18 +122,18 @@ def test_ways_that_lead_nowhere_are_told() -> None:
 
 def test_progress_is_told() -> None:
     told = []
-    path_dependence(Simulation(arch()), {}, count=3, progress=lambda *given: told.append(given))
+    find_equilibria(Simulation(arch()), {}, count=3, progress=lambda *given: told.append(given))
     assert told == [("trying ways", done, 3) for done in (1, 2, 3)]
 
 
 @pytest.mark.parametrize(("count", "tolerance", "words"), [(0, 1e-4, "count"), (3, 0.0, "tolerance")])
 def test_bad_options_are_refused(count: int, tolerance: float, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        path_dependence(Simulation(arch()), {}, count=count, tolerance=tolerance)
+        find_equilibria(Simulation(arch()), {}, count=count, tolerance=tolerance)
 
 
 def test_a_seed_below_zero_is_refused(unchecked: None) -> None:
     simulation = Simulation(strip_robot())
     for seed in (-1, 0.5, "a"):
         with pytest.raises(InputError, match="seed must be a whole number"):
-            path_dependence(simulation, np.zeros(2), seed=seed)  # type: ignore[arg-type]
+            find_equilibria(simulation, np.zeros(2), seed=seed)  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ from toy_energies import Floor, Magnet, YieldingTie
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import Assembly, Energy, WeightEnergy
-from hydrostat.simulation import Profile, Simulation
+from hydrostat.simulation import ContractionProfile, Simulation
 from hydrostat.testing import check_energy
 
 ROBOT = strip_robot(columns=12, rows=3)
@@ -32,7 +32,7 @@ def toys() -> dict[str, Energy]:
 @pytest.mark.parametrize("name", toys())
 def test_the_toys_keep_the_contract(name: str) -> None:
     bent = NODES + np.array([0.0, 0.02]) * (NODES[:, :1] / NODES[:, 0].max()) ** 2
-    energy = toys()[name].near(bent)
+    energy = toys()[name].with_active_terms(bent)
     check_energy(energy, bent, np.array([0.3, 0.1]), tolerance=1e-5)
 
 
@@ -60,7 +60,7 @@ def test_a_floor_holds_and_its_terms_come_and_go() -> None:
     assert Simulation(ROBOT).solve(down).nodes[:, 1].min() < FLOOR - 0.01
     assert FLOOR < pose.nodes[:, 1].min() < FLOOR + 0.01
     assert np.abs(pose.nodes - other.nodes).max() < 1e-8
-    touching = simulation.assembly.near(pose.nodes)
+    touching = simulation.assembly.with_active_terms(pose.nodes)
     assert 0 < len(touching.energies[-1].stencils) < len(NODES)
     assert touching.pattern.analysis is simulation.assembly.pattern.analysis  # nodes alone are no new pairs
     exact, h = simulation.jacobian(pose)[:, :, 1], np.array([0.0, 1e-6])
@@ -83,7 +83,7 @@ def test_a_pair_that_never_met_is_analysed_anew() -> None:
     class Reach(Magnet):
         """It is there only while the tip is above its rest."""
 
-        def near(self, nodes: np.ndarray) -> Energy:
+        def with_active_terms(self, nodes: np.ndarray) -> Energy:
             return magnet if nodes[TIP, 1] > NODES[TIP, 1] else far
 
     far = Reach(TIP, TIP, strength=0.0, control=0)
@@ -91,7 +91,7 @@ def test_a_pair_that_never_met_is_analysed_anew() -> None:
     far.controls = far.controls[:0]
     assembly = simulation.assembly.extended([far], control_count=2)
     raised = NODES + np.array([0.0, 1e-3])
-    near, below = assembly.near(raised), assembly.near(NODES - np.array([0.0, 1e-3]))
+    near, below = assembly.with_active_terms(raised), assembly.with_active_terms(NODES - np.array([0.0, 1e-3]))
     assert below is assembly
     assert near.pattern.analysis is not assembly.pattern.analysis
     fresh = Assembly(near.energies, rest=NODES, control_count=2)
@@ -110,7 +110,7 @@ def test_a_tie_that_yields_remembers_the_way() -> None:
     assert isinstance(tie, YieldingTie)
     for pose in (there, back):
         assert pose.result.converged
-        slipped = tie.resumed(pose.history, pose.nodes, pose.contractions)
+        slipped = tie.with_history(pose.history, pose.nodes, pose.contractions)
         assert tie.stiffness * np.linalg.norm(slipped._off(pose.nodes)) <= 1.0001 * tie.limit
     assert np.linalg.norm(there.history) > 1e-3
     assert np.linalg.norm(back.nodes[TIP] - simulation.rest.nodes[TIP]) > 1e-4
@@ -168,7 +168,7 @@ def test_a_guess_beneath_the_floor_is_no_guess() -> None:
     for every in (False, True):
         floor = Floor(FLOOR, reach=5e-3, stiffness=1e-2, every=every, count=len(NODES))
         simulation = Simulation(ROBOT, energies=[floor])
-        profile = Profile(times=np.array([0.0, 0.1]), values=np.array([[0.0, 0.0], [0.0, 0.02]]))
+        profile = ContractionProfile(times=np.array([0.0, 0.1]), values=np.array([[0.0, 0.0], [0.0, 0.02]]))
         *_, last = simulation.play(profile, 0.2, 0.05)
         ends.append(last.nodes)
     assert np.abs(ends[0] - ends[1]).max() < 1e-6
@@ -186,7 +186,7 @@ def test_a_pose_whose_nodes_were_moved_brings_no_factors() -> None:
 
 @pytest.mark.parametrize("columns", [1, 3])
 def test_a_profile_of_other_winches_is_refused(columns: int) -> None:
-    profile = Profile(times=np.array([0.0, 1.0]), values=np.zeros((2, columns)))
+    profile = ContractionProfile(times=np.array([0.0, 1.0]), values=np.zeros((2, columns)))
     with pytest.raises(InputError, match=f"{columns} contractions given for 2 winches"):
         list(Simulation(ROBOT).play(profile, 0.1, 0.05))
 

@@ -13,17 +13,17 @@ from hydrostat.simulation import ProfileTable, read_profile, write_profile
 def test_a_profile_goes_through_its_values() -> None:
     """Oracle: numpy.interp."""
     times, values = np.array([0.0, 0.5, 2.0]), np.array([[0.0, 0.0], [0.01, -0.004], [0.002, 0.0]])
-    profile = hs.Profile(times=times, values=values)
+    profile = hs.ContractionProfile(times=times, values=values)
     for time in (-1.0, 0.0, 0.2, 0.5, 1.7, 2.0, 9.0):
         expected = [np.interp(time, times, column) for column in values.T]
         assert profile.at(time) == pytest.approx(expected, abs=1e-15)
-    one = hs.Profile(times=times[:1], values=values[1:2])
+    one = hs.ContractionProfile(times=times[:1], values=values[1:2])
     assert (one.at(3.0) == values[1]).all()
 
 
 def test_a_ramp_begins_and_ends_gently() -> None:
     """Oracle: 3 s^2 - 2 s^3, differences at both ends."""
-    ramp = hs.Profile.ramp(np.array([0.01]), 2.0)
+    ramp = hs.ContractionProfile.ramp(np.array([0.01]), 2.0)
     assert ramp.at(1.0)[0] == pytest.approx(0.005)
     assert ramp.at(0.5)[0] == pytest.approx(0.01 * (3 / 16 - 2 / 64))
     assert ramp.at(0.002)[0] < 1e-7
@@ -79,7 +79,7 @@ def test_each_row_knows_its_line(tmp_path: Path) -> None:
 
 def test_what_is_written_is_read_back(tmp_path: Path) -> None:
     robot = strip_robot(columns=4, rows=2)
-    profile = hs.Profile(
+    profile = hs.ContractionProfile(
         times=np.array([0.0, 0.25, 1.0]), values=np.array([[0.0, 0.01], [0.0123456, -0.0], [0.02, 0.0]])
     )
     path = write_profile(tmp_path / "way.csv", robot, profile)

@@ -6,7 +6,7 @@ import numpy as np
 from builders import strip_robot
 
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, rig_slopes
+from hydrostat.simulation import Simulation, cable_sensitivities
 
 CONTRACTIONS = np.array([0.011, 0.004])
 
@@ -29,7 +29,7 @@ def test_rows_are_those_of_single_adjoints() -> None:
     robot = stepped()
     simulation = Simulation(robot)
     pose = simulation.solve(CONTRACTIONS)
-    slopes = rig_slopes(simulation, pose, [0])
+    slopes = cable_sensitivities(simulation, pose, [0])
     marker = simulation.marker_anchors
     for row in range(2 + 3):
         nodes, tensions = np.zeros_like(pose.nodes), np.zeros(3)
@@ -46,7 +46,7 @@ def test_rows_are_those_of_single_adjoints() -> None:
 def test_ratios_agree_with_finite_differences() -> None:
     robot = stepped()
     simulation = Simulation(robot)
-    slopes = rig_slopes(simulation, simulation.solve(CONTRACTIONS), [0])
+    slopes = cable_sensitivities(simulation, simulation.solve(CONTRACTIONS), [0])
     step = 1e-5
     radius = robot.winches[0].spool_radius
     ends = []

@@ -31,7 +31,7 @@ def swinging(simulation: hs.Simulation, scheme: str = "sdirk2", steps: int = 40)
     pose = simulation.solve(PULL)
     thrown = np.zeros_like(pose.nodes)
     thrown[:, 1] = 0.5 * (pose.nodes[:, 0] / np.ptp(pose.nodes[:, 0])) ** 2
-    motions = [simulation.still(pose, velocities=thrown)]
+    motions = [simulation.motion_at_rest(pose, velocities=thrown)]
     for _ in range(steps):
         motions.append(simulation.step(motions[-1], PULL, 0.002, options=hs.StepOptions(scheme=scheme)))
     return motions
@@ -55,7 +55,7 @@ def test_a_slow_ramp_ends_where_the_loading_path_does() -> None:
     direct = simulation.solve(0.5 * PULL)
     hysteresis = np.abs(back.nodes - direct.nodes).max()
     assert hysteresis > 1e-5
-    motion = simulation.still()
+    motion = simulation.motion_at_rest()
     for goal, pose in ((PULL, there), (0.5 * PULL, back)):
         begin = motion.contractions
         for share in np.linspace(0.05, 1.0, 20):
@@ -87,4 +87,4 @@ def test_a_start_without_its_slips_is_refused() -> None:
     simulation = strip(0.3)
     pose = replace(simulation.solve(PULL), history=np.zeros(0))
     with pytest.raises(hs.InputError, match="remember the way"):
-        simulation.still(pose)
+        simulation.motion_at_rest(pose)

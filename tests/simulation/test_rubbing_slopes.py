@@ -9,8 +9,8 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.robot import Cable, Robot
-from hydrostat.simulation import Simulation, SolvedPose
-from hydrostat.simulation.rig_slopes import rig_slopes
+from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.simulation.cable_sensitivities import cable_sensitivities
 
 WAVY = (0.005, 0.018, 0.008, 0.016, 0.004, 0.012)
 PULL = np.array([0.02, 0.0])
@@ -46,7 +46,7 @@ def test_they_are_differences_of_whole_ways(sheathed: tuple[tuple[int, int], ...
     by_tensions = 0.01 * DRAW.standard_normal(len(pose.tensions))
     found = simulation.adjoint(pose, by_nodes, tensions=by_tensions)
 
-    def number(end: SolvedPose) -> float:
+    def number(end: Equilibrium) -> float:
         return float((by_nodes * end.nodes).sum() + by_tensions @ end.tensions)
 
     def slope(changed: Callable[[float], Robot], step: float) -> float:
@@ -75,7 +75,7 @@ def test_they_are_differences_of_whole_ways(sheathed: tuple[tuple[int, int], ...
 def test_rig_slopes_are_the_adjoint_of_each_row() -> None:
     simulation = Simulation(rubbing())
     pose = simulation.solve(PULL)
-    slopes = rig_slopes(simulation, pose, [0])
+    slopes = cable_sensitivities(simulation, pose, [0])
     anchors, nodes = simulation.marker_anchors, np.zeros_like(pose.nodes)
     nodes[anchors.stencils[0], 0] = anchors.weights[0]
     found = simulation.adjoint(pose, nodes)

@@ -11,7 +11,7 @@ import pytest
 from builders import gallery_robot, strip_robot
 
 from hydrostat.ik import TrajectoryOptions, solve_ik_trajectory
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -21,7 +21,7 @@ WORKERS = 8
 ROUNDS = 6
 """So many solves each thread makes."""
 
-Task = tuple[Simulation, np.ndarray, SolvedPose | None]
+Task = tuple[Simulation, np.ndarray, Equilibrium | None]
 
 
 @pytest.fixture(scope="module", params=["strip", "starfish"])
@@ -127,6 +127,10 @@ def test_a_trajectory_holds_no_factors(simulation: Simulation) -> None:
     place = simulation.solve(tasks(simulation)[0][1]).markers
     targets = {marker.name: tuple(place[marker.name].tolist()) for marker in robot.markers}
     found = solve_ik_trajectory(simulation, [targets], options=TrajectoryOptions(rate=4))
-    poses = [*found.poses, *(key.pose for key in found.keys), *(key.found.pose for key in found.keys if key.found)]
-    assert len(poses) > len(found.keys)
+    poses = [
+        *found.poses,
+        *(key.pose for key in found.keyframes),
+        *(key.found.pose for key in found.keyframes if key.found),
+    ]
+    assert len(poses) > len(found.keyframes)
     assert all(pose.result.stiffness is None for pose in poses)

@@ -9,7 +9,7 @@ from builders import box_robot, strip_robot
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.mechanics import NewtonOptions, Reason
 from hydrostat.robot import Mount, Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 ROBOTS = {
     "strip": strip_robot,
@@ -20,7 +20,7 @@ ROBOTS = {
 PULL = np.array([0.02, 0.008])
 
 
-def pin_forces(simulation: Simulation, pose: SolvedPose) -> tuple[np.ndarray, np.ndarray]:
+def pin_forces(simulation: Simulation, pose: Equilibrium) -> tuple[np.ndarray, np.ndarray]:
     """Points where the pins hold, and their forces on the body [N]."""
     pins = simulation.assembly.energies[1]
     forces = -pins.gradient(pose.nodes, pose.contractions).reshape(-1, pose.nodes.shape[1])

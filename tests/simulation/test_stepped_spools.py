@@ -54,7 +54,7 @@ def test_slopes_follow_the_chain_rule(pair: tuple[Simulation, Simulation]) -> No
 
 def test_a_step_in_time() -> None:
     expected, found = Simulation(apart(0.0)), Simulation(together(0.0))
-    one = expected.step(expected.still(), RATIOS * TURN, 0.01)
-    two = found.step(found.still(), TURN, 0.01)
+    one = expected.step(expected.motion_at_rest(), RATIOS * TURN, 0.01)
+    two = found.step(found.motion_at_rest(), TURN, 0.01)
     assert np.abs(two.nodes - one.nodes).max() < 1e-9 * expected.robot.body.mesh.size
     assert two.tensions == pytest.approx(one.tensions, rel=1e-8)

@@ -9,7 +9,7 @@ from touching import fork_robot
 
 from hydrostat.mechanics import ContactEnergy
 from hydrostat.robot import Contact, Obstacle, Pin, Robot
-from hydrostat.simulation import Simulation, obstacle_forces, touch_words, touches
+from hydrostat.simulation import Simulation, find_contacts, obstacle_forces, touch_words
 
 CLOSED = {"up": 0.012, "down": 0.01}
 
@@ -19,9 +19,11 @@ def test_prongs_press_each_other(dim: int) -> None:
     """One patch in the plane; forces are what all nodes of one prong feel, and the place is in the slot."""
     simulation = Simulation(fork_robot(dim))
     pose = simulation.solve(CLOSED)
-    found = touches(simulation, pose)
+    found = find_contacts(simulation, pose)
     assert found
-    contact = next(each for each in simulation.assembly.energies if isinstance(each, ContactEnergy)).near(pose.nodes)
+    contact = next(each for each in simulation.assembly.energies if isinstance(each, ContactEnergy)).with_active_terms(
+        pose.nodes
+    )
     forces = np.zeros_like(pose.nodes)
     contact.add_gradient(pose.nodes, np.zeros(0), forces)
     upper = simulation.robot.body.mesh.nodes[:, 1] > 0
@@ -40,7 +42,7 @@ def test_a_wall_bears_what_the_pins_do_not(dim: int) -> None:
     wall = Obstacle(name="wall", shape="plane", at=(0.0, -0.03, 0.0)[:dim], normal=(0.0, 1.0, 0.0)[:dim])
     simulation = Simulation(replace(fork_robot(dim), obstacles=(wall,)))
     pose = simulation.solve({"up": 0.02})
-    met = [touch for touch in touches(simulation, pose) if touch.obstacle == "wall"]
+    met = [touch for touch in find_contacts(simulation, pose) if touch.obstacle == "wall"]
     pins = np.zeros_like(pose.nodes)
     simulation.body.pins.add_gradient(pose.nodes, np.zeros(0), pins)
     total = np.sum([touch.force for touch in met], axis=0)
@@ -66,7 +68,7 @@ def test_a_block_lies_on_a_plane(dim: int, friction: float) -> None:
     )  # fmt: skip
     simulation = Simulation(robot)
     pose = simulation.solve({})
-    (touch,) = touches(simulation, pose)
+    (touch,) = find_contacts(simulation, pose)
     pins = np.zeros_like(pose.nodes)
     simulation.body.pins.add_gradient(pose.nodes, np.zeros(0), pins)
     weight = 9.81 * simulation.body.masses.sum()
@@ -80,7 +82,7 @@ def test_a_block_lies_on_a_plane(dim: int, friction: float) -> None:
 
 def test_nothing_touches_at_rest() -> None:
     simulation = Simulation(fork_robot(2))
-    assert touches(simulation, simulation.rest) == ()
+    assert find_contacts(simulation, simulation.rest) == ()
     assert touch_words(()) == ""
     free = Simulation(fork_robot(2, contact=False))
-    assert touches(free, free.solve(CLOSED)) == ()
+    assert find_contacts(free, free.solve(CLOSED)) == ()

@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import find_crossings
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import Assembly, ContactEnergy, NewtonOptions
-from hydrostat.robot import Contact, Obstacle, Pose, Robot
+from hydrostat.robot import Contact, Obstacle, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 PULLED = {"up": 0.02, "down": 0.016}
@@ -29,7 +29,9 @@ def test_prongs_meet_and_do_not_cross(dim: int) -> None:
     pose = touching.solve(PULLED)
     assert crossings(touching.robot, pose.nodes) == 0
     assert np.abs(touching.forces(pose.nodes, pose.contractions)).max() <= pose.result.allowed
-    energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy)).near(pose.nodes)
+    energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy)).with_active_terms(
+        pose.nodes
+    )
     squared, begins = energy.skin.squared(pose.nodes, energy.pairs), energy.skin.begins(energy.pairs)
     felt = squared < begins
     assert felt.any()
@@ -48,7 +50,9 @@ def test_random_contractions(dim: int) -> None:
         if dim == 3:
             assert not crosses(robot, pose.nodes)
         energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy))
-        if energy.near(pose.nodes).value(pose.nodes, contractions) == 0.0 and not crossings(robot, other.nodes):
+        if energy.with_active_terms(pose.nodes).value(pose.nodes, contractions) == 0.0 and not crossings(
+            robot, other.nodes
+        ):
             np.testing.assert_allclose(pose.nodes, other.nodes, atol=1e-8)
         else:
             touched += 1
@@ -115,7 +119,7 @@ def test_what_a_pose_knows_of_its_pairs_serves_the_next_solve(dim: int) -> None:
 
 def test_inverse_kinematics_keeps_prongs_apart() -> None:
     """A target behind the other prong: the answer without contact lies within it, the one with contact does not."""
-    pose = Pose(name="through", targets={"tip": (0.1, -0.012)})
+    pose = PoseTarget(name="through", targets={"tip": (0.1, -0.012)})
     free, touching = (replace(fork_robot(2, contact=contact), poses={"through": pose}) for contact in (False, True))
     assert crossings(free, solve_ik(Simulation(free), pose).pose.nodes) > 0
     reached = solve_ik(Simulation(touching), pose)
@@ -125,7 +129,7 @@ def test_inverse_kinematics_keeps_prongs_apart() -> None:
 def test_motion_does_not_pass_through() -> None:
     """Pulled at once, without viscosity: the prongs fly together."""
     simulation = Simulation(fork_robot(2))
-    motion = simulation.still()
+    motion = simulation.motion_at_rest()
     least = np.inf
     for _ in range(25):
         motion = simulation.step(motion, PULLED, 4e-3)
@@ -183,5 +187,5 @@ def test_simulations_with_contact_and_obstacles_can_be_shared(dim: int) -> None:
     nodes = [simulation.solve(pull).nodes for pull in pulls]
     sent = pickle.loads(pickle.dumps(simulation))
     np.testing.assert_array_equal(sent.solve(pulls[0]).nodes, nodes[0])
-    many = simulation.solve_many(pulls, threads=2, nodes=True, jacobians=False)
+    many = simulation.solve_batch(pulls, threads=2, nodes=True, jacobians=False)
     np.testing.assert_array_equal(many.nodes, nodes)

@@ -9,7 +9,7 @@ from builders import FOAM, mesh_body, strip_mesh
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import GuideEnergy, PinEnergy
 from hydrostat.robot import Contact, Obstacle, Pin, Robot
-from hydrostat.simulation import BodyPhysics, Simulation, replacing
+from hydrostat.simulation import BodyPhysics, Simulation, with_replaced
 
 FRICTION, RADIUS, DISTANCE = 0.4, 0.02, 5e-4
 
@@ -56,12 +56,12 @@ def test_the_pull_is_twice_friction_times_the_press() -> None:
     simulation, pose = Simulation(robot, body=body, energies=[press, guide]), None
     for way in np.linspace(1.25e-4, 1e-3, 8):
         lower = lid(way)
-        simulation, press = replacing(simulation, press, lower), lower
+        simulation, press = with_replaced(simulation, press, lower), lower
         pose = simulation.solve({}, start=pose)
     shares = []
     for way in np.arange(1, 9) * 4e-4:
         further = guide.moved(place + way * axes[0], axes)
-        pose = replacing(simulation, guide, further).solve({}, start=pose)
+        pose = with_replaced(simulation, guide, further).solve({}, start=pose)
         pressed = float(press.gradient(pose.unknowns, np.zeros(0))[:, 0, 1].sum())
         shares.append(further.pull(pose.unknowns)[0] / (2 * FRICTION * pressed))
     assert shares[0] < 0.9  # it sticks at first

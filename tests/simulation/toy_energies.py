@@ -63,7 +63,7 @@ class Floor(Energy):
         self.stencils = np.arange(count if every else 0)[:, None]
         self.asked = 0
 
-    def near(self, nodes):
+    def with_active_terms(self, nodes):
         found = np.flatnonzero(nodes[:, 1] - self.level < self.reach)[:, None]
         if self.every or np.array_equal(found, self.stencils):
             return self
@@ -136,13 +136,13 @@ class YieldingTie(Energy):
         other.slip = slip
         return other
 
-    def resumed(self, history, nodes, controls):
+    def with_history(self, history, nodes, controls):
         return self._with(history)
 
-    def imbalance(self, nodes, controls):
+    def history_residual(self, nodes, controls):
         return max(self.stiffness * float(np.linalg.norm(self._off(nodes))) - self.limit, 0.0)
 
-    def corrected(self, nodes, controls, compliance, response=None):
+    def with_corrected_history(self, nodes, controls, compliance, response=None):
         off = self._off(nodes)
         size = float(np.linalg.norm(off))
         return self._with(self.slip + off * max(1.0 - self.limit / (self.stiffness * size), 0.0) if size else self.slip)

@@ -8,7 +8,7 @@ import pytest
 from builders import box_mesh, gallery_robot, mesh_body
 
 from hydrostat.cli.check import print_sewing
-from hydrostat.design import Weight
+from hydrostat.design import Severity
 from hydrostat.fabrication import KitOptions, find_sewing
 from hydrostat.geometry import Mesh
 from hydrostat.robot import MATERIALS, Pin, Robot
@@ -75,7 +75,7 @@ def test_a_skin_that_cannot_be_sewn_is_told_in_all_lists_and_in_the_words_of_che
     assert len(problems) > 0
     said = judge.of(robot, wishes)
     assert said is not None
-    assert [(one.text, one.weight) for one in said[: len(problems)]] == [(text, Weight.REFUSED) for text in problems]
+    assert [(one.text, one.weight) for one in said[: len(problems)]] == [(text, Severity.REFUSED) for text in problems]
     assert said[len(problems) :] == first
     judge.learn(robot, refused=problems)
     judge.look(robot, wishes, 0.0)

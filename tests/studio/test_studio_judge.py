@@ -1,4 +1,4 @@
-"""One judgement in Edit, Design and Export. Oracles: `judgement_of`, the places of its findings, reasons of kits."""
+"""One judgement in Edit, Design and Export. Oracles: `review_robot`, the places of its findings, reasons of kits."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.design import Weight, judgement_of
+from hydrostat.design import Severity, review_robot
 from hydrostat.fabrication import KitOptions, find_demand
 from hydrostat.robot import Mount, Robot
 from hydrostat.studio.bell import Bell, Topic
@@ -50,7 +50,7 @@ def test_what_is_said_is_the_one_judgement_once_a_robot_rests(squid: Robot) -> N
     judge.look(squid, WISHES, 2 * QUIET, held=True)
     assert judge.of(squid, WISHES) is None
     assert heard == []
-    assert judged(judge, squid) == judgement_of(squid, constraints=wished_constraints(squid, WISHES))
+    assert judged(judge, squid) == review_robot(squid, constraints=wished_constraints(squid, WISHES))
     assert set(heard) == {Topic.JOB, Topic.THINGS}
 
 
@@ -75,14 +75,14 @@ def test_loads_that_a_design_found_and_reasons_of_a_kit_count_for_the_accepted_n
     demand = replace(found, torques=np.full(len(squid.winches), 10.0))
     judge.learn(squid, demand=demand)
     loaded = judged(judge, squid)
-    assert loaded == judgement_of(squid, demand=demand, constraints=wished_constraints(squid, WISHES))
+    assert loaded == review_robot(squid, demand=demand, constraints=wished_constraints(squid, WISHES))
     assert loaded != usual
     again = squid.with_network(squid.winches, squid.cables)
     assert judged(judge, again) == loaded
     judge.learn(squid, refused=("cable[1].points[0] = [0, 80] mm is torn", loaded[0].text))
     told = judged(judge, squid)
     assert told[0].text.endswith("is torn")
-    assert told[0].weight is Weight.REFUSED
+    assert told[0].weight is Severity.REFUSED
     assert told[1:] == loaded
     other = squid.with_network(squid.winches, squid.cables[:-1])
     assert all("is torn" not in finding.text for finding in judged(judge, other))
@@ -120,7 +120,7 @@ def test_a_finding_is_chosen_and_let_go(squid: Robot) -> None:
 
 
 def test_a_ring_at_every_place_with_few_words(squid: Robot) -> None:
-    said = judgement_of(squid, constraints=wished_constraints(squid, WISHES))
+    said = review_robot(squid, constraints=wished_constraints(squid, WISHES))
     dots = finding_things(squid, said)
     expected = {(place.at, TONES[one.weight], place.part) for one in said for place in one.places}
     assert flags(dots) == expected

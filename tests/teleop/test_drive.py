@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import hydrostat as hs
-from hydrostat.control import KnownPulls, Motors, SimulatedLink
+from hydrostat.control import Motors, SimulatedLink, TensionLookup
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop import DriveLoop, DriveSource, DriveWish, FingertipWay, WinchWay, drive
+from hydrostat.teleop import DriveLoop, DriveSource, DriveWish, MarkerMapper, WinchMapper, drive
 from hydrostat.teleop.pose_process import FingertipPoses, PoseOnWay, PoseProcess, WinchPoses
 
 
@@ -50,7 +50,7 @@ def test_winches_go_where_they_are_told_step_by_step_and_within_limits(simulatio
         DriveWish(stamp=0.0, places={"right": 9.0}),
         DriveWish(stamp=0.0),
     ]
-    driven = DriveLoop(motors, WinchWay(simulation, motors.places, solves=False), Script(wishes))
+    driven = DriveLoop(motors, WinchMapper(simulation, motors.places, solves=False), Script(wishes))
     now = 0.0
     for _ in range(60):
         now += 0.02
@@ -65,13 +65,13 @@ def test_winches_go_where_they_are_told_step_by_step_and_within_limits(simulatio
 def test_motors_hold_when_nobody_is_heard_and_go_on_after(simulation: hs.Simulation, tips: bool) -> None:
     motors = motors_of(simulation)
     motors.fastest = 0.03
-    way = (FingertipWay if tips else WinchWay)(simulation, motors.places)
+    way = (MarkerMapper if tips else WinchMapper)(simulation, motors.places)
     name, far = ("left x", -0.05) if tips else ("left", 0.03)
     source = Script([DriveWish(stamp=0.0, places={name: far})])
     source.silence = 0.25
-    driven, now, way.news = DriveLoop(motors, way, source), 0.0, threading.Event()
+    driven, now, way.updated = DriveLoop(motors, way, source), 0.0, threading.Event()
     driven.step(now)
-    assert not tips or way.news.wait(30.0)  # the first pose
+    assert not tips or way.updated.wait(30.0)  # the first pose
     for _ in range(10):
         now += 0.02
         driven.step(now)
@@ -109,7 +109,7 @@ def test_a_flood_of_wishes_leaves_the_line_its_time(simulation: hs.Simulation) -
 
     motors.link.read = slow
     source = Script([DriveWish(stamp=inf, steps={"left": 1e-4})])
-    way = WinchWay(simulation, motors.places, solves=False)
+    way = WinchMapper(simulation, motors.places, solves=False)
     driven, told = DriveLoop(motors, way, source, clock=lambda: now[0]), 0
     while now[0] < 1.0:
         driven.step(now[0])
@@ -123,7 +123,7 @@ def test_hold_and_then_only_what_is_touched_moves(simulation: hs.Simulation) -> 
     motors = motors_of(simulation)
     going, hold = DriveWish(stamp=0.0, places={"left": 0.03}), DriveWish(stamp=0.0, hold=True)
     source = Script([going, hold, hold, DriveWish(stamp=0.0), DriveWish(stamp=0.0)])
-    driven, now = DriveLoop(motors, WinchWay(simulation, motors.places, solves=False), source), 0.0
+    driven, now = DriveLoop(motors, WinchMapper(simulation, motors.places, solves=False), source), 0.0
     for _ in range(30):
         now += 0.02
         driven.step(now)
@@ -134,7 +134,7 @@ def test_hold_and_then_only_what_is_touched_moves(simulation: hs.Simulation) -> 
 def test_an_error_of_the_source_stops_the_motors(simulation: hs.Simulation, wrong: Exception) -> None:
     motors, stops = motors_of(simulation), []
     motors.link.stop = lambda: stops.append(1)
-    way = WinchWay(simulation, motors.places)
+    way = WinchMapper(simulation, motors.places)
     with pytest.raises(type(wrong)):
         drive(motors, way, Script([DriveWish(stamp=0.0), wrong]))
     assert stops
@@ -142,8 +142,8 @@ def test_an_error_of_the_source_stops_the_motors(simulation: hs.Simulation, wron
 
 def test_it_ends_by_the_person_or_in_time(simulation: hs.Simulation) -> None:
     motors, begin = motors_of(simulation), time.monotonic()
-    drive(motors, WinchWay(simulation, motors.places, solves=False), Script([DriveWish(stamp=inf, over=True)]))
-    drive(motors, WinchWay(simulation, motors.places, solves=False), Script([DriveWish(stamp=inf)]), seconds=0.1)
+    drive(motors, WinchMapper(simulation, motors.places, solves=False), Script([DriveWish(stamp=inf, over=True)]))
+    drive(motors, WinchMapper(simulation, motors.places, solves=False), Script([DriveWish(stamp=inf)]), seconds=0.1)
     assert 0.1 <= time.monotonic() - begin < 2.0
 
 
@@ -156,7 +156,7 @@ def test_fingertips_come_to_their_targets(simulation: hs.Simulation) -> None:
         for axis, value in zip("xy", place, strict=True)
     }
     motors = motors_of(simulation)
-    way = FingertipWay(simulation, motors.places)
+    way = MarkerMapper(simulation, motors.places)
     drive(motors, way, Script([DriveWish(stamp=inf, places=places)]), seconds=2.0)
     found = simulation.solve(motors.places)
     for name, place in hidden.markers.items():
@@ -167,7 +167,7 @@ def test_fingertips_come_to_their_targets(simulation: hs.Simulation) -> None:
 def test_a_new_target_does_not_wait_for_the_pose_that_is_solved(simulation: hs.Simulation) -> None:
     """Oracle: the simulation at what is answered while nothing at all is solved."""
     rest, motors = simulation.rest.markers, motors_of(simulation)
-    way, names = FingertipWay(simulation, motors.places, rate=0.06), list(simulation.rest.markers)
+    way, names = MarkerMapper(simulation, motors.places, rate=0.06), list(simulation.rest.markers)
     begin = np.concatenate([np.asarray(rest[name]) for name in names])
     goal = np.concatenate([np.asarray(simulation.solve({"left": 0.005}).markers[name]) for name in names])
 
@@ -175,9 +175,9 @@ def test_a_new_target_does_not_wait_for_the_pose_that_is_solved(simulation: hs.S
         markers = simulation.solve(contractions).markers
         return float(np.linalg.norm(np.concatenate([np.asarray(markers[name]) for name in names]) - goal))
 
-    way.news = threading.Event()
+    way.updated = threading.Event()
     way.ask(begin)
-    assert way.news.wait(20.0)
+    assert way.updated.wait(20.0)
     os.kill(way._poses._process.pid, signal.SIGSTOP)
     way.ask(goal)
     answer = way.contractions
@@ -209,7 +209,7 @@ def test_who_gives_jobs_never_waits(simulation: hs.Simulation) -> None:
 
 def test_what_fails_behind_is_told(simulation: hs.Simulation) -> None:
     motors = motors_of(simulation)
-    way = FingertipWay(simulation, motors.places)
+    way = MarkerMapper(simulation, motors.places)
 
     child = way._poses._process
     os.kill(child.pid, signal.SIGKILL)
@@ -220,7 +220,7 @@ def test_what_fails_behind_is_told(simulation: hs.Simulation) -> None:
 
 
 def test_pulls_are_known_near_poses_that_were_solved(simulation: hs.Simulation) -> None:
-    known = KnownPulls(simulation.robot, near=2e-3, most=3)
+    known = TensionLookup(simulation.robot, near=2e-3, most=3)
     assert np.isnan(known(np.zeros(3))).all()
     one, two = (simulation.solve({"left": taken}) for taken in (0.010, 0.012))
     known.add(one)
@@ -244,7 +244,7 @@ def test_pulls_are_known_near_poses_that_were_solved(simulation: hs.Simulation) 
 @pytest.mark.slow
 def test_a_way_with_a_guard_knows_what_it_drives_through(simulation: hs.Simulation) -> None:
     motors = motors_of(simulation)
-    way = WinchWay(simulation, motors.places)
+    way = WinchMapper(simulation, motors.places)
     drive(motors, way, Script([DriveWish(stamp=inf, places={"left": 0.01})]), seconds=1.0)
     exact = simulation.solve({"left": 0.01})
     left = [winch.name for winch in simulation.robot.winches].index("left")

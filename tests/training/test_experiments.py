@@ -49,7 +49,7 @@ def test_networks_place_markers_as_the_model_does(model: LearnedModel) -> None:
     taken = trials.contractions(acts)[0].double().numpy()
     assert (taken >= model.low - 1e-9).all()
     assert (taken <= model.high + 1e-9).all()
-    wanted = np.array([model.expect(row)[0][: trials.goals] for row in taken])
+    wanted = np.array([model.predict(row)[0][: trials.goals] for row in taken])
     np.testing.assert_allclose(trials.reach(acts)[0].numpy(), 100 * wanted, atol=1e-4)
 
 

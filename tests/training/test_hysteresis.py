@@ -10,7 +10,7 @@ from builders import gallery_robot
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
 
@@ -25,7 +25,7 @@ def robot() -> Robot:
     return gallery_robot("letter_s")
 
 
-def places(pose: SolvedPose) -> Vector:
+def places(pose: Equilibrium) -> Vector:
     return np.array(list(pose.markers.values())).ravel()
 
 

@@ -326,7 +326,7 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Go
     for goal in goals[:5]:
         observation, _ = env.reset(options=goal)
         action = trained.predict(observation, deterministic=True)[0]
-        assert alone.inverted(goal["goal"]) == pytest.approx(env.contractions(action), abs=1e-7)
+        assert alone.predict_inverse(goal["goal"]) == pytest.approx(env.contractions(action), abs=1e-7)
         assert policy.act(observation) == pytest.approx(action, abs=1e-6)  # kept in float32
     with pytest.raises(InputError, match="the policy must see 10 finite numbers of achieved_goal"):
         policy.act({**observation, "achieved_goal": np.full(10, np.nan)})

@@ -63,7 +63,7 @@ def test_an_action_is_time_steps_of_the_simulator_and_each_is_counted() -> None:
     env.reset(options={"goal": [0.05], "friction": 0.5})
     seen, reward, _, over, info = env.step(np.array([0.2]))
     simulation = Simulation(with_friction(standing(robot, None), 0.5))
-    motion, end = simulation.still(), 0.6 * 0.5 * robot.winches[0].travel
+    motion, end = simulation.motion_at_rest(), 0.6 * 0.5 * robot.winches[0].travel
     for step in range(1, 6):
         motion = simulation.step(motion, [end * step / 5], 0.02, options=StepOptions(scheme="euler"))
     masses = simulation.body.masses

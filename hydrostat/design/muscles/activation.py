@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.mechanics import FibreEnergy, NewtonOptions, NewtonResult, minimise
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
 
@@ -70,7 +70,7 @@ def element_fibres(mesh: Mesh, directions: Float[np.ndarray, "elements dim"]) ->
 
 
 def wanted_directions(
-    robot: Robot, pose: Pose, *, body: BodyPhysics | None = None
+    robot: Robot, pose: PoseTarget, *, body: BodyPhysics | None = None
 ) -> Float[np.ndarray, "elements dim"]:
     """Unit vectors along which a fibre of each element lowers the pose error most (E21a).
 
@@ -97,7 +97,7 @@ def wanted_directions(
 class Activation:
     """The muscle fibres that bring a body into a pose (R36, R38)."""
 
-    target: Pose  # the pose asked for
+    target: PoseTarget  # the pose asked for
     fibres: Fibres  # all candidate muscles
     tensions: Vector  # of each fibre [N], not negative
     nodes: Nodes  # positions of the nodes in the activated pose [m]
@@ -111,7 +111,7 @@ class Activation:
 
 def activate(
     robot: Robot,
-    target: Pose,
+    target: PoseTarget,
     fibres: Fibres,
     *,
     effort: float = 1e-4,
@@ -139,7 +139,7 @@ class _Activation:
     """One run: body and fibres assembled, markers located."""
 
     def __init__(
-        self, robot: Robot, target: Pose, fibres: Fibres, effort: float, stages: int, body: BodyPhysics | None
+        self, robot: Robot, target: PoseTarget, fibres: Fibres, effort: float, stages: int, body: BodyPhysics | None
     ) -> None:
         mesh = robot.body.mesh
         self.robot, self.target, self.fibres = robot, target, fibres

@@ -11,11 +11,11 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.spread import Columns, spread_columns
-from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import InverseOptions, Limits, ReachedPose, image_length, solve_ik, usable_spans
-from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import BodyPhysics, RigSlopes, Simulation, SolvedPose, rig_slopes
+from hydrostat.ik import IKOptions, IKResult, Limits, reach_extent, solve_ik, usable_spans
+from hydrostat.robot import PoseTarget, Robot
+from hydrostat.simulation import BodyPhysics, Equilibrium, RigSlopes, Simulation, cable_sensitivities
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class Trial:
 
     layout: Layout  # winches and cables
     simulation: Simulation  # of the robot with them
-    poses: tuple[SolvedPose, ...]  # at equilibrium, one for each target
+    poses: tuple[Equilibrium, ...]  # at equilibrium, one for each target
     slopes: tuple[RigSlopes, ...]  # of the markers of each pose and of all tensions there
     columns: tuple[Columns, ...]  # what each tolerance does to the markers of each pose: see `spread_columns` [m]
     error: float  # root of the mean squared marker error over all poses [m]
@@ -49,9 +49,9 @@ class Bench:
     """Solves layouts for some poses."""
 
     source: Robot  # the robot that is designed for
-    targets: Sequence[Pose]  # poses to reach
+    targets: Sequence[PoseTarget]  # poses to reach
     constraints: Constraints  # limits on tensions and contractions
-    uncertainty: Uncertainty = field(default_factory=Uncertainty.none)  # what differs in a robot as it is built
+    uncertainty: BuildTolerances = field(default_factory=BuildTolerances.none)  # what differs in a robot as it is built
     body: BodyPhysics | None = None  # physics of the body, which all layouts share; each has its own if left out
     reach: float = 0.0  # what reach beyond the poses is worth: see `RouteOptions`
     solves: int = field(default=0)  # layouts tried
@@ -106,7 +106,7 @@ class Bench:
         """
         self.solves += 1
         simulation = Simulation(layout.robot(), body=self.body)
-        options = InverseOptions(restarts=0, unique=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
+        options = IKOptions(restarts=0, min_tension=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
         limits = Limits(tension=self.constraints.tension_limit)
         found = []
         for index, target in enumerate(self.targets):
@@ -141,13 +141,13 @@ class Bench:
             result = simulation.solver.relax(pose.nodes, pulled, iterations=15)
             if not (result.converged and result.stable):
                 return None
-            found.append(simulation.posed(pulled, result))
+            found.append(simulation.make_pose(pulled, result))
             if self._error(simulation, found) > worst:
                 return None
         return self._within(layout, simulation, found, worst)
 
     def _within(
-        self, layout: Layout, simulation: Simulation, poses: Sequence[SolvedPose], worst: float
+        self, layout: Layout, simulation: Simulation, poses: Sequence[Equilibrium], worst: float
     ) -> Trial | None:
         try:
             trial = self.trial(layout, simulation, poses)
@@ -156,7 +156,7 @@ class Bench:
         return trial if trial.built <= worst else None
 
     def scattered(
-        self, layout: Layout, near: SolvedPose, contractions: Vector, index: int
+        self, layout: Layout, near: Equilibrium, contractions: Vector, index: int
     ) -> tuple[Simulation, Nodes, RigSlopes] | None:
         """A layout built otherwise, near a pose: its nodes there [m], and slopes; None where it has no equilibrium."""
         try:
@@ -164,31 +164,33 @@ class Bench:
             result = simulation.solver.relax(near.nodes, contractions, iterations=15)
             if not (result.converged and result.stable):
                 return None
-            pose = simulation.posed(contractions, result)
-            return simulation, pose.nodes, rig_slopes(simulation, pose, self.markers[index])
+            pose = simulation.make_pose(contractions, result)
+            return simulation, pose.nodes, cable_sensitivities(simulation, pose, self.markers[index])
         except (InputError, NotConvergedError):  # a hole outside the body, or about to snap
             return None
 
-    def _missed(self, simulation: Simulation, index: int, pose: SolvedPose) -> float:
+    def _missed(self, simulation: Simulation, index: int, pose: Equilibrium) -> float:
         return float(np.linalg.norm(self.residual(simulation, index, pose.nodes)))
 
     def _short_of(self, hoped: Trial, index: int) -> float:
         """What a pose may miss to be as good as in another trial, but for a share of the error of all [m]."""
         return self._missed(hoped.simulation, index, hoped.poses[index]) + _SHORT * hoped.error
 
-    def _begun(self, simulation: Simulation, before: Trial, index: int) -> SolvedPose | None:
+    def _begun(self, simulation: Simulation, before: Trial, index: int) -> Equilibrium | None:
         """A pose of the new robot near one of the old; None where there is none."""
         pose = before.poses[index]
         pulled = np.zeros(len(simulation.robot.winches))
         shared = min(len(pulled), len(pose.contractions))
         pulled[:shared] = pose.contractions[:shared]
         result = simulation.solver.relax(pose.nodes, pulled, iterations=15)
-        return simulation.posed(pulled, result) if result.converged and result.stable else None
+        return simulation.make_pose(pulled, result) if result.converged and result.stable else None
 
-    def trial(self, layout: Layout, simulation: Simulation, poses: Sequence[SolvedPose]) -> Trial:
+    def trial(self, layout: Layout, simulation: Simulation, poses: Sequence[Equilibrium]) -> Trial:
         """The trial of poses that were solved."""
         pull = max(float(pose.tensions.max(initial=0.0)) for pose in poses) / self.constraints.tension_limit
-        slopes = tuple(rig_slopes(simulation, pose, markers) for pose, markers in zip(poses, self.markers, strict=True))
+        slopes = tuple(
+            cable_sensitivities(simulation, pose, markers) for pose, markers in zip(poses, self.markers, strict=True)
+        )
         columns = tuple(
             spread_columns(simulation, pose, slope, self.uncertainty, len(markers) * layout.dim)
             for pose, slope, markers in zip(poses, slopes, self.markers, strict=True)
@@ -209,10 +211,10 @@ class Bench:
         for one in slopes:
             moves, pulls = np.split(one.contractions, [len(one.contractions) - len(robot.cables)])
             spans = usable_spans(pulls, ranges, limit)
-            lengths.append(image_length(moves, spans, dim=mesh.dim, floor=_NO_REACH * mesh.size))
+            lengths.append(reach_extent(moves, spans, dim=mesh.dim, floor=_NO_REACH * mesh.size))
         return max(mesh.size / float(np.exp(np.mean(np.log(lengths)))), 1.0) ** self.reach
 
-    def _error(self, simulation: Simulation, poses: Sequence[SolvedPose]) -> float:
+    def _error(self, simulation: Simulation, poses: Sequence[Equilibrium]) -> float:
         """Root of the mean squared marker error [m], of the first poses as if the others were reached."""
         squares = [float((self.residual(simulation, index, pose.nodes) ** 2).sum()) for index, pose in enumerate(poses)]
         return float(np.sqrt(sum(squares)))
@@ -220,12 +222,12 @@ class Bench:
 
 def reached_from_rest(
     simulation: Simulation,
-    target: Pose,
+    target: PoseTarget,
     limits: Limits,
-    options: InverseOptions,
+    options: IKOptions,
     *,
-    start: SolvedPose | None = None,
-) -> ReachedPose:
+    start: Equilibrium | None = None,
+) -> IKResult:
     """The pose that is reached when its contractions are played from rest on, as the robot will.
 
     Inverse kinematics may end on a branch of equilibria that the straight way from rest does not lead to. Then it

@@ -25,13 +25,13 @@ from hydrostat.design.routes.refine import linear_model, pushed_back
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.skin_region import cable_region
-from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.fabrication import demand_of, find_refusals
-from hydrostat.ik import InverseOptions, Limits
+from hydrostat.ik import IKOptions, Limits
 from hydrostat.robot import Mount, Robot
-from hydrostat.simulation import BodyPhysics, Simulation, rig_slopes
+from hydrostat.simulation import BodyPhysics, Simulation, cable_sensitivities
 
 Hints = Callable[[BodyPhysics], Iterable[Robot]]
 """Finds networks to begin with, when it is their turn, by the physics of the body."""
@@ -120,7 +120,12 @@ class RouteSearch:
         if self.constraints.built_in and not request.improve and self.constraints.mount is not Mount.WORLD:
             self.constraints = built_in(robot, self.constraints, winches=self.winches, cables=self.cables)
         self.bench = Bench(
-            robot, request.poses, self.constraints, request.uncertainty or Uncertainty.none(), body, self.options.reach
+            robot,
+            request.poses,
+            self.constraints,
+            request.uncertainty or BuildTolerances.none(),
+            body,
+            self.options.reach,
         )
         self.stages: list[DesignStage] = []
         self.found: list[Trial] = []
@@ -339,7 +344,7 @@ class RouteSearch:
         simulation = Simulation(robot, body=self.bench.body)
         limits = Limits(tension=self.constraints.tension_limit)
         try:
-            reached = [reached_from_rest(simulation, pose, limits, InverseOptions()) for pose in self.request.poses]
+            reached = [reached_from_rest(simulation, pose, limits, IKOptions()) for pose in self.request.poses]
         except NotConvergedError:
             return None
         if pulls(robot, reached, self.constraints):
@@ -353,7 +358,8 @@ class RouteSearch:
             return network.built
         simulation = Simulation(network.robot, body=self.bench.body)
         slopes = [
-            rig_slopes(simulation, one.pose, own) for one, own in zip(network.reached, self.bench.markers, strict=True)
+            cable_sensitivities(simulation, one.pose, own)
+            for one, own in zip(network.reached, self.bench.markers, strict=True)
         ]
         return network.built * self.bench.nearness(network.robot, slopes)
 

@@ -12,7 +12,7 @@ from hydrostat.arrays import Vector
 from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.kernel import native
 
-Moves = Float[np.ndarray, "edges rows"]
+MarkerJacobian = Float[np.ndarray, "edges rows"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +31,7 @@ class Missed:
     """What is missed in each row, and what 1 N along each edge of a route graph does to it."""
 
     residual: Float[np.ndarray, " rows"]  # target less marker of each row [m]
-    moves: Moves  # what 1 N along each edge adds to each row [m/N]
+    moves: MarkerJacobian  # what 1 N along each edge adds to each row [m/N]
     pose_of_row: Int[np.ndarray, " rows"]  # 0, 1, ...
     ridge: Float[np.ndarray, " poses"]  # added to |J|^2 of each pose, above 0
     most: float  # largest tension [N]

@@ -28,10 +28,10 @@ from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 from hydrostat.design.trees.lead_ways import lead_ways
 from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
-from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
-from hydrostat.robot import Cable, Mount, Pose, Robot, Winch
+from hydrostat.ik import IKOptions, IKResult, solve_ik
+from hydrostat.robot import Cable, Mount, PoseTarget, Robot, Winch
 from hydrostat.simulation import BodyPhysics, Simulation
 
 
@@ -148,8 +148,8 @@ class _TreeDesign:
         return next(((plan, robot) for plan, robot in robots if robot is not None), None)
 
     @property
-    def _uncertainty(self) -> Uncertainty:
-        return self.request.uncertainty or Uncertainty.of(self.robot.body)
+    def _uncertainty(self) -> BuildTolerances:
+        return self.request.uncertainty or BuildTolerances.of(self.robot.body)
 
     def _build_all(self, plans: Iterable["_TreePlan"]) -> list[tuple["_TreePlan", Robot]]:
         """The first of the plans that can be built, with their robots."""
@@ -182,12 +182,12 @@ class _TreeDesign:
         self.progress("Activating muscles", len(self.request.poses), len(self.request.poses))
         return tuple(found)
 
-    def _activation(self, pose: Pose) -> Activation:
+    def _activation(self, pose: PoseTarget) -> Activation:
         return activate(
             self.robot, pose, self._fibres(pose), effort=self.options.effort, stages=self.options.stages, body=self.body
         )
 
-    def _fibres(self, pose: Pose) -> Fibres:
+    def _fibres(self, pose: PoseTarget) -> Fibres:
         if self.options.fibres is FibreKind.EDGES:
             return edge_fibres(self.mesh)
         return element_fibres(self.mesh, wanted_directions(self.robot, pose, body=self.body))
@@ -299,7 +299,7 @@ def _apart(routes: list[Route], spacing: float) -> list[Route]:
     return kept
 
 
-_ROUNDS = tuple(InverseOptions(iterations=steps, restarts=0, unique=False) for steps in (3, 4, 100))
+_ROUNDS = tuple(IKOptions(iterations=steps, restarts=0, min_tension=False) for steps in (3, 4, 100))
 """Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
 
 _KEPT = 4  # one in so many robots goes on to the next round
@@ -308,13 +308,13 @@ _FEWEST = 4  # at least so many robots go on
 
 def judge(
     robots: Sequence[Robot],
-    poses: Sequence[Pose],
+    poses: Sequence[PoseTarget],
     *,
     tension: float,
     progress: Progress,
     watch: Watch = unseen,
     body: BodyPhysics | None = None,
-) -> tuple[int, tuple[ReachedPose, ...]]:
+) -> tuple[int, tuple[IKResult, ...]]:
     """The index of the robot of least cost, and what it reaches of each pose.
 
     In rounds of inverse kinematics, each of which takes up where the last one ended, for ever fewer robots. Cables
@@ -322,7 +322,7 @@ def judge(
     to it.
     """
     simulations = [Simulation(robot, body=body) for robot in robots]
-    reached: dict[int, tuple[ReachedPose, ...]] = {}
+    reached: dict[int, tuple[IKResult, ...]] = {}
     chosen = list(range(len(robots)))
     better = Better(watch)
     for number, options in enumerate(_ROUNDS):
@@ -344,7 +344,7 @@ def judge(
     return chosen[0], reached[chosen[0]]
 
 
-def cost(reached: Sequence[ReachedPose], tension: float) -> float:
+def cost(reached: Sequence[IKResult], tension: float) -> float:
     """Pose error [m], times how often the largest tension exceeds `tension` [N] if it does."""
     largest = max(float(pose.pose.tensions.max(initial=0.0)) for pose in reached)
     return rms_error(reached) * max(largest / tension, 1.0)
@@ -352,13 +352,13 @@ def cost(reached: Sequence[ReachedPose], tension: float) -> float:
 
 def prune(
     robot: Robot,
-    poses: Sequence[Pose],
-    reached: tuple[ReachedPose, ...],
+    poses: Sequence[PoseTarget],
+    reached: tuple[IKResult, ...],
     *,
     tension: float,
     loss: float,
     body: BodyPhysics | None = None,
-) -> tuple[Robot, tuple[ReachedPose, ...]]:
+) -> tuple[Robot, tuple[IKResult, ...]]:
     """Leave out cables, the shortest first, while the cost stays within 1 + `loss` of what it was.
 
     All omissions together may add that share. Every winch keeps a cable. Cables should bear at most the tension [N].
@@ -376,4 +376,4 @@ def prune(
     return robot, reached
 
 
-_OPTIONS = InverseOptions(restarts=0, unique=False)  # one descent tells enough
+_OPTIONS = IKOptions(restarts=0, min_tension=False)  # one descent tells enough

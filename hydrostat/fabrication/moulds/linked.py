@@ -1,4 +1,4 @@
-"""`linked`: through how many holes of the body a half of its mould reaches and closes behind them.
+"""`interlock_count`: through how many holes of the body a half of its mould reaches and closes behind them.
 
 Such a half and the body are like two links of a chain: neither comes off the other, however soft the body is. Loops
 that generate all loops of a solid are found on its surface (Eppstein 2003), and each of the half is tested against each
@@ -21,7 +21,7 @@ _VIEW = np.array([[0.8017, 0.1409, 0.5809], [-0.2713, 0.9508, 0.1437], [-0.5321,
 Loop = Float[np.ndarray, "_ 3"]  # corners of a closed line [mm]
 
 
-def linked(half: Manifold, body: Manifold) -> int:
+def interlock_count(half: Manifold, body: Manifold) -> int:
     """Count the independent holes of a body that a half reaches through; 0 if it is not linked with it."""
     theirs = loops_of(body)
     mine = loops_of(half) if theirs else []

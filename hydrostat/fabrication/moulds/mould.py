@@ -11,19 +11,19 @@ from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.casting import Casting, make_casting
 from hydrostat.fabrication.moulds.closing import RIM, MouldBlock, make_closing
 from hydrostat.fabrication.moulds.halves import Halves, make_cavity, make_halves, mould_prints
-from hydrostat.fabrication.moulds.linked import linked
+from hydrostat.fabrication.moulds.linked import interlock_count
 from hydrostat.fabrication.moulds.openings import Sprue, Vent, make_sprue, make_vents
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
 from hydrostat.fabrication.moulds.positive import Frames, Positive, make_frames, make_positive
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.moulds.split import grid
-from hydrostat.fabrication.moulds.stance import Stance, find_stance
+from hydrostat.fabrication.moulds.stance import MouldOrientation, find_stance
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.body_solid import MILLIMETRES, body_solid
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Material, Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 TOP_RIM = 20.0  # height of the rim above the body [mm]: the funnel is in it
 
@@ -34,7 +34,7 @@ class Mould:
 
     kind: MouldKind  # printed halves, or silicone round a printed positive
     pull: Pull  # how the halves come off, in the coordinates of the robot
-    stance: Stance  # how it lies in these, and which way is up while it is poured
+    stance: MouldOrientation  # how it lies in these, and which way is up while it is poured
     printed: tuple[Printed, ...]  # as they lie on the bed
     # halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across, y upwards as
     # it stands, z along the pull, parted at z = 0.
@@ -94,7 +94,7 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     fill = sum(halves.volumes[part] for part in ("cavity", "sprue", "vents"))
     casting, unlike = make_casting(robot.body.material, fill, pours=frames.pours if frames else ())
     volumes = _silicone_volumes(halves, positive, frames) if frames else halves.volumes
-    links = linked(halves.lower, halves.cavity), linked(halves.upper, halves.cavity)
+    links = interlock_count(halves.lower, halves.cavity), interlock_count(halves.upper, halves.cavity)
     shape = frames.inside if frames else inside.block
     return Mould(
         kind=options.kind,
@@ -108,7 +108,7 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
         bolts=0 if silicone else len(closing.bolts),
         dowels=dowels,
         vents=len(inside.vents),
-        stands=standing(stance, inside.sprue, inside.vents, options.kind),
+        stands=set_upright(stance, inside.sprue, inside.vents, options.kind),
         casting=casting,
         problems=(
             *unlike,
@@ -143,7 +143,7 @@ def _fill_block(
     options: MouldOptions,
     solid: Manifold,
     pull: Pull,
-    stance: Stance,
+    stance: MouldOrientation,
     rooms: Mapping[str, Sides | WinchRoom],
 ) -> _Inside:
     """Cavity, openings and the block round them."""
@@ -197,7 +197,7 @@ less than half its thickness as it is drawn out, and comes back; but what grips 
 STIFF = 1e6  # Young's modulus from which on a body is not squeezed past an undercut by hand [Pa]
 
 
-def standing(stance: Stance, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
+def set_upright(stance: MouldOrientation, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
     """Tell how the mould stands when it is poured."""
     held = ", the end that is held at the top" if stance.held_upwards else ""
     upward = sum(vent.upward for vent in vents)
@@ -262,7 +262,7 @@ def mould_problems(
 def _reaches(links: tuple[int, int]) -> str:
     """Which half reaches through how many holes."""
     parts = [
-        f"the {half} half of the mould reaches through {counted(count, 'hole')} of the body"
+        f"the {half} half of the mould reaches through {plural(count, 'hole')} of the body"
         for half, count in zip(("lower", "upper"), links, strict=True)
         if count
     ]

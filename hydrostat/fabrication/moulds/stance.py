@@ -1,4 +1,4 @@
-"""`Stance`: how a mould lies in the coordinates of the body, and how it stands so that little air is caught in it."""
+"""`MouldOrientation`: rotation of a mold in the coordinates of the body, chosen so that it traps little air."""
 
 from dataclasses import dataclass
 
@@ -22,7 +22,7 @@ _TOP = 0.5  # what lies less than that below a high point belongs to it [mm]
 
 
 @dataclass(frozen=True, eq=False)
-class Stance:
+class MouldOrientation:
     """Axes of a mould; its parting plane is z = 0."""
 
     # unit vectors across, upwards when poured, and along the pull, as rows, in the body's coordinates
@@ -43,7 +43,7 @@ class Stance:
         return solid.transform(np.column_stack([self.axes.T, self.height * self.axes[2]]))
 
 
-def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> Stance:
+def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> MouldOrientation:
     """Find the way to stand the closed mould on an edge, parting plane upright, so that little air is caught.
 
     Sides of the box are along axes of the robot or those of the smallest box. That edge is chosen that needs the fewest
@@ -64,7 +64,7 @@ def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> Stance:
 
 def _rated_stance(
     pull: Pull, axes: Float[np.ndarray, "3 3"], held: Float[np.ndarray, "held 3"]
-) -> tuple[float, float, Stance]:
+) -> tuple[float, float, MouldOrientation]:
     """A way to stand, before it what speaks against it and the area of the box [mm^2]."""
     places = pull.surface.vertices @ axes.T
     width, tall, depth = np.ptp(places, axis=0)
@@ -72,10 +72,10 @@ def _rated_stance(
     held_upwards = len(held) > 0 and float(level.mean()) > _AT_THE_TOP
     vents = len(high_points(pull.surface.vertices, pull.surface.triangles, axes[1], rise=SMALLEST_TRAP))
     against = vents - _HELD_UPWARDS * held_upwards + _TALL * tall / min(width, 3 * depth)
-    return float(against), float(width * tall), Stance(axes, pull.height, held_upwards)
+    return float(against), float(width * tall), MouldOrientation(axes, pull.height, held_upwards)
 
 
-def _order(stance: Stance) -> list[float]:
+def _order(stance: MouldOrientation) -> list[float]:
     """Decides between ways to stand that are equally good."""
     return (stance.axes[1].round(6) + 0.0).tolist()
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plan import FREE, HOLDER_DEPTH, BasePlan, Ring, Seat, holder_at, post, tube_holder
 from hydrostat.fabrication.parts.housing import SHEET
-from hydrostat.fabrication.parts.winch_unit import WinchUnit, letters
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, letter_label
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Construction, sides_text
 from hydrostat.fabrication.solids.printed import Printed
@@ -56,7 +56,7 @@ def base_plate(
     tiles = [
         Printed.of(
             tile.raised,
-            name=f"base_{letters(place)}" if len(plan.tiles) > 1 else "base",
+            name=f"base_{letter_label(place)}" if len(plan.tiles) > 1 else "base",
             title="Base",
             note="Flat on the bed, no support. Or cut the whole base from acrylic, 4 mm.",
         )
@@ -135,7 +135,7 @@ def _holders(units: Sequence[WinchUnit], options: PartOptions) -> list[Printed]:
         if model not in made:
             made[model] = Printed.of(
                 model,
-                name=f"tube_holder_{letters(len(made))}",
+                name=f"tube_holder_{letter_label(len(made))}",
                 title="Tube holder",
                 note="Standing on its foot, the slot upwards, no support.",
             )

@@ -4,7 +4,7 @@ import math
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.solids.construct import Construction, Cylinder, Turning
+from hydrostat.fabrication.solids.construct import Construction, Cylinder, Revolve
 from hydrostat.fabrication.solids.printed import Printed
 
 _LINE = 0.4  # what a nozzle lays in one go: the thinnest sleeve [mm]
@@ -45,7 +45,7 @@ def _model(options: PartOptions, hole: float) -> Construction:
     sleeve = hole / 2 - options.fit
     bore = max((options.cable + _PLAY) / 2, sleeve - options.wall)
     stitches = max(bore + _MOUTH[0][0], sleeve) + _RIM + _STITCH / 2
-    eyelet = Turning(_profile(bore, sleeve, stitches + _STITCH / 2 + _RIM))
+    eyelet = Revolve(_profile(bore, sleeve, stitches + _STITCH / 2 + _RIM))
     needle = Cylinder(_FLANGE + 2, _STITCH / 2)
     model: Construction = eyelet
     for angle in (45, 135, 225, 315):

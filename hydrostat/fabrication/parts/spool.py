@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from hydrostat.fabrication.parts.motor import Shaft
-from hydrostat.fabrication.solids.construct import Construction, Cylinder, Turning
+from hydrostat.fabrication.solids.construct import Construction, Cylinder, Revolve
 
 LAY = 1.25
 """Width that a turn takes over the diameter of the cable: a line that nobody guides does not lie side by side."""
@@ -15,7 +15,7 @@ _SKIN = 0.6  # material outside the hole for the knot, and below it [mm]
 _STEP = 0.5  # widths of grooves are multiples of this [mm], so that winches of nearly the same travel share a spool
 
 
-def wraps(length: float, radius: float, spare: float) -> float:
+def spool_turns(length: float, radius: float, spare: float) -> float:
     """Turns of a cable of a length [mm] in one layer at a radius [mm], and some that always stay."""
     return length / (2 * math.pi * radius) + spare
 
@@ -128,7 +128,7 @@ class Spool:
     def construction(self) -> Construction:
         """Shape on its lower face; undersides of flanges rise by 45 degrees, so that it prints without support."""
         top = self.body + self.journal
-        body: Construction = Turning(self._profile())
+        body: Construction = Revolve(self._profile())
         deep = self.inside + 0.5
         if deep + self.pin > top - 0.4:
             bore = self.shaft.shape(top + 2, self.play).moved(0, 0, -1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.screws import M2X6
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Turning, solid_of
+from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Revolve, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 
 PRELOAD = 50.0
@@ -120,7 +120,7 @@ def _button(options: PartOptions, height: float) -> Construction:
     """The outline of both pieces: a disc about a point between the screw and the cable, its lower edge smooth."""
     radius = _OFF_CENTRE + _track(options) + _RIM
     side = ((0, 0), (radius - _SMOOTH, 0), (radius, _SMOOTH), (radius, height), (0, height))
-    return Turning(side).moved(_OFF_CENTRE, 0, 0)
+    return Revolve(side).moved(_OFF_CENTRE, 0, 0)
 
 
 def _rib_angles(options: PartOptions) -> list[float]:

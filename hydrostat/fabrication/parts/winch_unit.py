@@ -12,7 +12,7 @@ from hydrostat.fabrication.parts.arrangement import LaidUnit, arranged
 from hydrostat.fabrication.parts.housing import Housing, drive_of, roof_of
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.places import UnitBox, UnitPlace, seam_of
-from hydrostat.fabrication.parts.spool import Groove, Spool, capacity, width_for, wraps
+from hydrostat.fabrication.parts.spool import Groove, Spool, capacity, spool_turns, width_for
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Construction, Cuboid, solid_of
 from hydrostat.fabrication.solids.printed import Printed
@@ -60,7 +60,7 @@ def spool_for(
         )
     radii, small = _radii(robot, winch, wound, options, motor)
     lines = [len(cables) for cables in wound]
-    turns = wraps(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
+    turns = spool_turns(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
     grooves = [
         [_groove(radius, turns, layers, options.cable, count) for radius, count in zip(radii, lines, strict=True)]
         for layers in range(1, _MOST_LAYERS + 1)
@@ -160,7 +160,7 @@ class WinchParts:
     def _printed(self, kind: str, title: str, model: Construction, note: str) -> Printed:
         made = self._made.setdefault(kind, {})
         if model not in made:
-            made[model] = Printed.of(model, name=f"{kind}_{letters(len(made))}", title=title, note=note)
+            made[model] = Printed.of(model, name=f"{kind}_{letter_label(len(made))}", title=title, note=note)
         return made[model]
 
     def _assembly(self, housing: Housing, printed: tuple[Printed, ...], winch: str) -> PartAssembly:
@@ -187,10 +187,10 @@ class WinchParts:
         return PartAssembly(name=f'winch "{winch}"', pieces=tuple(pieces))
 
 
-def letters(number: int) -> str:
+def letter_label(number: int) -> str:
     """a, b, ... z, aa, ab, ... for 0, 1, ..."""
     text = chr(ord("a") + number % 26)
-    return text if number < 26 else letters(number // 26 - 1) + text
+    return text if number < 26 else letter_label(number // 26 - 1) + text
 
 
 @dataclass(frozen=True, kw_only=True)

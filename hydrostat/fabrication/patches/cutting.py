@@ -8,7 +8,7 @@ from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
 
 from hydrostat.fabrication.patches.chord import NARROWEST, best_chord, cut_chord, is_narrow
-from hydrostat.fabrication.patches.even import HELD, evened
+from hydrostat.fabrication.patches.even import HELD, relax_patch
 from hydrostat.fabrication.patches.flatten import distortion, flatten
 from hydrostat.fabrication.patches.patch import Patch, disc_of
 from hydrostat.fabrication.patches.seams import Seam, find_seams
@@ -131,7 +131,7 @@ def _laid(patch: Patch) -> Patch:
     """A patch as it is where that will do, else evened out where that gives less."""
     if _excess(patch) <= 0:
         return patch
-    even = evened(patch)
+    even = relax_patch(patch)
     gives = [distortion(one).give(0.95) if one.outline.is_valid else np.inf for one in (patch, even)]
     return even if gives[1] < gives[0] else patch
 
@@ -141,7 +141,7 @@ def _eased(mesh: SkinMesh, patches: list[Patch]) -> list[Patch]:
     eased, tried = list(patches), set()
     while (worst := _uneasy(mesh, eased)) >= 0 and worst not in tried:
         tried.add(worst)
-        held = evened(eased[worst], ease=HELD)
+        held = relax_patch(eased[worst], ease=HELD)
         if _excess(held) <= _excess(eased[worst]):
             eased[worst] = held
     return eased

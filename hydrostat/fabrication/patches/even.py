@@ -1,4 +1,4 @@
-"""`evened`: lay a patch flat anew so that no large part of its cloth gives much, for a little more elsewhere."""
+"""`relax_patch`: lay a patch flat anew so that no large part of its cloth gives much, for a little more elsewhere."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ _SPARED = 4.0  # a place whose square is so many times more counts less than by 
 _STEPS = 300
 
 
-def evened(patch: Patch, *, ease: float = LOOSE) -> Patch:
+def relax_patch(patch: Patch, *, ease: float = LOOSE) -> Patch:
     """The flat image of least mean sixth power of the give; the rim keeps its length, edge by edge, as well as it can.
 
     `flatten` has the least mean square, which leaves some places with far more than others. Here s = (|J|^2 +
@@ -36,7 +36,7 @@ _NOWHERE = 1e12  # of images with a triangle on its back
 
 
 class PatchEnergy:
-    """What `evened` brings down, with its slope: of cloth the mean of s^3, of the rim what its edges are off."""
+    """What `relax_patch` brings down, with its slope: of cloth the mean of s^3, of the rim what its edges are off."""
 
     def __init__(self, patch: Patch, ease: float) -> None:
         disc, self._ease = patch.disc, ease

@@ -12,7 +12,7 @@ from hydrostat.fabrication.patches.seams import find_seams
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh
 from hydrostat.fabrication.patches.space_pattern import patch_skin
 from hydrostat.robot import Body
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +25,7 @@ class Sewing:
 
     def __str__(self) -> str:
         """In words, such as "2 patches, cloth that gives 9 %"."""
-        return f"{counted(self.patches, 'patch')}, cloth that gives {self.give:.0%}"
+        return f"{plural(self.patches, 'patch')}, cloth that gives {self.give:.0%}"
 
 
 def find_sewing(body: Body, *, options: PatternOptions | None = None) -> Sewing:

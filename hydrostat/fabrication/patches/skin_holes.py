@@ -15,7 +15,7 @@ from hydrostat.fabrication.patterns.shape import Place
 from hydrostat.fabrication.patterns.stitches import Side, runs_of
 from hydrostat.geometry import Solid, Surface
 from hydrostat.robot import Cable, Mount, Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 DEEPEST = 15.0
 """A point of a cable at most so far under the skin [mm] is sewn to it; deeper ones stay in the stuffing. Assumed."""
@@ -210,7 +210,7 @@ def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
         )
     if free:
         warnings.append(
-            f"{_cables(free)} simulated through {counted(sum(free.values()), 'point')} deeper than {DEEPEST:g} mm "
+            f"{_cables(free)} simulated through {plural(sum(free.values()), 'point')} deeper than {DEEPEST:g} mm "
             "under the skin: nothing holds them there, they run straight through the stuffing to the next hole"
         )
     return tuple(warnings)

@@ -7,7 +7,7 @@ from importlib.resources import files
 from hydrostat.drawing import Camera, Canvas
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.sheets.cable_map import body_solid, flat_map, space_map
-from hydrostat.fabrication.sheets.legible import Legible, minds
+from hydrostat.fabrication.sheets.legible import PrintableText, note_lines
 from hydrostat.fabrication.sheets.list_facts import piece_numbers
 from hydrostat.fabrication.sheets.schemes import skin_scheme, stitch_scheme, stopper_scheme
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts, shown_stitches
@@ -33,7 +33,7 @@ def assembly_sheet(given: SheetInput) -> bytes:
     pages = "plush_pages.typ" if given.method is Method.PLUSH else "foam_pages.typ"
     source = b"\n".join((room / name).read_bytes() for name in (*_TEMPLATES, pages, "wiring.typ"))
     pictures = {name: {"svg": canvas.svg, "width": canvas.width} for name, canvas in sheet_pictures(given).items()}
-    legible = Legible(given.robot)
+    legible = PrintableText(given.robot)
     words = legible.facts(sheet_facts(given, letters=legible.warning))
     facts = json.dumps({**words, "pictures": pictures}, ensure_ascii=False)
     # The time is the beginning of all time: a sheet is the same on every day.
@@ -46,7 +46,7 @@ WIDE, HALF = 182.0, 88.0  # widths of a page and of half a page without its marg
 def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
     """Pictures by name, in millimetres of paper."""
     tight = 18.0 if given.paper is Paper.LETTER else 0.0
-    told = minds(given.problems, given.warnings, given.robot)
+    told = note_lines(given.problems, given.warnings, given.robot)
     boxed = 4.0 * sum(math.ceil(len(words) / 130) for words in told) + (4.0 if told else 0.0)
     robot = given.robot
     views = best_views(robot, body_solid(robot)) if robot.body.mesh.dim == 3 else ()

@@ -27,7 +27,7 @@ from hydrostat.drawing import (
 )
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.fabrication.sheets.label_places import LabelPlaces, box_round
-from hydrostat.fabrication.sheets.sight import Sight
+from hydrostat.fabrication.sheets.sight import Visibility
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Point, Robot
 
@@ -96,7 +96,7 @@ class SightedBody:
     """A body in space and all that belongs to it, as they are seen."""
 
     drawing: LineDrawing
-    sight: Sight
+    sight: Visibility
     cables: list[Float[np.ndarray, "_ 3"]]
     winches: list[Float[np.ndarray, " 3"]]
     box: Float[np.ndarray, "2 2"]
@@ -124,7 +124,7 @@ def pane_of(robot: Robot, camera: Camera, pixels: int) -> SightedBody:
     winches = [camera.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
     places = np.concatenate([drawing.box, *(way[:, :2] for way in cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
-    return SightedBody(drawing, Sight.of(body, camera), cables, winches, box)
+    return SightedBody(drawing, Visibility.of(body, camera), cables, winches, box)
 
 
 def _put_pane(canvas: Canvas, robot: Robot, pane: SightedBody, room: Box) -> None:
@@ -156,7 +156,9 @@ def _within(robot: Robot, index: int, frame: CanvasFrame) -> CableRun:
     return CableRun(index + 1, way, [True] * (count - 1), (~cable.bare).tolist(), holes)
 
 
-def sighted(robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Sight, frame: CanvasFrame) -> CableRun:
+def sighted(
+    robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Visibility, frame: CanvasFrame
+) -> CableRun:
     """A cable in space, its way as a camera sees it [mm]."""
     cable = robot.cables[index]
     solid = sight.in_front((way[:-1] + way[1:]) / 2).tolist()

@@ -1,4 +1,4 @@
-"""`Legible`, `minds`: words of the user and of checks on a page: in letters that its fonts have, and not too many."""
+"""`PrintableText`, `note_lines`: texts of users and checks, shortened and in letters that the fonts of a page have."""
 
 import re
 from functools import cache
@@ -23,7 +23,7 @@ _POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-]?\d+)\b")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-class Legible:
+class PrintableText:
     """Makes words of the user legible.
 
     Args:
@@ -106,7 +106,7 @@ _CLOTH = re.compile(r"\b(cloth|seam|felt|fabric|snip|notch|skin)", re.IGNORECASE
 _MOTOR = re.compile(r"\b(motor|torque|N mm)\b")
 
 
-def minds(problems: tuple[str, ...], warnings: tuple[str, ...], robot: Robot | None = None) -> list[str]:
+def note_lines(problems: tuple[str, ...], warnings: tuple[str, ...], robot: Robot | None = None) -> list[str]:
     """Problems first, then what motors bear, then what else must fit, then cloth; how many more there are."""
     ordered = [_marked(in_words(words), robot) for words in (*merged(problems), *sorted(merged(warnings), key=_rank))]
     shown = [shortened(sentence(words), _SENTENCE) for words in ordered[:_MOST]]

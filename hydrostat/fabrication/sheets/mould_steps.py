@@ -6,7 +6,7 @@ from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, minutes_text
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 _SILICONE_CURE = ("Mold Max 30 silicone", "24 h, or 6 h at 60 °C")
 
@@ -38,7 +38,7 @@ _OPEN = (
 _OPEN_FOAM = " Squeeze the body all over to open its cells."
 
 
-def rises(mould: Mould) -> bool:
+def foam_expansion(mould: Mould) -> bool:
     """Tell whether what is poured is a foam; what else is cast is silicone."""
     return mould.casting.expansion > 1
 
@@ -50,7 +50,7 @@ def other_way(mould: Mould) -> tuple[str, str]:
     return "Or from a model, without a printed positive", _MODEL_FIRST
 
 
-def cures(mould: Mould | None) -> tuple[tuple[str, str], ...]:
+def cure_times(mould: Mould | None) -> tuple[tuple[str, str], ...]:
     """How long each material cures, that of the body last."""
     if mould is None:
         return ()
@@ -68,7 +68,7 @@ def body_mass(mould: Mould) -> float:
 def mould_steps(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]:
     """Steps from the files of the mould to a body of foam."""
     printed = mould.kind is MouldKind.PRINTED
-    mix, foams = mould.casting.body, rises(mould)
+    mix, foams = mould.casting.body, foam_expansion(mould)
     return (
         *(_printed_first(given) if printed else _silicone_first(given, mould)),
         AssemblyStep(
@@ -152,7 +152,7 @@ def _silicone_first(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]
             "Take the positive out",
             15,
             "Open the halves, draw the positive out, clear the sprue"
-            + (f" and punch {counted(mould.vents, 'vent')} of 3 mm at the high points." if mould.vents else "."),
+            + (f" and punch {plural(mould.vents, 'vent')} of 3 mm at the high points." if mould.vents else "."),
         ),
     )
 
@@ -176,5 +176,5 @@ def _tubes_first(given: SheetInput) -> tuple[AssemblyStep, ...]:
 
 def _closing(mould: Mould) -> str:
     if mould.bolts:
-        return f"Push the keys home and close it with {counted(mould.bolts, 'bolt')} M4; no light may shine through."
+        return f"Push the keys home and close it with {plural(mould.bolts, 'bolt')} M4; no light may shine through."
     return "Push the keys home and strap it between two boards, not so hard that it bulges."

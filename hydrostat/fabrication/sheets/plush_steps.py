@@ -11,7 +11,7 @@ from hydrostat.fabrication.sheets.steps import (
     winch_steps,
 )
 from hydrostat.robot import Mount
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 def plush_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
@@ -59,7 +59,7 @@ def _matched(given: SheetInput) -> str:
 def _prints(given: SheetInput) -> tuple[AssemblyStep, ...]:
     if not given.printed:
         return ()
-    count = counted(sum(part.count for part in given.printed), "part")
+    count = plural(sum(part.count for part in given.printed), "part")
     return (
         AssemblyStep(
             "Print the parts",

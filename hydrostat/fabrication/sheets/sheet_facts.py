@@ -8,12 +8,12 @@ from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets import foam_steps, mould_steps, plush_steps
-from hydrostat.fabrication.sheets.legible import minds, sentence, shortened
+from hydrostat.fabrication.sheets.legible import note_lines, sentence, shortened
 from hydrostat.fabrication.sheets.list_facts import Facts, bill_facts, cost_text, piece_facts, power_facts, winch_files
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
 from hydrostat.fabrication.winch_marks import winch_marks_of
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 _NAME, _SHORT = 60, 26  # longest name of the robot, of a winch, in letters
 
@@ -27,7 +27,7 @@ _PLACES = {"where the cable begins": "body"}  # what the list of tubes calls a p
 
 
 def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
-    """All words and numbers, long ones shortened; `letters`: a sentence on letters that cannot be printed."""
+    """All words and numbers, long ones shortened; `letter_label`: a sentence on letters that cannot be printed."""
     plush = given.method is Method.PLUSH
     steps = _all_steps(given)
     return {
@@ -38,7 +38,7 @@ def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
         "flat": given.robot.body.mesh.dim == 2,
         "kind": "Plush robot" if plush else "Foam robot",
         "facts": _about(given, steps),
-        "mind": minds(given.problems, (*((letters,) if letters else ()), *given.warnings), given.robot),
+        "mind": note_lines(given.problems, (*((letters,) if letters else ()), *given.warnings), given.robot),
         "forced": bool(given.problems),
         "bill": bill_facts(given),
         "cables": _table(given, "cable_cuts", _CABLES),
@@ -56,7 +56,7 @@ def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
         "mould": _mould(given.mould),
         "power": power_facts(given),
         "other_way": list(mould_steps.other_way(given.mould)) if given.mould else [],
-        "cures": [list(cure) for cure in mould_steps.cures(given.mould)],
+        "cures": [list(cure) for cure in mould_steps.cure_times(given.mould)],
     }
 
 
@@ -84,8 +84,8 @@ def _about(given: SheetInput, steps: Iterable[Iterable[AssemblyStep]]) -> list[s
     busy = sum(step.minutes for page in steps for step in page)
     return [
         " × ".join(f"{side:.0f}" for side in sides) + " mm",
-        f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
-        + (f" in {counted(given.pairs, 'pair')}" if given.pairs else ""),
+        f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
+        + (f" in {plural(given.pairs, 'pair')}" if given.pairs else ""),
         f"about {minutes_text(busy)} of work",
         *cost_text(given),
     ]
@@ -160,7 +160,7 @@ def _mould(mould: Mould | None) -> Facts | None:
     ]
     return {
         "silicone": mould.kind is MouldKind.SILICONE,
-        "foams": mould_steps.rises(mould),
+        "foams": mould_steps.foam_expansion(mould),
         "weighs": f"{mould_steps.body_mass(mould):.0f} g",
         "undercut": _undercut(mould.pull.share),
         "amounts": amounts,

@@ -1,4 +1,4 @@
-"""`Sight`: which half of a body something lies in, as it is seen, and from where most of its cables are in front."""
+"""`Visibility`: the half of a body that a point lies in, and the view that shows most of its cables in front."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -15,7 +15,7 @@ _RISES = (15.0, 40.0)  # heights over the horizon that are tried [degrees]
 
 
 @dataclass(frozen=True, eq=False)
-class Sight:
+class Visibility:
     """The near and the far side of a body."""
 
     front: DepthBuffer  # depths of the near side
@@ -41,7 +41,7 @@ def best_views(robot: Robot, body: DrawnSolid) -> tuple[Camera, ...]:
     cables = [1e3 * np.array(cable.points)[1:] for cable in robot.cables]
     points = np.concatenate([(way[:-1] + way[1:]) / 2 for way in cables if len(way) > 1] or [np.zeros((1, 3))])
     views = [Camera.at(float(turn), rise) for rise in _RISES for turn in _TURNS]
-    seen = np.array([Sight.of(body, view).in_front(view.see(points)) for view in views], dtype=float)
+    seen = np.array([Visibility.of(body, view).in_front(view.see(points)) for view in views], dtype=float)
     # Of views that are as good, the one that shows most of the body, then the first.
     areas = np.array([np.prod(np.ptp(view.see(body.vertices)[:, :2], axis=0)) for view in views])
     chosen = [int(np.argmax(seen.mean(axis=1) + 0.4 * areas / areas.max()))]

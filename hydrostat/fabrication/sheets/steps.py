@@ -8,7 +8,7 @@ from hydrostat.fabrication.lists.stitching import SKIN
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
             AssemblyStep(
                 "Put the winches together",
                 15 * count,
-                f"Build {counted(count, 'winch')} as drawn on page 1, each with its own files (see "
+                f"Build {plural(count, 'winch')} as drawn on page 1, each with its own files (see "
                 "Parts), and write the mark on it. Turn every motor to its zero before the spool goes on.",
             )
         )

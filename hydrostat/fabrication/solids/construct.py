@@ -35,14 +35,14 @@ class Cuboid:
 class Construction:
     """Anything made of shapes; `+` joins, `-` takes away, `&` keeps what both have."""
 
-    def __add__(self, other: "Construction") -> "Joined":
-        return Joined(self, other)
+    def __add__(self, other: "Construction") -> "Union":
+        return Union(self, other)
 
-    def __sub__(self, other: "Construction") -> "Cut":
-        return Cut(self, other)
+    def __sub__(self, other: "Construction") -> "Difference":
+        return Difference(self, other)
 
-    def __and__(self, other: "Construction") -> "Common":
-        return Common(self, other)
+    def __and__(self, other: "Construction") -> "Intersection":
+        return Intersection(self, other)
 
     def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> "Moved":
         """The same elsewhere [mm]."""
@@ -81,7 +81,7 @@ class Prism(Construction):
 
 
 @dataclass(frozen=True)
-class Turning(Construction):
+class Revolve(Construction):
     """A polygon of (radius, height) corners, counter-clockwise, turned once round the z axis [mm].
 
     Raises ValueError: the corners turn clockwise, enclose nothing, or are beyond the axis.
@@ -96,7 +96,7 @@ class Turning(Construction):
 
 
 @dataclass(frozen=True)
-class Joined(Construction):
+class Union(Construction):
     """Union: what either has."""
 
     one: Construction
@@ -104,7 +104,7 @@ class Joined(Construction):
 
 
 @dataclass(frozen=True)
-class Cut(Construction):
+class Difference(Construction):
     """Difference: what the first has and the other has not."""
 
     one: Construction
@@ -112,7 +112,7 @@ class Cut(Construction):
 
 
 @dataclass(frozen=True)
-class Common(Construction):
+class Intersection(Construction):
     """Intersection: what both have."""
 
     one: Construction
@@ -177,23 +177,23 @@ def _(shape: Prism) -> Manifold:
 
 
 @solid_of.register
-def _(shape: Turning) -> Manifold:
+def _(shape: Revolve) -> Manifold:
     widest = max(radius for radius, _ in shape.profile)
     return Manifold.revolve(CrossSection([np.array(shape.profile)]), segments(widest))
 
 
 @solid_of.register
-def _(shape: Joined) -> Manifold:
+def _(shape: Union) -> Manifold:
     return solid_of(shape.one) + solid_of(shape.other)
 
 
 @solid_of.register
-def _(shape: Cut) -> Manifold:
+def _(shape: Difference) -> Manifold:
     return solid_of(shape.one) - solid_of(shape.other)
 
 
 @solid_of.register
-def _(shape: Common) -> Manifold:
+def _(shape: Intersection) -> Manifold:
     return solid_of(shape.one) ^ solid_of(shape.other)
 
 

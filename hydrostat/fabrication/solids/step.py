@@ -10,15 +10,15 @@ from typing import Any
 from hydrostat.errors import InputError
 from hydrostat.fabrication.solids.construct import (
     Box,
-    Common,
     Construction,
-    Cut,
     Cylinder,
-    Joined,
+    Difference,
+    Intersection,
     Moved,
     Prism,
+    Revolve,
     Turned,
-    Turning,
+    Union,
 )
 from hydrostat.fabrication.solids.printed import Printed
 
@@ -69,25 +69,25 @@ def _(shape: Prism) -> Any:
 
 
 @model_of.register
-def _(shape: Turning) -> Any:
+def _(shape: Revolve) -> Any:
     cad = _build123d()
     face = cad.Face(cad.Wire.make_polygon([(radius, 0, height) for radius, height in shape.profile]))
     return cad.Solid.revolve(face, 360, cad.Axis.Z)
 
 
 @model_of.register
-def _(shape: Joined) -> Any:
+def _(shape: Union) -> Any:
     return model_of(shape.one).fuse(model_of(shape.other))
 
 
 @model_of.register
-def _(shape: Cut) -> Any:
+def _(shape: Difference) -> Any:
     # One after the other: Open CASCADE cuts many holes ten times as fast at once, but ran for minutes on the stopper.
     return model_of(shape.one).cut(model_of(shape.other))
 
 
 @model_of.register
-def _(shape: Common) -> Any:
+def _(shape: Intersection) -> Any:
     cad = _build123d()
     shared = model_of(shape.one).intersect(model_of(shape.other))
     return cad.Compound(list(shared or ()))

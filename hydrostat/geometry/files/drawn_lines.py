@@ -17,7 +17,7 @@ from hydrostat.geometry.files.rings import (
     shapes_of,
 )
 from hydrostat.geometry.outline import Outline, Ring
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 class Inner(StrEnum):
@@ -54,14 +54,14 @@ def drawing_of(
         left = []
         if open_lines:
             where = point_text(max(open_lines, key=_extent)[0])
-            left = [f"left out {counted(len(open_lines), 'open line')}, the largest at {where}"]
+            left = [f"left out {plural(len(open_lines), 'open line')}, the largest at {where}"]
         return Drawing(outline, on, (*notes, *left, *holes_told(outline)))
     body, inside = body_and_marks(rings, name)
     on = page(body)
     outline = outline_on_page(body, [], on, name)
     drawn = [*(np.concatenate([ring, ring[:1]]) for ring in inside), *open_lines]
     marks = marks_on(outline, [on.places(line) for line in drawn])
-    told = (f"{counted(len(marks), 'line')} drawn on the body, not cut",) if marks else ()
+    told = (f"{plural(len(marks), 'line')} drawn on the body, not cut",) if marks else ()
     return Drawing(outline, on, (*notes, *told), marks)
 
 

@@ -28,7 +28,7 @@ from hydrostat.geometry.files.rings import (
     without_repeats,
 )
 from hydrostat.geometry.outline import Ring
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -88,7 +88,7 @@ def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
     if auditor.errors:
         raise OutlineError(f"{name}: the file is damaged ({one_line(auditor.errors[0].message)}): export it again")
     mended = [one_line(text) for text in (*said, *(fix.message for fix in auditor.fixes))]
-    return document, (f"mended {counted(len(mended), 'fault')} of the file: {mended[0]}",) if mended else ()
+    return document, (f"mended {plural(len(mended), 'fault')} of the file: {mended[0]}",) if mended else ()
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from hydrostat.geometry.files.silhouette import (
     shaded_part,
     silhouette,
 )
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -158,11 +158,11 @@ def _notes(found: Silhouette, page: Page) -> tuple[str, ...]:
     if found.cut:
         notes.append("the body reaches the border of the picture and is cut off there")
     if found.filled:
-        notes.append(f"filled {counted(len(found.filled), 'hole')}, {_largest(found.filled, page)}")
+        notes.append(f"filled {plural(len(found.filled), 'hole')}, {_largest(found.filled, page)}")
     if found.specks:
-        notes.append(f"left out {counted(len(found.specks), 'speck')} beside the body, {_largest(found.specks, page)}")
+        notes.append(f"left out {plural(len(found.specks), 'speck')} beside the body, {_largest(found.specks, page)}")
     if found.holes:
-        notes.append(f"kept {counted(len(found.holes), 'hole')}")
+        notes.append(f"kept {plural(len(found.holes), 'hole')}")
     return tuple(notes)
 
 

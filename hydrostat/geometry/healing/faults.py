@@ -10,7 +10,7 @@ from hydrostat.geometry.healing.healing import Piece
 from hydrostat.geometry.healing.mend import Holes, Welded, sides_of
 from hydrostat.geometry.healing.shells import Role, Shells
 from hydrostat.geometry.surface import Surface
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 _PAIRS = 1_000_000  # about as many are looked at at once
 _BOXES = 4096  # and no more triangles, for the next may cross many more others
@@ -177,18 +177,18 @@ def describe_faults(
     roles = shells.roles
     most = "at least " if len(crossing) >= MOST_PAIRS else ""
     lines = (
-        (welded.merged, counted(welded.merged, "corner") + " in the place of another"),
-        (welded.flat, counted(welded.flat, "triangle") + " without an area"),
-        (welded.repeated, counted(welded.repeated, "triangle") + " that stand there twice"),
-        (welded.walls, counted(welded.walls, "triangle") + " back to back in walls inside"),
-        (len(holes), f"{counted(len(holes), 'hole')}, the longest {longest:.3g} mm around"),
-        (sides.crowded.sum(), counted(int(sides.crowded.sum()), "edge") + " with more than two triangles"),
-        (flipped, counted(flipped, "flipped triangle")),
-        (sides.twisted.sum(), counted(int(sides.twisted.sum()), "edge") + " where inside and outside change sides"),
-        (shells.inside_out.sum(), counted(int(shells.inside_out.sum()), "part") + " inside out"),
-        (len(crossing), f"{most}{counted(len(crossing), 'pair')} of triangles that run through each other"),
+        (welded.merged, plural(welded.merged, "corner") + " in the place of another"),
+        (welded.flat, plural(welded.flat, "triangle") + " without an area"),
+        (welded.repeated, plural(welded.repeated, "triangle") + " that stand there twice"),
+        (welded.walls, plural(welded.walls, "triangle") + " back to back in walls inside"),
+        (len(holes), f"{plural(len(holes), 'hole')}, the longest {longest:.3g} mm around"),
+        (sides.crowded.sum(), plural(int(sides.crowded.sum()), "edge") + " with more than two triangles"),
+        (flipped, plural(flipped, "flipped triangle")),
+        (sides.twisted.sum(), plural(int(sides.twisted.sum()), "edge") + " where inside and outside change sides"),
+        (shells.inside_out.sum(), plural(int(shells.inside_out.sum()), "part") + " inside out"),
+        (len(crossing), f"{most}{plural(len(crossing), 'pair')} of triangles that run through each other"),
         (len(roles) > 1, f"{len(roles)} parts that are not joined"),
-        (roles.count(Role.CAVITY), counted(roles.count(Role.CAVITY), "pocket") + " of air inside, clean and thus kept"),
-        (slivers, counted(slivers, "sliver")),
+        (roles.count(Role.CAVITY), plural(roles.count(Role.CAVITY), "pocket") + " of air inside, clean and thus kept"),
+        (slivers, plural(slivers, "sliver")),
     )
     return tuple(text for count, text in lines if count)

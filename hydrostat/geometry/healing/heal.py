@@ -4,13 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Int
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.healing.faults import (
-    MOST_PAIRS,
-    crossing_pairs,
-    describe_faults,
-    pieces_of,
-    sliver_count,
-)
+from hydrostat.geometry.healing.faults import MOST_PAIRS, crossing_pairs, describe_faults, pieces_of, sliver_count
 from hydrostat.geometry.healing.healing import Healing, Piece
 from hydrostat.geometry.healing.mend import (
     NEAR,
@@ -26,7 +20,7 @@ from hydrostat.geometry.healing.mend import (
 from hydrostat.geometry.healing.remake import Remade, deviation, remake
 from hydrostat.geometry.healing.shells import Role, Shells, shells_of
 from hydrostat.geometry.surface import Surface
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 _MOST_PATCHED = 0.25
 _MOST_LOST = 0.1
@@ -148,7 +142,7 @@ def _describe_repairs(welded: Welded, flipped: int, shells: Shells, closed: int)
         (int(shells.inside_out.sum()), "part", "turned, as what was inside was outside"),
         (closed, "small hole", "closed"),
     )
-    return tuple(f"{counted(count, noun)} {text}" for count, noun, text in counts if count)
+    return tuple(f"{plural(count, noun)} {text}" for count, noun, text in counts if count)
 
 
 def _made_anew(

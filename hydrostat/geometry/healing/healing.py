@@ -9,7 +9,7 @@ from jaxtyping import Int
 
 from hydrostat.arrays import Points
 from hydrostat.geometry.surface import Surface
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Piece:
     def text(self) -> str:
         """The piece in words."""
         x, y, z = (f"{round(1e3 * coordinate, 2) + 0.0:g}" for coordinate in self.place)
-        triangles = counted(self.triangles, "triangle")
+        triangles = plural(self.triangles, "triangle")
         return f"{self.why}, {1e3 * self.size:.3g} mm in size at ({x}, {y}, {z}) mm, {triangles}"
 
 

@@ -8,7 +8,16 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.closed_set import make_member
-from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term, above_zero, not_negative
+from hydrostat.ik.objectives.objective import (
+    EquilibriumState,
+    Objective,
+    Residual,
+    Rows,
+    Slopes,
+    StateJacobian,
+    above_zero,
+    not_negative,
+)
 from hydrostat.simulation import Simulation
 
 
@@ -38,7 +47,7 @@ class Effort(Objective):
     def __post_init__(self) -> None:
         make_member(self, "of", EffortKind, what="the kind of an effort")
 
-    def on(self, simulation: Simulation) -> Term:
+    def bind(self, simulation: Simulation) -> Residual:
         """The wish on this robot (InputError: a weight below 0, or a scale not above 0)."""
         robot = simulation.robot
         travel = np.array([winch.travel for winch in robot.winches])
@@ -59,35 +68,35 @@ def keeps_taut(objective: Objective) -> bool:
 _TENSION = 10.0  # a pull that winches of small robots bear with ease [N]
 
 
-class _Contraction(Term):
+class _Contraction(Residual):
     def __init__(self, scale: float | np.ndarray) -> None:
         self._scale = scale
 
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         return self._scale * posture.contractions
 
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
         return np.diag(np.broadcast_to(self._scale, posture.contractions.shape))
 
 
-class _Tension(Term):
+class _Tension(Residual):
     def __init__(self, scale: float) -> None:
         self._scale = scale
 
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         return self._scale * posture.tensions
 
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
         return self._scale * moves.tensions
 
 
-class _Slack(Term):
+class _Slack(Residual):
     def __init__(self, scale: float | np.ndarray) -> None:
         self._scale = scale
 
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         return self._scale * np.minimum(posture.elongations, 0.0)
 
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
         scale = np.broadcast_to(self._scale, posture.elongations.shape)
         return np.where(posture.elongations < 0, scale, 0.0)[:, None] * moves.elongations

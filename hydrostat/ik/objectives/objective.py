@@ -12,14 +12,14 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import FrictionCableEnergy, Stiffness
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 
 Rows = Float[np.ndarray, " rows"]
 Slopes = Float[np.ndarray, "rows winches"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Posture:
+class EquilibriumState:
     """What an objective may look at: a robot at rest under given contractions.
 
     Attributes:
@@ -27,7 +27,7 @@ class Posture:
         contractions: of each winch [m].
         elongations: how much longer each cable is than it should be [m]; negative when slack.
         tensions: of each cable [N]; at its winch where cables rub.
-        history: what the physics remember of the way there, as in a `SolvedPose`.
+        history: what the physics remember of the way there, as in a `Equilibrium`.
     """
 
     nodes: Nodes
@@ -38,7 +38,7 @@ class Posture:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Moves:
+class StateJacobian:
     """How a posture changes with the contractions, to first order.
 
     Attributes:
@@ -52,30 +52,30 @@ class Moves:
     tensions: Float[np.ndarray, "cables winches"]
 
 
-class Term(ABC):
+class Residual(ABC):
     """An objective on one robot: 1/2 |residual|^2, a residual in metres.
 
     `hydrostat.testing.check_objective` tells whether a term is right.
     """
 
     @abstractmethod
-    def residual(self, posture: Posture) -> Rows:
+    def residual(self, posture: EquilibriumState) -> Rows:
         """What should become zero [m], (rows,); as many rows in every posture."""
 
     @abstractmethod
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
         """D residual / d contractions, (rows, winches)."""
 
-    def errors(self, posture: Posture) -> Mapping[str, float]:
+    def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
         """What is left to reach, by name [m]. Empty for a term that only weighs one pose against another, as effort."""
         return {}
 
 
 class Objective(ABC):
-    """A wish, as data; `on` a robot it becomes a `Term`. Parts plug in by list: `solve_ik(..., objectives=[...])`."""
+    """Objective for inverse kinematics; `bind` returns its `Residual` for a robot. Pass several as a list."""
 
     @abstractmethod
-    def on(self, simulation: Simulation) -> Term:
+    def bind(self, simulation: Simulation) -> Residual:
         """The wish on this robot (InputError: it names what the robot does not have)."""
 
 
@@ -87,23 +87,25 @@ def checked_objectives(given: object) -> tuple[Objective, ...]:
         if isinstance(wish, type):
             raise InputError(f"an objective is wanted, not its class; write {wish.__name__}(...)")
         if not isinstance(wish, Objective):
-            raise InputError(f"an objective must be one such as MarkerGoal(...) or Effort(), not {describe(wish)}")
+            raise InputError(f"an objective must be one such as MarkerTarget(...) or Effort(), not {describe(wish)}")
     return tuple(given)
 
 
-def posture_at(simulation: Simulation, pose: SolvedPose) -> Posture:
+def state_at(simulation: Simulation, pose: Equilibrium) -> EquilibriumState:
     """What an objective may look at in a pose."""
     return posture_of(simulation, pose.nodes, pose.contractions, pose.history)
 
 
-def posture_of(simulation: Simulation, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Posture:
+def posture_of(
+    simulation: Simulation, nodes: Nodes, contractions: Vector, history: Vector | None = None
+) -> EquilibriumState:
     """The same of nodes at some contractions [m], after a way that left `history`."""
     elongations = simulation.cables.elongations(nodes, contractions)
     if simulation.friction is None or history is None:
         tensions = simulation.cables.law.tension(elongations)
     else:
         tensions = simulation.tensions(nodes, contractions, history)
-    return Posture(
+    return EquilibriumState(
         nodes=nodes,
         contractions=contractions,
         elongations=elongations,
@@ -112,13 +114,13 @@ def posture_of(simulation: Simulation, nodes: Nodes, contractions: Vector, histo
     )
 
 
-def follows(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
+def winch_to_cable_matrix(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
     """B: what a cable takes in when its winch takes in 1 m; 0 for other winches."""
     cables, winches = simulation.cables, np.arange(len(simulation.robot.winches))
     return np.where(cables.winches[:, None] == winches, cables.ratios[:, None], 0.0)
 
 
-def moves_at(simulation: Simulation, pose: SolvedPose) -> Moves:
+def state_jacobian_at(simulation: Simulation, pose: Equilibrium) -> StateJacobian:
     """Sensitivities of that posture to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da (R33).
 
     Cables that rub slip on as they slip, and their tension is that at the winch.
@@ -128,32 +130,32 @@ def moves_at(simulation: Simulation, pose: SolvedPose) -> Moves:
     """
     if simulation.friction is not None:
         stiffness = simulation.stiffness(pose)
-        return rubbing_moves(simulation, simulation.friction, posture_at(simulation, pose), stiffness)
+        return rubbing_moves(simulation, simulation.friction, state_at(simulation, pose), stiffness)
     cables, nodes = simulation.cables, simulation.jacobian(pose)
-    elongations = follows(simulation) + cables.columns(pose.nodes).T @ nodes.reshape(pose.nodes.size, -1)
+    elongations = winch_to_cable_matrix(simulation) + cables.columns(pose.nodes).T @ nodes.reshape(pose.nodes.size, -1)
     tangents = cables.law.tangent(cables.elongations(pose.nodes, pose.contractions))
-    return Moves(nodes=nodes, elongations=elongations, tensions=tangents[:, None] * elongations)
+    return StateJacobian(nodes=nodes, elongations=elongations, tensions=tangents[:, None] * elongations)
 
 
 def rubbing_moves(
     simulation: Simulation,
     friction: FrictionCableEnergy,
-    posture: Posture,
+    posture: EquilibriumState,
     stiffness: Stiffness,
     taut: Int[np.ndarray, " some"] | None = None,
-) -> Moves:
+) -> StateJacobian:
     """The same of cables that rub: the capstan's law holds, points at their limit slip on, the others stick.
 
     Slack cables among `taut` count as if they had just become taut.
     """
     nodes, contractions = posture.nodes, posture.contractions
-    cables = friction.resumed(posture.history[: len(friction.history)], nodes, contractions)
+    cables = friction.with_history(posture.history[: len(friction.history)], nodes, contractions)
     compliance = stiffness.compliance_to(cables.span_columns(nodes))
     tensions = cables.tension_slopes(nodes, contractions, compliance, taut)
     moves = -compliance.moves @ tensions
-    return Moves(
+    return StateJacobian(
         nodes=moves.reshape(*nodes.shape, -1),
-        elongations=follows(simulation) + simulation.cables.columns(nodes).T @ moves,
+        elongations=winch_to_cable_matrix(simulation) + simulation.cables.columns(nodes).T @ moves,
         tensions=cables.at_winches(tensions),
     )
 

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
-from hydrostat.ik.reached_pose import InverseReason
+from hydrostat.ik.ik_result import IKStatus
 from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, StepRules, ends, try_step
 from hydrostat.ik.search.linear_model import LinearModel
 from hydrostat.ik.search.problem import InverseState, ModelStep
@@ -92,7 +92,7 @@ def least_effort(search: InverseSearch, state: InverseState) -> Descent:
     for weight in _WEIGHTS:
         lighter = descend(search, state, weight=weight)
         state, spent = lighter.state, spent + lighter.iterations
-        if lighter.reason is InverseReason.TIME_LIMIT:
+        if lighter.reason is IKStatus.TIME_LIMIT:
             return lighter.after(spent)
     found = descend(search, state)
     return found.after(spent + found.iterations)
@@ -114,18 +114,18 @@ class _TrustRegionDescent:
         problem, options = self.problem, self.problem.options
         for iteration in range(options.iterations):
             if self.search.patience.over:
-                return self._end(InverseReason.TIME_LIMIT, iteration)
+                return self._end(IKStatus.TIME_LIMIT, iteration)
             self.search.told(self.state)
             if not self.fixed:
                 if self.state.error <= problem.reached and self._sharpen() and self._reached():
-                    return self._end(InverseReason.REACHED, iteration)
+                    return self._end(IKStatus.REACHED, iteration)
                 self.weight = min(self.weight, problem.weight(self.state))
             step = self._step()
             progress = _ROUGH if self.fixed else options.progress
             least = progress * problem.objective(self.state, self.weight)
             if ends(problem, self.state, step, least, self.radius):
                 if self.state.sharp or not self._sharpen():
-                    return self._end(InverseReason.OPTIMAL, iteration)
+                    return self._end(IKStatus.LOCAL_OPTIMUM, iteration)
                 continue
             tried = try_step(problem, self.state, step, self.weight, self.search.approach, _RULES)
             if tried.accepted and tried.trial is not None:
@@ -135,9 +135,9 @@ class _TrustRegionDescent:
             elif not self._reconsider():
                 self._resize(-np.inf, step.values)
                 if self.radius < _SMALLEST_RADIUS:
-                    reason = InverseReason.NO_EQUILIBRIUM if tried.trial is None else InverseReason.OPTIMAL
+                    reason = IKStatus.NO_EQUILIBRIUM if tried.trial is None else IKStatus.LOCAL_OPTIMUM
                     return self._end(reason, iteration + 1)
-        return self._end(InverseReason.ITERATION_LIMIT, options.iterations)
+        return self._end(IKStatus.ITERATION_LIMIT, options.iterations)
 
     def _step(self) -> ModelStep:
         step = self.problem.step(self.state, self.weight, self.radius, self.curvature.matrix)
@@ -169,23 +169,23 @@ class _TrustRegionDescent:
 
     def _sharpen(self) -> bool:
         """Whether the state rests, now."""
-        sharp = self.search.sharpened(self.state)
+        sharp = self.search.refine_equilibrium(self.state)
         if sharp is None:
             return False
         self._move(sharp)
         return True
 
-    def _end(self, reason: InverseReason, iterations: int) -> Descent:
+    def _end(self, reason: IKStatus, iterations: int) -> Descent:
         """The state if it rests within its limits, else the last one that did."""
         if not self._sharpen() or self.state.excess > EXCESS:
             self.state = self.rested or self.state
         if self._reached():
-            reason = InverseReason.REACHED
-            self.state = self.search.tidied(self.state)
+            reason = IKStatus.REACHED
+            self.state = self.search.drop_slack(self.state)
         elif self.state.excess > EXCESS:
-            reason = InverseReason.TOO_TIGHT
-        elif reason is InverseReason.OPTIMAL and self.problem.slope(self.state, self.weight) > _STEEP:
-            reason = InverseReason.STUCK
+            reason = IKStatus.INFEASIBLE
+        elif reason is IKStatus.LOCAL_OPTIMUM and self.problem.slope(self.state, self.weight) > _STEEP:
+            reason = IKStatus.STALLED
         return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
 
 

@@ -8,13 +8,13 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import NotConvergedError
-from hydrostat.ik.reached_pose import InverseReason, ReachedPose
+from hydrostat.ik.ik_result import IKResult, IKStatus
 from hydrostat.ik.search.linear_model import channels
-from hydrostat.ik.search.patience import Patience
 from hydrostat.ik.search.problem import InverseProblem, InverseState, ModelStep
+from hydrostat.ik.search.search_budget import SearchBudget
 from hydrostat.mechanics import NewtonResult
-from hydrostat.robot import Pose
-from hydrostat.simulation import SolvedPose
+from hydrostat.robot import PoseTarget
+from hydrostat.simulation import Equilibrium
 
 
 class InverseSearch:
@@ -30,12 +30,12 @@ class InverseSearch:
         problem: InverseProblem,
         *,
         accuracy: float | None = None,
-        origin: SolvedPose | None = None,
-        patience: Patience | None = None,
+        origin: Equilibrium | None = None,
+        patience: SearchBudget | None = None,
     ) -> None:
         self.problem, self.solves, self._origin = problem, 0, origin
-        self.patience, self.steps = patience or Patience(), 0
-        self.solver = problem.simulation.solver.roughly(accuracy)
+        self.patience, self.steps = patience or SearchBudget(), 0
+        self.solver = problem.simulation.solver.with_accuracy(accuracy)
         self._remembers, self._turns = problem.simulation.assembly.has_history, False
 
     def told(self, state: InverseState) -> None:
@@ -45,7 +45,7 @@ class InverseSearch:
             errors = list(state.errors.values())
             self.patience.tell(self.steps, float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0)
 
-    def begin(self, start: SolvedPose | None) -> InverseState:
+    def begin(self, start: Equilibrium | None) -> InverseState:
         """The state of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
         pose = start or self.problem.simulation.rest
         self.problem.simulation.check_start(pose)
@@ -63,7 +63,7 @@ class InverseSearch:
         solved = self.problem.simulation.solve(self.problem.bounds.spread @ values, start=pose, strict=False)
         return self.problem.state(values, self._result(_begun(solved)))
 
-    def _begin_where(self, values: Vector, pose: SolvedPose) -> InverseState:
+    def _begin_where(self, values: Vector, pose: Equilibrium) -> InverseState:
         """The state of a pose if that is where ways begin, else where the way to its contractions ends."""
         simulation = self.problem.simulation
         origin = self._origin or simulation.rest
@@ -140,7 +140,7 @@ class InverseSearch:
         history = state.history if self._remembers else None
         return self.problem.idle(self.problem.state(state.values, state.result, history))
 
-    def sharpened(self, state: InverseState) -> InverseState | None:
+    def refine_equilibrium(self, state: InverseState) -> InverseState | None:
         """The same contractions at equilibrium."""
         if state.sharp:
             return state
@@ -157,7 +157,7 @@ class InverseSearch:
         )
         return self.problem.state(state.values, result) if _sound(result) else None
 
-    def tidied(self, state: InverseState) -> InverseState:
+    def drop_slack(self, state: InverseState) -> InverseState:
         """The state with channels that hardly pull let go, if the goals stay reached."""
         cables, posture = self.problem.simulation.cables, state.posture
         places = channels(cables, posture, state.values, self.problem.bounds)
@@ -174,7 +174,7 @@ class InverseSearch:
         kept = found is not None and found.error <= self.problem.reached and found.excess <= state.excess
         return found if found is not None and kept else state
 
-    def _result(self, pose: SolvedPose) -> NewtonResult:
+    def _result(self, pose: Equilibrium) -> NewtonResult:
         """What this simulation makes of a pose: another one may have found it."""
         stiffness = self.problem.simulation.stiffness(pose)
         residual = float(np.abs(self.problem.simulation.forces(pose.nodes, pose.contractions)).max())
@@ -205,7 +205,7 @@ def _sound(result: NewtonResult) -> bool:
     return result.converged and result.stable
 
 
-def _begun(pose: SolvedPose) -> SolvedPose:
+def _begun(pose: Equilibrium) -> Equilibrium:
     """The pose, if a search can begin from it."""
     if not _sound(pose.result):
         raise NotConvergedError(
@@ -271,7 +271,7 @@ class Descent:
     """Where a descent ended."""
 
     state: InverseState  # an equilibrium, the best within the limits
-    reason: InverseReason  # why
+    reason: IKStatus  # why
     iterations: int  # steps tried
     weight: float  # of the effort at the end
 
@@ -285,19 +285,19 @@ class Descent:
         return replace(self, iterations=iterations)
 
 
-def reached_pose(search: InverseSearch, found: Descent, target: Pose | None) -> ReachedPose:
+def reached_pose(search: InverseSearch, found: Descent, target: PoseTarget | None) -> IKResult:
     """Pose that was found, with how near it is to an optimum and the limits that hold."""
     state, problem = found.state, search.problem
-    pose = problem.simulation.posed(problem.bounds.spread @ state.values, state.result, state.history)
-    return ReachedPose(
+    pose = problem.simulation.make_pose(problem.bounds.spread @ state.values, state.result, state.history)
+    return IKResult(
         target=target,
         pose=pose,
         errors=state.errors,
-        reason=found.reason,
+        status=found.reason,
         iterations=found.iterations,
         solves=search.solves,
         optimality=problem.slope(state, found.weight),
-        held=() if found.reason is InverseReason.REACHED else limits_that_hold(search, found),
+        active_limits=() if found.reason is IKStatus.REACHED else limits_that_hold(search, found),
     )
 
 

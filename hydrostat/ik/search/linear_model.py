@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.ik.limits import Bounds
-from hydrostat.ik.objectives.objective import Moves, Posture, follows, rubbing_moves
+from hydrostat.ik.objectives.objective import EquilibriumState, StateJacobian, rubbing_moves, winch_to_cable_matrix
 from hydrostat.mechanics import CableEnergy, Stiffness
 from hydrostat.simulation import Simulation
 
@@ -23,7 +23,7 @@ class Channels:
     active: np.ndarray  # whether it has a cable that can become taut within the limits
 
 
-def channels(cables: CableEnergy, posture: Posture, values: Vector, bounds: Bounds) -> Channels:
+def channels(cables: CableEnergy, posture: EquilibriumState, values: Vector, bounds: Bounds) -> Channels:
     """How far each channel is from pulling, or from not pulling, at contractions `values` of the channels [m]."""
     count = len(values)
     first = np.zeros(count, dtype=np.int64)
@@ -41,7 +41,9 @@ def channels(cables: CableEnergy, posture: Posture, values: Vector, bounds: Boun
     return Channels(gaps, beyond, first, gaps <= bounds.high - values)
 
 
-def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut: np.ndarray) -> Moves:
+def stack_jacobians(
+    simulation: Simulation, posture: EquilibriumState, stiffness: Stiffness, taut: np.ndarray
+) -> StateJacobian:
     """Sensitivities to contractions, by the implicit function theorem: H dx/da = -d2E/dx da (R33, E16).
 
     A slack cable has none (E15); those in `taut` are taken as if they had just become taut.
@@ -52,10 +54,10 @@ def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut:
     loose = np.zeros(len(cables.winches), dtype=bool)
     loose[taut] = posture.elongations[taut] <= 0
     tangents = cables.law.tangent(np.where(loose, 0.5 * cables.law.smoothing, posture.elongations))
-    own = follows(simulation)
+    own = winch_to_cable_matrix(simulation)
     moves = stiffness.response(np.diag(tangents)) @ own
     elongations = own + stiffness.columns.T @ moves
-    return Moves(
+    return StateJacobian(
         nodes=moves.reshape(*posture.nodes.shape, -1), elongations=elongations, tensions=tangents[:, None] * elongations
     )
 
@@ -70,7 +72,7 @@ class LinearModel:
 
     def __init__(
         self,
-        posture: Posture,
+        posture: EquilibriumState,
         residual: Float[np.ndarray, " rows"],
         matrix: Float[np.ndarray, "rows channels"],
         tensions: Float[np.ndarray, "cables channels"],

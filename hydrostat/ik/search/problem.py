@@ -11,14 +11,22 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Bounds
-from hydrostat.ik.objectives.objective import Moves, Posture, Rows, Slopes, Term, follows, posture_of
-from hydrostat.ik.search.linear_model import LinearModel, channels, least_squares, slopes
+from hydrostat.ik.objectives.objective import (
+    EquilibriumState,
+    Residual,
+    Rows,
+    Slopes,
+    StateJacobian,
+    posture_of,
+    winch_to_cable_matrix,
+)
+from hydrostat.ik.search.linear_model import LinearModel, channels, least_squares, stack_jacobians
 from hydrostat.mechanics import NewtonResult
-from hydrostat.simulation import Simulation, check_still
+from hydrostat.simulation import Simulation, require_static_obstacles
 
 
 @dataclass(frozen=True, kw_only=True)
-class InverseOptions:
+class IKOptions:
     """How inverse kinematics searches.
 
     Attributes:
@@ -29,11 +37,10 @@ class InverseOptions:
             fraction.
         iterations: most steps from one beginning.
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
-        unique: where the goals leave a choice, take the contractions that pull least, whatever the start.
+        min_tension: where the goals leave a choice, take the contractions that pull least, whatever the start.
         restarts: how often to begin elsewhere while a goal is not reached; none where time matters more.
-        stay: whether markers that the targets do not name should rather stay. Where a target is in reach that changes
-            nothing. Where it is out of reach they go a distance d from rest only if that gains about d^2 over four
-            times the body's size.
+        hold_free_markers: keep markers without a target where they are. This changes nothing if the target is in reach.
+            Otherwise they move a distance d from rest only if that gains about d^2 over four times the body's size.
     """
 
     effort: float = 1e-3
@@ -41,9 +48,9 @@ class InverseOptions:
     progress: float = 1e-10
     iterations: int = 100
     largest_step: float = 0.3
-    unique: bool = True
+    min_tension: bool = True
     restarts: int = 3
-    stay: bool = True
+    hold_free_markers: bool = True
 
     def __post_init__(self) -> None:
         for name, least in (("effort", 0.0), ("tolerance", 0.0), ("progress", 0.0), ("iterations", 0), ("restarts", 0)):
@@ -63,7 +70,7 @@ class InverseState:
 
     values: Vector  # contraction of each channel [m]
     result: NewtonResult  # nodes near equilibrium, and the Hessian there
-    posture: Posture  # where these nodes come to rest, to first order where they do not rest yet
+    posture: EquilibriumState  # where these nodes come to rest, to first order where they do not rest yet
     residual: Rows  # of all terms there [m]
     errors: Mapping[str, float]  # what is left of each goal [m]
     excess: float  # by how much the largest tension exceeds its limit, as a share of it
@@ -94,9 +101,9 @@ class InverseProblem:
     def __init__(
         self,
         simulation: Simulation,
-        terms: Sequence[Term],
+        terms: Sequence[Residual],
         bounds: Bounds,
-        options: InverseOptions,
+        options: IKOptions,
         *,
         ready: bool = False,
     ) -> None:
@@ -110,7 +117,7 @@ class InverseProblem:
             raise InputError(
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
             )
-        check_still(simulation.robot, "inverse kinematics")
+        require_static_obstacles(simulation.robot, "inverse kinematics")
         own = simulation.friction or simulation.cables
         others = [energy for energy in simulation.assembly.energies if energy is not own]
         idle = simulation.robot.body.mesh.nodes, np.zeros(len(robot.winches))
@@ -128,7 +135,7 @@ class InverseProblem:
         self.worth = np.full(len(robot.cables), size / _full_tension(simulation))  # of a tension, at weight 1 [m/N]
         self._ready = ready
 
-    def with_term(self, term: Term) -> "InverseProblem":
+    def with_term(self, term: Residual) -> "InverseProblem":
         """The same with one term more."""
         return InverseProblem(self.simulation, [*self.terms, term], self.bounds, self.options, ready=self._ready)
 
@@ -141,7 +148,7 @@ class InverseProblem:
         was followed.
         """
         contractions = self.bounds.spread @ values
-        allowed = self.simulation.solver.allowed(result.nodes, contractions) if history is None else np.inf
+        allowed = self.simulation.solver.force_tolerance(result.nodes, contractions) if history is None else np.inf
         sharp = result.residual <= allowed if history is None else whole
         nodes = result.nodes if sharp or history is not None else self._resting(result, contractions)
         posture = posture_of(self.simulation, nodes, contractions, history)
@@ -195,7 +202,7 @@ class InverseProblem:
         """What contractions do near a state, to first order."""
         assert state.result.stiffness is not None
         places = channels(self.simulation.cables, state.posture, state.values, self.bounds)
-        moves = slopes(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
+        moves = stack_jacobians(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
         matrix = self._rows(state.posture, moves)
         loose = places.gaps > _EDGE * self.bounds.span
         if loose.any():  # a slack channel that follows a step stays where it is
@@ -216,7 +223,7 @@ class InverseProblem:
         values = np.linalg.svd(moves, compute_uv=False)
         return moves.shape[0] < moves.shape[1] or bool(values[-1] < _IDLE * values[0])
 
-    def slopes(self, state: InverseState) -> Slopes:
+    def jacobian(self, state: InverseState) -> Slopes:
         """D residual / d contractions of the channels; slack ones as if they had just become taut."""
         return self.linear(state).matrix
 
@@ -229,14 +236,14 @@ class InverseProblem:
         """Weight of the effort: a share of the error, for then it fades as fast as the search converges."""
         return effort_weight(state.residual, self.size, self.options.effort)
 
-    def _rows(self, posture: Posture, moves: Moves) -> Slopes:
-        rows = [np.zeros((0, len(self.bounds.channels))), *(term.slopes(posture, moves) for term in self.terms)]
+    def _rows(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+        rows = [np.zeros((0, len(self.bounds.channels))), *(term.jacobian(posture, moves) for term in self.terms)]
         return np.vstack(rows) @ self.bounds.spread
 
-    def _direct(self, posture: Posture) -> Slopes:
+    def _direct(self, posture: EquilibriumState) -> Slopes:
         """Slopes of terms that look at contractions or slack, while no cable pulls more."""
-        own = follows(self.simulation)
-        still = Moves(
+        own = winch_to_cable_matrix(self.simulation)
+        still = StateJacobian(
             nodes=np.zeros((*posture.nodes.shape, own.shape[1])), elongations=own, tensions=np.zeros_like(own)
         )
         return self._rows(posture, still)

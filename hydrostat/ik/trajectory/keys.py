@@ -9,15 +9,15 @@ from numbers import Real
 import numpy as np
 
 from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.ik.ik_result import IKResult, IKStatus
 from hydrostat.ik.limits import Bounds, Limits
 from hydrostat.ik.objectives.effort import Effort, EffortKind
 from hydrostat.ik.objectives.objective import Objective, describe
-from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search.problem import InverseOptions
+from hydrostat.ik.search.problem import IKOptions
 from hydrostat.ik.solve_ik import Targets, as_pose, solve_ik
 from hydrostat.ik.trajectory.poses import follow
-from hydrostat.robot import Pose
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.robot import PoseTarget
+from hydrostat.simulation import Equilibrium, Simulation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,17 +31,17 @@ class Keyframe:
         name: for reports; that of the pose if left out.
     """
 
-    target: Targets | SolvedPose
+    target: Targets | Equilibrium
     time: float | None = None
     name: str | None = None
 
     @property
-    def pose(self) -> Pose | None:
+    def pose(self) -> PoseTarget | None:
         """Where markers should be; None for a solved pose."""
-        return None if isinstance(self.target, SolvedPose) else as_pose(self.target)
+        return None if isinstance(self.target, Equilibrium) else as_pose(self.target)
 
 
-Key = Keyframe | Targets | SolvedPose | tuple[float | None, Targets | SolvedPose]
+Key = Keyframe | Targets | Equilibrium | tuple[float | None, Targets | Equilibrium]
 """A keyframe; or only its target; or its time [s] and its target."""
 
 
@@ -50,10 +50,10 @@ class Found:
     """A keyframe with its contractions."""
 
     keyframe: Keyframe  # what was asked for
-    pose: SolvedPose  # what was found
-    reached: ReachedPose | None  # how it was found; None for a pose that was given
+    pose: Equilibrium  # what was found
+    reached: IKResult | None  # how it was found; None for a pose that was given
     free_error: float | None  # rms error that a search from rest finds on another branch, where that is better [m]
-    knots: tuple[SolvedPose, ...]  # poses on the way there that are to be passed; the last one is `pose`
+    knots: tuple[Equilibrium, ...]  # poses on the way there that are to be passed; the last one is `pose`
 
 
 def as_keyframes(given: Sequence[Key]) -> list[Keyframe]:
@@ -89,12 +89,12 @@ def _as_keyframe(number: int, given: Key) -> Keyframe:
         key = Keyframe(target=key[1], time=key[0])
     elif not isinstance(key, Keyframe):
         key = Keyframe(target=key)
-    if not isinstance(key.target, SolvedPose | Pose | Mapping):
+    if not isinstance(key.target, Equilibrium | PoseTarget | Mapping):
         raise InputError(
             f"keyframe {number} needs a target, which is a pose, a solved pose, or places by marker such as "
             f'{{"tip": (0.1, 0.02)}}, not {describe(key.target)}'
         )
-    if not isinstance(key.target, SolvedPose) and not as_pose(key.target):
+    if not isinstance(key.target, Equilibrium) and not as_pose(key.target):
         raise InputError(f"keyframe {number} has no target; name a marker and its place")
     if key.time is not None and not (isinstance(key.time, Real) and np.isfinite(key.time)):
         raise InputError(f"the time of keyframe {number} must be a finite number [s], not {describe(key.time)}")
@@ -108,14 +108,14 @@ class KeySearch:
     simulation: Simulation  # the robot's physics
     limits: Limits  # what the winches may do
     objectives: tuple[Objective, ...]  # what is wished for beside the targets
-    options: InverseOptions  # of a search from rest; one from a keyframe does not restart
+    options: IKOptions  # of a search from rest; one from a keyframe does not restart
     compare: bool  # look whether a search from rest does better
     jump: float  # distance of a node from where it is predicted that is a snap [m]
     knots: int  # poses on a way along which markers go straight; 0 for other ways
 
-    def find(self, keyframe: Keyframe, before: SolvedPose) -> Found:
+    def find(self, keyframe: Keyframe, before: Equilibrium) -> Found:
         """The pose of a keyframe, on the branch before (InputError, NotConvergedError: as for `solve_ik`)."""
-        if isinstance(keyframe.target, SolvedPose):
+        if isinstance(keyframe.target, Equilibrium):
             knots = self._straight(tuple(keyframe.target.markers), before, keyframe.target)
             return Found(keyframe=keyframe, pose=keyframe.target, reached=None, free_error=None, knots=knots)
         target = keyframe.pose
@@ -124,10 +124,10 @@ class KeySearch:
         knots = self._straight(tuple(target.targets), before, reached.pose)
         return Found(keyframe=keyframe, pose=reached.pose, reached=reached, free_error=free_error, knots=knots)
 
-    def _best(self, target: Pose, before: SolvedPose) -> tuple[ReachedPose, float | None]:
+    def _best(self, target: PoseTarget, before: Equilibrium) -> tuple[IKResult, float | None]:
         """What is found from the pose before; and a lesser error that only a search from rest comes to, if any."""
         reached = self._solve(target, before, self.options)
-        if not self.compare or reached.reason is InverseReason.REACHED:
+        if not self.compare or reached.status is IKStatus.REACHED:
             return reached, None
         free = solve_ik(self.simulation, target, limits=self.limits, objectives=self._wishes(), options=self.options)
         if not self._better(free, reached):
@@ -139,7 +139,7 @@ class KeySearch:
                 reached = other
         return reached, free.rms_error if self._better(free, reached) else None
 
-    def _solve(self, target: Targets, start: SolvedPose, options: InverseOptions) -> ReachedPose:
+    def _solve(self, target: Targets, start: Equilibrium, options: IKOptions) -> IKResult:
         options = replace(options, restarts=0)
         wishes = self._wishes()
         return solve_ik(self.simulation, target, limits=self.limits, objectives=wishes, start=start, options=options)
@@ -147,11 +147,11 @@ class KeySearch:
     def _wishes(self) -> tuple[Objective, ...]:
         return (*self.objectives, _TAUT) if self.knots else self.objectives
 
-    def _better(self, one: ReachedPose, other: ReachedPose) -> bool:
+    def _better(self, one: IKResult, other: IKResult) -> bool:
         near = _TELL * self.simulation.robot.body.mesh.size
         return one.rms_error < min((1 - _BETTER) * other.rms_error, other.rms_error - near)
 
-    def _way(self, begin: SolvedPose, goal: SolvedPose) -> SolvedPose | None:
+    def _way(self, begin: Equilibrium, goal: Equilibrium) -> Equilibrium | None:
         """The pose to which the branch of one pose leads at the contractions of another; None if it ends before."""
         shares = np.linspace(0.0, 1.0, _STEPS + 1)
         contractions = (1 - shares)[:, None] * begin.contractions + shares[:, None] * goal.contractions
@@ -161,7 +161,7 @@ class KeySearch:
             return None
         return None if snaps else poses[-1]
 
-    def _straight(self, names: tuple[str, ...], begin: SolvedPose, end: SolvedPose) -> tuple[SolvedPose, ...]:
+    def _straight(self, names: tuple[str, ...], begin: Equilibrium, end: Equilibrium) -> tuple[Equilibrium, ...]:
         """Poses in which the markers are on the straight lines between two poses, at even steps."""
         poses, last = [], begin
         rough = replace(self.options, iterations=min(self.options.iterations, _ITERATIONS))
@@ -182,7 +182,7 @@ _BETTER = 0.01  # a search from rest is better when its error is smaller by this
 _TELL = 1e-5  # and by this share of the body's size
 
 
-def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: SolvedPose) -> None:
+def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Equilibrium) -> None:
     """Refuse a pose that inverse kinematics would not have found; its tensions are told in the report instead.
 
     Raises:
@@ -207,7 +207,7 @@ def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Solved
             )
 
 
-def _check_own(simulation: Simulation, name: str, pose: SolvedPose) -> None:
+def _check_own(simulation: Simulation, name: str, pose: Equilibrium) -> None:
     robot = simulation.robot
     shape, count = robot.body.mesh.nodes.shape, len(robot.winches)
     remedy = "solve it with the simulation that is given"

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import NotConvergedError
-from hydrostat.ik.trajectory.course import Samples
-from hydrostat.simulation import Simulation, SolvedPose, largest_distance
+from hydrostat.ik.trajectory.timed_path import Samples
+from hydrostat.simulation import Equilibrium, Simulation, largest_distance
 
 Tell = Callable[[str, int, int], None]  # is told the stage, how much of it is done, and how much there is
 
 
 @dataclass(frozen=True, kw_only=True)
-class Snap:
+class BranchJump:
     """Where a robot jumps from one branch of equilibria to another."""
 
     time: float  # [s]
@@ -21,13 +21,13 @@ class Snap:
 
 def follow(
     simulation: Simulation,
-    start: SolvedPose,
+    start: Equilibrium,
     times: Vector,
     contractions: Samples,
     *,
     jump: float,
     tell: Tell | None = None,
-) -> tuple[tuple[SolvedPose, ...], tuple[Snap, ...]]:
+) -> tuple[tuple[Equilibrium, ...], tuple[BranchJump, ...]]:
     """The equilibria at contractions [m] in time [s], each continued from the one before, and where they snap (E20).
 
     A step is taken when the nodes come to rest where the predictor x + dx/da da has put them, within `jump` [m]; else
@@ -37,8 +37,8 @@ def follow(
     Raises:
         NotConvergedError: no equilibrium is found at some time.
     """
-    poses: list[SolvedPose] = []
-    snaps: list[Snap] = []
+    poses: list[Equilibrium] = []
+    snaps: list[BranchJump] = []
     pose = start
     for index, (time, goal) in enumerate(zip(times, contractions, strict=True)):
         pose, distance = _go(simulation, pose, goal, jump, _HALVINGS)
@@ -47,14 +47,16 @@ def follow(
                 f"no equilibrium found at {time:.3g} s of the trajectory: {pose.result.reason}", pose.result
             )
         if distance > jump:
-            snaps.append(Snap(time=float(time), distance=distance))
+            snaps.append(BranchJump(time=float(time), distance=distance))
         poses.append(pose.without_factors())
         if tell is not None:
             tell("following the way", index + 1, len(times))
     return (*poses[:-1], pose), tuple(snaps)
 
 
-def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, halvings: int) -> tuple[SolvedPose, float]:
+def _go(
+    simulation: Simulation, pose: Equilibrium, goal: Vector, jump: float, halvings: int
+) -> tuple[Equilibrium, float]:
     """The pose at other contractions, and the largest distance from a prediction on the way [m].
 
     It is 0 where every step was taken; else it is a snap if it is more than `jump`.
@@ -66,7 +68,7 @@ def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, hal
         found = simulation.solve(goal, start=pose, strict=False)
     else:
         result = simulation.solver.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=_ITERATIONS)
-        found = simulation.posed(goal, result)
+        found = simulation.make_pose(goal, result)
     distance = largest_distance(found.nodes, predicted)
     if found.result.converged and found.result.stable and distance <= jump:
         return found, 0.0
@@ -80,7 +82,7 @@ def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, hal
     return found, largest_distance(found.nodes, predicted)
 
 
-def _predicted(simulation: Simulation, pose: SolvedPose, goal: Vector) -> Nodes:
+def _predicted(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Nodes:
     """Where the nodes go to first order."""
     try:
         return pose.nodes + simulation.jacobian(pose) @ (goal - pose.contractions)

@@ -8,16 +8,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
-from hydrostat.ik.search.problem import InverseOptions
-from hydrostat.ik.trajectory.course import ByWinch, Course, Pace, StraightCourse, earliest, linear
+from hydrostat.ik.search.problem import IKOptions
 from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes, check_given
 from hydrostat.ik.trajectory.poses import Tell, follow
-from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory, legs_of, stray
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.ik.trajectory.timed_path import ByWinch, MotionLimits, StraightCourse, TimedPath, earliest, linear
+from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory, legs_of, path_deviation
+from hydrostat.simulation import Equilibrium, Simulation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +37,7 @@ class TrajectoryOptions:
     knots: int = 12
     compare: bool = True
     jump: float = 2e-3
-    inverse: InverseOptions = field(default_factory=InverseOptions)
+    inverse: IKOptions = field(default_factory=IKOptions)
 
 
 def solve_ik_trajectory(
@@ -49,7 +49,7 @@ def solve_ik_trajectory(
     limits: Limits | None = None,
     objectives: Sequence[Objective] = (),
     path: PathKind | str = PathKind.SMOOTH,
-    start: SolvedPose | None = None,
+    start: Equilibrium | None = None,
     loop: bool = False,
     hold: float = 0.0,
     options: TrajectoryOptions | None = None,
@@ -83,17 +83,17 @@ def solve_ik_trajectory(
         NotConvergedError: no equilibrium somewhere on the way.
     """
     chosen = options or TrajectoryOptions()
-    kind = member(PathKind, path, what="path")
+    kind = parse_choice(PathKind, path, what="path")
     frames = as_keyframes(keyframes)
     _check(chosen, limits, hold, kind, acceleration, frames, loop)
     hardest = _ACCELERATION if acceleration is None and kind is not PathKind.LINEAR else acceleration
-    pace = Pace.of(simulation.robot, speed, hardest)
+    pace = MotionLimits.of(simulation.robot, speed, hardest)
     given = limits or Limits()
     allowed = bounds(simulation, given)
     begin = start or simulation.rest
     check_given(simulation, allowed, "start" if start else "rest, where it starts", begin)
     for frame in frames:
-        if isinstance(frame.target, SolvedPose):
+        if isinstance(frame.target, Equilibrium):
             check_given(simulation, allowed, frame.name or "", frame.target)
     if loop:
         frames.append(Keyframe(target=begin, name="start" if start else "rest"))
@@ -121,12 +121,12 @@ def solve_ik_trajectory(
         contractions=contractions,
         speeds=speeds,
         accelerations=accelerations,
-        fastest=fastest.max(axis=0),
-        hardest=hardest.max(axis=0),
-        pace=pace,
+        peak_speeds=fastest.max(axis=0),
+        peak_accelerations=hardest.max(axis=0),
+        limits=pace,
         poses=poses,
-        keys=_keys(found, times, poses, [int(samples[index]) for index in arrivals], near),
-        snaps=snaps,
+        keyframes=_keys(found, times, poses, [int(samples[index]) for index in arrivals], near),
+        branch_jumps=snaps,
         winches=tuple(winch.name for winch in simulation.robot.winches),
         cables=tuple(cable.winch for cable in simulation.robot.cables),
         tension=allowed.tension,
@@ -159,7 +159,7 @@ def _check(
         raise InputError(f"knots must be 1 or more and jump above 0, not {options.knots} and {options.jump:g}")
 
 
-def _find(search: KeySearch, frames: list[Keyframe], begin: SolvedPose, tell: Tell | None) -> list[Found]:
+def _find(search: KeySearch, frames: list[Keyframe], begin: Equilibrium, tell: Tell | None) -> list[Found]:
     found: list[Found] = []
     for frame in frames:
         found.append(search.find(frame, found[-1].pose if found else begin))
@@ -169,8 +169,8 @@ def _find(search: KeySearch, frames: list[Keyframe], begin: SolvedPose, tell: Te
 
 
 def _course(
-    path: PathKind, begin: SolvedPose, found: list[Found], pace: Pace, hold: float, least: float
-) -> tuple[Course | StraightCourse, list[int]]:
+    path: PathKind, begin: Equilibrium, found: list[Found], pace: MotionLimits, hold: float, least: float
+) -> tuple[TimedPath | StraightCourse, list[int]]:
     """Contractions in time, and which of its keys the keyframes are: a hold is one more key."""
     knots, lengths, arrivals, last, clock = [], [], [], begin.contractions, 0.0
     for number, one in enumerate(found):
@@ -195,7 +195,9 @@ def _course(
     return course, arrivals
 
 
-def _check_times(course: Course | StraightCourse, pace: Pace, timed: list[Found], arrivals: list[int]) -> None:
+def _check_times(
+    course: TimedPath | StraightCourse, pace: MotionLimits, timed: list[Found], arrivals: list[int]
+) -> None:
     """Refuse times that are too short."""
     used = pace.share(*course.peaks())
     for one, arrival in zip(timed, arrivals, strict=False):
@@ -224,7 +226,7 @@ def _sampled(times: Vector, rate: float) -> tuple[Vector, np.ndarray]:
     return np.concatenate([*parts, times[-1:]]), np.concatenate([[0], np.cumsum(counts)])
 
 
-def _exact(begin: SolvedPose, found: list[Found], hold: float) -> np.ndarray:
+def _exact(begin: Equilibrium, found: list[Found], hold: float) -> np.ndarray:
     """Contractions of the keys of a course [m]."""
     rows = [begin.contractions]
     for number, one in enumerate(found):
@@ -233,7 +235,7 @@ def _exact(begin: SolvedPose, found: list[Found], hold: float) -> np.ndarray:
 
 
 def _keys(
-    found: list[Found], times: Vector, poses: tuple[SolvedPose, ...], samples: list[int], near: float
+    found: list[Found], times: Vector, poses: tuple[Equilibrium, ...], samples: list[int], near: float
 ) -> tuple[KeyPose, ...]:
     keys = []
     for one, leg, sample in zip(found, legs_of([0, *samples]), samples, strict=True):
@@ -253,7 +255,7 @@ def _keys(
                 found=one.reached.without_factors() if one.reached else None,
                 pose=pose,
                 errors=errors,
-                stray=stray(places),
+                path_deviation=path_deviation(places),
                 free_error=one.free_error,
                 same=float(np.linalg.norm(pose.nodes - one.pose.nodes, axis=1).max()) <= near,
             )

@@ -9,12 +9,12 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
-from hydrostat.ik.reached_pose import ReachedPose
-from hydrostat.ik.trajectory.course import Pace, Samples
-from hydrostat.ik.trajectory.poses import Snap
-from hydrostat.robot import Pose
-from hydrostat.simulation import Profile, SolvedPose
-from hydrostat.units import counted
+from hydrostat.ik.ik_result import IKResult
+from hydrostat.ik.trajectory.poses import BranchJump
+from hydrostat.ik.trajectory.timed_path import MotionLimits, Samples
+from hydrostat.robot import PoseTarget
+from hydrostat.simulation import ContractionProfile, Equilibrium
+from hydrostat.units import plural
 
 
 class PathKind(StrEnum):
@@ -32,11 +32,13 @@ class KeyPose:
     name: str  # of its pose
     time: float  # when it is reached [s]
     index: int  # of its sample
-    target: Pose | None  # where markers should be; None where a pose was given as such
-    found: ReachedPose | None  # what inverse kinematics found from the keyframe before; None where a pose was given
-    pose: SolvedPose = field(repr=False)  # what the robot is in when the trajectory is there
+    target: PoseTarget | None  # where markers should be; None where a pose was given as such
+    found: IKResult | None  # what inverse kinematics found from the keyframe before; None where a pose was given
+    pose: Equilibrium = field(repr=False)  # what the robot is in when the trajectory is there
     errors: Mapping[str, float]  # distance of each marker from its target in that pose [m]
-    stray: float  # largest distance of a marker from the straight line from the keyframe before to this one [m]
+    path_deviation: (
+        float  # largest distance of a marker from the straight line from the keyframe before to this one [m]
+    )
     free_error: float | None  # rms error that a search from rest finds on another branch, where that is better [m]
     same: bool  # whether the way leads to the pose that inverse kinematics found
 
@@ -50,11 +52,11 @@ class KeyPose:
         head = f"{self.time:.2f} s {self.name}: "
         head += f"marker error {1e3 * self.rms_error:.2f} mm rms" if self.errors else "as given"
         if self.pose.markers:
-            head += f"; markers up to {1e3 * self.stray:.2f} mm off a straight way there"
+            head += f"; markers up to {1e3 * self.path_deviation:.2f} mm off a straight way there"
         lines = [head]
         if self.found is not None:
-            lines[0] += f"; {self.found.reason}"
-            lines += [f"  {words}" for words in self.found.held]
+            lines[0] += f"; {self.found.status}"
+            lines += [f"  {words}" for words in self.found.active_limits]
         if self.free_error is not None:
             lines.append(f"  a search from rest comes to {1e3 * self.free_error:.2f} mm, on another branch than this")
         if not self.same:
@@ -74,12 +76,12 @@ class Trajectory:
         contractions: [m].
         speeds: of the contractions [m/s].
         accelerations: of the contractions [m/s^2]; of a linear path 0, but for its corners, where they are infinite.
-        fastest: the largest speed of each winch, between samples too [m/s].
-        hardest: the largest acceleration of each winch, between samples too [m/s^2].
+        peak_speeds: the largest speed of each winch, between samples too [m/s].
+        peak_accelerations: the largest acceleration of each winch, between samples too [m/s^2].
         pace: the limits on both.
         poses: equilibria, each continued from the one before.
         keys: what became of the keyframes, the beginning not among them.
-        snaps: where the robot jumps to another branch.
+        branch_jumps: where the robot jumps to another branch.
         winches: their names.
         cables: the winch of each cable.
         tension: the limit on the tension of each cable [N]; infinite without one.
@@ -90,19 +92,19 @@ class Trajectory:
     contractions: Samples = field(repr=False)
     speeds: Samples = field(repr=False)
     accelerations: Samples = field(repr=False)
-    fastest: Vector = field(repr=False)
-    hardest: Vector = field(repr=False)
-    pace: Pace = field(repr=False)
-    poses: tuple[SolvedPose, ...] = field(repr=False)
-    keys: tuple[KeyPose, ...]
-    snaps: tuple[Snap, ...]
+    peak_speeds: Vector = field(repr=False)
+    peak_accelerations: Vector = field(repr=False)
+    limits: MotionLimits = field(repr=False)
+    poses: tuple[Equilibrium, ...] = field(repr=False)
+    keyframes: tuple[KeyPose, ...]
+    branch_jumps: tuple[BranchJump, ...]
     winches: tuple[str, ...]
     cables: tuple[str, ...] = field(repr=False)
     tension: Vector = field(repr=False)
 
     def __repr__(self) -> str:
         """What it is, in one line."""
-        parts = f"{counted(len(self.poses), 'pose')}, {counted(len(self.snaps), 'snap')}"
+        parts = f"{plural(len(self.poses), 'pose')}, {plural(len(self.branch_jumps), 'snap')}"
         return f"<Trajectory of {self.times[-1]:.3g} s, {self.path}: {parts}>"
 
     @property
@@ -120,22 +122,22 @@ class Trajectory:
         """Tension of each cable at each sample [N]."""
         return np.array([pose.tensions for pose in self.poses])
 
-    def profile(self) -> Profile:
+    def profile(self) -> ContractionProfile:
         """The contractions for `Simulation.play` and for motors: along lines from sample to sample."""
-        return Profile(times=self.times, values=self.contractions)
+        return ContractionProfile(times=self.times, values=self.contractions)
 
     def lines(self) -> list[str]:
         """A plain report: keyframes, what is used of the limits, what holds and what does not."""
-        lines = [line for key in self.keys for line in key.lines()]
+        lines = [line for key in self.keyframes for line in key.lines()]
         lines.append(f"{self.seconds:.2f} s in all, {len(self.times)} samples; path {self.path}")
         if self.winches:
-            lines.append(self._most("speed", self.fastest, self.pace.speed, "mm/s"))
+            lines.append(self._most("speed", self.peak_speeds, self.limits.speed, "mm/s"))
             if self.path is PathKind.LINEAR:
                 lines.append("acceleration: without limit at the keyframes, as the speed changes at once there")
             else:
-                lines.append(self._most("acceleration", self.hardest, self.pace.acceleration, "mm/s^2"))
+                lines.append(self._most("acceleration", self.peak_accelerations, self.limits.acceleration, "mm/s^2"))
         lines += self._over_tension()
-        for snap in self.snaps:
+        for snap in self.branch_jumps:
             lines.append(f"at {snap.time:.2f} s the robot snaps: a node jumps by {1e3 * snap.distance:.1f} mm")
         return lines
 
@@ -162,11 +164,11 @@ class Trajectory:
         """Where in the trajectory a sample is."""
         if sample == 0:
             return "at the start"
-        key = next(key for key in self.keys if key.index >= sample)
+        key = next(key for key in self.keyframes if key.index >= sample)
         return f"in {key.name}" if key.index == sample else f"on the way to {key.name}"
 
 
-def stray(markers: Mapping[str, Float[np.ndarray, "samples dim"]]) -> float:
+def path_deviation(markers: Mapping[str, Float[np.ndarray, "samples dim"]]) -> float:
     """Largest distance of a marker from the line between its first and its last place [m]."""
     most = 0.0
     for places in markers.values():

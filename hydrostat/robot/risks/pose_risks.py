@@ -9,7 +9,7 @@ from hydrostat.arrays import Points
 from hydrostat.geometry import Mesh, locate, spacings
 from hydrostat.robot.risks.words import Risk, known_up_to, mm, told_together
 from hydrostat.robot.robot import Robot
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 def pin_risks(robot: Robot) -> Iterator[str]:
@@ -23,7 +23,7 @@ def pin_risks(robot: Robot) -> Iterator[str]:
     for index, nodes in enumerate(held):
         count = int(nodes.sum())
         if count < mesh.dim:
-            grip = f"holds only {counted(count, 'node')}" if count else "reaches no node and holds a single point"
+            grip = f"holds only {plural(count, 'node')}" if count else "reaches no node and holds a single point"
             text = f"{grip}, about which the body can turn and tear; a radius of {mm(reach)} would grip it"
             found.append(Risk(f"pin[{index}]", -count, text))
     yield from told_together(found)

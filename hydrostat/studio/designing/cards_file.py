@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict
 from hydrostat.design import Craft
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Demand
-from hydrostat.robot import Body, Cable, Face, Pose, Robot, Winch
+from hydrostat.robot import Body, Cable, Face, PoseTarget, Robot, Winch
 from hydrostat.studio.designing.design_work import Candidate, Reach
 
 LARGEST = 8_000_000  # more bytes than these are not kept: cards that would go beyond are left out, the last first
@@ -24,7 +24,7 @@ class ReachRecord(BaseModel):
 
     model_config = _PLAIN
 
-    pose: Pose
+    pose: PoseTarget
     nodes: list[list[float]]
     contractions: list[float]
     tensions: list[float]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from hydrostat.design import front
 from hydrostat.drawing import WINCHES
 from hydrostat.studio.designing.design_work import Candidate
-from hydrostat.studio.designing.run import DesignRun, Mark
-from hydrostat.units import counted
+from hydrostat.studio.designing.run import DesignRun, ProgressPoint
+from hydrostat.units import plural
 
 LEFT, RIGHT, TOP, BOTTOM = 34.0, 10.0, 20.0, 32.0  # room for the numbers and words around a chart
 
@@ -79,7 +79,7 @@ APART = (16.0, 11.0)  # numbers nearer to each other than this, across and upwar
 Place = tuple[float, float]  # in a picture
 
 
-def front_chart(candidates: Sequence[Candidate], trail: Sequence[Mark], chosen: int | None) -> str:
+def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint], chosen: int | None) -> str:
     """A dot for each candidate's error as built over its minutes of sewing, in the colour of its winches, as SVG.
 
     The number beside a dot counts cables. Small dots are the networks on the way of the last design, from its trail.
@@ -108,7 +108,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[Mark], chosen: 
         parts.append(f'{ring}<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{colour}" class="chart-dot"/>')
     parts += _counts(candidates, places, chosen)
     counts = sorted({len(one.robot.winches) for one in candidates})
-    keys = [(winch_count_colour(count), counted(count, "winch")) for count in counts]
+    keys = [(winch_count_colour(count), plural(count, "winch")) for count in counts]
     return chart.drawn("".join([*parts, _legend(keys)]), label="error once built against minutes of sewing")
 
 

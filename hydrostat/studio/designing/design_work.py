@@ -6,19 +6,28 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.design import Alternative, Craft, DesignRequest, DesignStage, Network, craft_of, find_network, rms_error
+from hydrostat.design import (
+    Alternative,
+    Craft,
+    DesignRequest,
+    DesignStage,
+    Network,
+    build_effort,
+    find_network,
+    rms_error,
+)
 from hydrostat.fabrication import Demand, demand_of
-from hydrostat.ik import ReachedPose
-from hydrostat.robot import Cable, Pose, Robot, Winch
+from hydrostat.ik import IKResult
+from hydrostat.robot import Cable, PoseTarget, Robot, Winch
 from hydrostat.studio.jobs import Report
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reach:
     """What a network reaches of a pose."""
 
-    pose: Pose  # that was wanted
+    pose: PoseTarget  # that was wanted
     nodes: Nodes  # where they come to [m]
     contractions: Vector  # of the winches [m]
     tensions: Vector  # of the cables [N]
@@ -76,7 +85,7 @@ class Candidate:
 
 def network_words(robot: Robot) -> str:
     """How many winches and cables a robot has."""
-    return f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
+    return f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
 
 
 def solution(found: Network | Alternative) -> Solution:
@@ -87,12 +96,12 @@ def solution(found: Network | Alternative) -> Solution:
         reaches=tuple(map(_reach, found.reached)),
         error=rms_error(found.reached),
         built=found.built,
-        craft=craft_of(found.robot, found.reached),
+        craft=build_effort(found.robot, found.reached),
         demand=demand_of(found.robot, found.reached),
     )
 
 
-def _reach(reached: ReachedPose) -> Reach:
+def _reach(reached: IKResult) -> Reach:
     pose, solved = reached.wanted, reached.pose
     places = {name: tuple(np.asarray(solved.markers[name]).tolist()) for name in pose.targets}
     return Reach(
@@ -107,7 +116,7 @@ def _reach(reached: ReachedPose) -> Reach:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Glimpse:
+class BestSoFar:
     """The best network so far."""
 
     winches: tuple[Winch, ...]  # of it
@@ -129,7 +138,7 @@ def design_work(report: Report, robot: Robot, request: DesignRequest) -> Designs
 
     def watch(stage: DesignStage) -> None:
         found = stage.robot
-        report.part(Glimpse(winches=found.winches, cables=found.cables, error=stage.error))
+        report.part(BestSoFar(winches=found.winches, cables=found.cables, error=stage.error))
 
     network = find_network(robot, request, progress=report.progress, watch=watch)
     report.finish()

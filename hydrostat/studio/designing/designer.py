@@ -8,23 +8,23 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design import DesignRequest, RouteOptions, faced, sewing_minutes
+from hydrostat.design import DesignRequest, RouteOptions, assign_cable_sides, sewing_minutes
 from hydrostat.drawing import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.cards_file import cards_content, read_cards
-from hydrostat.studio.designing.design_work import (
-    Candidate,
-    DesignsFound,
-    Glimpse,
-    Reach,
-    design_work,
-    network_words,
-)
+from hydrostat.studio.designing.design_work import BestSoFar, Candidate, DesignsFound, Reach, design_work, network_words
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
-from hydrostat.studio.designing.run import DesignRun, Mark, beginning, error_at_rest, wished_poses, wished_request
+from hydrostat.studio.designing.run import (
+    DesignRun,
+    ProgressPoint,
+    beginning,
+    error_at_rest,
+    wished_poses,
+    wished_request,
+)
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -35,7 +35,7 @@ from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things, target_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 TITLE = "Designing cables"
 
@@ -92,7 +92,7 @@ class Designer(Stage):
         return self._sketch.network(candidate.robot)
 
     @property
-    def trail(self) -> tuple[Mark, ...]:
+    def trail(self) -> tuple[ProgressPoint, ...]:
         """Networks on the way of the last design, if it was for this body."""
         run = self.run
         return run.trail if run is not None and run.robot.body == self._document.robot.body else ()
@@ -276,7 +276,7 @@ class Designer(Stage):
         self._all, self._numbered = tuple(found), max(len(found), self._numbered)
         for candidate in found:
             self._document.judge.learn(candidate.robot, demand=candidate.demand)
-        self.outcome = f"{counted(len(found), 'network')} found before the studio ended" if found else ""
+        self.outcome = f"{plural(len(found), 'network')} found before the studio ended" if found else ""
 
     def _reach(self) -> Reach | None:
         """What is shown of a pose; None: the body at rest."""
@@ -297,13 +297,13 @@ class Designer(Stage):
             return []
         return [(pose.targets, colours[pose.name] if len(poses) > 1 else INK) for pose in poses]
 
-    def _glimpsed(self, glimpse: Glimpse) -> None:
+    def _glimpsed(self, glimpse: BestSoFar) -> None:
         """A better network was found; called in a thread of the jobs."""
         run = self.run
         if run is None:
             return
-        best = faced(run.robot).with_network(glimpse.winches, glimpse.cables)
-        mark = Mark(
+        best = assign_cable_sides(run.robot).with_network(glimpse.winches, glimpse.cables)
+        mark = ProgressPoint(
             seconds=time.monotonic() - run.began,
             error=glimpse.error,
             winches=len(glimpse.winches),
@@ -325,7 +325,7 @@ class Designer(Stage):
                 Candidate(
                     number=self._numbered,
                     source=source,
-                    robot=faced(source).with_network(solution.winches, solution.cables),
+                    robot=assign_cable_sides(source).with_network(solution.winches, solution.cables),
                     reaches=solution.reaches,
                     error=solution.error,
                     built=solution.built,
@@ -342,7 +342,7 @@ class Designer(Stage):
         early = "" if found.complete else "stopped early, the best so far: "
         self.outcome = (
             f"{early}{network_words(best.robot)}, {told_error(best.built)} off once built, in {seconds:.0f} s "
-            f"({counted(found.tried, 'network')} tried)"
+            f"({plural(found.tried, 'network')} tried)"
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.design import AUTO, DesignMethod, DesignRequest, RouteOptions
 from hydrostat.errors import InputError
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio.records.wished_constraints import wished_constraints
 from hydrostat.studio.records.wishes import Wishes
 
@@ -32,7 +32,7 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
     return request
 
 
-def wished_poses(robot: Robot, wishes: Wishes) -> tuple[Pose, ...]:
+def wished_poses(robot: Robot, wishes: Wishes) -> tuple[PoseTarget, ...]:
     """The poses to reach: those that are named and still there; all if none is (InputError: the robot has no pose)."""
     if not robot.poses:
         raise InputError("there is no pose to design for; drag the body in Pose and store how it should be")
@@ -41,7 +41,7 @@ def wished_poses(robot: Robot, wishes: Wishes) -> tuple[Pose, ...]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mark:
+class ProgressPoint:
     """The best network at one moment."""
 
     seconds: float  # since the design was asked for
@@ -60,7 +60,7 @@ class DesignRun:
     began: float  # when, on a clock that only runs forward [s]
     rest: float  # error if nothing moved [m]
     best: Robot  # the robot with the best network so far; with what stays of its own before the first
-    trail: tuple[Mark, ...] = field(default=())  # of the best network, in time
+    trail: tuple[ProgressPoint, ...] = field(default=())  # of the best network, in time
 
 
 def beginning(robot: Robot, request: DesignRequest) -> Robot:
@@ -71,7 +71,7 @@ def beginning(robot: Robot, request: DesignRequest) -> Robot:
     return robot.with_network(*limits.staying(robot))
 
 
-def error_at_rest(robot: Robot, poses: tuple[Pose, ...]) -> float:
+def error_at_rest(robot: Robot, poses: tuple[PoseTarget, ...]) -> float:
     """Root of the mean squared distance of markers from their targets over all poses, if nothing moved [m]."""
     places = {marker.name: np.array(marker.at) for marker in robot.markers}
     squares = [

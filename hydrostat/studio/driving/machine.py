@@ -12,7 +12,7 @@ from hydrostat.control import Link, Motors, Player, Timeline
 from hydrostat.errors import HydrostatError
 from hydrostat.plot import upright
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.keyframes import Keyframes
 from hydrostat.studio.driving.kit_speed import kit_speed
@@ -29,7 +29,7 @@ class Follower:
     def __init__(self) -> None:
         self.failure = ""  # why the last contractions have no shape; "" if they have
         self._simulation: Simulation | None = None
-        self._last: SolvedPose | None = None
+        self._last: Equilibrium | None = None
 
     def follow(self, simulation: Simulation, contractions: Vector, *, rough: bool = False) -> RobotShape:
         """The body at these contractions [m], or as it was last; `failure` tells which. Rough: it moves on at once."""

@@ -16,7 +16,7 @@ from hydrostat.robot import (
     Robot,
     Source,
     check_name,
-    find_material,
+    get_material,
     gravity_along,
     outline_body,
     surface_body,
@@ -141,7 +141,7 @@ def remesh(
         if value is not None:
             check_range(name, value, *BODY_RANGE)
     if material is not None:
-        body = replace(body, material=find_material(material))
+        body = replace(body, material=get_material(material))
     if thickness is not None:
         body = replace(body, thickness=thickness)
     if element_size is None or element_size == body.element_size:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.bell import Topic
@@ -26,7 +26,7 @@ from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 SAME_CLICK = 0.005  # a click so near to the last one, as a share of the body, ends a cable: it was a double click
 DEPTH = 0.005  # how deep below the skin of a body in space winches and cables are placed at first [m]
@@ -119,7 +119,7 @@ class Editor(Stage):
         if self._copied is None:
             raise InputError("nothing was copied; choose parts and press Ctrl C")
         robot, keys = pasted(self._document.robot, *self._copied)
-        self._change(f"paste {counted(len(keys), 'part')}", robot)
+        self._change(f"paste {plural(len(keys), 'part')}", robot)
         self._copied = (robot, keys)
         self._chosen = keys
         self._ring()
@@ -138,7 +138,7 @@ class Editor(Stage):
             way = np.zeros(self._document.robot.body.mesh.dim)
             way[axis] = step
             robot = shifted(self._document.robot, self.selection, way.tolist(), self.mirror)
-            words = title_of(self.chosen) if len(self.selection) == 1 else counted(len(self.selection), "part")
+            words = title_of(self.chosen) if len(self.selection) == 1 else plural(len(self.selection), "part")
             self._document.change(f"nudge {words}", robot=robot, merge=f"nudge {' '.join(self.selection)}")
 
     def set_snap(self, step: float) -> None:
@@ -150,7 +150,7 @@ class Editor(Stage):
 
     def take(self, tool: Tool | str) -> None:
         """Take another tool; a cable that was begun is dropped (InputError: there is no tool of this name)."""
-        self.tool, self.draft, self.ruler = member(Tool, tool, what="tool"), None, None
+        self.tool, self.draft, self.ruler = parse_choice(Tool, tool, what="tool"), None, None
         self._ring()
 
     def mirror_about(self, axis: str) -> None:
@@ -192,7 +192,7 @@ class Editor(Stage):
         """Remove what is selected, and its twin (InputError: the robot cannot do without it)."""
         robot, keys = self._document.robot, self.selection
         if keys:
-            words = title_of(keys[0]) if len(keys) == 1 else counted(len(keys), "part")
+            words = title_of(keys[0]) if len(keys) == 1 else plural(len(keys), "part")
             gone = {key: None for own in keys for key in self._both(robot, own)}
             self._change(f"delete {words}", remove(robot, list(gone)))
             self.choose("")
@@ -268,7 +268,7 @@ class Editor(Stage):
         many = self._many(hold.key)
         self._chosen = self._chosen if many else (hold.key,)
         self._hold, self._refused = hold, ""
-        words = counted(len(self.selection), "part") if many else title_of(hold.key)
+        words = plural(len(self.selection), "part") if many else title_of(hold.key)
         self._document.change(f"move {words}", robot=moved, merge=f"drag {self._holds}")
 
     def release(self) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Cable, Marker, Pin, Point, Pose, Robot, Winch
+from hydrostat.robot import Cable, Marker, Pin, Point, PoseTarget, Robot, Winch
 from hydrostat.studio.editing.part import Kind, Part, find_part, place_of
 from hydrostat.studio.records.work import fresh_name
 
@@ -158,7 +158,7 @@ def _without_points(index: int, cable: Cable, places: Collection[int]) -> Cable:
     return replace(cable, points=tuple(cable.points[place] for place in kept), sheathed=tuple(sheaths))
 
 
-def _poses(robot: Robot, markers: Collection[str]) -> dict[str, Pose]:
+def _poses(robot: Robot, markers: Collection[str]) -> dict[str, PoseTarget]:
     """Poses with the targets of these markers; those without any are gone."""
     poses = {}
     for name, pose in robot.poses.items():

@@ -9,7 +9,7 @@ from typing import Any
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import KitOptions
-from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
+from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.robot import Face, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -24,7 +24,7 @@ from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.studio.work_folder import save_work
 
-_ONCE = InverseOptions(restarts=0)  # a pose is shown as soon as it is found
+_ONCE = IKOptions(restarts=0)  # a pose is shown as soon as it is found
 
 
 class Export(StrEnum):
@@ -141,7 +141,7 @@ class Exporter(Stage):
         """The pose that is shown, once it is solved; till then the rest shape."""
         posed = self._posed
         if posed is not None and self._is_wanted(posed):
-            reached: ReachedPose = posed.value
+            reached: IKResult = posed.value
             pose = reached.pose
             return RobotShape(
                 nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions, errors=dict(reached.errors)

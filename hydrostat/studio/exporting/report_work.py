@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from hydrostat.drawing import PAPER, Html, tag
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import ReachedPose, solve_ik
+from hydrostat.ik import IKResult, solve_ik
 from hydrostat.plot import (
     MILLIMETRES,
     REACHED,
@@ -34,7 +34,7 @@ from hydrostat.robot import Robot, find_risks, robot_hash
 from hydrostat.simulation import Simulation
 from hydrostat.studio.exporting.download import Download, file_name
 from hydrostat.studio.jobs import Report
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,7 +42,7 @@ class SolvedPoses:
     """What the winches make of the poses."""
 
     robot: Robot  # whose they are
-    reached: tuple[ReachedPose, ...]  # those that were solved, in their order
+    reached: tuple[IKResult, ...]  # those that were solved, in their order
     missed: tuple[str, ...]  # a line for each that was not
 
 
@@ -122,8 +122,8 @@ def robot_report(solved: SolvedPoses) -> str:
 def _hero(solved: SolvedPoses) -> Html:
     robot = solved.robot
     parts = (
-        f"A soft body, {counted(len(robot.winches), 'winch')} and {counted(len(robot.cables), 'cable')}, "
-        f"{counted(len(robot.poses), 'pose')}. This page tells what the robot is, and what its winches reach."
+        f"A soft body, {plural(len(robot.winches), 'winch')} and {plural(len(robot.cables), 'cable')}, "
+        f"{plural(len(robot.poses), 'pose')}. This page tells what the robot is, and what its winches reach."
     )
     steps: list[Html] = []
     if solved.reached:
@@ -167,7 +167,7 @@ def _reached(solved: SolvedPoses) -> list[Chapter]:
         return []
     poses = []
     for index, reached in enumerate(solved.reached):
-        held = [tag("div", tag("b", "Limit: "), words, class_="note") for words in reached.held]
+        held = [tag("div", tag("b", "Limit: "), words, class_="note") for words in reached.active_limits]
         poses.append(reached_part(solved.robot, reached, index, *held))
     missed = [tag("div", tag("b", "Not solved: "), line, class_="note") for line in solved.missed]
     return [Chapter(*REACHED, [*poses, *missed])]

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import HydrostatError, NotConvergedError
-from hydrostat.ik import Closeness, InverseOptions, InverseReason, Limits, PointGoal, Tracker
+from hydrostat.ik import IKOptions, IKStatus, Limits, PointTarget, PoseRegularizer, Tracker
 from hydrostat.robot import Point
-from hydrostat.simulation import Simulation, SolvedPose, friction_band
-from hydrostat.studio.posing.foreteller import Foreteller
-from hydrostat.studio.posing.held import Anchored, Held
+from hydrostat.simulation import Equilibrium, Simulation, friction_hysteresis
+from hydrostat.studio.posing.foreteller import Predictor
+from hydrostat.studio.posing.held import Anchored, HeldPoint
 from hydrostat.studio.posing.mover import Mover
 from hydrostat.studio.view.things import RobotShape
 from hydrostat.studio.view.touching import with_touches
@@ -38,12 +38,12 @@ so that the body would follow by jerks; with these it goes through all of its ra
 
 LAST = 10  # so many updates are made at most where that was done roughly before
 TICK = 1 / 30  # seconds that an update stands for; nothing here limits the rate
-ENDS = {InverseReason.REACHED, InverseReason.OPTIMAL}
+ENDS = {IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM}
 
 
-def _goal(held: Mapping[str, Held]) -> PointGoal:
+def _goal(held: Mapping[str, HeldPoint]) -> PointTarget:
     """What is held, where it should be."""
-    return PointGoal(
+    return PointTarget(
         points={name: point.at for name, point in held.items()},
         targets={name: point.target for name, point in held.items()},
     )
@@ -61,8 +61,8 @@ class CableMover(Mover):
         simulation: Simulation,
         *,
         tension: float,
-        start: SolvedPose | None = None,
-        foreteller: Foreteller | None = None,
+        start: Equilibrium | None = None,
+        foreteller: Predictor | None = None,
     ) -> None:
         """Begin in a pose, or at rest; cables bear at most a tension [N]. With a foreteller its answer comes first."""
         self.foreteller, self._told = foreteller, False
@@ -73,7 +73,7 @@ class CableMover(Mover):
         self._begin(start or simulation.rest)
 
     @property
-    def pose(self) -> SolvedPose:
+    def pose(self) -> Equilibrium:
         """Pose that the robot is in."""
         return self._pose
 
@@ -86,7 +86,7 @@ class CableMover(Mover):
         self._begin(self._simulation.rest)
         return self._shape({}, ())
 
-    def update(self, held: Mapping[str, Held]) -> tuple[RobotShape, bool]:
+    def update(self, held: Mapping[str, HeldPoint]) -> tuple[RobotShape, bool]:
         """One step of the tracker; without targets the winches stay as they are."""
         if not held:
             return self._shape({}, ()), False
@@ -114,13 +114,13 @@ class CableMover(Mover):
         moved = float(np.abs(reached.pose.nodes - self._pose.nodes).max()) / self.robot.body.mesh.size
         self._pose = reached.pose
         self._still = self._still + 1 if moved < STILL else 0
-        more = reached.reason not in ENDS and self._still < STILLS and self._updates < PATIENCE
+        more = reached.status not in ENDS and self._still < STILLS and self._updates < PATIENCE
         if not more and not self._exact:
             self._near, self._still, self._updates, more = True, 0, PATIENCE - LAST, True
-        notes = reached.held
+        notes = reached.active_limits
         if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
-            stopped = reached.reason is not InverseReason.ITERATION_LIMIT
-            notes = (*notes, str(reached.reason if stopped else InverseReason.OPTIMAL))
+            stopped = reached.status is not IKStatus.ITERATION_LIMIT
+            notes = (*notes, str(reached.status if stopped else IKStatus.LOCAL_OPTIMUM))
         if not more:
             notes = (*notes, *self._band())
         shape = self._shape(dict(reached.errors), notes, settled=not more)
@@ -128,26 +128,26 @@ class CableMover(Mover):
             shape = replace(shape, foretold=self.foreteller.solve(targets).foretold(exact=not more))
         return shape, more
 
-    def _asked(self, held: Mapping[str, Held]) -> dict[str, Point] | None:
+    def _asked(self, held: Mapping[str, HeldPoint]) -> dict[str, Point] | None:
         """Targets of what is held, if there are networks that know all of it."""
         if self.foreteller is None or not self.foreteller.knows(held):
             return None
         return {name: point.target for name, point in held.items()}
 
-    def _calm(self, held: Mapping[str, Held]) -> list[Closeness]:
+    def _calm(self, held: Mapping[str, HeldPoint]) -> list[PoseRegularizer]:
         """Wishes that the body, and markers that nobody holds, stay: the more the farther the targets are."""
         errors = np.array(list(self._anchored.errors(held, self._pose.nodes).values())) / self.robot.body.mesh.size
         rest, others = self._simulation.rest, tuple(m.name for m in self.robot.markers if m.name not in held)
-        calm = [Closeness(pose=rest, of="nodes", weight=min(CALM * float(errors.max()), CALMEST))]
+        calm = [PoseRegularizer(pose=rest, of="nodes", weight=min(CALM * float(errors.max()), CALMEST))]
         if others:
             weight = float(np.sqrt(GAIN * np.linalg.norm(errors)))
-            calm.append(Closeness(pose=rest, of="markers", markers=others, weight=weight))
+            calm.append(PoseRegularizer(pose=rest, of="markers", markers=others, weight=weight))
         return calm
 
     def _band(self) -> tuple[str, ...]:
         """How far apart friction leaves the markers, in words; nothing without it."""
         try:
-            band = friction_band(self._simulation, self._pose)
+            band = friction_hysteresis(self._simulation, self._pose)
         except NotConvergedError:
             return ()
         if not band:
@@ -155,7 +155,7 @@ class CableMover(Mover):
         name = max(band, key=lambda own: band[own])
         return (f"friction: come to from above, markers end up to {1e3 * band[name]:.1f} mm elsewhere ({name})",)
 
-    def _begin(self, pose: SolvedPose) -> None:
+    def _begin(self, pose: Equilibrium) -> None:
         self._pose, self._held, self._updates, self._still, self._near = pose, {}, 0, 0, False
         self._follow(self._rough)
 
@@ -166,7 +166,7 @@ class CableMover(Mover):
             simulation,
             limits=Limits(tension=self.tension),
             start=self._pose,
-            options=InverseOptions(largest_step=STRIDE),
+            options=IKOptions(largest_step=STRIDE),
             model=self.foreteller,
         )
 

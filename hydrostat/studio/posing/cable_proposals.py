@@ -11,7 +11,7 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Slots
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
-from hydrostat.studio.posing.propose_work import Moment, Sketched, propose_work
+from hydrostat.studio.posing.propose_work import Proposal, ProposalInput, propose_work
 from hydrostat.studio.records.work import after_design
 
 LOST = "the process that proposes cables has died; switch it off and on again"
@@ -22,7 +22,7 @@ class _Question:
     """A moment of a robot."""
 
     robot: Robot
-    moment: Moment
+    moment: ProposalInput
 
 
 class CableProposals:
@@ -36,8 +36,8 @@ class CableProposals:
         self._document, self._slots = document, slots
         self._news = Condition()
         self._newest: _Question | None = None
-        self._found: tuple[Robot, Sketched] | None = None
-        self._made: tuple[Robot, Sketched, Robot] | None = None
+        self._found: tuple[Robot, Proposal] | None = None
+        self._made: tuple[Robot, Proposal, Robot] | None = None
         self._run = 0  # counts how often it was switched; a thread of another number ends
         self.on = False  # whether networks are proposed
 
@@ -55,7 +55,7 @@ class CableProposals:
             Thread(target=self._follow, args=(self._run,), name="proposals", daemon=True).start()
         self._document.bell.ring(Topic.THINGS)
 
-    def ask(self, robot: Robot, moment: Moment) -> None:
+    def ask(self, robot: Robot, moment: ProposalInput) -> None:
         """Want a network for this moment, rather than for any before."""
         if not self.on:
             return
@@ -63,7 +63,7 @@ class CableProposals:
             self._newest = _Question(robot, moment)
             self._news.notify_all()
 
-    def found(self, robot: Robot) -> Sketched | None:
+    def found(self, robot: Robot) -> Proposal | None:
         """What was found last, if it is for a body as this robot has it."""
         found = self._found
         if found is None or not self.on or not same_physics(found[0], robot, Mode.MUSCLES):
@@ -117,7 +117,7 @@ class CableProposals:
                         return
                 self._take(run, question.robot, here.recv())
         except (EOFError, OSError):
-            self._take(run, self._document.robot, Sketched(words=LOST))
+            self._take(run, self._document.robot, Proposal(words=LOST))
         finally:
             here.close()
             process.kill()
@@ -130,7 +130,7 @@ class CableProposals:
             question, self._newest = self._newest, None
             return question if self._run == run else None
 
-    def _take(self, run: int, robot: Robot, found: Sketched) -> None:
+    def _take(self, run: int, robot: Robot, found: Proposal) -> None:
         with self._news:
             if self._run == run:
                 self._found = (robot, found)

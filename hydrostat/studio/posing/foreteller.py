@@ -1,4 +1,4 @@
-"""`Foreteller`: a learned model, asked for what a person holds."""
+"""`Predictor`: a learned model, asked for what a person holds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ from hydrostat.arrays import Vector
 from hydrostat.ik import Targets, named_targets
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Point, Robot
-from hydrostat.simulation import SolvedPose
-from hydrostat.studio.posing.held import Held
-from hydrostat.studio.view.things import Foretold
+from hydrostat.simulation import Equilibrium
+from hydrostat.studio.posing.held import HeldPoint
+from hydrostat.studio.view.things import Prediction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,15 +20,15 @@ class HeldAnswer:
 
     contractions: Vector  # of each winch [m]
     error: float  # mean distance of held markers from their targets that is expected [m]
-    doubt: float  # mean spread of the networks there [m]
+    uncertainty: float  # mean spread of the networks there [m]
     markers: Mapping[str, Point]  # where they expect each held marker [m]
 
-    def foretold(self, *, exact: bool) -> Foretold:
+    def foretold(self, *, exact: bool) -> Prediction:
         """The same as it is shown, beside an answer that is exact or on its way."""
-        return Foretold(markers=self.markers, error=self.error, doubt=self.doubt, exact=exact)
+        return Prediction(markers=self.markers, error=self.error, uncertainty=self.uncertainty, exact=exact)
 
 
-class Foreteller:
+class Predictor:
     """Answers for held markers, while the others shall stay where they are; it fits `hs.Tracker` as a model."""
 
     def __init__(self, model: LearnedModel, robot: Robot) -> None:
@@ -43,11 +43,11 @@ class Foreteller:
         """Check that it is a model of this robot (InputError: it is another's)."""
         self._model.check(robot)
 
-    def knows(self, held: Mapping[str, Held]) -> bool:
+    def knows(self, held: Mapping[str, HeldPoint]) -> bool:
         """Whether only markers of the model are held."""
         return bool(held) and all(self._places.get(name) == point.at for name, point in held.items())
 
-    def stay(self, pose: SolvedPose) -> None:
+    def stay(self, pose: Equilibrium) -> None:
         """Let markers that are not held stay where they are in a pose."""
         self._stay = {name: tuple(np.asarray(place).tolist()) for name, place in pose.markers.items()}
 
@@ -59,7 +59,7 @@ class Foreteller:
             answer = HeldAnswer(
                 contractions=found.contractions,
                 error=float(np.mean([found.errors[name] for name in asked])),
-                doubt=float(np.mean([found.spread[name] for name in asked])),
+                uncertainty=float(np.mean([found.spread[name] for name in asked])),
                 markers={name: tuple(found.markers[name].tolist()) for name in asked},
             )
             self._last = asked, answer

@@ -3,14 +3,14 @@
 import numpy as np
 
 from hydrostat.geometry import locate
-from hydrostat.studio.posing.held import Held, Now
+from hydrostat.studio.posing.held import HeldPoint, PoseState
 from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.stage import Hit
 
 NEAR = 0.02  # a plain point so near to one that is held is that one, in sizes of the body
 
 
-def name_under(now: Now, hit: Hit) -> str:
+def name_under(now: PoseState, hit: Hit) -> str:
     """The point that the pointer is on: a marker, one that is held, or a new one; "" beside the body."""
     kind, _, name = hit.key.partition(":")
     markers = [marker.name for marker in now.robot.markers]
@@ -27,14 +27,14 @@ def name_under(now: Now, hit: Hit) -> str:
     return fresh_name("point", [*now.wish.held, *markers])
 
 
-def point_of(now: Now, name: str, hit: Hit) -> Held:
+def point_of(now: PoseState, name: str, hit: Hit) -> HeldPoint:
     """A point by name, held where it is if it is not held yet."""
     if name in now.wish.held:
         return now.wish.held[name]
     for marker in now.robot.markers:
         if marker.name == name:
-            return Held(at=marker.at, target=marker.at, marker=True)
+            return HeldPoint(at=marker.at, target=marker.at, marker=True)
     assert hit.rest is not None
     mesh = now.robot.body.mesh
     at = tuple(locate(mesh, np.array([hit.rest])).positions(mesh.nodes)[0].tolist())
-    return Held(at=at, target=at)
+    return HeldPoint(at=at, target=at)

@@ -1,4 +1,4 @@
-"""`Held`, `Wish`, `Now`: what a person holds where, and where the body is, as values that are replaced whole."""
+"""Records of a gesture: `HeldPoint`, a dragged point; `PoseTargets`, all targets; `PoseState`, all together."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -20,7 +20,7 @@ class Mode(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Held:
+class HeldPoint:
     """A point of the body with the place where it should be."""
 
     at: Point  # where it is in the rest shape [m]
@@ -29,11 +29,13 @@ class Held:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wish:
+class PoseTargets:
     """All that a person wants of the body just now."""
 
     mode: Mode  # what moves it
-    held: Mapping[str, Held] = field(default_factory=dict)  # points by name; those with a marker's name are that marker
+    held: Mapping[str, HeldPoint] = field(
+        default_factory=dict
+    )  # points by name; those with a marker's name are that marker
     rests: int = 0  # counts how often it was sent back to rest
 
 
@@ -45,7 +47,7 @@ class Anchored:
         self._mesh = mesh
         self._found: tuple[tuple[Point, ...], Anchors] = ((), locate(mesh, np.zeros((0, mesh.dim))))
 
-    def anchors(self, held: Mapping[str, Held]) -> Anchors:
+    def anchors(self, held: Mapping[str, HeldPoint]) -> Anchors:
         """The points as anchors, in their order."""
         places = tuple(point.at for point in held.values())
         known, anchors = self._found
@@ -54,26 +56,26 @@ class Anchored:
             self._found = places, anchors
         return anchors
 
-    def goals(self, held: Mapping[str, Held]) -> Points:
+    def goals(self, held: Mapping[str, HeldPoint]) -> Points:
         """Targets of held points [m], (points, dim)."""
         return np.array([point.target for point in held.values()], dtype=float).reshape(-1, self._mesh.dim)
 
-    def places(self, held: Mapping[str, Held], nodes: Nodes) -> Points:
+    def places(self, held: Mapping[str, HeldPoint], nodes: Nodes) -> Points:
         """Places of held points when the nodes are at `nodes` [m], (points, dim)."""
         return self.anchors(held).positions(nodes)
 
-    def errors(self, held: Mapping[str, Held], nodes: Nodes) -> dict[str, float]:
+    def errors(self, held: Mapping[str, HeldPoint], nodes: Nodes) -> dict[str, float]:
         """Distance of each held point from its target [m], by name."""
         misses = np.linalg.norm(self.places(held, nodes) - self.goals(held), axis=1)
         return dict(zip(held, misses.tolist(), strict=True))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Now:
+class PoseState:
     """What belongs together, so that no thread sees an old wish with a new body."""
 
     robot: Robot  # that is posed
-    wish: Wish  # what a person wants of it
+    wish: PoseTargets  # what a person wants of it
     anchored: Anchored  # where held points are stuck to its mesh
     shape: RobotShape  # where its body is
     ghost: Ghost | None = None  # a shape to compare with, if any
@@ -83,10 +85,10 @@ class Now:
         found = name in self.wish.held or any(marker.name == name for marker in self.robot.markers)
         return name if found else ""
 
-    def adapted(self, robot: Robot) -> "Now":
+    def adapted(self, robot: Robot) -> "PoseState":
         """The same for a robot of the same nodes; what was held at a lost marker is let go, a plain point is not."""
         names, places = renamed_markers(self.robot, robot), {marker.name: marker.at for marker in robot.markers}
-        held: dict[str, Held] = {}
+        held: dict[str, HeldPoint] = {}
         for old, point in self.wish.held.items():
             name = names.get(old, old)
             if name in places or not point.marker:

@@ -9,7 +9,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.design import FreePosing
 from hydrostat.geometry import locate
 from hydrostat.robot import Marker, Robot
-from hydrostat.studio.posing.held import Anchored, Held
+from hydrostat.studio.posing.held import Anchored, HeldPoint
 from hydrostat.studio.view.things import RobotShape
 
 
@@ -23,7 +23,7 @@ class Mover(ABC):
         """Back to rest at once: nothing pulls."""
 
     @abstractmethod
-    def update(self, held: Mapping[str, Held]) -> tuple[RobotShape, bool]:
+    def update(self, held: Mapping[str, HeldPoint]) -> tuple[RobotShape, bool]:
         """One step towards the targets; the shape, and whether there is more to gain."""
 
 
@@ -40,7 +40,7 @@ class MuscleMover(Mover):
         self.robot = robot
         self._posing, self._anchored = FreePosing(robot), Anchored(robot.body.mesh)
         self.mark(robot.markers)
-        self._held: Mapping[str, Held] = {}
+        self._held: Mapping[str, HeldPoint] = {}
         self._updates = 0
 
     def mark(self, markers: Sequence[Marker]) -> None:
@@ -59,7 +59,7 @@ class MuscleMover(Mover):
         self._posing.rest()
         return self._shape({}, False)
 
-    def update(self, held: Mapping[str, Held]) -> tuple[RobotShape, bool]:
+    def update(self, held: Mapping[str, HeldPoint]) -> tuple[RobotShape, bool]:
         """One step of the muscles; without targets they let go, a step at a time."""
         if held is not self._held:
             self._held, self._updates = held, 0
@@ -70,7 +70,7 @@ class MuscleMover(Mover):
         more = more and self._updates < PATIENCE
         return self._shape(held, more), more
 
-    def _shape(self, held: Mapping[str, Held], more: bool) -> RobotShape:
+    def _shape(self, held: Mapping[str, HeldPoint], more: bool) -> RobotShape:
         nodes, robot, tensions = self._posing.nodes, self.robot, self._posing.tensions
         pulls = self._posing.fibres.around_nodes(tensions, len(nodes))
         most = max(float(pulls.max()), FAINT * self._posing.strength)

@@ -6,10 +6,10 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.posing.cable_mover import CableMover
-from hydrostat.studio.posing.foreteller import Foreteller
+from hydrostat.studio.posing.foreteller import Predictor
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.mover import Mover, MuscleMover
 
@@ -53,12 +53,12 @@ class Movers:
         assert self._cables is not None
         return self._cables
 
-    def _foreteller(self, robot: Robot) -> Foreteller | None:
+    def _foreteller(self, robot: Robot) -> Predictor | None:
         """Networks of a robot; None where there are none, or it was changed since they learned."""
         if self._document.model is None:
             return None
         with suppress(InputError):
-            return Foreteller(self._document.model, robot)
+            return Predictor(self._document.model, robot)
         return None
 
 
@@ -82,7 +82,7 @@ def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
     )  # fmt: skip
 
 
-def _resumed(simulation: Simulation, before: CableMover | None) -> SolvedPose | None:
+def _resumed(simulation: Simulation, before: CableMover | None) -> Equilibrium | None:
     """The pose that a robot was in before it was changed, if it still is one."""
     robot = simulation.robot
     if before is None or not same_body(before.robot, robot):

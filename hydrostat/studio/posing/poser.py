@@ -6,7 +6,7 @@ from threading import RLock
 
 import numpy as np
 
-from hydrostat.closed_set import member
+from hydrostat.closed_set import parse_choice
 from hydrostat.drawing import GHOST
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.robot import Robot
@@ -15,10 +15,18 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.cable_proposals import CableProposals
 from hydrostat.studio.posing.grip import name_under, point_of
-from hydrostat.studio.posing.held import Anchored, Held, Mode, Now, Wish, renamed_markers, with_network_of
+from hydrostat.studio.posing.held import (
+    Anchored,
+    HeldPoint,
+    Mode,
+    PoseState,
+    PoseTargets,
+    renamed_markers,
+    with_network_of,
+)
 from hydrostat.studio.posing.movers import Movers, same_body
 from hydrostat.studio.posing.poses import checked_name, held_of, renamed_pose, wishes_after, with_pose, without_pose
-from hydrostat.studio.posing.propose_work import Moment
+from hydrostat.studio.posing.propose_work import ProposalInput
 from hydrostat.studio.posing.reach import MarkerReach
 from hydrostat.studio.posing.trail import Trail
 from hydrostat.studio.stage import Hit, Stage
@@ -36,14 +44,14 @@ class _Hold:
     """What the pointer has hold of."""
 
     name: str  # of the point
-    point: Held  # of the body
+    point: HeldPoint  # of the body
     offset: tuple[float, ...]  # from the pointer to its target [m]
 
 
 class Poser(Stage):
     """Grab any point of the body and drag it; muscles or the robot's own cables follow (R2, R30, R36).
 
-    Robot, wish and shape are one frozen `Now` that is replaced whole; `step` reads the newest and replaces the shape.
+    Robot, targets and shape are one frozen `PoseState`, replaced whole; `step` reads the newest and replaces the shape.
     """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
@@ -52,8 +60,8 @@ class Poser(Stage):
         self._lock = RLock()
         self.proposals = CableProposals(document, jobs.slots)  # cables for what the muscles do
         self._movers = Movers(document)
-        self._now: Now | None = None
-        self._done: tuple[Robot, Wish, float] | None = None
+        self._now: PoseState | None = None
+        self._done: tuple[Robot, PoseTargets, float] | None = None
         self._rested: dict[Mode, int] = {}
         self._announced = False
         self._hold: _Hold | None = None
@@ -69,7 +77,7 @@ class Poser(Stage):
         return self._fit().wish.mode
 
     @property
-    def held(self) -> Mapping[str, Held]:
+    def held(self) -> Mapping[str, HeldPoint]:
         """What is held where, by name."""
         return self._fit().wish.held
 
@@ -184,7 +192,7 @@ class Poser(Stage):
 
     def set_mode(self, mode: Mode | str) -> None:
         """Let muscles or cables move the body; what is held stays held (InputError: no such mode, or no cables)."""
-        mode = member(Mode, mode, what="mode")
+        mode = parse_choice(Mode, mode, what="mode")
         with self._lock:
             now = self._fit()
             if mode is now.wish.mode:
@@ -203,7 +211,7 @@ class Poser(Stage):
             now = self._fit()
             if now.wish.held:
                 self._note("rest")
-            self._now = replace(now, wish=Wish(mode=now.wish.mode, rests=now.wish.rests + 1), ghost=None)
+            self._now = replace(now, wish=PoseTargets(mode=now.wish.mode, rests=now.wish.rests + 1), ghost=None)
             self._let_go()
         self._ring()
 
@@ -298,7 +306,7 @@ class Poser(Stage):
         """Hold what was held before that was undone."""
         self._hold_again(self._trail.redo)
 
-    def _hold_again(self, way: Callable[[Mapping[str, Held]], Mapping[str, Held]]) -> None:
+    def _hold_again(self, way: Callable[[Mapping[str, HeldPoint]], Mapping[str, HeldPoint]]) -> None:
         """Go to another step of the trail; where nothing was held, back to rest."""
         with self._lock:
             now = self._fit()
@@ -312,7 +320,7 @@ class Poser(Stage):
         """What is held changes now, and can be undone."""
         self._trail.note(label, self._fit().wish.held)
 
-    def _propose(self, robot: Robot, wish: Wish) -> None:
+    def _propose(self, robot: Robot, wish: PoseTargets) -> None:
         """Want cables for what the muscles do just now."""
         muscles = self._movers.muscles
         if not self.proposals.on or wish.mode is not Mode.MUSCLES or muscles is None:
@@ -321,7 +329,7 @@ class Poser(Stage):
             self.proposals.forget()
             return
         nodes, tensions = muscles.pulls
-        moment = Moment(held=wish.held, nodes=nodes, tensions=tensions, wishes=self._document.work.wishes)
+        moment = ProposalInput(held=wish.held, nodes=nodes, tensions=tensions, wishes=self._document.work.wishes)
         self.proposals.ask(robot, moment)
 
     def _publish(self, robot: Robot, shape: RobotShape) -> None:
@@ -334,7 +342,7 @@ class Poser(Stage):
     def _ring(self) -> None:
         self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
 
-    def _fit(self) -> Now:
+    def _fit(self) -> PoseState:
         """What belongs together for the robot as it is now."""
         now = self._now
         if now is not None and now.robot is self._document.robot:
@@ -345,8 +353,8 @@ class Poser(Stage):
                 return before
             if before is None or not same_body(before.robot, robot):
                 rests = 0 if before is None else before.wish.rests
-                wish = Wish(mode=Mode.CABLES if robot.cables else Mode.MUSCLES, rests=rests + 1)
-                now = Now(robot=robot, wish=wish, anchored=Anchored(robot.body.mesh), shape=rest_shape(robot))
+                wish = PoseTargets(mode=Mode.CABLES if robot.cables else Mode.MUSCLES, rests=rests + 1)
+                now = PoseState(robot=robot, wish=wish, anchored=Anchored(robot.body.mesh), shape=rest_shape(robot))
                 self._let_go()
             else:
                 now = before.adapted(robot)
@@ -364,7 +372,7 @@ class Poser(Stage):
         """Nothing is chosen, and the pointer holds nothing."""
         self._hold, self._chosen, self._armed = None, "", ""
 
-    def _rename(self, before: Now, now: Now) -> None:
+    def _rename(self, before: PoseState, now: PoseState) -> None:
         """Follow the new names of markers; let go of those that are gone."""
         names, hold = renamed_markers(before.robot, now.robot), self._hold
         self._chosen = now.known(names.get(self._chosen, self._chosen))
@@ -374,11 +382,11 @@ class Poser(Stage):
             gone = hold.point.marker and not now.known(name)
             self._hold = None if gone else replace(hold, name=name)
 
-    def _place(self, now: Now, name: str, point: Held) -> tuple[float, ...]:
+    def _place(self, now: PoseState, name: str, point: HeldPoint) -> tuple[float, ...]:
         """Where a point of the body is [m]."""
         return tuple(Anchored(now.robot.body.mesh).places({name: point}, now.shape.nodes)[0].tolist())
 
-    def _hold_at(self, name: str, point: Held, target: np.ndarray) -> None:
+    def _hold_at(self, name: str, point: HeldPoint, target: np.ndarray) -> None:
         """Wish a point somewhere, though not out of sight."""
         now = self._fit()
         mesh = now.robot.body.mesh

@@ -5,21 +5,21 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Marker, Pose, Robot, check_name
-from hydrostat.studio.posing.held import Held
+from hydrostat.robot import Marker, PoseTarget, Robot, check_name
+from hydrostat.studio.posing.held import HeldPoint
 from hydrostat.studio.records.wishes import Wishes
 
 SAME = 1e-4  # poses whose targets are nearer to each other are the same [m]
 
 
-def with_pose(robot: Robot, name: str, held: Mapping[str, Held]) -> Robot:
+def with_pose(robot: Robot, name: str, held: Mapping[str, HeldPoint]) -> Robot:
     """A robot with one more pose, or another of its name; held points get markers (InputError: no name or point)."""
     name = checked_name(name)
     if not held:
         raise InputError("nothing is held yet; drag a point of the body, then store the pose")
     known = {marker.name for marker in robot.markers}
     new = tuple(Marker(name=own, at=point.at) for own, point in held.items() if own not in known)
-    pose = Pose(name=name, targets={own: point.target for own, point in held.items()})
+    pose = PoseTarget(name=name, targets={own: point.target for own, point in held.items()})
     return replace(robot, markers=(*robot.markers, *new), poses={**robot.poses, name: pose})
 
 
@@ -54,11 +54,11 @@ def wishes_after(wishes: Wishes, robot: Robot, renamed: Mapping[str, str] | None
     return replace(wishes, poses=tuple(name for name in names if name in robot.poses))
 
 
-def held_of(robot: Robot, name: str) -> dict[str, Held]:
+def held_of(robot: Robot, name: str) -> dict[str, HeldPoint]:
     """The targets of a pose, as points that are held (InputError: no such pose)."""
     places = {marker.name: marker.at for marker in robot.markers}
     targets = robot.pose(name).targets
-    return {own: Held(at=places[own], target=target, marker=True) for own, target in targets.items()}
+    return {own: HeldPoint(at=places[own], target=target, marker=True) for own, target in targets.items()}
 
 
 def checked_name(given: str) -> str:

@@ -17,10 +17,10 @@ from hydrostat.design import (
     propose_trees,
 )
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import InverseOptions, solve_ik
+from hydrostat.ik import IKOptions, solve_ik
 from hydrostat.robot import Cable, Robot, Winch
 from hydrostat.simulation import BodyPhysics, Simulation
-from hydrostat.studio.posing.held import Anchored, Held
+from hydrostat.studio.posing.held import Anchored, HeldPoint
 from hydrostat.studio.posing.poses import with_pose
 from hydrostat.studio.records.wishes import Wishes
 
@@ -29,21 +29,21 @@ POSE = "held"  # name of the pose that is held, in that process alone
 WINCHES = 2  # where their number is left open
 SHARES = 12  # ways to share the cables among the winches that are tried until a network can be built
 STEPS = 12  # of inverse kinematics: enough to say what a network is worth
-OPTIONS = InverseOptions(iterations=STEPS, restarts=0, unique=False)
+OPTIONS = IKOptions(iterations=STEPS, restarts=0, min_tension=False)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Moment:
+class ProposalInput:
     """A body as muscles hold it."""
 
-    held: Mapping[str, Held]  # points by name, with where they should be
+    held: Mapping[str, HeldPoint]  # points by name, with where they should be
     nodes: Nodes  # where the body is [m]
     tensions: Vector  # of the muscle on each edge of its mesh [N]
     wishes: Wishes  # for a design: counts, limits, knobs
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sketched:
+class Proposal:
     """What came of a moment."""
 
     winches: tuple[Winch, ...] = ()  # of the network
@@ -68,7 +68,7 @@ def asked_of_trees(robot: Robot, wishes: Wishes) -> DesignRequest:
     ).fitted(robot)
 
 
-def sketched(robot: Robot, moment: Moment, body: BodyPhysics) -> Sketched:
+def sketched(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal:
     """The network for one moment, with the pose that it reaches."""
     posed = with_pose(robot, POSE, moment.held)
     activation = Activation(
@@ -84,13 +84,13 @@ def sketched(robot: Robot, moment: Moment, body: BodyPhysics) -> Sketched:
         usual = replace(TreeOptions(), phis=request.tree_options.phis)
         found = propose_trees(posed, replace(request, options=usual), [activation], body=body)
     if found is None:
-        return Sketched(words="no cables fit these muscles; bend the body more, or ask for fewer in Design")
+        return Proposal(words="no cables fit these muscles; bend the body more, or ask for fewer in Design")
     reached = solve_ik(Simulation(found, body=body), posed.pose(POSE), options=OPTIONS)
-    return Sketched(winches=found.winches, cables=found.cables, error=reached.rms_error)
+    return Proposal(winches=found.winches, cables=found.cables, error=reached.rms_error)
 
 
 def propose_work(pipe: Connection) -> None:
-    """Answer each `Moment` that comes through the pipe with a `Sketched`; a `Robot` says whose moments follow."""
+    """Answer each `ProposalInput` from the pipe with a `Proposal`; a `Robot` in the pipe replaces the robot."""
     if hasattr(os, "nice"):
         os.nice(POLITE)
     robot: Robot | None = None
@@ -107,8 +107,8 @@ def propose_work(pipe: Connection) -> None:
         return
 
 
-def _answer(robot: Robot, moment: Moment, body: BodyPhysics) -> Sketched:
+def _answer(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal:
     try:
         return sketched(robot, moment, body)
     except HydrostatError as error:
-        return Sketched(words=str(error))
+        return Proposal(words=str(error))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hydrostat.studio.document import Document
-from hydrostat.studio.posing.held import Held
+from hydrostat.studio.posing.held import HeldPoint
 from hydrostat.studio.records.work import Work
 
 MOST_STEPS = 200  # so many drags can be undone
@@ -16,7 +16,7 @@ class _Step:
 
     label: str  # such as "drag tip"
     work: Work  # of the document when it was done
-    held: Mapping[str, Held]  # before it; of one that was undone, after it
+    held: Mapping[str, HeldPoint]  # before it; of one that was undone, after it
 
 
 class Trail:
@@ -40,24 +40,24 @@ class Trail:
         """What would be done again; "" if nothing."""
         return self._label(self._future)
 
-    def note(self, label: str, held: Mapping[str, Held]) -> None:
+    def note(self, label: str, held: Mapping[str, HeldPoint]) -> None:
         """Note that something is done now to what was held."""
         self._past.append(_Step(label=label, work=self._document.work, held=held))
         del self._past[:-MOST_STEPS]
         self._future = []
 
-    def undo(self, held: Mapping[str, Held]) -> Mapping[str, Held]:
+    def undo(self, held: Mapping[str, HeldPoint]) -> Mapping[str, HeldPoint]:
         """What was held before the last step; `held` is held now. Asked only where there is an `undo_label`."""
         return self._move(self._past, self._future, held)
 
-    def redo(self, held: Mapping[str, Held]) -> Mapping[str, Held]:
+    def redo(self, held: Mapping[str, HeldPoint]) -> Mapping[str, HeldPoint]:
         """What was held after the step that was undone last. Asked only where there is a `redo_label`."""
         return self._move(self._future, self._past, held)
 
     def _label(self, steps: list[_Step]) -> str:
         return steps[-1].label if steps and steps[-1].work is self._document.work else ""
 
-    def _move(self, source: list[_Step], goal: list[_Step], held: Mapping[str, Held]) -> Mapping[str, Held]:
+    def _move(self, source: list[_Step], goal: list[_Step], held: Mapping[str, HeldPoint]) -> Mapping[str, HeldPoint]:
         step = source.pop()
         goal.append(_Step(label=step.label, work=step.work, held=held))
         return step.held

@@ -76,7 +76,7 @@ AGAIN = 10.0  # what could not be written is tried again after so long [s]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Left:
+class RecoveredWork:
     """Work that was not saved when its studio ended."""
 
     folder: Path  # where it is kept
@@ -140,14 +140,14 @@ class Autosave:
                 self._held.let_go()
                 self._held = None
 
-    def left(self) -> list[Left]:
+    def left(self) -> list[RecoveredWork]:
         """What studios that live no more have left, the newest first."""
         if self._folder is None or not self._folder.is_dir():
             return []
         found = [_left_in(folder) for folder in self._folder.iterdir() if folder.is_dir() and not is_held(folder)]
         return sorted((left for left in found if left is not None), key=lambda left: left.time, reverse=True)
 
-    def restore(self, left: Left) -> None:
+    def restore(self, left: RecoveredWork) -> None:
         """Open what was left; it is kept on as work of this studio (InputError: it cannot be read any more)."""
         home, designs = left.folder / "work", left.folder / DESIGNS
         work = open_work(home)
@@ -156,7 +156,7 @@ class Autosave:
         if self._keep():
             self.forget(left)
 
-    def forget(self, left: Left) -> None:
+    def forget(self, left: RecoveredWork) -> None:
         """Remove what was left."""
         rmtree(left.folder.parent, ignore_errors=True)
 
@@ -213,7 +213,7 @@ class Autosave:
             self._held = None
 
 
-def _left_in(folder: Path) -> Left | None:
+def _left_in(folder: Path) -> RecoveredWork | None:
     """The newest whole copy in the folder of a studio that is gone; one without any is removed."""
     numbers = sorted((path for path in folder.iterdir() if path.name.isdecimal()), key=lambda path: int(path.name))
     for path in reversed(numbers):
@@ -225,12 +225,12 @@ def _left_in(folder: Path) -> Left | None:
     return None
 
 
-def _read(path: Path) -> Left:
+def _read(path: Path) -> RecoveredWork:
     meta = json.loads((path / "meta.json").read_text(encoding="utf-8"))
     if not (path / "work" / "robot.toml").is_file():
         raise InputError(f"{path}: there is no robot in it")
     origin = meta["origin"]
-    return Left(
+    return RecoveredWork(
         folder=path,
         name=str(meta["name"])[:60],
         time=datetime.fromisoformat(meta["time"]),

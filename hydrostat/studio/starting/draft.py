@@ -6,7 +6,7 @@ from pathlib import PurePath
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import OUTLINE_SUFFIXES, SURFACE_SUFFIXES, Inner
-from hydrostat.robot import Material, check_name, find_material
+from hydrostat.robot import Material, check_name, get_material
 from hydrostat.units import quote
 
 UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)  # endings of files that may be brought
@@ -56,7 +56,7 @@ class BodyDraft:
     reading: PhotoReading = PhotoReading()  # of a picture
 
     def __post_init__(self) -> None:
-        find_material(self.material)
+        get_material(self.material)
         check_name(self.name)
         for key in ("size", "element_size", "thickness", "inflate"):
             value = getattr(self, key)

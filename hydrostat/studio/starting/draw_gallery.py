@@ -6,7 +6,7 @@ from pathlib import Path
 from PIL import Image
 
 from hydrostat.plot import draw_portrait, drawing
-from hydrostat.robot import Robot, gallery_folder, gallery_names, load_robot, replace_file
+from hydrostat.robot import Robot, gallery_folder, list_gallery, load_robot, replace_file
 
 PICTURES = Path(__file__).parent / "pictures"  # where the pictures are, as NAME.webp
 WIDE, HIGH = 400, 300  # pixels of a picture; it is shown half as large
@@ -32,7 +32,7 @@ def draw_picture(robot: Robot) -> bytes:
 def main() -> None:
     """Draw all robots of the gallery."""
     PICTURES.mkdir(exist_ok=True)
-    for name in gallery_names():
+    for name in list_gallery():
         replace_file(PICTURES / f"{name}.webp", draw_picture(load_robot(gallery_folder(name))))
 
 

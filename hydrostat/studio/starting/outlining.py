@@ -8,12 +8,12 @@ import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import read_drawing
-from hydrostat.robot import Body, Cable, Mount, Pin, Point, Pose, Robot, outline_body
+from hydrostat.robot import Body, Cable, Mount, Pin, Point, PoseTarget, Robot, outline_body
 from hydrostat.studio.records.wishes import moved_zone
 from hydrostat.studio.records.work import Work, followed
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fitted, loops_svg, outline_of, read_loops
 from hydrostat.studio.starting.photo import Backdrop
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 Move = Callable[[Point], Point]  # from a place in the old body to the same in the new
 
@@ -122,7 +122,7 @@ class _Parts:
 
     pins: tuple[Pin, ...]
     rest: dict[str, tuple]
-    poses: tuple[Pose, ...]
+    poses: tuple[PoseTarget, ...]
 
 
 def _moved(robot: Robot, move: Move) -> _Parts:
@@ -132,7 +132,7 @@ def _moved(robot: Robot, move: Move) -> _Parts:
         assert pin.box is not None
         return replace(pin, box=(move(pin.box[0]), move(pin.box[1])))
 
-    def pose_moved(pose: Pose) -> Pose:
+    def pose_moved(pose: PoseTarget) -> PoseTarget:
         return replace(pose, targets={name: move(place) for name, place in pose.targets.items()})
 
     return _Parts(
@@ -184,7 +184,7 @@ def _within_body(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, tuple[
     return made, tuple(dropped)
 
 
-def _poses_of(poses: tuple[Pose, ...], markers: set[str], dropped: list[str]) -> dict[str, Pose]:
+def _poses_of(poses: tuple[PoseTarget, ...], markers: set[str], dropped: list[str]) -> dict[str, PoseTarget]:
     """Poses of the markers that are left."""
     kept = {}
     for pose in poses:
@@ -193,7 +193,7 @@ def _poses_of(poses: tuple[Pose, ...], markers: set[str], dropped: list[str]) ->
         if targets or not pose.targets:
             kept[pose.name] = replace(pose, targets=targets)
         if lost:
-            dropped.append(f"{counted(lost, 'target')} of pose {pose.name}")
+            dropped.append(f"{plural(lost, 'target')} of pose {pose.name}")
     return kept
 
 

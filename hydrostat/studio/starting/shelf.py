@@ -11,9 +11,9 @@ from itertools import islice
 from pathlib import Path
 
 from hydrostat.errors import HydrostatError
-from hydrostat.robot import gallery_folder, gallery_names, replace_file
+from hydrostat.robot import gallery_folder, list_gallery, replace_file
 from hydrostat.studio.starting.draw_gallery import PICTURES
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 MOST_SEEN, MOST_SHOWN = 500, 24  # so many entries of a folder are looked at, so many robots in it are shown
 
@@ -32,7 +32,7 @@ def gallery_cards() -> list[Card]:
     """All robots that come with hydrostat, flat ones first."""
     cards = [
         Card(name=name, folder=gallery_folder(name), words=_words(gallery_folder(name)), picture=_picture(name))
-        for name in gallery_names()
+        for name in list_gallery()
     ]
     return sorted(cards, key=lambda card: (not card.words.startswith("flat"), card.name))
 
@@ -94,7 +94,7 @@ def _words(folder: Path) -> str:
     try:
         table = tomllib.loads((folder / "robot.toml").read_text(encoding="utf-8"))
         kind = "flat" if "outline" in table["body"] else "in space"
-        parts = [counted(len(table.get(key, [])), key) for key in ("winch", "cable")]
+        parts = [plural(len(table.get(key, [])), key) for key in ("winch", "cable")]
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return ""
     return ", ".join([kind, *(part for part in parts if not part.startswith("0 "))])

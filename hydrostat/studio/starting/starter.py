@@ -7,7 +7,7 @@ from threading import RLock
 from typing import Any
 
 from hydrostat.errors import InputError
-from hydrostat.robot import GALLERY, find_material, gallery_folder, is_of_gallery, load_robot
+from hydrostat.robot import GALLERY, gallery_folder, get_material, is_of_gallery, load_robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -272,5 +272,5 @@ class Starter(Stage):
 
 def _with_light(sketch: Sketch, draft: BodyDraft) -> Sketch:
     """The same sketch of another name and material."""
-    body = replace(sketch.robot.body, material=find_material(draft.material))
+    body = replace(sketch.robot.body, material=get_material(draft.material))
     return replace(sketch, draft=draft, robot=replace(sketch.robot, name=draft.name, body=body))

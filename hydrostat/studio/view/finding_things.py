@@ -2,17 +2,17 @@
 
 from collections.abc import Iterable
 
-from hydrostat.design import Finding, Weight
+from hydrostat.design import Diagnostic, Severity
 from hydrostat.drawing import SEAM
 from hydrostat.robot import Mount, Robot, in_words
 from hydrostat.studio.view.things import Dot, Look, Thing
 
-TONES = {Weight.REFUSED: "#c8243f", Weight.LIMIT: "#6d6875", Weight.MIND: SEAM}  # colour of each weight
+TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: SEAM}  # colour of each weight
 MOST = 24  # rings of one finding: more say no more
 BRIEF = 64  # letters that are written beside a ring
 
 
-def finding_things(robot: Robot, said: Iterable[Finding], chosen: Finding | None = None) -> list[Thing]:
+def finding_things(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic | None = None) -> list[Thing]:
     """A ring at each place of each finding; its words are seen where it is chosen, or its part under the pointer."""
     loose = {f"winch:{winch.name}" for winch in robot.winches if winch.mount is Mount.WORLD}
     things: list[Thing] = []

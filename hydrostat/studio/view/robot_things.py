@@ -9,7 +9,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.drawing import DARK, INK, MUTED, winch_colours
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Cable, Mount, Point, Robot, obstacle_lines
-from hydrostat.simulation import as_posed
+from hydrostat.simulation import obstacles_in_pose
 from hydrostat.studio.view.pinned import pinned_points
 from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, Stroke, Thing
 
@@ -37,7 +37,7 @@ def robot_things(
     colours, marks = winch_colours(robot.winches), winch_marks_of(robot)
     things: list[Thing] = [
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, colour=MUTED, loose=-1)
-        for line in obstacle_lines(as_posed(robot, carried))
+        for line in obstacle_lines(obstacles_in_pose(robot, carried))
     ]
     things += _drawn(robot)
     held = pinned_points(robot)

@@ -1,4 +1,4 @@
-"""`RobotShape`, `Foretold`, `Dot`, `Strand`, `Ghost`, `Cloud`, `Area`: where the body is, what is shown beside it."""
+"""`RobotShape`, `Prediction`, `Dot`, `Strand`, `Ghost`, `Cloud`, `Area`: where the body is, what is shown beside it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,16 +8,16 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.robot import Point, Robot
-from hydrostat.simulation import Touch
+from hydrostat.simulation import ContactPatch
 
 
 @dataclass(frozen=True, kw_only=True)
-class Foretold:
+class Prediction:
     """What networks say of markers that are held."""
 
     markers: Mapping[str, Point]  # where they expect each [m]
     error: float  # mean distance from the targets that they expect [m]
-    doubt: float  # how far they disagree about it [m]
+    uncertainty: float  # how far they disagree about it [m]
     exact: bool  # whether the shape beside it is the exact answer; else it is on its way
 
 
@@ -30,10 +30,10 @@ class RobotShape:
     contractions: Vector  # of each winch [m]
     errors: dict[str, float] = field(default_factory=dict)  # distance of each held marker from its target [m]
     muscles: Vector | None = None  # how hard they pull around each node, 1 for the hardest; None where none move it
-    touches: tuple[Touch, ...] = ()  # where it touches itself and obstacles, the hardest first
-    carried: Points | None = None  # where obstacles that move are, as `SolvedPose.carried` [m]; None: where they begin
+    touches: tuple[ContactPatch, ...] = ()  # where it touches itself and obstacles, the hardest first
+    carried: Points | None = None  # where obstacles that move are, as `Equilibrium.carried` [m]; None: where they begin
     crossing: Point | None = None  # a place where it passes through itself [m]
-    foretold: Foretold | None = None  # what networks say of it; None where none are asked
+    foretold: Prediction | None = None  # what networks say of it; None where none are asked
     notes: tuple[str, ...] = ()  # what to mind, a line each: limits that hold, why a solver stopped
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.drawing import ERROR
 from hydrostat.geometry import find_crossings
-from hydrostat.simulation import Simulation, SolvedPose, touches
+from hydrostat.simulation import Equilibrium, Simulation, find_contacts
 from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
 
 MOST = 8  # places that are shown, the hardest
@@ -16,7 +16,7 @@ OFF = "contact is off: the body passes through itself here"
 TOUCH = "#8a2be2"
 
 
-def with_touches(simulation: Simulation, pose: SolvedPose, shape: RobotShape, *, settled: bool) -> RobotShape:
+def with_touches(simulation: Simulation, pose: Equilibrium, shape: RobotShape, *, settled: bool) -> RobotShape:
     """A shape with what its pose touches and carries; without contact where it crosses itself, with a note of that.
 
     Crossings of a body in space take longer than a step of its pose: they are looked for once it has `settled`.
@@ -27,7 +27,7 @@ def with_touches(simulation: Simulation, pose: SolvedPose, shape: RobotShape, *,
         places = find_crossings(robot.body.mesh, pose.nodes).places
         if len(places):
             crossing, notes = tuple(places[len(places) // 2].tolist()), (*notes, OFF.removesuffix(" here"))
-    return replace(shape, notes=notes, touches=touches(simulation, pose), carried=pose.carried, crossing=crossing)
+    return replace(shape, notes=notes, touches=find_contacts(simulation, pose), carried=pose.carried, crossing=crossing)
 
 
 def touch_things(shape: RobotShape, size: float) -> list[Thing]:

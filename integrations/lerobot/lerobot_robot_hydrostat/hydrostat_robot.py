@@ -14,7 +14,7 @@ from hydrostat.control import Motors, SimulatedLink, arm_motors, check_port
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import load_robot
 from hydrostat.simulation import Simulation
-from hydrostat.teleop import WinchWay
+from hydrostat.teleop import WinchMapper
 
 PATIENCE = 0.2
 """Motors stand when no action was sent for so long [s], as a link that is told nothing; the next action goes on."""
@@ -81,7 +81,7 @@ class HydrostatRobot(Robot):
         if self._motors is not None:
             raise HydrostatError("the motors are connected already")
         rest = np.zeros(len(self._names))
-        self._way = WinchWay(Simulation(self._robot), rest, solves=bool(self.config.port))
+        self._way = WinchMapper(Simulation(self._robot), rest, solves=bool(self.config.port))
         try:
             if self.config.port:
                 known, folder = self._way.known, Path(self.config.robot)
@@ -155,7 +155,7 @@ class HydrostatRobot(Robot):
                     if time.monotonic() - self._asked > PATIENCE:
                         motors.ask(motors.places if motors.moving else motors.command)
                     motors.drive(time.monotonic())
-                self._way.see(motors.places)
+                self._way.observe(motors.places)
         except Exception as error:  # noqa: BLE001 - of whatever kind, it is told to who asks next
             self._error = str(error) or type(error).__name__
         finally:

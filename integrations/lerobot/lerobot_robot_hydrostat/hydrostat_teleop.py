@@ -11,7 +11,7 @@ from lerobot.teleoperators import Teleoperator, TeleoperatorConfig
 
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import load_robot
-from hydrostat.teleop import DriveSource, HandMap, Wearer, open_source, winch_channels
+from hydrostat.teleop import DriveSource, EmulatedHand, HandMap, open_source, winch_channels
 
 
 @TeleoperatorConfig.register_subclass("hydrostat")
@@ -67,7 +67,7 @@ class HydrostatTeleop(Teleoperator):
         """Open the source (HydrostatError: it is not there; InputError: no such kind)."""
         del calibrate
         known = HandMap.open(Path(self.config.hand_map)) if self.config.hand_map else None
-        self._source = open_source(self.config.source, self._channels, known, Wearer(self._channels))
+        self._source = open_source(self.config.source, self._channels, known, EmulatedHand(self._channels))
 
     def calibrate(self) -> None:
         """Say how."""

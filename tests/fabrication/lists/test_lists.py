@@ -14,7 +14,7 @@ from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds
 from hydrostat.fabrication.lists.lists import make_lists
 from hydrostat.fabrication.patterns.stitches import cable_stitches
-from hydrostat.robot import Robot, gallery_names
+from hydrostat.robot import Robot, list_gallery
 
 
 def stitches(robot: Robot) -> tuple:
@@ -62,7 +62,7 @@ def test_the_same_bytes_twice() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", gallery_names())
+@pytest.mark.parametrize("name", list_gallery())
 def test_gallery_robots_have_sound_lists(name: str, unchecked: None) -> None:
     robot = gallery_robot(name)
     flat = robot.body.mesh.dim == 2

@@ -7,7 +7,7 @@ from mould_robots import foam_robot, slab_body
 
 from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds import mould as mould_module
-from hydrostat.fabrication.moulds.linked import linked, linking_number, loops_of
+from hydrostat.fabrication.moulds.linked import interlock_count, linking_number, loops_of
 from hydrostat.fabrication.moulds.mould import TOLERATED, Mould, make_mould
 
 
@@ -32,7 +32,7 @@ def halves(body: Manifold) -> tuple[Manifold, Manifold]:
 
 def links(body: Manifold) -> tuple[int, int]:
     lower, upper = halves(body)
-    return linked(lower, body), linked(upper, body)
+    return interlock_count(lower, body), interlock_count(upper, body)
 
 
 def test_links_of_a_chain_are_counted() -> None:
@@ -81,8 +81,8 @@ def test_what_is_linked_would_cut_the_body_when_it_is_lifted() -> None:
     lower, upper = halves(body)
     assert all((upper.translate((0, 0, lift)) ^ body).volume() > 400 for lift in (2, 5, 10))
     pose = np.array([[0.36, 0.48, -0.8, 7.0], [-0.8, 0.6, 0.0, -3.0], [0.48, 0.64, 0.6, 11.0]])
-    assert linked(upper.transform(pose), body.transform(pose)) == 2
-    assert linked(lower.transform(pose), body.transform(pose)) == 1
+    assert interlock_count(upper.transform(pose), body.transform(pose)) == 2
+    assert interlock_count(lower.transform(pose), body.transform(pose)) == 1
 
 
 def mould_of(solid: Manifold, kind: MouldKind, monkeypatch: pytest.MonkeyPatch) -> Mould:

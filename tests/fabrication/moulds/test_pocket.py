@@ -12,12 +12,12 @@ from hydrostat.fabrication.moulds.mould import make_mould
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
 from hydrostat.fabrication.moulds.release import fine_surface
 from hydrostat.fabrication.moulds.solids import rod
-from hydrostat.fabrication.moulds.stance import Stance
+from hydrostat.fabrication.moulds.stance import MouldOrientation
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.fabrication.solids.body_solid import body_solid
 from hydrostat.robot import Robot
 
-PLAIN = Stance(np.eye(3), 0.0)
+PLAIN = MouldOrientation(np.eye(3), 0.0)
 SLAB = slab_body()
 
 

@@ -12,7 +12,7 @@ from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.housing import SHEET, Housing, drive_of
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.spool import Groove, Spool
-from hydrostat.fabrication.parts.winch_unit import WinchParts, letters
+from hydrostat.fabrication.parts.winch_unit import WinchParts, letter_label
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.fabrication.solids.construct import solid_of
 
@@ -156,4 +156,4 @@ def test_the_coupling_is_screwed_on_the_horn():
 
 
 def test_names_go_on_after_z():
-    assert [letters(number) for number in (0, 25, 26, 27, 701, 702)] == ["a", "z", "aa", "ab", "zz", "aaa"]
+    assert [letter_label(number) for number in (0, 25, 26, 27, 701, 702)] == ["a", "z", "aa", "ab", "zz", "aaa"]

@@ -11,7 +11,7 @@ from winch_robots import given_demand
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
-from hydrostat.robot import Mount, gallery_names
+from hydrostat.robot import Mount, list_gallery
 
 BED = (220.0, 220.0, 250.0)
 
@@ -22,7 +22,7 @@ def parts_of(name: str, motor: str = "auto", torque: float = 0.02) -> RigidParts
     return rigid_parts(robot, demand, motor=motor, options=PartOptions(), bed=BED, holes=12, hole=3.0)
 
 
-@pytest.mark.parametrize("name", gallery_names())
+@pytest.mark.parametrize("name", list_gallery())
 @pytest.mark.slow
 def test_parts_of_the_gallery(name: str, unchecked: None):
     """Oracle: counts of winches, cables and holes of the robot; names once each, with those of all pieces."""

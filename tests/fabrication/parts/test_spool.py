@@ -12,7 +12,7 @@ from overhang import overhang
 
 from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.parts.motor import MOTORS
-from hydrostat.fabrication.parts.spool import LAY, Groove, Spool, capacity, width_for, wraps
+from hydrostat.fabrication.parts.spool import LAY, Groove, Spool, capacity, spool_turns, width_for
 from hydrostat.fabrication.solids.construct import solid_of
 from hydrostat.fabrication.solids.printed import Printed
 
@@ -51,7 +51,7 @@ def test_capacity_is_the_sum_over_turns(layers: int):
 @pytest.mark.parametrize(("radius", "cable"), [(6.0, 0.4), (4.0, 0.8), (11.5, 0.25)])
 def test_a_groove_of_the_width_takes_the_length_and_what_is_spare(length: float, radius: float, cable: float):
     """Oracle: the closed form of the capacity; the next narrower width does not."""
-    width = width_for(wraps(length, radius, 2.0), cable)
+    width = width_for(spool_turns(length, radius, 2.0), cable)
     needed = length + 2.0 * 2 * math.pi * radius
     assert capacity(width, radius, cable, 1) >= needed - 1e-9
     assert capacity(width - 0.5, radius, cable, 1) < needed
@@ -59,7 +59,7 @@ def test_a_groove_of_the_width_takes_the_length_and_what_is_spare(length: float,
 
 
 def test_turns_of_a_known_length():
-    assert wraps(2 * math.pi * 6.0 * 3, 6.0, 2.0) == pytest.approx(5.0)
+    assert spool_turns(2 * math.pi * 6.0 * 3, 6.0, 2.0) == pytest.approx(5.0)
 
 
 @pytest.mark.parametrize("spool", spools())

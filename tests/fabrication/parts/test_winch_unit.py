@@ -15,7 +15,7 @@ from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.spool import capacity
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly, interferences
-from hydrostat.robot import Mount, Robot, gallery_names
+from hydrostat.robot import Mount, Robot, list_gallery
 
 N20, XL330, POLOLU_25D = MOTORS
 
@@ -35,7 +35,7 @@ def distinct(units: tuple[WinchUnit, ...]) -> list[WinchUnit]:
 
 
 @pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
-@pytest.mark.parametrize("name", gallery_names())
+@pytest.mark.parametrize("name", list_gallery())
 def test_units_of_the_gallery(name: str, motor: Motor, unchecked: None):
     """Oracle: boolean intersections, edges of the triangles in the files, closed form of what a spool takes."""
     robot = gallery_robot(name)

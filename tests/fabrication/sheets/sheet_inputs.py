@@ -14,7 +14,7 @@ from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.moulds.release import FineSurface
-from hydrostat.fabrication.moulds.stance import Stance
+from hydrostat.fabrication.moulds.stance import MouldOrientation
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.sheets.cable_map import body_solid
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
@@ -146,7 +146,7 @@ def mould(robot: Robot, *, silicone: bool = False) -> Mould:
             directions=np.eye(3),
             shares=np.zeros(3),
         ),
-        stance=Stance(np.eye(3), 0.0),
+        stance=MouldOrientation(np.eye(3), 0.0),
         printed=(),
         assembly=PartAssembly(name="mould", pieces=pieces),
         volumes={},

@@ -14,7 +14,7 @@ from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
-from hydrostat.fabrication.sheets.legible import legible, minds, shortened, typeset
+from hydrostat.fabrication.sheets.legible import legible, note_lines, shortened, typeset
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import MATERIALS, Mount
 
@@ -336,14 +336,14 @@ def test_signs_of_a_printed_page():
 def test_a_crowd_of_warnings_is_told_in_order():
     """Oracle: three that differ in a place are one; motors stand first, cloth last."""
     bays = tuple(f"the seam is narrow at [{x}, 2] mm: snip" for x in (1, 2, 3))
-    told = minds((), (*bays, "two housings meet", "the motor grows hot"))
+    told = note_lines((), (*bays, "two housings meet", "the motor grows hot"))
     assert told == [
         "The motor grows hot.",
         "Two housings meet.",
         "The seam is narrow at [1, 2], [2, 2], [3, 2] mm: snip.",
     ]
-    assert minds(("it falls apart",), ("the motor grows hot",))[0] == "It falls apart."
-    assert len(minds((), tuple(f"thing {number}" for number in range(20)))) == 8
+    assert note_lines(("it falls apart",), ("the motor grows hot",))[0] == "It falls apart."
+    assert len(note_lines((), tuple(f"thing {number}" for number in range(20)))) == 8
 
 
 def test_it_is_told_where_the_robot_is_held():

@@ -12,7 +12,7 @@ from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.skin import flat_skin
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.sheets.cable_map import flat_map
-from hydrostat.fabrication.sheets.legible import minds
+from hydrostat.fabrication.sheets.legible import note_lines
 from hydrostat.fabrication.sheets.single_maps import single_maps
 from hydrostat.fabrication.sheets.solid_pictures import portrait
 from hydrostat.fabrication.winch_marks import marked_name, winch_marks_of
@@ -42,7 +42,7 @@ def test_a_winch_has_one_mark_everywhere() -> None:
     assert winch_marks_of(crossed) == {"winch_2": "W2", "winch_3": "W3", "winch_1": "W1"}
     assert marked_name(crossed, "winch_2") == "W2 winch_2"
     assert winch_marks_of(renamed(robot, ["a1", "b1", "c"])) == {"a1": "W1", "b1": "W2", "c": "W3"}
-    assert minds(('winch "left" is hot',), (), robot) == ['Winch W2 "left" is hot.']
+    assert note_lines(('winch "left" is hot',), (), robot) == ['Winch W2 "left" is hot.']
 
 
 def test_the_map_tells_cables_apart() -> None:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Prism, Turning, segments, solid_of
+from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Prism, Revolve, segments, solid_of
 from hydrostat.fabrication.solids.printed import triangles_of
 
 ROUND_ERROR = 2 * 0.02
@@ -26,7 +26,7 @@ ROUND = [
     (Cylinder(5, 2), math.pi * 4 * 5, 2.0),
     (Cylinder(6, 3, 1), math.pi * 6 * (9 + 3 + 1) / 3, 3.0),
     (Cylinder(6, 3, 0), math.pi * 6 * 9 / 3, 3.0),
-    (Turning(RING), 2 * math.pi * 6.5 * 6.0, 5.0),
+    (Revolve(RING), 2 * math.pi * 6.5 * 6.0, 5.0),
     (Box((20, 20, 3)) - Cylinder(9, 4).moved(10, 10, -1), 1200 - math.pi * 16 * 3, 4.0),
 ]
 
@@ -69,7 +69,7 @@ def test_turning_and_moving_are_about_the_axes_of_space():
     np.testing.assert_allclose(box_of(shape.turned(z=90).moved(5, 0, -1)), [[3, 0, -1], [5, 1, 2]], atol=1e-12)
 
 
-@pytest.mark.parametrize("make", [lambda profile: Prism(profile, 1.0), Turning])
+@pytest.mark.parametrize("make", [lambda profile: Prism(profile, 1.0), Revolve])
 @pytest.mark.parametrize("profile", [LETTER[::-1], ((0.0, 0.0), (1.0, 0.0), (2.0, 0.0))])
 def test_a_profile_that_turns_clockwise_or_is_flat_is_refused(make, profile):
     """As triangles it would be empty, as STEP a body."""
@@ -79,4 +79,4 @@ def test_a_profile_that_turns_clockwise_or_is_flat_is_refused(make, profile):
 
 def test_a_turning_does_not_cross_its_axis():
     with pytest.raises(ValueError, match="beyond its axis"):
-        Turning(((-1.0, 0.0), (1.0, 0.0), (1.0, 1.0)))
+        Revolve(((-1.0, 0.0), (1.0, 0.0), (1.0, 1.0)))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Prism, Turning, solid_of
+from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Prism, Revolve, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import model_of, step_bytes
 
@@ -27,8 +27,8 @@ BODIES: dict[str, tuple[Construction, float]] = {
     "cone": (Cylinder(6, 3, 1), 26 * math.pi),
     "point": (Cylinder(6, 3, 0), 18 * math.pi),
     "prism": (Prism(LETTER, 2), 12.0),
-    "ring": (Turning(((5.0, 0.0), (8.0, 0.0), (8.0, 2.0), (5.0, 2.0))), 78 * math.pi),
-    "spool": (Turning(SPOOL), math.pi * (81 + 2 * (81 + 45 + 25) / 3 + 3 * 25)),
+    "ring": (Revolve(((5.0, 0.0), (8.0, 0.0), (8.0, 2.0), (5.0, 2.0))), 78 * math.pi),
+    "spool": (Revolve(SPOOL), math.pi * (81 + 2 * (81 + 45 + 25) / 3 + 3 * 25)),
     "plate": (Box((20, 20, 3)) - Cylinder(9, 4).moved(10, 10, -1), 1200 - 48 * math.pi),
     "joined": (Box((4, 4, 4)) + Box((4, 4, 4)).moved(2, 0, 0).turned(z=90), 4.0 * (16 + 16)),
     "common": (Cylinder(4, 3) & Box((9, 9, 9)), 9 * math.pi),

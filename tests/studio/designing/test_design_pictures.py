@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from builders import box_robot, strip_robot
 
-from hydrostat.design import DesignRequest, craft_of
+from hydrostat.design import DesignRequest, build_effort
 from hydrostat.fabrication import demand_of
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio.designing.charts import BOTTOM, FRONT_HEIGHT, LEFT, Chart, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.ease import DURATION, Ease
-from hydrostat.studio.designing.run import DesignRun, Mark
+from hydrostat.studio.designing.run import DesignRun, ProgressPoint
 from hydrostat.studio.designing.sketch import EDGE, MARGIN, BodySketch
 
 
@@ -69,16 +69,16 @@ def test_a_chart_is_as_large_as_its_values() -> None:
     assert parsed(chart.drawn("", label="words")).get("aria-label") == "words"
 
 
-def marks(*errors: float) -> tuple[Mark, ...]:
+def marks(*errors: float) -> tuple[ProgressPoint, ...]:
     return tuple(
-        Mark(seconds=1.0 + n, error=error, winches=1, cables=n + 1, minutes=10.0 * (n + 1))
+        ProgressPoint(seconds=1.0 + n, error=error, winches=1, cables=n + 1, minutes=10.0 * (n + 1))
         for n, error in enumerate(errors)
     )
 
 
 def run(*errors: float) -> DesignRun:
     robot = strip_robot(columns=10, rows=3)
-    request = DesignRequest(poses=(Pose(name="up", targets={"tip": (0.18, 0.06)}),), winches=1, cables=2)
+    request = DesignRequest(poses=(PoseTarget(name="up", targets={"tip": (0.18, 0.06)}),), winches=1, cables=2)
     return DesignRun(robot=robot, request=request, began=0.0, rest=0.02, best=robot, trail=marks(*errors))
 
 
@@ -101,7 +101,7 @@ def test_a_design_that_has_found_nothing_yet_has_a_chart() -> None:
 
 def candidate(number: int, robot: Robot, *, minutes: float, built: float) -> Candidate:
     """A network that takes so long to sew and is so far off once built [mm]."""
-    craft = replace(craft_of(robot, []), minutes=minutes)
+    craft = replace(build_effort(robot, []), minutes=minutes)
     return Candidate(
         number=number,
         source=robot,

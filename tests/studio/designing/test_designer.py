@@ -13,7 +13,7 @@ from hydrostat.design import RouteOptions, design_cables
 from hydrostat.drawing import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
@@ -63,7 +63,7 @@ class Studio:
 def strip() -> Robot:
     """A strip with two cables of its own and two poses."""
     poses = {"up": (0.18, 0.06), "down": (0.185, -0.05)}
-    targets = {name: Pose(name=name, targets={"tip": place}) for name, place in poses.items()}
+    targets = {name: PoseTarget(name=name, targets={"tip": place}) for name, place in poses.items()}
     return replace(strip_robot(columns=10, rows=3), poses=targets)
 
 

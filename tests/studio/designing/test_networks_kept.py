@@ -9,7 +9,7 @@ import pytest
 
 from hydrostat.design import Alternative
 from hydrostat.errors import InputError
-from hydrostat.ik import InverseOptions, solve_ik
+from hydrostat.ik import IKOptions, solve_ik
 from hydrostat.robot import Robot, save_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.designing import cards_file
@@ -26,7 +26,7 @@ def found_by(session: Session, robot: Robot) -> None:
     designer, few = session.designer, robot.with_network(robot.winches[:1], [robot.cables[0]])
     request = wished_request(robot, Wishes())
     designer.run = DesignRun(robot=robot, request=request, began=0.0, rest=0.0, best=beginning(robot, request))
-    once = InverseOptions(restarts=0)
+    once = IKOptions(restarts=0)
     pose = next(iter(robot.poses.values()))
     made = [
         Alternative(robot=one, reached=(solve_ik(Simulation(one), pose, options=once),), built=0.004)

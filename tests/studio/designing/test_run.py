@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from builders import gallery_robot
 
-from hydrostat.cli.design_wishes import TypedRequest, asked_of
+from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.design import Constraints, DesignMethod, RouteOptions, TreeOptions, Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
@@ -84,9 +84,9 @@ def test_the_knobs_of_the_thesis_are_those_of_the_command_line(starfish: Robot) 
     asked = wished_request(starfish, Wishes(method=DesignMethod.TREES))
     assert (asked.method, asked.options) == (DesignMethod.TREES, TreeOptions.single())
     knobs = {"threshold": 40, "distance": 2.5, "steps": 8, "phi": 0.3}
-    typed = TypedRequest(method="trees", knobs=[f"{name}={value}" for name, value in knobs.items()])
+    typed = DesignArguments(method="trees", knobs=[f"{name}={value}" for name, value in knobs.items()])
     wished = wished_request(starfish, Wishes(method=DesignMethod.TREES, **knobs))  # type: ignore[arg-type]
-    assert wished == asked_of(starfish, typed)
+    assert wished == parse_request(starfish, typed)
     with pytest.raises(InputError, match="does not keep mirror"):
         wished_request(starfish, Wishes(method=DesignMethod.TREES, mirror="x"))
     with pytest.raises(InputError, match="with a number of winches"):

@@ -1,4 +1,4 @@
-"""Oracles: `Simulation.solve` for shapes, `Profile` for commands, the record of the document for undo."""
+"""Oracles: `Simulation.solve` for shapes, `ContractionProfile` for commands, the record of the document for undo."""
 
 from dataclasses import replace
 
@@ -279,13 +279,13 @@ def test_where_no_shape_is_found_the_last_one_stays(
     driver.turn("left", 0.01)
     settle(driver)
     before = driver.shape().nodes
-    posed = Simulation.posed
+    posed = Simulation.make_pose
 
     def turned_inside_out(self, *arguments):
         found = posed(self, *arguments)
         return replace(found, nodes=found.nodes[:, ::-1])
 
-    monkeypatch.setattr(Simulation, "posed", turned_inside_out)
+    monkeypatch.setattr(Simulation, "make_pose", turned_inside_out)
     put_keys(driver, (0.0, {"left": 0.01}), (1.0, {"left": 0.03}))
     driver.play()
     driver.step(10.0)

@@ -14,11 +14,11 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.held import Held, Mode
+from hydrostat.studio.posing.held import HeldPoint, Mode
 from hydrostat.studio.posing.mover import MuscleMover
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.posing.poses import held_of, with_pose
-from hydrostat.studio.posing.propose_work import OPTIONS, POSE, Moment, Sketched, asked_of_trees, sketched
+from hydrostat.studio.posing.propose_work import OPTIONS, POSE, Proposal, ProposalInput, asked_of_trees, sketched
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.view.things import Dot
 
@@ -34,14 +34,14 @@ def poser(document: Document) -> Iterator[Poser]:
     jobs.close()
 
 
-def posed(robot: Robot, held: dict[str, Held], wishes: Wishes) -> Moment:
+def posed(robot: Robot, held: dict[str, HeldPoint], wishes: Wishes) -> ProposalInput:
     """As muscles hold some points."""
     mover = MuscleMover(robot)
     for _ in range(120):
         if not mover.update(held)[1]:
             break
     nodes, tensions = mover.pulls
-    return Moment(held=held, nodes=nodes, tensions=tensions, wishes=wishes)
+    return ProposalInput(held=held, nodes=nodes, tensions=tensions, wishes=wishes)
 
 
 def until(ready: Callable[[], object], poser: Poser) -> None:
@@ -57,7 +57,7 @@ def test_a_network_of_a_moment_can_be_built_and_reaches_what_it_says(starfish: R
     """Also where a point is held that is no marker."""
     held = held_of(starfish, "wave")
     node = starfish.body.mesh.nodes[np.argmax(starfish.body.mesh.nodes[:, 0])]
-    held["point_1"] = Held(at=tuple(node), target=tuple(node))
+    held["point_1"] = HeldPoint(at=tuple(node), target=tuple(node))
     wishes = Wishes(winches=2, cables=4, tension=15.0, clearance=0.006)
     found = sketched(starfish, posed(starfish, held, wishes), BodyPhysics(starfish))
     assert found.words == ""
@@ -110,7 +110,7 @@ def test_cables_are_proposed_while_muscles_follow_and_can_be_kept(
 @pytest.mark.slow
 def test_the_latest_wins(starfish: Robot, document: Document, poser: Poser, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a hundred moments in a row few are answered, and the last one is: its network is what comes of it alone."""
-    taken: list[Sketched] = []
+    taken: list[Proposal] = []
     proposals, held = poser.proposals, held_of(starfish, "wave")
     take = proposals._take
     monkeypatch.setattr(proposals, "_take", lambda *found: (taken.append(found[2]), take(*found)))
@@ -129,7 +129,7 @@ def test_the_latest_wins(starfish: Robot, document: Document, poser: Poser, monk
 def test_a_process_that_dies_is_told(starfish: Robot, document: Document, poser: Poser) -> None:
     held = held_of(starfish, "wave")
     poser.proposals.switch(True)
-    moment = Moment(held=held, nodes=np.zeros((1, 2)), tensions=np.zeros(1), wishes=Wishes())
+    moment = ProposalInput(held=held, nodes=np.zeros((1, 2)), tensions=np.zeros(1), wishes=Wishes())
     poser.proposals.ask(starfish, moment)  # of another body
     until(lambda: poser.proposals.found(starfish), poser)
     found = poser.proposals.found(starfish)

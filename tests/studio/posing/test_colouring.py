@@ -8,7 +8,7 @@ from builders import box_robot, strip_robot
 
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics
-from hydrostat.studio.posing.held import Held
+from hydrostat.studio.posing.held import HeldPoint
 from hydrostat.studio.posing.mover import MuscleMover
 from hydrostat.studio.view.colouring import Colouring, node_strains, node_stresses, node_values, scale
 from hydrostat.studio.view.things import rest_shape
@@ -111,7 +111,7 @@ def test_muscles_are_coloured_as_hard_as_they_pull(dim: int) -> None:
     mover, marker = MuscleMover(robot), robot.markers[0]
     goal = np.array(marker.at)
     goal[1] += 0.01
-    held = {marker.name: Held(at=marker.at, target=tuple(goal.tolist()), marker=True)}
+    held = {marker.name: HeldPoint(at=marker.at, target=tuple(goal.tolist()), marker=True)}
     for _ in range(20):
         shape, _ = mover.update(held)
     values = node_values(robot, shape, Colouring.MUSCLES)

@@ -72,7 +72,7 @@ def test_networks_answer_first_and_the_exact_pose_follows(poser: Poser, starfish
     first = poser.shape()
     assert first.foretold is not None
     assert not first.foretold.exact
-    assert first.foretold.error == first.foretold.doubt == 1e-3
+    assert first.foretold.error == first.foretold.uncertainty == 1e-3
     assert not first.contractions.any()  # what is shown of winches, and sent to motors, is of a pose
     dots = {dot.at for dot in foretold_things(first)}
     assert dots == {tuple(model.markers[marker.name].tolist()) for marker in starfish.markers}

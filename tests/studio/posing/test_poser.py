@@ -231,7 +231,7 @@ def test_an_edited_robot_keeps_its_pose(starfish: Robot, document: Document, pos
 def test_rubbing_cables_are_posed_as_they_rub_and_the_band_is_told(
     starfish: Robot, document: Document, poser: Poser
 ) -> None:
-    """Oracles: inverse kinematics of the robot that rubs, and `friction_band`, which is nothing without friction."""
+    """Oracles: inverse kinematics of the robot with friction, and `friction_hysteresis`, which is empty without it."""
     cables = tuple(replace(cable, friction=0.2) for cable in starfish.cables)
     document.change("friction", robot=replace(starfish, cables=cables))
     poser.show_pose("wave")
@@ -243,7 +243,7 @@ def test_rubbing_cables_are_posed_as_they_rub_and_the_band_is_told(
     assert np.abs(poser.shape().nodes - smooth).max() > 1e-4, "without friction the body would be elsewhere"
     (note,) = [note for note in poser.shape().notes if note.startswith("friction: ")]
     assert float(note.split("up to ")[1].split(" mm")[0]) == pytest.approx(
-        1e3 * max(best.friction_band.values()), rel=0.3
+        1e3 * max(best.friction_hysteresis.values()), rel=0.3
     )
     document.change("none", robot=starfish)
     poser.show_pose("wave")

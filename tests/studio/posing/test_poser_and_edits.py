@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot, load_robot, save_robot
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.held import Held, Mode
+from hydrostat.studio.posing.held import HeldPoint, Mode
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.posing.poses import with_pose
 from hydrostat.studio.records.wishes import Wishes
@@ -78,10 +78,10 @@ def test_wishes_follow_the_names_of_poses(starfish: Robot, document: Document, p
     assert first in document.robot.poses
 
 
-def poser_held(robot: Robot) -> dict[str, Held]:
+def poser_held(robot: Robot) -> dict[str, HeldPoint]:
     """What holds one marker where it is."""
     marker = robot.markers[0]
-    return {marker.name: Held(at=marker.at, target=marker.at)}
+    return {marker.name: HeldPoint(at=marker.at, target=marker.at)}
 
 
 @pytest.mark.parametrize("change", [without, lambda robot, name: named(robot, name, "other")])

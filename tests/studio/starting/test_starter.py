@@ -8,7 +8,7 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.errors import InputError
-from hydrostat.robot import gallery_folder, gallery_names, load_robot, save_robot
+from hydrostat.robot import gallery_folder, list_gallery, load_robot, save_robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -56,14 +56,14 @@ def desk() -> Iterator[Desk]:
 def test_each_gallery_robot_has_a_small_picture_and_words() -> None:
     """Oracle: the gallery itself."""
     cards = gallery_cards()
-    assert sorted(card.name for card in cards) == gallery_names()
+    assert sorted(card.name for card in cards) == list_gallery()
     for card in cards:
         assert card.picture is not None, f"run python -m hydrostat.studio.starting.draw_gallery for {card.name}"
         assert 500 < card.picture.stat().st_size <= 15_000
         robot = load_robot(card.folder) if card.name == "starfish" else None
         if robot is not None:
             assert card.words == f"flat, {len(robot.winches)} winches, {len(robot.cables)} cables"
-    assert {path.stem for path in PICTURES.glob("*.webp")} == set(gallery_names())
+    assert {path.stem for path in PICTURES.glob("*.webp")} == set(list_gallery())
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from builders import gallery_robot
 from touching import fork_robot
 
 from hydrostat.robot import Obstacle
-from hydrostat.simulation import Simulation, touches
+from hydrostat.simulation import Simulation, find_contacts
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.view.robot_things import robot_things
@@ -23,7 +23,7 @@ def shown(dim: int, *, contact: bool, settled: bool = True) -> RobotShape:
     pose = simulation.solve(CLOSED)
     shape = RobotShape(nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions, notes=("before",))
     found = with_touches(simulation, pose, shape, settled=settled)
-    assert [touch.strength for touch in found.touches] == [touch.strength for touch in touches(simulation, pose)]
+    assert [touch.strength for touch in found.touches] == [touch.strength for touch in find_contacts(simulation, pose)]
     return found
 
 

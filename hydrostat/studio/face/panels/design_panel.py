@@ -16,7 +16,7 @@ from hydrostat.studio.face.panels.design_method import design_method
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.stage import StageName
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 def design_panel(page: WindowPage) -> None:
@@ -193,7 +193,7 @@ def _progress(page: WindowPage) -> None:
 
 
 def _so_far(winches: int, cables: int) -> str:
-    return f"with {counted(winches, 'winch')} and {counted(cables, 'cable')} so far"
+    return f"with {plural(winches, 'winch')} and {plural(cables, 'cable')} so far"
 
 
 def design_compare(page: WindowPage) -> None:
@@ -275,10 +275,10 @@ def _words(one: Candidate, own: tuple[int, ...], *, refused: bool) -> str:
     lines = [
         one.counts,
         f"{craft.minutes:.0f} min of sewing",
-        f"{craft.price:.0f} USD, {counted(craft.motors, 'motor')}",
+        f"{craft.price:.0f} USD, {plural(craft.motors, 'motor')}",
     ]
     if craft.crossings:
-        lines.append(counted(craft.crossings, "crossing"))
+        lines.append(plural(craft.crossings, "crossing"))
     if one.number in own or not one.complete:
         lines.append("in the robot" if one.number in own else "stopped early")
     mark = '<i class="design-bad">cannot be built so</i>' if refused else ""
@@ -289,7 +289,7 @@ def _more(one: Candidate) -> str:
     """What a card has no room for."""
     craft = one.craft
     return (
-        f"{told_error(one.error)} in the model; {counted(craft.holes, 'hole')}, "
+        f"{told_error(one.error)} in the model; {plural(craft.holes, 'hole')}, "
         f"{1e3 * one.length:.0f} mm of cable pulled with up to {one.tension:.1f} N. "
         "Price: motors, power and cables; the kit's list adds cloth, screws and what comes in packs only"
     )

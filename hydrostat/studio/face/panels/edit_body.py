@@ -12,7 +12,7 @@ from hydrostat.studio.face.panels.contact_switch import contact_switch
 from hydrostat.studio.face.panels.edit_part import EditNumber
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 OWN = "its own numbers"  # what a material is called that is not of the table
 
@@ -131,7 +131,7 @@ def check_card(page: WindowPage) -> None:
 
 
 def _tell_counts(findings: Findings) -> None:
-    length = f"{counted(findings.cables, 'cable')}, {1e3 * findings.cable_length:.0f} mm in all"
+    length = f"{plural(findings.cables, 'cable')}, {1e3 * findings.cable_length:.0f} mm in all"
     for line in (
         f"{findings.nodes} nodes, {findings.elements} {findings.kind}, {1e3 * findings.mass:.3g} g",
         length if findings.cables else "no cables yet",

@@ -16,7 +16,7 @@ from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.cable_faces import face_choice
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 OUTDATED = "The robot has changed since; make it again."
 
@@ -284,7 +284,7 @@ def _pages(kit: KitMade) -> None:
 def _lines(words: str, lines: tuple[str, ...], icon: str, kind: str) -> None:
     if not lines:
         return
-    door = ui.expansion(f"{counted(len(lines), 'thing')} {words}", value=len(lines) < 3).props("dense")
+    door = ui.expansion(f"{plural(len(lines), 'thing')} {words}", value=len(lines) < 3).props("dense")
     with door.classes("export-more w-full"):
         for line in lines:
             _line(line, icon, kind)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from nicegui import ui
 
-from hydrostat.design import Finding, Weight
+from hydrostat.design import Diagnostic, Severity
 from hydrostat.robot import Robot, in_words
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, pressable
@@ -12,11 +12,11 @@ from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.view.finding_things import TONES
 
 GOOD = "#00795f"
-ICONS = {Weight.REFUSED: "block", Weight.LIMIT: "straighten", Weight.MIND: "error_outline"}
+ICONS = {Severity.REFUSED: "block", Severity.LIMIT: "straighten", Severity.MIND: "error_outline"}
 HEADS = {
-    Weight.REFUSED: "It cannot be built so",
-    Weight.LIMIT: "Not as a design would have it",
-    Weight.MIND: "To mind",
+    Severity.REFUSED: "It cannot be built so",
+    Severity.LIMIT: "Not as a design would have it",
+    Severity.MIND: "To mind",
 }
 
 
@@ -26,7 +26,7 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
     judge = document.judge
     room = ui.column().classes("w-full").style("gap: 6px").mark("finding-list")
 
-    def said() -> tuple[Finding, ...] | None:
+    def said() -> tuple[Diagnostic, ...] | None:
         robot = shown() if document.is_open else None
         return None if robot is None else judge.of(robot, document.work.wishes)
 
@@ -46,7 +46,7 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
             with ui.element("div").classes("studio-row"):
                 ui.icon("check_circle", size="18px").style(f"color: {GOOD}")
                 ui.label(_good(shown())).style("font-size: 13px")
-        for weight in Weight:
+        for weight in Severity:
             alike = [finding for finding in found if finding.weight is weight]
             if alike:
                 ui.label(HEADS[weight]).classes("studio-hint")
@@ -63,7 +63,7 @@ def _good(robot: Robot | None) -> str:
     return "Nothing is wrong so far, but there are no cables yet: lay some in Edit, or let Design find them."
 
 
-def _line(page: WindowPage, finding: Finding, *, chosen: bool) -> None:
+def _line(page: WindowPage, finding: Diagnostic, *, chosen: bool) -> None:
     judge = page.session.document.judge
     kind = "finding" + (" finding-on" if chosen else "")
     line = pressable(kind, page.doing(judge.choose, finding)) if finding.places else ui.element("div").classes(kind)

@@ -7,7 +7,7 @@ from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.view.colouring import Colouring
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 def muscles_card(page: WindowPage) -> None:
@@ -43,7 +43,7 @@ def muscles_card(page: WindowPage) -> None:
         if not found.cables:
             return f"{found.words[:1].upper()}{found.words[1:]}"
         off = "" if found.error is None else f", {told_error(found.error)} off"
-        return f"{counted(len(found.winches), 'winch')}, {counted(len(found.cables), 'cable')}{off}"
+        return f"{plural(len(found.winches), 'winch')}, {plural(len(found.cables), 'cable')}{off}"
 
     colours.on_value_change(lambda event: colour(bool(event.value)))
 

@@ -102,7 +102,7 @@ def foretold_words(shape: RobotShape) -> str:
     told = shape.foretold
     if told is None:
         return ""
-    known = f"{told_error(told.error)} expected, doubt {told_error(told.doubt)}"
+    known = f"{told_error(told.error)} expected, doubt {told_error(told.uncertainty)}"
     left = told_error(sum(shape.errors.values()) / max(len(shape.errors), 1))
     if told.exact:
         return f"Exact: {left} left on average. By networks: {known}."

@@ -14,7 +14,7 @@ from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.start_draft import draft_view
 from hydrostat.studio.face.panels.start_outline import outline_view
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.starting.autosave import Left
+from hydrostat.studio.starting.autosave import RecoveredWork
 from hydrostat.studio.starting.draft import MOST_BYTES
 from hydrostat.studio.starting.shelf import Card, gallery_cards, suggestions
 
@@ -69,7 +69,7 @@ def _rest(card: ui.element) -> bool:
     return True
 
 
-def _left(page: WindowPage, left: Left) -> None:
+def _left(page: WindowPage, left: RecoveredWork) -> None:
     autosave = page.session.starter.autosave
     with ui.element("div").classes("start-left") as row:
         ui.icon("history").classes("text-xl")

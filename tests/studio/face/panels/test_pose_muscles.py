@@ -5,10 +5,10 @@ from desk import Desk, at_desk, is_shown
 
 from hydrostat.robot import Robot
 from hydrostat.studio.posing.held import Mode
-from hydrostat.studio.posing.propose_work import Sketched
+from hydrostat.studio.posing.propose_work import Proposal
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.view.colouring import Colouring
-from hydrostat.units import counted
+from hydrostat.units import plural
 
 
 def test_muscles_are_shown_and_cables_proposed(starfish: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -31,10 +31,10 @@ def test_muscles_are_shown_and_cables_proposed(starfish: Robot, monkeypatch: pyt
         assert not is_shown(desk.one("pose-keep"))
         robot = desk.robot
         cables = tuple(cable for cable in robot.cables if cable.winch == robot.winches[0].name)
-        found = Sketched(winches=robot.winches[:1], cables=cables, error=0.0123)
+        found = Proposal(winches=robot.winches[:1], cables=cables, error=0.0123)
         poser.proposals._take(poser.proposals._run, robot, found)
         await desk.follow()
-        assert desk.one("pose-proposed").text == f"1 winch, {counted(len(cables), 'cable')}, 12 mm off"
+        assert desk.one("pose-proposed").text == f"1 winch, {plural(len(cables), 'cable')}, 12 mm off"
         await desk.press("pose-keep")
         assert desk.robot.cables == cables
         assert not desk.one("pose-keep").enabled
@@ -53,7 +53,7 @@ def test_what_stands_in_the_way_of_cables_is_told(starfish: Robot, monkeypatch: 
         monkeypatch.setattr(poser.proposals, "_follow", lambda run: None)
         poser.set_mode(Mode.MUSCLES)
         poser.proposals.switch(True)
-        poser.proposals._take(poser.proposals._run, desk.robot, Sketched(words="no cables fit these muscles"))
+        poser.proposals._take(poser.proposals._run, desk.robot, Proposal(words="no cables fit these muscles"))
         await desk.follow()
         assert desk.one("pose-proposed").text == "No cables fit these muscles"
 

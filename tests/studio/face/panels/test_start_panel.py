@@ -4,7 +4,7 @@ from pathlib import Path
 
 from desk import Desk, at_desk
 
-from hydrostat.robot import Robot, gallery_names, load_robot, save_robot
+from hydrostat.robot import Robot, list_gallery, load_robot, save_robot
 from hydrostat.studio.face.tour import KEYS, STAGES
 from hydrostat.studio.session import Tone
 from hydrostat.studio.stage import StageName
@@ -12,7 +12,7 @@ from hydrostat.studio.stage import StageName
 
 def test_a_robot_of_the_gallery_is_opened() -> None:
     async def act(desk: Desk) -> None:
-        assert [name for name in gallery_names() if not desk.all(f"gallery-{name}")] == []
+        assert [name for name in list_gallery() if not desk.all(f"gallery-{name}")] == []
         assert [stage for stage in StageName if desk.one(f"stage-{stage}").enabled] == [StageName.START]
         await desk.press("gallery-starfish")
         await desk.until(lambda: desk.session.stage is StageName.POSE)

@@ -1,0 +1,79 @@
+"""`IKResult`: what inverse kinematics found for one pose."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.painters import draw_record
+from hydrostat.robot import PoseTarget, html_repr
+from hydrostat.simulation import Equilibrium
+
+
+class IKStatus(StrEnum):
+    """Why inverse kinematics ended."""
+
+    REACHED = "every goal is reached"
+    LOCAL_OPTIMUM = "as near as these winches come hereabouts"
+    STALLED = "no step brings it nearer, though there is more to gain"
+    INFEASIBLE = "no pose found that keeps the limits on tension"
+    ITERATION_LIMIT = "iteration limit reached"
+    TIME_LIMIT = "time limit reached"
+    NO_EQUILIBRIUM = "no equilibrium could be found on the way"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class IKResult:
+    """The best pose that the winches can make.
+
+    Attributes:
+        target: what was asked for; None if only objectives were.
+        pose: the equilibrium found; its `contractions` are the answer.
+        errors: what is left of each goal, such as the distance of a marker from its target [m].
+        reason: why the search ended.
+        iterations: Gauss-Newton steps taken.
+        solves: equilibria approached.
+        optimality: how much the length of the residual would still fall for each metre that one channel moves, as far
+            as it may [m/m]; near 0 at an optimum, but not where a pose is reached.
+        active_limits: limits that keep it from coming nearer.
+        friction_hysteresis: distance of each marker from where it ends when the same contractions are reached from a
+            tenth above [m]; empty without friction, in answers of a `Tracker`, and where that path cannot be followed.
+    """
+
+    target: PoseTarget | None
+    pose: Equilibrium
+    errors: Mapping[str, float]
+    status: IKStatus
+    iterations: int
+    solves: int
+    optimality: float = 0.0
+    active_limits: tuple[str, ...] = ()
+    friction_hysteresis: Mapping[str, float] = field(default_factory=dict)
+
+    def without_factors(self) -> "IKResult":
+        """The same with a pose that keeps no factorised Hessian, to be kept with many others."""
+        return replace(self, pose=self.pose.without_factors())
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        goal = "objectives" if self.target is None else repr(self.target.name)
+        return f"<IKResult for {goal}: rms error {1e3 * self.rms_error:.3g} mm; {self.status}; {self.pose!r}>"
+
+    def _repr_html_(self) -> str:
+        """The line, what is to be minded, and a picture, for a notebook."""
+        words = "\n".join([repr(self), *self.active_limits, *self.pose.warnings])
+        return html_repr(words, draw_record("reached", self.pose.robot, self))
+
+    @property
+    def wanted(self) -> PoseTarget:
+        """The targets of the markers (InputError: only objectives were asked for)."""
+        if self.target is None:
+            raise InputError("this was asked for by objectives alone, there is no pose of targets")
+        return self.target
+
+    @property
+    def rms_error(self) -> float:
+        """Root of the mean squared error over the goals [m]."""
+        return float(np.sqrt(np.mean(np.square(list(self.errors.values()))))) if self.errors else 0.0

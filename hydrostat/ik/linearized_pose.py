@@ -1,0 +1,51 @@
+"""`LinearizedPose`: contractions for targets that have just moved, before the next update of a `Tracker` is done."""
+
+# Of the thesis (docs/thesis.md): R34
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.ik.search.linear_model import LinearModel
+from hydrostat.ik.search.problem import effort_weight
+from hydrostat.robot import Point
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LinearizedPose:
+    """What changes of the contractions do about a pose, to first order; small enough to be sent to another process.
+
+    It answers in half a millisecond, knows slack and taut cables, and keeps within limits and the radius that the
+    tracker trusts. Its answer is no solved pose: the next update of the tracker begins at the old one, and mends it.
+
+    Attributes:
+        model: linear, at the pose.
+        targets: of the markers that it was made for [m]; they are the first rows of its residual.
+        worth: residual that a tension of each cable is worth at weight 1 [m/N].
+        size: of the body [m].
+        effort: largest weight, as in `IKOptions`.
+        radius: largest step, as a share of each range.
+        spread: 1 where a winch follows a channel.
+    """
+
+    model: LinearModel
+    targets: Mapping[str, Point]
+    worth: Vector
+    size: float
+    effort: float
+    radius: float
+    spread: Float[np.ndarray, "winches channels"]
+
+    def towards(self, targets: Mapping[str, Point]) -> Vector:
+        """Contractions of the winches [m] on the way to targets of the same markers [m] (InputError: of others)."""
+        if targets.keys() != self.targets.keys():
+            raise InputError(f"targets must be of the markers of the last update: {', '.join(self.targets)}")
+        moved = np.concatenate([np.subtract(self.targets[name], targets[name]) for name in self.targets])
+        residual = self.model.residual.copy()
+        residual[: len(moved)] += moved
+        model, weight = self.model.aimed(residual), effort_weight(residual, self.size, self.effort)
+        return self.spread @ model.applied(model.best(weight * self.worth, self.radius)[0])

@@ -1,0 +1,59 @@
+"""`CenterOfMassTarget`: the centre of mass at a point."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.ik.objectives.objective import (
+    EquilibriumState,
+    Objective,
+    Residual,
+    Rows,
+    Slopes,
+    StateJacobian,
+    not_negative,
+    place,
+)
+from hydrostat.robot import Point
+from hydrostat.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True)
+class CenterOfMassTarget(Objective):
+    """The body's centre of mass where it should be, as for balance.
+
+    Attributes:
+        target: where [m].
+        weight: how much a metre away from it counts beside a metre of a marker's error.
+    """
+
+    target: Point
+    weight: float = 1.0
+
+    def bind(self, simulation: Simulation) -> Residual:
+        """The goal on this robot.
+
+        Raises:
+            InputError: a target that is no place in the body's space, not finite or not in metres, or a weight below 0.
+        """
+        target = place("target of the centre of mass", self.target, simulation.robot.body.mesh)
+        weight = not_negative("weight of the centre of mass", self.weight)
+        masses = simulation.body.masses
+        return _Centre(weight, masses / masses.sum(), target)
+
+
+class _Centre(Residual):
+    def __init__(self, weight: float, shares: Vector, target: Vector) -> None:
+        self._weight, self._shares, self._target = weight, shares, target
+
+    def residual(self, posture: EquilibriumState) -> Rows:
+        return self._weight * (self._shares @ posture.nodes - self._target)
+
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+        return self._weight * np.einsum("n,ndw->dw", self._shares, moves.nodes)
+
+    def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
+        distance = float(np.linalg.norm(self._shares @ posture.nodes - self._target))
+        return {"centre of mass": distance} if self._weight > 0 else {}

@@ -1,0 +1,137 @@
+"""`MarkerTarget`: markers at points."""
+
+# Of the thesis (docs/thesis.md): R31, E19
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.geometry import Anchors
+from hydrostat.ik.objectives.objective import (
+    EquilibriumState,
+    Objective,
+    Residual,
+    Rows,
+    Slopes,
+    StateJacobian,
+    by_name,
+    describe,
+    not_negative,
+    place,
+)
+from hydrostat.robot import Point, PoseTarget, Robot
+from hydrostat.simulation import Simulation
+
+AXES = "xyz"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MarkerTarget(Objective):
+    """Markers where they should be: weight x (position - target) of each, along the axes that are not free.
+
+    Attributes:
+        targets: where each marker should go [m].
+        weights: how much a marker counts, 1 if left out.
+        free: axes along which a marker may be anywhere, such as {"tip": "x"} or {"tip": "xz"}.
+    """
+
+    targets: Mapping[str, Point]
+    weights: Mapping[str, float] = field(default_factory=dict)
+    free: Mapping[str, str] = field(default_factory=dict)
+
+    def bind(self, simulation: Simulation) -> Residual:
+        """The goal on this robot.
+
+        Raises:
+            InputError: no targets, a marker that it does not have, a target that is no place in the body's space, not
+                finite or not in metres, a weight below 0, an axis that there is not.
+        """
+        robot = simulation.robot
+        mesh = robot.body.mesh
+        targets = named_targets(self.targets)
+        names = tuple(targets)
+        weights = by_name("weights of markers", self.weights, '{"tip": 2.0}')
+        free = by_name("free axes of markers", self.free, '{"tip": "x"}')
+        for given in (weights, free):
+            for name in given:
+                if name not in targets:
+                    raise InputError(f'marker "{name}" has a weight or free axes but no target; give it one')
+        chosen = [_index(robot, name) for name in names]
+        anchors = simulation.marker_anchors.chosen(chosen)
+        scales = np.array([not_negative(f"weight of marker {name}", weights.get(name, 1.0)) for name in names])
+        held = np.array([_held(name, free.get(name, ""), mesh.dim) for name in names])
+        goals = np.array(
+            [place(f"target {name}", targets[name], mesh, held=axes) for name, axes in zip(names, held, strict=True)]
+        )
+        return MarkerResidual(names, anchors, goals, scales, held)
+
+
+def named_targets(given: object) -> Mapping[str, Point]:
+    """Places by the names of markers; those of a pose (InputError: none, or anything else such as a pose's name)."""
+    if isinstance(given, PoseTarget):
+        return given.targets
+    if isinstance(given, str):
+        raise InputError(f'targets must be places by name, not "{given}"; those of a pose are robot.pose("{given}")')
+    found = by_name("targets", given, '{"tip": (0.1, 0.02)}')
+    if not found:
+        raise InputError("targets must name at least one marker")
+    return {name: tuple(point.tolist()) if isinstance(point, np.ndarray) else point for name, point in found.items()}
+
+
+class MarkerResidual(Residual):
+    """Points of the body that have goals."""
+
+    def __init__(
+        self,
+        names: Sequence[str],
+        anchors: Anchors,
+        goals: Points,
+        weights: Vector,
+        held: Bool[np.ndarray, "markers dim"],
+    ) -> None:
+        """Markers by name, where they are stuck, where they should go, how much each counts, along which axes."""
+        self.names, self.anchors, self.goals, self.held = tuple(names), anchors, goals, held
+        self._scales = weights[:, None] * held
+        self._counts = weights > 0
+
+    def residual(self, posture: EquilibriumState) -> Rows:
+        """How far each point is from its goal, along each axis that counts [m]."""
+        return (self._scales * self._offsets(posture)).ravel()
+
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+        """How the points move with the contractions."""
+        moved: Float[np.ndarray, "markers dim winches"] = np.einsum(
+            "pc,pcdw->pdw", self.anchors.weights, moves.nodes[self.anchors.stencils]
+        )
+        return (self._scales[:, :, None] * moved).reshape(self._scales.size, -1)
+
+    def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
+        """How far each marker is from its target along the axes that count [m]; one of weight 0 is no goal."""
+        distances = np.linalg.norm(self.held * self._offsets(posture), axis=1)
+        found = zip(self.names, distances.tolist(), self._counts, strict=True)
+        return {name: distance for name, distance, counts in found if counts}
+
+    def _offsets(self, posture: EquilibriumState) -> Points:
+        return self.anchors.positions(posture.nodes) - self.goals
+
+
+def _index(robot: Robot, name: str) -> int:
+    names = [marker.name for marker in robot.markers]
+    if name not in names:
+        known = f"its markers are: {', '.join(names)}" if names else "it has no markers"
+        raise InputError(f'the robot has no marker "{name}"; {known}')
+    return names.index(name)
+
+
+def _held(name: str, free: object, dim: int) -> list[bool]:
+    if not isinstance(free, str) or set(free) - set(AXES[:dim]):
+        raise InputError(f'free axes of marker {name} must be of "{AXES[:dim]}", not {_quoted(free)}')
+    return [axis not in free for axis in AXES[:dim]]
+
+
+def _quoted(given: object) -> str:
+    return f'"{given}"' if isinstance(given, str) else describe(given)

@@ -1,0 +1,218 @@
+"""`ShapeTarget`: the body boundary on a target outline or surface; `load_target_outline` reads one from a file."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from numbers import Integral
+from pathlib import Path
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.geometry import (
+    Curve,
+    Mesh,
+    Nearest,
+    Outline,
+    Shell,
+    Surface,
+    outline_shell,
+    read_drawing,
+    read_outline,
+    read_stranger,
+)
+from hydrostat.given import path_of
+from hydrostat.ik.objectives.objective import (
+    EquilibriumState,
+    Objective,
+    Residual,
+    Rows,
+    Slopes,
+    StateJacobian,
+    describe,
+    not_negative,
+)
+from hydrostat.robot import Robot, Source
+from hydrostat.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShapeTarget(Objective):
+    """The pose in which the body's boundary lies on a shape, measured both ways.
+
+    1/2 (mean of d^2 over the boundary's nodes + mean of e^2 over places spread evenly over the shape): d is how far a
+    node is from the shape, e how far a place of the shape is from the body. With d alone a finger may hide in the palm,
+    with e alone it may point anywhere as another part reaches its place. Material may slide along the shape.
+
+    The nearest place is a guess of where a part belongs, as good as the pose that it is made in. A shape far from rest
+    may hold the body in a wrong pose; markers beside it, or shapes on the way there, lead it.
+
+    Attributes:
+        outline: for a flat body [m], in the coordinates of the robot: `load_target_outline` reads one from a drawing.
+        surface: for a body in space, closed [m], in the coordinates of the robot: drawn in those of its file, and read
+            with the same unit.
+        weight: how much a metre of the root of the mean square counts beside a metre of a marker's error.
+        samples: how many places of the shape are looked at; if left out, as many as there are nodes on the boundary,
+            and 200 at least.
+    """
+
+    outline: Outline | None = field(default=None, repr=False)
+    surface: Surface | None = field(default=None, repr=False)
+    weight: float = 1.0
+    samples: int | None = None
+
+    def bind(self, simulation: Simulation) -> Residual:
+        """The goal on this robot.
+
+        Raises:
+            InputError: not exactly one shape, one of another dimension than the body, far larger or smaller than it, or
+                not closed; a weight below 0; too few or many samples.
+        """
+        mesh = simulation.robot.body.mesh
+        weight = not_negative("weight of a shape", self.weight)
+        if self.samples is not None and not (isinstance(self.samples, Integral) and _FEWEST <= self.samples <= _MOST):
+            raise InputError(
+                f"samples of a shape must be a whole number from {_FEWEST} to {_MOST}, not {describe(self.samples)}"
+            )
+        name, shell = self._shell(mesh)
+        _check(name, shell, mesh)
+        count = self.samples or max(len(mesh.boundary_nodes), _SAMPLES)
+        if self.outline is not None:
+            places = _along(self.outline, count)
+        else:
+            assert self.surface is not None
+            places = _over(self.surface, count)
+        return _Shape(name, shell, places, mesh, weight)
+
+    def _shell(self, mesh: Mesh) -> tuple[str, Shell]:
+        if (self.outline is None) == (self.surface is None):
+            raise InputError("a shape goal needs either an outline, for a flat body, or a surface, for one in space")
+        if self.outline is not None:
+            if mesh.dim != 2:
+                raise InputError("an outline is a goal for flat bodies; this one is in space, give a surface")
+            if not isinstance(self.outline, Outline):
+                raise InputError(
+                    f"outline must be an Outline [m], not {describe(self.outline)}; drawn_pose(robot, file) reads one"
+                )
+            return "outline", outline_shell(self.outline)
+        assert self.surface is not None
+        if mesh.dim != 3:
+            raise InputError("a surface is a goal for bodies in space; this one is flat, give an outline")
+        if not isinstance(self.surface, Surface):
+            raise InputError(f"surface must be a Surface(vertices, triangles) [m], not {describe(self.surface)}")
+        return "surface", Shell(self.surface.vertices, self.surface.triangles)
+
+
+_FEWEST = 3
+_MOST = 1_000_000
+_SAMPLES = 200
+
+_LARGEST = 10.0  # a body does not get so many times longer or shorter
+
+
+class _Shape(Residual):
+    """A shape goal on one robot: signed distances, positive outside, each times the root of its share."""
+
+    def __init__(self, name: str, target: Shell, places: Points, mesh: Mesh, weight: float) -> None:
+        """What the error is called, the shape, places spread over it, the body, how much a metre counts."""
+        self.name, self.target, self.places = name, target, places
+        self._body, self._rim = Shell(mesh.nodes, mesh.boundary), mesh.boundary_nodes
+        self._roots = np.sqrt(np.concatenate([_shares(mesh), np.full(len(places), 1 / len(places))]) / 2)
+        self._weight = weight
+        self._last: tuple[Nodes, Nearest, Nearest] | None = None
+
+    def residual(self, posture: EquilibriumState) -> Rows:
+        return self._weight * self._distances(posture)
+
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+        shape, body = self._nearest(posture)
+        nodes = np.einsum("pd,pdw->pw", shape.directions, moves.nodes[self._rim])
+        places = np.einsum("pc,pd,pcdw->pw", body.shares, -body.directions, moves.nodes[body.stencils], optimize=True)
+        return (self._weight * self._roots)[:, None] * np.concatenate([nodes, places])
+
+    def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
+        """Root of the mean square distance between the body's boundary and the shape, of both ways [m]."""
+        return {self.name: float(np.linalg.norm(self._distances(posture)))} if self._weight > 0 else {}
+
+    def _distances(self, posture: EquilibriumState) -> Rows:
+        shape, body = self._nearest(posture)
+        return self._roots * np.concatenate([shape.distances, body.distances])
+
+    def _nearest(self, posture: EquilibriumState) -> tuple[Nearest, Nearest]:
+        """From the boundary's nodes to the shape, and from its places to the body; kept for the posture asked last."""
+        nodes = posture.nodes
+        if self._last is None or self._last[0] is not nodes:
+            body = self._body.moved(nodes)
+            self._last = nodes, self.target.nearest(nodes[self._rim]), body.nearest(self.places)
+        return self._last[1:]
+
+
+def _shares(mesh: Mesh) -> Vector:
+    """Share of the boundary at rest that belongs to each of its nodes."""
+    measures = Shell(mesh.nodes, mesh.boundary).measures
+    own = np.bincount(mesh.boundary.ravel(), np.repeat(measures, mesh.dim), len(mesh.nodes))[mesh.boundary_nodes]
+    return own / own.sum()
+
+
+def _along(outline: Outline, count: int) -> Points:
+    """Places spread evenly along the rings of an outline, about `count`."""
+    curves = [Curve(ring) for ring in outline.rings]
+    length = sum(curve.length for curve in curves)
+    pieces = [
+        curve.at((np.arange(number) + 0.5) * curve.length / number)
+        for curve in curves
+        for number in [max(round(count * curve.length / length), _FEWEST)]
+    ]
+    return np.concatenate(pieces)
+
+
+def _over(surface: Surface, count: int) -> Points:
+    """So many places over a surface, each for as much of its area: at even steps through the areas of its triangles."""
+    areas = np.cumsum(np.linalg.norm(surface.crosses, axis=1))
+    steps = np.arange(count) + 0.5
+    owners = np.searchsorted(areas, steps / count * areas[-1])
+    one, two = (steps * share % 1 for share in _EVEN)
+    over = one + two > 1
+    one, two = np.where(over, 1 - one, one), np.where(over, 1 - two, two)
+    weights = np.column_stack([1 - one - two, one, two])
+    return np.einsum("pc,pcd->pd", weights, surface.vertices[surface.triangles[owners]])
+
+
+_EVEN = (0.7548776662466927, 0.5698402909980532)  # multiples of these spread evenly over a square (Roberts 2018)
+
+
+def _check(name: str, shell: Shell, mesh: Mesh) -> None:
+    """Refuse a shape that a body cannot lie on."""
+    size = float(np.ptp(shell.nodes[np.unique(shell.facets)], axis=0).max())
+    if not 1 / _LARGEST < size / mesh.size < _LARGEST:
+        raise InputError(
+            f"the {name} is {1e3 * size:.4g} mm large, the body {1e3 * mesh.size:.4g} mm; give it in metres"
+        )
+    if not (shell.measures > 0).all():
+        raise InputError(f"the {name} has {np.sum(shell.measures == 0)} triangles without area; heal it first")
+    if not shell.closed:
+        raise InputError(f"the {name} is not closed; heal it first")
+
+
+def load_target_outline(robot: Robot, drawing: Path | str) -> Outline:
+    """The outline of a pose in the coordinates of the robot, for `ShapeTarget`.
+
+    Copy the drawing or picture of the body, and bend what is on it; the page must stay as it is. Read by itself, a
+    drawing would be put into the middle of its own bounding box, and the pose would no longer be where it was drawn.
+    Another page is noticed by the page and unit of an SVG drawing, the unit of a DXF drawing, the pixels of a picture;
+    DXF has no page, so where its program counts from another corner, the pose is shifted without a word.
+
+    Args:
+        robot: a flat one, whose body was drawn.
+        drawing: file of the same kind as the body's: SVG, DXF, PNG or JPG.
+
+    Raises:
+        InputError: the body was not drawn, or the file cannot be read.
+        OutlineError: no pose can be made of the drawing, or it has another page.
+    """
+    body, file = robot.body, path_of(drawing, "a pose is read from the path of a drawing")
+    if body.source is not Source.OUTLINE:
+        raise InputError(f"{file.name}: a pose can be drawn over a drawing only, the body is of a {body.source} file")
+    content = read_stranger(file)
+    page = read_drawing(body.content, name=body.file, size=body.size, inner=body.inner).page
+    return read_outline(content, name=file.name, page=page, inner=body.inner)

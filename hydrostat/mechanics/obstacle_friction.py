@@ -1,0 +1,158 @@
+"""`ObstacleFriction`: Coulomb friction of many samples on a rigid thing, by anchored springs along its surface."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from hydrostat.arrays import Points, Vector
+
+Squares = Float[np.ndarray, "samples dim dim"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ObstacleFriction:
+    """Springs from samples to their anchors, along the surface, that slip at a limit (elastic Coulomb friction).
+
+    Positions are in the frame of the obstacle, so anchors move with it. During a minimization normals and limits are
+    fixed: then the springs have a potential, Huber's function of the displacement along the surface.
+    `with_corrected_history` updates limits and normals for the shape found; `slipped` moves the anchors.
+
+    Attributes:
+        friction: Coulomb's coefficient mu.
+        springs: stiffness of each sample [N/m].
+        anchors: where each sample sticks [m].
+        normals: of the surface at each sample.
+        limits: the largest force along the surface, mu x normal force [N].
+        trail: limits tried before and what each asked for, the last ones.
+        share: of the way to what is asked that a correction goes; less where corrections do not bring it nearer.
+        missed: force [N] by which the last correction was off.
+    """
+
+    friction: float
+    springs: Vector
+    anchors: Points
+    normals: Points
+    limits: Vector
+    trail: tuple[tuple[Vector, Vector], ...] = ()
+    share: float = 1.0
+    missed: float = np.inf
+
+    @classmethod
+    def at_rest(cls, friction: float, springs: Vector, places: Points) -> "ObstacleFriction":
+        """Nothing pushes yet: anchors are where the samples are [m]."""
+        return cls(
+            friction=friction,
+            springs=springs,
+            anchors=places,
+            normals=np.zeros_like(places),
+            limits=np.zeros(len(places)),
+        )
+
+    def only(self, some: np.ndarray) -> "ObstacleFriction":
+        """The springs of some samples."""
+        parts = (self.springs, self.anchors, self.normals, self.limits)
+        springs, anchors, normals, limits = (part[some] for part in parts)
+        return ObstacleFriction(
+            friction=self.friction, springs=springs, anchors=anchors, normals=normals, limits=limits
+        )
+
+    def ways(self, places: Points) -> tuple[Points, Vector]:
+        """How far each sample is from its anchor along the surface [m], and the length of it."""
+        spans = places - self.anchors
+        spans = spans - (spans * self.normals).sum(axis=1)[:, None] * self.normals
+        return spans, np.linalg.norm(spans, axis=1)
+
+    def energy(self, places: Points) -> float:
+        """Energy of all springs [J]."""
+        lengths, limits = self.ways(places)[1], self.limits
+        sticks = self.springs * lengths <= limits
+        slipping = limits * lengths - 0.5 * limits**2 / self.springs
+        return float(np.where(sticks, 0.5 * self.springs * lengths**2, slipping).sum())
+
+    def forces(self, places: Points) -> Points:
+        """Slope of the energy by the place of each sample [N]."""
+        spans, lengths = self.ways(places)
+        return self._secants(lengths)[:, None] * spans
+
+    def stiffness(self, places: Points) -> Squares:
+        """Second derivative of the energy [N/m]; never negative."""
+        spans, lengths = self.ways(places)
+        secants = self._secants(lengths)
+        across = np.eye(places.shape[1]) - self.normals[:, :, None] * self.normals[:, None, :]
+        slips = self.springs * lengths > self.limits
+        if places.shape[1] == 2:
+            return np.where(slips, 0.0, secants)[:, None, None] * across
+        units = spans / np.where(slips, lengths, 1.0)[:, None]
+        along = np.where(slips, secants, 0.0)[:, None, None] * (units[:, :, None] * units[:, None, :])
+        return secants[:, None, None] * across - along
+
+    def asked(self, pushes: Vector, normals: Points) -> "ObstacleFriction":
+        """The same with the limits and normals that these normal forces [N] ask for."""
+        return replace(self, limits=self.friction * pushes, normals=normals, trail=(), share=1.0, missed=np.inf)
+
+    def with_corrected_history(self, pushes: Vector, normals: Points) -> "ObstacleFriction":
+        """Limits nearer to what a shape asks for that was found with these (Anderson's acceleration)."""
+        wanted = self.friction * pushes
+        return replace(self, limits=self.limits + self.share * (wanted - self.limits), normals=normals)
+
+    def slipping(self, places: Points) -> Bool[np.ndarray, " samples"]:
+        """Which samples are at their limit."""
+        return (self.limits > 0) & (self.springs * self.ways(places)[1] >= (1.0 - _HAIR) * self.limits)
+
+    def directions(self, places: Points) -> Points:
+        """Unit vectors along the ways from the anchors."""
+        spans, lengths = self.ways(places)
+        return spans / np.where(lengths > 0, lengths, 1.0)[:, None]
+
+    def stepped(
+        self,
+        pushes: Vector,
+        normals: Points,
+        slips: Int[np.ndarray, " slipping"],
+        moves: Float[np.ndarray, "slipping slipping"],
+    ) -> "ObstacleFriction":
+        """Limits and normals that are asked for, those of the slipping samples by a step of Newton's method.
+
+        Args:
+            pushes: normal forces at these limits [N].
+            normals: of the surface.
+            slips: the samples that slip.
+            moves: how what is asked of these changes with their limits.
+        """
+        wanted = self.friction * pushes
+        limits = self.limits + self.share * (wanted - self.limits)
+        step = np.linalg.solve(np.eye(len(slips)) - self.share * moves, self.share * (wanted - self.limits)[slips])
+        limits[slips] = np.clip(self.limits[slips] + step, 0.0, _MOST * np.maximum(self.limits, wanted)[slips])
+        return replace(self, limits=limits, normals=normals, trail=())
+
+    def judged(self, missed: float) -> "ObstacleFriction":
+        """The same after a correction that is off by so much [N]: with more care if that is no less than before."""
+        share = max(0.5 * self.share, _LEAST) if missed > _FALLS * self.missed else min(2.0 * self.share, 1.0)
+        return replace(self, share=share, missed=missed)
+
+    def slipped(self, places: Points) -> "ObstacleFriction":
+        """The same with anchors that were dragged along to where the springs pull no harder than the limits."""
+        spans, lengths = self.ways(places)
+        held = np.where(self.limits > 0, self._secants(lengths) / self.springs, 0.0)
+        return replace(self, anchors=places - held[:, None] * spans, trail=())
+
+    def _secants(self, lengths: Vector) -> Vector:
+        slips = self.springs * lengths > self.limits
+        return np.where(slips, self.limits / np.where(slips, lengths, 1.0), self.springs)
+
+
+_HAIR = 1e-9
+"""Nearer to its limit than this share a sample slips."""
+
+_MOST = 4.0
+"""No step makes a limit so many times larger than what was asked."""
+
+_FALLS = 0.8
+"""A correction that leaves more than this share of what was off was too long."""
+
+_LEAST = 1 / 32
+"""No correction goes less than this share of its way."""
+
+_KEPT = 6
+"""So many limits tried before are remembered."""

@@ -1,0 +1,126 @@
+"""`Branch`: the equilibria that hang together while contractions go from one place to another."""
+
+# Of the thesis (docs/thesis.md): E20
+
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import pairwise
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.simulation.equilibrium import Equilibrium
+from hydrostat.units import plural
+
+
+class BranchReason(StrEnum):
+    """Why a branch was followed no further."""
+
+    ARRIVED = "the goal is reached"
+    FOLD = "the branch turns back: here the robot snaps"
+    BIFURCATION = "the branch splits: here the robot buckles to one side"
+    BACK = "the branch leads back to the contractions it began with"
+    STEP_LIMIT = "step limit reached"
+    STUCK = "no step is small enough to stay on the branch"
+
+
+class CriticalKind(StrEnum):
+    """What happens where the Hessian is singular."""
+
+    FOLD = "fold"
+    BIFURCATION = "bifurcation"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BranchPoint:
+    """An equilibrium on a branch.
+
+    Attributes:
+        share: of the way from the first contractions to the goal, 0 to 1.
+        pose: the equilibrium; `pose.result.stable` tells a minimum of the energy from a saddle.
+    """
+
+    share: float
+    pose: Equilibrium
+
+    @property
+    def stable(self) -> bool:
+        """Whether the full Hessian is positive definite."""
+        return self.pose.result.stable
+
+
+@dataclass(frozen=True, kw_only=True)
+class CriticalPoint:
+    """Where the Hessian on a branch is singular.
+
+    Attributes:
+        kind: a fold, where the contractions turn back, or a bifurcation, where other branches meet this one.
+        share: of the way from the first contractions to the goal.
+        index: of this place in the points of the branch.
+    """
+
+    kind: CriticalKind
+    share: float
+    index: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Branch:
+    """Equilibria along a straight line of contractions.
+
+    Attributes:
+        begin: contractions where it begins [m].
+        goal: contractions it was followed to [m].
+        points: its equilibria, in order along the branch.
+        critical: its folds and bifurcations, in the same order.
+        reason: why it ends.
+    """
+
+    begin: Vector
+    goal: Vector
+    points: tuple[BranchPoint, ...]
+    critical: tuple[CriticalPoint, ...]
+    reason: BranchReason
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        return f"<Branch of {plural(len(self.points), 'pose')}: {self.reason}>"
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it leads to the goal."""
+        return self.reason is BranchReason.ARRIVED
+
+    @property
+    def end(self) -> Equilibrium:
+        """Its last equilibrium."""
+        return self.points[-1].pose
+
+    @property
+    def folds(self) -> tuple[float, ...]:
+        """Shares of the way at which the branch turns back."""
+        return tuple(point.share for point in self.critical if point.kind is CriticalKind.FOLD)
+
+    def runs(self) -> list[tuple[slice, bool]]:
+        """Its parts from one critical point to the next, these included, and whether each is stable."""
+        cuts = sorted({0, *(point.index for point in self.critical), len(self.points) - 1})
+        parts = [slice(first, last + 1) for first, last in pairwise(cuts)]
+        return [(part, self._stable(part)) for part in parts]
+
+    def _stable(self, part: slice) -> bool:
+        """Stability of a part, judged at its middle: at its ends the Hessian is singular."""
+        inner = self.points[part][1:-1]
+        if not inner:
+            return all(point.stable for point in self.points[part])
+        return inner[len(inner) // 2].stable
+
+    def lines(self) -> list[str]:
+        """A plain report."""
+        unstable = sum(not point.stable for point in self.points)
+        told = f"{len(self.points)} equilibria" + (f", {unstable} of them unstable" if unstable else ", all stable")
+        lines = [f"{self.reason} at {100 * self.points[-1].share:.1f} % of the way ({told})"]
+        for point in self.critical:
+            taken = self.begin + point.share * (self.goal - self.begin)
+            where = ", ".join(f"{1e3 * value:.2f}" for value in np.round(taken, 9) + 0.0)
+            lines.append(f"{point.kind} at {100 * point.share:.2f} % of the way (contractions {where} mm)")
+        return lines

@@ -1,0 +1,186 @@
+"""`find_equilibria`: whether contractions alone decide the pose, or also the loading path (E20)."""
+
+# Of the thesis (docs/thesis.md): E20
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.given import check_type
+from hydrostat.simulation.branches.loading_paths import Approach, follow_approach, loading_paths_to
+from hydrostat.simulation.equilibrium import Equilibrium, largest_distance
+from hydrostat.simulation.simulation import Contractions, Simulation
+from hydrostat.units import plural
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FoundPose:
+    """An equilibrium, and the ways that led to it.
+
+    Attributes:
+        pose: a minimum of the energy; its markers are where they then are.
+        ways: in words, one for each start that ended there.
+    """
+
+    pose: Equilibrium
+    ways: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Multistability:
+    """Where a robot comes to rest at the same contractions after different ways there.
+
+    Attributes:
+        contractions: of all the poses [m].
+        poses: those that differ, that of least energy first.
+        lost: ways on which no equilibrium was found, or none that is stable, in words.
+        spread: largest distance of each marker between two of the poses [m].
+        node_spread: largest distance of any node between two of the poses [m].
+        near: poses whose nodes are all within this distance are one [m].
+        friction: whether cables rub, so that the way matters by nature.
+    """
+
+    contractions: Vector
+    poses: tuple[FoundPose, ...]
+    lost: tuple[str, ...]
+    spread: dict[str, float]
+    node_spread: float
+    near: float
+    friction: bool
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        return f"<Multistability: {plural(len(self.poses), 'pose')} after {plural(self.starts, 'start')}>"
+
+    @property
+    def unique(self) -> bool:
+        """Whether all starts led to one pose: the contractions alone decide."""
+        return len(self.poses) == 1
+
+    @property
+    def starts(self) -> int:
+        """How many starts led to a pose."""
+        return sum(len(found.ways) for found in self.poses)
+
+    @property
+    def largest(self) -> tuple[str, float]:
+        """The marker that differs most, and by how much [m]; "a node" where there are no markers."""
+        if not self.spread:
+            return "a node", self.node_spread
+        return max(self.spread.items(), key=lambda item: item[1])
+
+    def lines(self) -> list[str]:
+        """A plain report."""
+        starts = plural(self.starts, "start")
+        if not self.poses:
+            lines = ["no pose found"]
+        elif self.unique:
+            lines = [f"one pose from {starts}: the contractions alone decide"]
+        else:
+            where, far = self.largest
+            lines = [f"{len(self.poses)} poses from {starts}, up to {1e3 * far:.3g} mm apart at {where}"]
+            if self.friction:
+                lines.append("cables rub, so the way there matters by nature")
+            lines += [self._line(number, found) for number, found in enumerate(self.poses, 1)]
+        if self.lost:
+            lines.append(f"{plural(len(self.lost), 'start')} led to no stable pose: {_told(self.lost)}")
+        return lines
+
+    def _line(self, number: int, found: FoundPose) -> str:
+        return (
+            f"pose {number}: energy {found.pose.energy:.4g} J, from {len(found.ways)} of {self.starts}: "
+            f"{_told(found.ways)}"
+        )
+
+
+def find_equilibria(
+    simulation: Simulation,
+    contractions: Contractions,
+    *,
+    count: int = 16,
+    seed: int = 0,
+    tolerance: float = 1e-4,
+    progress: Callable[[str, int, int], None] | None = None,
+) -> Multistability:
+    """Solve the same contractions from different starts, and tell the poses found apart.
+
+    The paths are those of `loading_paths_to`. One pose is no proof of uniqueness: it is the result of these paths only.
+
+    Args:
+        simulation: the robot's physics.
+        contractions: at the end of every way [m].
+        count: how many ways.
+        seed: of the random ones.
+        tolerance: poses whose nodes are all within this share of the body's size are one.
+        progress: told the stage, how many ways are done, and how many there are.
+
+    Raises:
+        InputError: contractions that do not fit the robot, or no ways.
+    """
+    goal = simulation.as_contractions(contractions)
+    check_type(count, int, "count must be a whole number of at least 1")
+    if count < 1:
+        raise InputError(f"count must be at least 1, not {count}; 16 are enough for most robots")
+    if not tolerance > 0:
+        raise InputError(f"tolerance must be above 0, not {tolerance:g}; it is a share of the body's size")
+    groups: list[tuple[Equilibrium, list[str]]] = []
+    lost: list[str] = []
+    near = tolerance * simulation.robot.body.mesh.size
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError(f"seed must be a whole number of 0 or more, not {seed!r}")
+    ways = loading_paths_to(simulation, goal, count, seed)
+    for done, way in enumerate(ways, 1):
+        _sort(follow_approach(simulation, way), way, goal, groups, lost, near)
+        if progress is not None:
+            progress("trying ways", done, len(ways))
+    groups.sort(key=lambda group: group[0].energy)
+    poses = tuple(FoundPose(pose=pose, ways=tuple(names)) for pose, names in groups)
+    return Multistability(
+        contractions=goal,
+        poses=poses,
+        lost=tuple(lost),
+        spread=_marker_spread(simulation, poses),
+        node_spread=max((largest_distance(a.pose.nodes, b.pose.nodes) for a, b in combinations(poses, 2)), default=0.0),
+        near=near,
+        friction=simulation.friction is not None,
+    )
+
+
+def _sort(
+    pose: Equilibrium,
+    way: Approach,
+    goal: Vector,
+    groups: list[tuple[Equilibrium, list[str]]],
+    lost: list[str],
+    near: float,
+) -> None:
+    """Add a pose to those that are the same, or as a new one."""
+    if not (pose.result.converged and pose.result.stable and (pose.contractions == goal).all()):
+        lost.append(way.name)
+        return
+    for known, names in groups:
+        if largest_distance(known.nodes, pose.nodes) <= near:
+            names.append(way.name)
+            return
+    groups.append((pose.without_factors(), [way.name]))
+
+
+def _marker_spread(simulation: Simulation, poses: tuple[FoundPose, ...]) -> dict[str, float]:
+    """Largest distance of each marker between two of the poses [m]."""
+    spread = {}
+    for marker in simulation.robot.markers:
+        places = [found.pose.markers[marker.name] for found in poses]
+        gaps = [float(np.linalg.norm(a - b)) for a, b in combinations(places, 2)]
+        spread[marker.name] = max(gaps, default=0.0)
+    return spread
+
+
+def _told(ways: tuple[str, ...]) -> str:
+    """Ways in words, each once, with how often."""
+    kinds = Counter(name.partition(":")[0] for name in ways)
+    return ", ".join(name if times == 1 else f"{name} ({times} times)" for name, times in kinds.items())

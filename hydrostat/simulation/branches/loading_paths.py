@@ -1,0 +1,168 @@
+"""`loading_paths_to`: different loading paths that bring a robot to the same contractions (E20)."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import chain, islice, permutations
+from math import ceil, factorial
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.robot import Robot
+from hydrostat.simulation.equilibrium import Equilibrium
+from hydrostat.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Approach:
+    """Loading path that brings a robot to its contractions.
+
+    Attributes:
+        name: in words.
+        stops: contractions on the way [m], the goal last.
+        at_once: go to the first stop by one solve from rest, rather than in small steps.
+        push: force on each node [N] that pushes the robot aside at the goal, before it is let go; None for no push.
+        reach: how far the push moves it, as a share of the body's size.
+    """
+
+    name: str
+    stops: tuple[Vector, ...]
+    at_once: bool = False
+    push: Nodes | None = None
+    reach: float = 0.0
+
+
+def loading_paths_to(simulation: Simulation, goal: Vector, count: int, seed: int) -> list[Approach]:
+    """Loading paths to contractions `goal` [m], so many, the plain ones first.
+
+    From rest at once, all winches together, back from full travel, and from full release where there is any; then in
+    turn: one winch after the other, pushed aside and let go, from other contractions. Orders and pushes that are drawn
+    come from `seed`.
+    """
+    robot = simulation.robot
+    low, high = _range(robot)
+    plain = [
+        Approach(name="from rest at once", stops=(goal,), at_once=True),
+        Approach(name="from rest, all winches together", stops=(goal,)),
+        Approach(name="back from full travel", stops=(high, goal)),
+    ]
+    if low.any():
+        plain.append(Approach(name="back from full release", stops=(low, goal)))
+    random = np.random.default_rng(seed)
+    kinds = [_orders(robot, goal, random), _pushes(simulation, goal, random), _elsewhere(robot, goal, random)]
+    return list(islice(chain(plain, _in_turn(kinds)), count))
+
+
+def follow_approach(simulation: Simulation, way: Approach) -> Equilibrium:
+    """The pose at the end of a way; not converged where no equilibrium was found on it."""
+    idle = np.zeros(len(simulation.robot.winches))
+    first, *others = way.stops
+    if way.at_once:
+        pose = simulation.solve(first, strict=False)
+    else:
+        pose = _in_steps(simulation, simulation.solve(idle, strict=False), first)
+    for stop in others:
+        pose = _in_steps(simulation, pose, stop)
+    return pose if way.push is None else _let_go(simulation, pose, way.push, way.reach)
+
+
+def _range(robot: Robot) -> tuple[Vector, Vector]:
+    """Least and largest contraction of each winch [m]."""
+    low = np.array([-winch.release for winch in robot.winches])
+    return low, np.array([winch.travel for winch in robot.winches])
+
+
+def _in_turn(kinds: list[Iterator[Approach]]) -> Iterator[Approach]:
+    """One of each kind, again and again, until none is left."""
+    while kinds:
+        for kind in tuple(kinds):
+            found = next(kind, None)
+            if found is None:
+                kinds.remove(kind)
+            else:
+                yield found
+
+
+def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
+    """The winches that move, one after the other: in all orders if they are few, else in random ones."""
+    moved = [int(winch) for winch in np.flatnonzero(goal)]
+    if len(moved) < 2:
+        return
+    few = factorial(len(moved)) <= _MOST_ORDERS
+    orders = list(permutations(moved)) if few else [tuple(random.permutation(moved)) for _ in range(_MOST_ORDERS)]
+    for order in orders:
+        stops, now = [], np.zeros_like(goal)
+        for winch in order:
+            now = now.copy()
+            now[winch] = goal[winch]
+            stops.append(now)
+        names = ", ".join(robot.winches[winch].name for winch in order)
+        yield Approach(name=f"one winch after the other: {names}", stops=tuple(stops))
+
+
+def _pushes(simulation: Simulation, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
+    """Pushed like its own weight would push it, one way and the opposite, and let go."""
+    masses = simulation.body.masses[:, None]
+    while True:
+        direction = random.standard_normal(simulation.robot.body.mesh.dim)
+        reach = float(random.uniform(*_REACHES))
+        for sign in (1.0, -1.0):
+            yield Approach(name="pushed aside and let go", stops=(goal,), push=sign * masses * direction, reach=reach)
+
+
+def _elsewhere(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
+    """From contractions anywhere in the range of the winches."""
+    low, high = _range(robot)
+    while True:
+        yield Approach(name="from other contractions", stops=(random.uniform(low, high), goal), at_once=True)
+
+
+def _in_steps(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Equilibrium:
+    """From pose to pose in even steps of a small part of a winch's range; no further than it converges."""
+    low, high = _range(simulation.robot)
+    begin = pose.contractions
+    steps = ceil(float((np.abs(goal - begin) / (high - low)).max(initial=0.0)) / _STEP - 1e-9)
+    steps = min(max(1, steps), _MOST_STEPS)
+    for step in range(1, steps + 1):
+        if not pose.result.converged:
+            break
+        target = goal if step == steps else begin + (goal - begin) * (step / steps)
+        pose = simulation.solve(target, start=pose, strict=False)
+    return pose
+
+
+def _let_go(simulation: Simulation, pose: Equilibrium, push: Nodes, reach: float) -> Equilibrium:
+    """Where a pose comes to rest after a push at fixed contractions."""
+    stiffness = simulation.stiffness(pose)
+    if not pose.result.converged or stiffness.singular:
+        return pose
+    robot = simulation.robot
+    step = stiffness.solve(push.ravel()).reshape(push.shape)
+    step *= reach * robot.body.mesh.size / np.linalg.norm(step, axis=1).max()
+    pushed = _pushed(simulation, pose, step)
+    return simulation.solve(pose.contractions, start=replace(pose, nodes=pushed), strict=False)
+
+
+def _pushed(simulation: Simulation, pose: Equilibrium, step: Nodes) -> Nodes:
+    """Nodes moved by a step along arcs; by less where an element would be inverted."""
+    for _ in range(_HALVINGS):
+        nodes = simulation.body.warp(pose.nodes, step)
+        if np.isfinite(simulation.assembly.with_active_terms(nodes).value(nodes, pose.contractions)):
+            return nodes
+        step = 0.5 * step
+    return pose.nodes
+
+
+_MOST_ORDERS = 24
+"""With more orders than these, random ones are drawn."""
+
+_REACHES = (0.1, 0.4)
+"""Least and largest reach of a push."""
+
+_STEP = 0.1
+"""Largest step on a way, as a share of a winch's travel and release together."""
+
+_MOST_STEPS = 100
+"""More steps are not taken, however far beyond its range a winch goes; they are longer then."""
+
+_HALVINGS = 12

@@ -1,0 +1,225 @@
+"""`ContractionProfile`: contractions in time; `ProfileTable`: the one table that holds them, written and read."""
+
+import csv
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from io import StringIO
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.geometry import read_stranger
+from hydrostat.robot import Robot, replace_file
+from hydrostat.simulation.equilibrium import contraction_values
+from hydrostat.units import quote
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContractionProfile:
+    """Contractions of the winches at given times; in between along a line, or gently: at rest at each given time.
+
+    Before the first time and after the last the contractions stand still.
+
+    Attributes:
+        times: rising [s].
+        values: contractions at these times [m], a row a time, in winch order.
+        gentle: 3 s^2 - 2 s^3 in place of a line.
+
+    Raises:
+        InputError: times that do not rise, numbers that are not finite, or rows that are not one for each time.
+    """
+
+    times: Vector
+    values: Float[np.ndarray, "rows winches"] = field(repr=False)
+    gentle: bool = False
+
+    def __post_init__(self) -> None:
+        try:
+            times, values = np.array(self.times, dtype=float), np.array(self.values, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError("a profile needs times [s], and contractions [m] as a row for each of them") from None
+        if times.ndim != 1 or values.ndim != 2:
+            raise InputError(f"a profile needs times and a row for each, not arrays of {times.shape}, {values.shape}")
+        object.__setattr__(self, "times", times)
+        object.__setattr__(self, "values", values)
+        if len(self.times) == 0 or len(self.values) != len(self.times):
+            raise InputError(f"a profile needs contractions for each time: {len(self.values)} for {len(self.times)}")
+        if not (np.isfinite(self.times).all() and np.isfinite(self.values).all()):
+            raise InputError("a profile has a number that is not finite")
+        if (np.diff(self.times) <= 0).any():
+            raise InputError("the times of a profile must rise from row to row")
+
+    @classmethod
+    def ramp(cls, contractions: Vector, seconds: float) -> Self:
+        """Gently from rest to the contractions [m] within some time [s]."""
+        return cls(times=np.array([0.0, seconds]), values=np.array([0 * contractions, contractions]), gentle=True)
+
+    def at(self, time: float) -> Vector:
+        """Contractions at a time [s]."""
+        place = int(np.clip(np.searchsorted(self.times, time) - 1, 0, max(len(self.times) - 2, 0)))
+        if len(self.times) == 1:
+            return self.values[0]
+        share = float(np.clip((time - self.times[place]) / (self.times[place + 1] - self.times[place]), 0.0, 1.0))
+        if self.gentle:
+            share = share * share * (3 - 2 * share)
+        return (1 - share) * self.values[place] + share * self.values[place + 1]
+
+
+def check_profile(profile: object, robot: Robot) -> None:
+    """Check that a motion can be played by a profile (InputError: it is none, or one of another robot)."""
+    if not isinstance(profile, ContractionProfile):
+        raise InputError(
+            f"a motion is played by a Profile, such as Profile.ramp(simulation.contractions({{...}}), seconds), "
+            f"not by {profile!r:.60}"
+        )
+    values = profile.values
+    contraction_values(robot, values[0])
+    contraction_values(robot, values[np.abs(values).argmax(axis=0), np.arange(values.shape[1])])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ProfileTable:
+    """A CSV of moves: a column `time_s`, and in millimetres one for each winch that moves, `left_mm` or just `left`.
+
+    The studio, `hydrostat trajectory`, `hydrostat play` and `hydrostat simulate --play` write and read this table.
+
+    Attributes:
+        name: of its file.
+        profile: what it says, along lines from row to row.
+        lines: of the file, in which its rows stand.
+    """
+
+    name: str
+    profile: ContractionProfile
+    lines: tuple[int, ...] = field(repr=False)
+
+    @classmethod
+    def read(cls, content: bytes, robot: Robot, *, name: str) -> Self:
+        """Read the bytes of a file.
+
+        Args:
+            content: of the file.
+            robot: whose winches it names; those that it does not name take in nothing.
+            name: of the file, for messages.
+
+        Raises:
+            InputError: it is no such table; the text names the line, the column, and what is allowed.
+        """
+        try:
+            reader = csv.reader(StringIO(content.decode("utf-8-sig"), newline=""))
+            rows = [(reader.line_num, row) for row in reader]
+        except UnicodeDecodeError:
+            raise InputError(f"{name}: is no text in UTF-8; save it again as CSV in UTF-8") from None
+        except csv.Error as error:
+            raise InputError(f"{name}: cannot be read as a table ({error})") from None
+        names = [winch.name for winch in robot.winches]
+        head = [_column(cell.strip(), names) for cell in rows[0][1]] if rows else []
+        if TIME not in head or len(set(head)) != len(head):
+            other = next((said for mark, said in _MARKS.items() if rows and mark in ",".join(rows[0][1])), "")
+            raise InputError(f"{name}, line 1: name the columns: {TIME} and the winches, each once{other}")
+        for column in head:
+            if column not in (TIME, *names):
+                raise InputError(f'{name}, line 1: there is no winch "{column}"; winches are: {", ".join(names)}')
+        lines, times, values = [], [], []
+        for line, row in rows[1:]:
+            if any(cell.strip() for cell in row):
+                numbers = _numbers(f"{name}, line {line}", head, row)
+                if times and numbers[TIME] <= times[-1]:
+                    raise InputError(
+                        f"{name}, line {line}, column {TIME}: the times must rise from row to row; "
+                        f"{numbers[TIME]:g} comes after {times[-1]:g}"
+                    )
+                lines.append(line)
+                times.append(numbers[TIME])
+                values.append([1e-3 * numbers.get(winch, 0.0) for winch in names])
+        if not times:
+            raise InputError(f"{name}: has no row of numbers below the names of its columns")
+        profile = ContractionProfile(times=np.array(times), values=np.array(values).reshape(len(times), len(names)))
+        return cls(name=name, profile=profile, lines=tuple(lines))
+
+    @classmethod
+    def open(cls, path: Path, robot: Robot) -> Self:
+        """Read a file.
+
+        Raises:
+            InputError: it cannot be read, or see `read`.
+        """
+        return cls.read(read_stranger(path, most=_MOST), robot, name=str(path))
+
+    def place(self, row: int) -> str:
+        """File and line of a row, for messages."""
+        return f"{self.name}, line {self.lines[row]}"
+
+
+def _column(head: str, winches: Sequence[str]) -> str:
+    """The winch that a column is of, if it is of one; else its head."""
+    bare = head.removesuffix(MILLIMETRES)
+    return bare if head not in winches and bare in winches else head
+
+
+def profile_text(robot: Robot, profile: ContractionProfile) -> bytes:
+    """The bytes of a `ProfileTable` of a profile; a gentle one loses that."""
+    rows = zip(profile.times, 1e3 * profile.values + 0.0, strict=True)
+    return csv_text(
+        [TIME, *(f"{winch.name}{MILLIMETRES}" for winch in robot.winches)],
+        ([f"{time:.15g}", *(f"{value:.9g}" for value in row)] for time, row in rows),
+    )
+
+
+def read_profile(path: Path, robot: Robot) -> ContractionProfile:
+    """A profile from a `ProfileTable`.
+
+    Raises:
+        InputError: the file cannot be read, or is no such table; the text names the line.
+    """
+    return ProfileTable.open(path, robot).profile
+
+
+def write_profile(path: Path, robot: Robot, profile: ContractionProfile) -> Path:
+    """Write a profile as `read_profile` reads it, whole or not at all; returns its path. A gentle one loses that."""
+    return replace_file(path, profile_text(robot, profile))
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Iterable[str]]) -> bytes:
+    """A CSV in UTF-8, a line for the names of the columns and one for each row."""
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue().encode()
+
+
+def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, float]:
+    """The numbers of a row by the names of their columns."""
+    if len(row) != len(head):
+        raise InputError(f"{place}: write a number in each of the {len(head)} columns, not {len(row)} of them")
+    found = {}
+    for column, cell in zip(head, row, strict=True):
+        try:
+            found[column] = float(cell)
+        except ValueError:
+            found[column] = math.nan
+        if not math.isfinite(found[column]):
+            unit = "seconds" if column == TIME else "millimetres"
+            raise InputError(f"{place}, column {column}: write a number of {unit}, not {quote(cell.strip())}")
+    return found
+
+
+TIME = "time_s"
+MILLIMETRES = "_mm"  # ends the head of a column of contractions
+"""Name of the column of times [s]."""
+
+
+_MARKS = {
+    "{": "; this is JSON: hydrostat trajectory writes trajectory.csv",
+    ";": "; commas part them, not semicolons",
+    "\t": "; commas part them, not tabs",
+}
+
+_MOST = 50_000_000
+"""Bytes that a table of moves may have."""

@@ -1,0 +1,223 @@
+"""`Equilibrium`: a robot in quasi-static equilibrium under given contractions."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.geometry import Mesh, find_crossings
+from hydrostat.mechanics import NewtonResult
+from hydrostat.painters import draw_record
+from hydrostat.robot import Robot, html_repr
+from hydrostat.simulation.strain import node_strains, node_stresses
+from hydrostat.units import plural
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Contractions = Mapping[str, float] | Sequence[float] | Vector
+"""Cable taken in [m]: by the name of a winch (others 0), or numbers in winch order."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Equilibrium:
+    """An equilibrium.
+
+    Attributes:
+        contractions: cable taken in by each winch [m], in winch order.
+        nodes: positions of the nodes [m].
+        markers: position of each marker [m].
+        tensions: of each cable [N], in cable order.
+        energy: total energy [J].
+        result: how the solver ended: reason, residual [N], iterations, stability; and the factorised Hessian there.
+        history: what the physics remember of the way there: how much cable has slipped over each point with friction
+            until now, where obstacles with friction hold the skin [m]; empty without friction.
+        robot: whose pose it is.
+        carried: unknowns of obstacles that move [m]: place and axes of each; empty if none does.
+    """
+
+    contractions: Vector
+    nodes: Nodes
+    markers: Mapping[str, Vector]
+    tensions: Vector
+    energy: float
+    result: NewtonResult
+    history: Vector = field(default_factory=lambda: np.zeros(0))
+    carried: Points | None = None
+    robot: Robot
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is to be minded of it, in words: winches beyond travel or release, a body that passes through itself.
+
+        Also that it is no equilibrium, or a saddle, or buckled on the way there; empty where all is well.
+        """
+        told = []
+        if not self.result.converged:
+            told.append(f"no equilibrium: {self.result.reason}")
+        told += beyond_travel(self.robot, self.contractions)
+        if self.result.buckled:
+            told.append("the body buckled on the way; it could as well have gone to another side")
+        if self.result.converged and not self.result.stable:
+            told.append("the body is at rest on a saddle; the least push would make it leave")
+        return (*told, *filter(None, [str(find_crossings(self.robot.body.mesh, self.nodes))]))
+
+    @property
+    def strains(self) -> Vector:
+        """Largest principal stretch at each node less 1, (nodes,); see `node_strains`."""
+        return node_strains(self.robot, self.nodes)
+
+    @property
+    def stresses(self) -> Vector:
+        """Von Mises stress at each node [Pa], (nodes,); see `node_stresses`."""
+        return node_stresses(self.robot, self.nodes)
+
+    def plot(self, **options: Any) -> "Figure":
+        """Draw it over the ghost of the rest shape, as a Matplotlib figure.
+
+        Args:
+            options: `title`, `note` and `width` of `hydrostat.plot.draw_pose`.
+        """
+        return draw_record("pose", self.robot, self, **options)
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        taken = [
+            f"{winch.name} {1e3 * value:.4g} mm"
+            for winch, value in zip(self.robot.winches, self.contractions, strict=True)
+            if value
+        ]
+        pulls = f", tensions up to {self.tensions.max():.3g} N" if len(self.tensions) else ""
+        contractions = ", ".join(taken) or "no contractions"
+        return f"<Equilibrium of {self.robot.name!r}: {contractions}{pulls}; {self.result.reason}>"
+
+    def _repr_html_(self) -> str:
+        """The line, what is to be minded, and a picture, for a notebook."""
+        return html_repr("\n".join([repr(self), *self.warnings]), self.plot())
+
+    @property
+    def unknowns(self) -> Nodes:
+        """All that energies are functions of [m]: the nodes, then the rows of obstacles that move."""
+        return self.nodes if self.carried is None else np.concatenate([self.nodes, self.carried])
+
+    @property
+    def is_unmodified(self) -> bool:
+        """Whether its nodes are the very ones that the solver found."""
+        return self.result.nodes is (self.nodes if self.carried is None else self.nodes.base)
+
+    def without_factors(self) -> "Equilibrium":
+        """Pose without its factorised Hessian, to be kept with many others: that takes megabytes."""
+        return replace(self, result=replace(self.result, stiffness=None))
+
+
+def beyond_travel(robot: Robot, contractions: Vector) -> list[str]:
+    """Winches that would take in more than they can, or let out more, in words; empty where none does."""
+    return [
+        f"winch {winch.name} can take in from {0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
+        f"{1e3 * value:.4g} mm is beyond it"
+        for winch, value in zip(robot.winches, contractions, strict=True)
+        if not -winch.release - _HAIR <= value <= winch.travel + _HAIR
+    ]
+
+
+_HAIR = 1e-9
+"""What rounding may add to a contraction [m]."""
+
+
+def largest_distance(one: Nodes, other: Nodes) -> float:
+    """Largest distance of a node between two poses [m]."""
+    return float(np.linalg.norm(one - other, axis=1).max())
+
+
+def check_apart(mesh: Mesh, nodes: Nodes) -> None:
+    """Check that a body whose parts cannot pass through each other does not do so where a solve is to begin.
+
+    Raises:
+        InputError: it does; with a place.
+    """
+    if words := str(find_crossings(mesh, nodes)):
+        raise InputError(f"no solve can begin there: {words.partition(':')[0]}")
+
+
+def check_pose(
+    pose: object, shape: tuple[int, ...], winches: int, history: Vector | None = None, *, what: str = "start"
+) -> None:
+    """Check that a pose is one of a robot, such as one that a solve can begin from.
+
+    Args:
+        pose: what was given.
+        shape: of the robot's nodes.
+        winches: their number.
+        history: of physics that remember the way there; None if none do.
+        what: the pose is for, in messages.
+
+    Raises:
+        InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.
+    """
+    if not isinstance(pose, Equilibrium):
+        kind = type(pose).__name__
+        raise InputError(f"{what} must be a solved pose, from `simulation.solve` or a result's `.pose`, not {kind}")
+    if not (pose.nodes.shape == shape and np.isfinite(pose.nodes).all()):
+        raise InputError(f"{what} must be a pose of this robot with finite nodes, {shape}, not {pose.nodes.shape}")
+    given = len(pose.contractions)
+    if given != winches:
+        raise InputError(f"{what} has {given} contractions, the robot {winches} winches")
+    if history is not None and len(pose.history) != len(history):
+        raise InputError(
+            f"{what} must be a pose of these physics, which remember the way, such as slips of cables with friction: "
+            f"{len(history)} numbers, not {len(pose.history)}"
+        )
+
+
+def contraction_values(robot: Robot, given: Contractions) -> Vector:
+    """Contractions as an array in winch order [m].
+
+    Raises:
+        InputError: an unknown winch, a wrong number of values, or a value that is not finite.
+    """
+    winches, wanted = robot.winches, given
+    if isinstance(given, Mapping):
+        for name in given:
+            robot.winch(name)
+        wanted = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
+    try:
+        values = np.array(wanted, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"contractions must be numbers [m], not {given!r}") from None
+    if values.ndim > 1:
+        raise InputError(
+            f"contractions must be one number for each of {len(winches)} winches, not an array of {values.shape}; "
+            "solve_many takes a row for each pose"
+        )
+    names = ", ".join(winch.name for winch in winches)
+    if values.ndim == 0:
+        raise InputError(f"contractions must be given by winch, or a number for each of {names}, not {given!r:.60}")
+    if values.shape != (len(winches),):
+        raise InputError(f"{values.size} contractions given for {plural(len(winches), 'winch')}: {names}")
+    if not np.isfinite(values).all():
+        raise InputError("a contraction is not a finite number")
+    _check_metres(robot, values)
+    return values
+
+
+def _check_metres(robot: Robot, contractions: Vector) -> None:
+    """Refuse what no winch could do, as where millimetres were given."""
+    size = robot.body.mesh.size
+    if np.abs(contractions).max(initial=0.0) <= _MOST * size:  # no winch has a lower limit
+        return
+    bare = {winch.name: 0.0 for winch in robot.winches}
+    for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
+        bare[cable.winch] = max(bare[cable.winch], cable.length / float(ratio))
+    for winch, value in zip(robot.winches, contractions, strict=True):
+        if abs(value) > _MOST * (size + bare[winch.name]):
+            raise InputError(
+                f'the contraction of winch "{winch.name}", {value:g} m, is far more than the body, {size:.3g} m, and '
+                "all of its cable; contractions are in metres: 12 mm is 0.012"
+            )
+
+
+_MOST = 3.0
+"""A winch moves at most so many lengths of body and cable together."""

@@ -1,0 +1,101 @@
+"""`find_contacts`: where a pose touches itself and obstacles, and with what force."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.mechanics import ContactForces, Stencils
+from hydrostat.simulation.equilibrium import Equilibrium, check_pose
+from hydrostat.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactPatch:
+    """A patch of the body's skin that touches an obstacle, or two of its patches that touch each other.
+
+    Attributes:
+        place: middle of the patch, weighted by force [m].
+        force: on the body there [N]; where the body touches itself on one of both sides, the other feels its opposite.
+        obstacle: name of what it touches; None: the body itself.
+    """
+
+    place: Vector
+    force: Vector
+    obstacle: str | None
+
+    @property
+    def strength(self) -> float:
+        """How hard it presses [N]."""
+        return float(np.linalg.norm(self.force))
+
+
+def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPatch, ...]:
+    """Find where a pose touches itself and obstacles, the hardest first; nothing where contact is off.
+
+    Pairs and samples that have a node in common are one patch. Forces on the body by an obstacle add up to what it
+    feels, friction included (`obstacle_forces` with the other sign); those of the body on itself are normal.
+
+    Args:
+        simulation: of the robot.
+        pose: an equilibrium of it.
+
+    Raises:
+        InputError: no pose of this robot.
+    """
+    check_pose(pose, simulation.robot.body.mesh.nodes.shape, len(simulation.robot.winches), what="the pose")
+    where = pose.unknowns
+    assembly = simulation.path.with_history(pose) if simulation.assembly.has_history else simulation.assembly
+    names = dict(zip(simulation.body.obstacles, (each.name for each in simulation.robot.obstacles), strict=True))
+    found = []
+    for slot, energy in enumerate(assembly.energies):
+        pressed = energy.contact_forces(where)
+        if pressed is not None:
+            found += [_touch(pressed, patch, names.get(slot)) for patch in _patches(pressed.stencils, len(where))]
+    return tuple(sorted(found, key=lambda touch: -touch.strength))
+
+
+def touch_words(found: Sequence[ContactPatch]) -> str:
+    """What touches what and how hard, in one sentence; empty where nothing touches."""
+    parts = []
+    for name in dict.fromkeys(touch.obstacle for touch in found):
+        own = [touch for touch in found if touch.obstacle == name]
+        if name is None:
+            places = "in one place" if len(own) == 1 else f"in {len(own)} places, the hardest"
+            parts.append(f"itself {places} with {_newtons(own[0].strength)}")
+        else:
+            total = np.linalg.norm(np.sum([touch.force for touch in own], axis=0))
+            parts.append(f"{name!r} with {_newtons(float(total))}")
+    return f"the body touches {', '.join(parts)}" if parts else ""
+
+
+def _newtons(force: float) -> str:
+    return f"{force:.2g} N" if force >= _LITTLE else f"less than {_LITTLE:g} N"
+
+
+def _patches(stencils: Stencils, count: int) -> Iterator[np.ndarray]:
+    """Stencils that hang together by their nodes, of so many."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    many = stencils.shape[1] - 1
+    links = np.repeat(stencils[:, 0], many), stencils[:, 1:].ravel()
+    graph = coo_array((np.ones(len(links[0])), links), shape=(count, count))
+    labels = connected_components(graph, directed=False)[1][stencils[:, 0]]
+    for label in np.unique(labels):
+        yield np.flatnonzero(labels == label)
+
+
+def _touch(pressed: ContactForces, patch: np.ndarray, obstacle: str | None) -> ContactPatch:
+    forces = pressed.forces[patch]
+    weights = np.linalg.norm(forces, axis=1)
+    if obstacle is None:  # which side of a pair is the first has no meaning
+        forces = np.where(forces @ forces[np.argmax(weights)] < 0, -1.0, 1.0)[:, None] * forces
+    return ContactPatch(
+        place=weights @ pressed.places[patch] / weights.sum(), force=forces.sum(axis=0), obstacle=obstacle
+    )
+
+
+_LITTLE = 0.001
+"""Force below which no figure is told [N]."""

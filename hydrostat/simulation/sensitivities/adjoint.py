@@ -1,0 +1,196 @@
+"""`sensitivity`: sensitivities of a number that depends on a pose to all that the robot is made of, by the adjoint."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
+from hydrostat.mechanics import Assembly, CableEnergy
+from hydrostat.robot import Material
+from hydrostat.simulation.body_physics import BodyPhysics
+from hydrostat.simulation.equilibrium import Equilibrium
+from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
+
+Response = Callable[[Float[np.ndarray, "dofs columns"]], Float[np.ndarray, "dofs columns"]]
+"""Solution of H u = forces at the pose."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sensitivity:
+    """Sensitivities: slopes of a number L of a pose, in units of L for each unit of what changes.
+
+    Attributes:
+        contractions: of each winch [1/m].
+        slack: of each cable [1/m].
+        routes: by the rest position of each point, of each cable [1/m]; both its place in the body and the rest
+            lengths beside it change. The first point of a cable of a winch in the world moves in space.
+        cable_stiffness: of each cable [m/N].
+        friction: by the coefficient mu of each cable that has some; 0 for the others.
+        pin_stiffness: of each pin [m/N].
+        young: Young's modulus [1/Pa].
+        poisson: Poisson's ratio [-].
+        density: by way of the weight; 0 without gravity [m^3/kg].
+        thickness: of a flat body [1/m]; None in space.
+    """
+
+    contractions: Vector
+    slack: Vector
+    routes: tuple[RouteSlopes, ...]
+    cable_stiffness: Vector
+    friction: Vector
+    pin_stiffness: Vector
+    young: float
+    poisson: float
+    density: float
+    thickness: float | None
+
+
+def sensitivity(
+    body: BodyPhysics,
+    assembly: Assembly,
+    cables: CableEnergy,
+    pose: Equilibrium,
+    *,
+    nodes: Nodes,
+    tensions: Vector | None,
+    points: RoutePoints,
+    response: Response,
+) -> Sensitivity:
+    """Slopes of L by the adjoint: H u = dL/dx, then dL/dtheta = -u . d2E/dx dtheta, for all theta with one solve.
+
+    A tension is T(s) with s = l(x) - l(X) + ratio a - slack: what is given by tensions adds dL/dT T' dl/dx to dL/dx,
+    and dL/dT dT/dtheta to the slopes.
+
+    Args:
+        body: that of the robot whose pose it is.
+        assembly: its energies.
+        cables: those of its cables.
+        pose: an equilibrium.
+        nodes: dL/dx at fixed tensions.
+        tensions: dL/dT of each cable; none if left out.
+        points: those of its cables.
+        response: solves with the full Hessian at the pose.
+
+    Raises:
+        InputError: no solved pose or one of another robot, or cotangents of a wrong shape or not finite.
+    """
+    nodes, tensions = cotangents(pose, assembly.shape, len(cables.winches), nodes, tensions)
+    assembly = assembly.with_active_terms(pose.nodes)
+    elongations = cables.elongations(pose.nodes, pose.contractions)
+    tangents, pulls = cables.law.tangent(elongations), cables.law.tension(elongations)
+    columns = cables.columns(pose.nodes)
+    right = nodes.ravel() + columns @ (tangents * tensions)
+    field = response(right[:, None])[:, 0]
+    taken = np.bincount(cables.winches, cables.ratios * tangents * tensions, assembly.control_count).astype(float)
+    by_controls = taken - assembly.control_derivative(pose.nodes, pose.contractions).T @ field
+    by_tension = tensions - columns.T @ field
+    by_elongation = tangents * by_tension
+    field = field.reshape(assembly.shape)
+    young, poisson, density, thickness, pins = by_body(body, pose, field)
+    return Sensitivity(
+        contractions=by_controls,
+        slack=-by_elongation,
+        routes=points.by_cable(by_routes(points, cables, pose.nodes, field[None], by_elongation[None], pulls)[0]),
+        cable_stiffness=by_tension * pulls / cables.law.stiffness,
+        friction=np.zeros(len(tensions)),
+        pin_stiffness=pins,
+        young=young,
+        poisson=poisson,
+        density=density,
+        thickness=thickness,
+    )
+
+
+def cotangents(
+    pose: Equilibrium, shape: tuple[int, ...], cables: int, nodes: Nodes, tensions: Vector | None
+) -> tuple[Nodes, Vector]:
+    """dL/dx and dL/dT as numbers, for a robot with nodes of this shape and so many cables.
+
+    Raises:
+        InputError: as for `sensitivity`.
+    """
+    if not isinstance(pose, Equilibrium):
+        raise InputError(f"an adjoint needs a Equilibrium, as solve() returns it, not a {type(pose).__name__}")
+    if pose.nodes.shape != shape or pose.tensions.shape != (cables,):
+        raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {shape}")
+    return _checked("nodes", nodes, shape), _checked(
+        "tensions", np.zeros(cables) if tensions is None else tensions, (cables,)
+    )
+
+
+def _checked(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    try:
+        values = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"the cotangent of {name} must be numbers of shape {shape}, not {given!r:.40}") from None
+    if values.shape != shape or not np.isfinite(values).all():
+        raise InputError(f"the cotangent of {name} must be finite numbers of shape {shape}, not of {values.shape}")
+    return values
+
+
+def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> tuple[float, float, float, float | None, Vector]:
+    """By Young's modulus, Poisson's ratio, density, thickness and the stiffness of pins."""
+    material = body.material
+    works: dict[str, Vector] = {}
+    for energy in body.assembly.energies:
+        for name, work in energy.parameter_work(pose.nodes, field).items():
+            works[name] = works[name] + work if name in works else work
+    shear, squeeze, load, whole = (float(works.get(name, np.zeros(1))[0]) for name in _BODY)
+    (mu_by_young, lame_by_young), (mu_by_poisson, lame_by_poisson) = _lame_slopes(material)
+    return (
+        -(mu_by_young * shear + lame_by_young * squeeze),
+        -(mu_by_poisson * shear + lame_by_poisson * squeeze),
+        -load / material.density,
+        None if body.thickness is None else -whole / body.thickness,
+        -works["support_stiffness"],
+    )
+
+
+_BODY = ("mu", "lame", "load", "thickness")
+"""Parameters of the body: see `Energy.parameter_work`."""
+
+
+def _lame_slopes(material: Material) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Slopes of mu and lambda by Young's modulus, and by Poisson's ratio [Pa]."""
+    young, poisson = material.young, material.poisson
+    mu, lame = material.lame
+    product = (1 + poisson) * (1 - 2 * poisson)
+    return (mu / young, lame / young), (-mu / (1 + poisson), young * (1 + 2 * poisson**2) / product**2)
+
+
+def by_routes(
+    points: RoutePoints,
+    cables: CableEnergy,
+    nodes: Nodes,
+    fields: Float[np.ndarray, "rows nodes dim"],
+    by_elongation: Float[np.ndarray, "rows cables"],
+    pulls: Vector,
+    by_rest_length: Float[np.ndarray, "rows cables"] | None = None,
+) -> Float[np.ndarray, "rows points dim"]:
+    """Slopes of some numbers by the rest position of every point of every cable.
+
+    A segment with span d, at rest D, has the length l = sqrt(d^2 + r^2), at rest L, with r in proportion to |D|: all
+    of these move, and so does the part of the field along it, q = e . d / l with e the difference of the field between
+    its ends. The slope is that of by_elongation (l - L) - T q; by_rest_length stands at L if it is given.
+    """
+    spans = points.spans(points.positions(nodes))
+    rests = points.spans(points.rests)
+    moves = points.spans(points.values(fields))
+    square = cables.roundings**2
+    lengths, rest_lengths = (np.sqrt((part**2).sum(axis=1) + square) for part in (spans, rests))
+    units = spans / lengths[:, None]
+    along = (moves * units).sum(axis=-1)
+    lever, pull = by_elongation[:, cables.cables], pulls[cables.cables]
+    held = lever if by_rest_length is None else by_rest_length[:, cables.cables]
+    by_span = (lever + pull * along / lengths)[..., None] * units - (pull / lengths)[:, None] * moves
+    rounded = square / lengths * (lever + pull * along / lengths)
+    tiny = np.finfo(float).tiny
+    by_rest = ((rounded - held * rest_lengths) / np.maximum((rests**2).sum(axis=1), tiny))[..., None] * rests
+    return (
+        points.pulled_back(nodes, points.gathered(by_span))
+        + points.held_back(points.gathered(by_rest))
+        - points.values_pulled_back(fields, points.gathered(pull[:, None] * units))
+    )

@@ -1,0 +1,212 @@
+"""`BatchResult`: equilibria at many contractions, found by several threads; what a sampler or a learner asks for."""
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from itertools import count
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.geometry import Anchors
+from hydrostat.mechanics import Reason
+from hydrostat.robot import Robot
+from hydrostat.simulation.equilibrium import Equilibrium
+
+Slopes = Float[np.ndarray, "markers dim winches"]
+"""How markers move with contractions."""
+
+
+_LOOK = 0.1
+"""So often the waiting thread looks for Ctrl-C [s]."""
+
+LONG_ENOUGH = 2e-4
+"""Modelled time of a factorisation [s] from which on threads pay: below, they mostly wait for Python's lock."""
+
+
+class PoseRow(NamedTuple):
+    """One equilibrium among many.
+
+    Attributes:
+        markers: positions of the markers [m]; None where no equilibrium was found, as in all below.
+        tensions: of each cable [N].
+        jacobian: slopes of the markers with the contractions; None if not asked for, or where there is none.
+        nodes: positions of the nodes [m]; None if not asked for.
+        stable: whether it is a minimum of energy.
+        reason: why the solver ended; None where an error ended it.
+        trouble: what went wrong, in words; empty if nothing did.
+    """
+
+    markers: Points | None = None
+    tensions: Vector | None = None
+    jacobian: Slopes | None = None
+    nodes: Nodes | None = None
+    stable: bool = False
+    reason: Reason | None = None
+    trouble: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BatchResult:
+    """Equilibria at many contractions, a row for each; NaN stands where a number could not be found.
+
+    Attributes:
+        contractions: cable taken in [m], (poses, winches).
+        markers: positions of the markers [m], (poses, markers, dim), in the robot's order.
+        tensions: of each cable [N], (poses, cables).
+        jacobians: exact slopes of the markers with the contractions, (poses, markers, dim, winches); None if not
+            asked for.
+        nodes: positions of the nodes [m], (poses, nodes, dim); None if not asked for.
+        reasons: why the solver ended each time; None where an error ended it.
+        stable: whether each is a minimum of energy, and no saddle, (poses,).
+        errors: what went wrong, in words; empty where nothing did.
+    """
+
+    contractions: Float[np.ndarray, "poses winches"]
+    markers: Float[np.ndarray, "poses markers dim"]
+    tensions: Float[np.ndarray, "poses cables"]
+    jacobians: Float[np.ndarray, "poses markers dim winches"] | None
+    nodes: Float[np.ndarray, "poses nodes dim"] | None
+    reasons: tuple[Reason | None, ...]
+    stable: Bool[np.ndarray, " poses"]
+    errors: tuple[str, ...]
+
+    @property
+    def converged(self) -> Bool[np.ndarray, " poses"]:
+        """Which of them are equilibria."""
+        return np.array([reason is Reason.CONVERGED for reason in self.reasons], dtype=bool)
+
+    def __len__(self) -> int:
+        return len(self.reasons)
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        return f"<BatchResult: {self.converged.sum()} of {len(self)} converged; markers {self.markers.shape}>"
+
+
+def pose_row(
+    pose: Equilibrium,
+    anchors: Anchors,
+    *,
+    keep: bool,
+    slopes: Callable[[Equilibrium], np.ndarray] | None,
+    diagnose: Callable[[Equilibrium], Sequence[str]],
+) -> PoseRow:
+    """Take from a pose what a row holds.
+
+    Args:
+        pose: where the solver ended.
+        anchors: what holds the markers.
+        keep: whether to keep the nodes.
+        slopes: of the markers with the contractions; None if they are not wanted.
+        diagnose: tells why there is no equilibrium.
+    """
+    reason, trouble, jacobian = pose.result.reason, "", None
+    if not pose.result.converged:
+        return PoseRow(reason=reason, trouble="; ".join([reason, *diagnose(pose)]))
+    if slopes is not None:
+        try:
+            jacobian = slopes(pose)
+        except HydrostatError as error:
+            trouble = str(error)
+    return PoseRow(
+        markers=anchors.positions(pose.nodes),
+        tensions=pose.tensions,
+        jacobian=jacobian,
+        nodes=pose.nodes if keep else None,
+        stable=pose.result.stable,
+        reason=reason,
+        trouble=trouble,
+    )
+
+
+def solve_rows(
+    robot: Robot,
+    contractions: Float[np.ndarray, "poses winches"],
+    solve: Callable[[int], PoseRow],
+    *,
+    jacobians: bool,
+    nodes: bool,
+    threads: int,
+    cost: float,
+) -> BatchResult:
+    """Solve each row of contractions, by threads where they pay, and gather the rows in arrays.
+
+    Args:
+        robot: robot that is solved.
+        contractions: one row for each pose [m].
+        solve: returns the row of a number.
+        jacobians: whether rows have Jacobians.
+        nodes: whether rows have nodes.
+        threads: threads that may work.
+        cost: of one factorization of the body [s]; small ones are faster in one thread.
+
+    Raises:
+        InputError: no number of threads.
+    """
+    rows = in_threads(solve, len(contractions), threads, pays=cost >= LONG_ENOUGH)
+    mesh, markers = robot.body.mesh, (len(robot.markers), robot.body.mesh.dim)
+    return BatchResult(
+        contractions=contractions,
+        markers=_stacked([row.markers for row in rows], markers),
+        tensions=_stacked([row.tensions for row in rows], (len(robot.cables),)),
+        jacobians=_stacked([row.jacobian for row in rows], (*markers, contractions.shape[1])) if jacobians else None,
+        nodes=_stacked([row.nodes for row in rows], mesh.nodes.shape) if nodes else None,
+        reasons=tuple(row.reason for row in rows),
+        stable=np.array([row.stable for row in rows], dtype=bool),
+        errors=tuple(row.trouble for row in rows),
+    )
+
+
+def in_threads(work: Callable[[int], PoseRow], size: int, threads: int, *, pays: bool) -> list[PoseRow]:
+    """Collect what `work` gives for 0 to `size` - 1, by several threads, if that pays; each takes the next when free.
+
+    An error ends its own row alone. Ctrl-C ends all as soon as the rows under way are done.
+
+    Raises:
+        InputError: no number of threads.
+    """
+    if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
+        raise InputError(f"threads must be a whole number from 1 on, not {threads!r}")
+    rows = [PoseRow()] * size
+    numbers = count()
+    stopped = False
+
+    def some() -> None:
+        for number in _below(numbers, size):
+            if stopped:
+                return
+            try:
+                rows[number] = work(number)
+            except Exception as error:  # noqa: BLE001  # one of thousands must not end the others; its text is kept
+                rows[number] = PoseRow(trouble=f"{type(error).__name__}: {error}")
+
+    if threads == 1 or size < 2 or not pays:
+        some()
+        return rows
+    with ThreadPoolExecutor(min(threads, size), thread_name_prefix="hydrostat") as pool:
+        try:
+            working = [pool.submit(some) for _ in range(min(threads, size))]
+            while wait(working, timeout=_LOOK).not_done:  # Ctrl-C does not end a wait without limit everywhere
+                pass
+        finally:
+            stopped = True
+    return rows
+
+
+def _below(numbers: Iterator[int], size: int) -> Iterator[int]:
+    """Take numbers as long as they are below `size`; `next` of a count is one step that threads cannot share."""
+    while (number := next(numbers)) < size:
+        yield number
+
+
+def _stacked(parts: Sequence[np.ndarray | None], shape: tuple[int, ...]) -> np.ndarray:
+    """One array of all parts; NaN for those that are missing."""
+    result = np.full((len(parts), *shape), np.nan)
+    for place, part in enumerate(parts):
+        if part is not None:
+            result[place] = part
+    return result

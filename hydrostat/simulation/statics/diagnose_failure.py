@@ -1,0 +1,60 @@
+"""`diagnose_failure`: what stands in the way of an equilibrium that was not found, in words."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.errors import NotConvergedError
+from hydrostat.mechanics import CableEnergy, NewtonResult
+from hydrostat.robot import Robot
+
+
+def diagnose_failure(
+    robot: Robot, cables: CableEnergy, nodes: Nodes, contractions: Vector, forces: Points
+) -> tuple[str, ...]:
+    """Tell which cable pulls hardest, which element is next to flat, else where the most force is left over.
+
+    Args:
+        robot: whose solve ended early.
+        cables: its cables, as if they had no friction.
+        nodes: where it ended [m].
+        contractions: of the winches [m].
+        forces: left over at the nodes [N].
+    """
+    told = []
+    tensions = cables.tensions(nodes, contractions)
+    if tensions.max(initial=0.0) > 0:
+        cable = int(np.argmax(tensions))
+        taken = (cables.taken(contractions)[cable] - cables.slack[cable]) / cables.rest_lengths[cable]
+        told.append(
+            f"cable {robot.cables[cable].name!r} pulls hardest, {tensions[cable]:.3g} N, "
+            f"and shall take in {taken:.0%} of its bare length"
+        )
+    mesh = robot.body.mesh
+    now, before = (np.linalg.det(x[mesh.elements][:, 1:] - x[mesh.elements][:, :1]) for x in (nodes, mesh.nodes))
+    flat = int(np.argmin(now / before))
+    if now[flat] < _FLAT * before[flat]:
+        place = mesh.nodes[mesh.elements[flat]].mean(axis=0)
+        told.append(f"element {flat}, {_at(place)} at rest, keeps {now[flat] / before[flat]:.2g} of its volume")
+    if not told:
+        node = int(np.argmax(np.abs(forces).max(axis=1)))
+        told.append(f"most force is left over at node {node}, {_at(mesh.nodes[node])} at rest")
+    return tuple(told)
+
+
+def not_converged(result: NewtonResult, reasons: Sequence[str]) -> NotConvergedError:
+    """The error of a solve that stopped early: why, how much force is left over, and what stands in the way."""
+    return NotConvergedError(
+        f"no equilibrium found after {result.iterations} iterations: {result.reason} (force left over "
+        f"{result.residual:.2g} N, allowed {result.allowed:.2g} N); {'; '.join(reasons)}",
+        result,
+    )
+
+
+def _at(place: Vector) -> str:
+    return f"at ({', '.join(f'{1e3 * value:.4g}' for value in place)}) mm"
+
+
+_FLAT = 0.2
+"""An element that keeps less than this share of its volume is told."""

@@ -1,0 +1,62 @@
+"""`find_history_equilibrium`: a minimum of energy in balance with what is held fixed while it is found."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics import Assembly, NewtonResult, Reason, Stiffness
+
+Relax = Callable[[Assembly, Nodes, Stiffness | None], NewtonResult]
+"""Minimises the sum of energies from nodes [m], with the Hessian there if it is known."""
+
+
+def find_history_equilibrium(
+    assembly: Assembly, start: tuple[Nodes, Stiffness | None], controls: Vector, relax: Relax, floor: float
+) -> tuple[Assembly, NewtonResult]:
+    """Minimise, and correct what was held fixed, such as the limits of friction, until both fit each other (E14).
+
+    Without energies that have a history this is one minimisation.
+
+    Args:
+        assembly: the sum, with a first guess of what is held fixed.
+        start: where to begin [m], and the Hessian there if it is known.
+        controls: contractions [m].
+        relax: how to minimise.
+        floor: force that rounding hides [N].
+
+    Returns:
+        The sum as corrected, and how the last minimisation ended; its iterations are of all.
+    """
+    nodes, stiffness = start
+    iterations = corrections = last = 0
+    least = np.inf
+    while True:
+        result = relax(assembly, nodes, stiffness)
+        nodes, stiffness, iterations = result.nodes, result.stiffness, iterations + result.iterations
+        assembly = assembly.with_active_terms(nodes)
+        allowed = max(_TOLERANCE * assembly.largest_force(nodes, controls), floor)
+        missed = assembly.history_residual(nodes, controls)
+        if not result.converged or missed <= allowed:
+            break
+        if missed < _FALLS * least:
+            least, last = missed, corrections
+        if corrections == min(_CORRECTIONS, last + assembly.patience):
+            result = replace(result, reason=Reason.NO_BALANCE)
+            break
+        sharp = corrections < _NEWTON and stiffness is not None and not stiffness.singular
+        assembly = assembly.with_corrected_history(nodes, controls, stiffness if sharp else None)
+        corrections += 1
+    return assembly, replace(result, iterations=iterations)
+
+
+_TOLERANCE = 1e-8
+"""Forces in balance to this share of the largest one are right."""
+
+_CORRECTIONS = 40
+_NEWTON = 12
+"""Most corrections of one minimum, and how many of these by Newton's method."""
+
+_FALLS = 0.5
+"""A correction counts as progress if it leaves less than this share of the least imbalance before."""

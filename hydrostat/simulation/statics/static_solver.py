@@ -1,0 +1,213 @@
+"""`StaticSolver`: equilibria of one sum of energies, by load stepping where Newton's method alone does not arrive."""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
+from hydrostat.mechanics import Assembly, Bend, NewtonOptions, NewtonResult, Reason, RoundOff, Stiffness, minimise
+
+
+@dataclass(frozen=True, eq=False)
+class StaticSolver:
+    """Newton's method on given physics.
+
+    Attributes:
+        assembly: the sum of energies.
+        options: how far Newton goes.
+        round_off: what rounding hides of forces and energies.
+        warp: bends steps along arcs.
+    """
+
+    assembly: Assembly
+    options: NewtonOptions
+    round_off: RoundOff
+    warp: Bend | None
+
+    def relax(
+        self,
+        nodes: Nodes,
+        controls: Vector,
+        stiffness: Stiffness | None = None,
+        *,
+        iterations: int | None = None,
+        tolerance: float | None = None,
+        exact: bool = False,
+        whole: bool = False,
+    ) -> NewtonResult:
+        """Newton from some nodes on.
+
+        Args:
+            nodes: where to begin [m].
+            controls: contraction of each winch [m].
+            stiffness: the Hessian near there, such as that of the last result; then the first step is the prediction
+                dx/da and costs no factorisation.
+            iterations: most steps, if fewer than the options allow.
+            tolerance: if looser than theirs.
+            exact: whether `stiffness` is that of `nodes` to rounding, and not of a place close by.
+            whole: whether to give up at once, at no cost, where the prediction cannot be taken whole.
+        """
+        options = replace(self.options, whole=whole)
+        if iterations is not None:
+            options = replace(options, iterations=min(iterations, options.iterations))
+        if tolerance is not None:
+            options = replace(options, tolerance=max(tolerance, options.tolerance))
+        return minimise(
+            self.assembly,
+            nodes,
+            controls,
+            round_off=self.round_off,
+            options=options,
+            warp=self.warp,
+            stiffness=stiffness,
+            exact=exact,
+        )
+
+    def with_timeout(self, seconds: float | None) -> "StaticSolver":
+        """The same that stops after so many seconds, counted from now; itself if that is None.
+
+        Raises:
+            InputError: a limit that is not above 0.
+        """
+        if seconds is None:
+            return self
+        if isinstance(seconds, bool) or not isinstance(seconds, int | float | np.number) or not seconds > 0:
+            raise InputError(f"seconds must be above 0, not {seconds!r:.60}")
+        return self.with_deadline(time.monotonic() + seconds)
+
+    def with_deadline(self, deadline: float) -> "StaticSolver":
+        """The same that stops at a time of `time.monotonic` [s], or earlier if it did so before."""
+        return replace(self, options=replace(self.options, deadline=min(deadline, self.options.deadline)))
+
+    def with_accuracy(self, accuracy: float | None, size: float = np.inf) -> "StaticSolver":
+        """The same that stops where nodes of a body so large are so near to equilibrium [m]; itself if that is None.
+
+        Raises:
+            InputError: an accuracy that is not above 0, or so rough that it is hardly in metres.
+        """
+        if accuracy is not None and not (isinstance(accuracy, int | float | np.number) and accuracy > 0):
+            raise InputError(f"accuracy must be above 0 m, not {accuracy!r}")
+        if accuracy is not None and accuracy > _ROUGHEST * size:
+            raise InputError(
+                f"accuracy, {accuracy:g} m, is too rough for a body of {size:.3g} m; it is in metres: 0.01 mm is 1e-5"
+            )
+        return self if accuracy is None else replace(self, options=replace(self.options, accuracy=accuracy))
+
+    def force_tolerance(self, nodes: Nodes, controls: Vector) -> float:
+        """Nodal force left over [N] at which nodes count as at rest."""
+        return max(
+            self.options.tolerance * self.assembly.with_active_terms(nodes).largest_force(nodes, controls),
+            self.round_off.force,
+        )
+
+    def solve(
+        self,
+        goal: Vector,
+        rest: tuple[Nodes, Stiffness],
+        start: tuple[Nodes, Vector, Stiffness | None] | None = None,
+    ) -> NewtonResult:
+        """Equilibrium at `goal`: at once; failing that in load steps from `start`, then from rest, last by patience.
+
+        Where the prediction of the first step would crush an element, load steps follow without delay: cut short
+        against the whole command, that step would leave cables that pull far too hard on elements next to flat.
+
+        Args:
+            goal: contraction of each winch [m].
+            rest: nodes at rest [m], and the Hessian there.
+            start: nodes, contractions and the Hessian, if it is known, of a pose to begin from.
+        """
+        begin, _, known = start or (rest[0], None, rest[1])
+        pulled = bool(goal.any())  # dead loads alone pull evenly: there a step cut short does no harm
+        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS, whole=pulled)
+        spent = result.iterations
+        if _needs_fallback(result) and start and (start[1] != goal).any():
+            result = self._in_steps(start, goal)
+            spent += result.iterations
+        if _needs_fallback(result):
+            result = self._in_steps((rest[0], np.zeros_like(goal), rest[1]), goal, with_load=True)
+            spent += result.iterations
+        if not result.converged:
+            result = min(self._judged(result, goal), direct, key=lambda found: found.energy)
+            result = replace(result, reason=Reason.TIME_LIMIT) if self._late else result
+        return replace(result, iterations=spent)
+
+    @property
+    def _late(self) -> bool:
+        return time.monotonic() >= self.options.deadline
+
+    def _judged(self, result: NewtonResult, goal: Vector) -> NewtonResult:
+        """A failure on the way, by what is left over at `goal`."""
+        assembly = self.assembly.with_active_terms(result.nodes)
+        return replace(
+            result,
+            residual=float(np.abs(assembly.gradient(result.nodes, goal)).max()),
+            allowed=self.force_tolerance(result.nodes, goal),
+            energy=assembly.value(result.nodes, goal),
+        )
+
+    def _in_steps(
+        self, start: tuple[Nodes, Vector, Stiffness | None], goal: Vector, *, with_load: bool = False
+    ) -> NewtonResult:
+        """By load steps that are halved where one fails and doubled where not; the last failure if they get too small.
+
+        A step on the way need not end sharp. With dead loads these grow with the contractions; that is the last resort,
+        so where these steps get too small Newton goes on from the last of them, by patience.
+        """
+        nodes, begin, stiffness = start
+        done, step, spent = 0.0, _FIRST_STEP, 0
+        result, last = None, False
+        for _ in range(_MOST_STEPS):
+            share = min(done + step, 1.0)
+            last = share == 1.0
+            iterations, tolerance = (None, None) if last else (_STEP_ITERATIONS, _LOOSE)
+            controls = goal if last else begin + share * (goal - begin)
+            solver = replace(self, assembly=self.assembly.with_load(share)) if with_load else self
+            result = solver.relax(
+                nodes, controls, stiffness, iterations=iterations, tolerance=tolerance, whole=step > _SMALLEST_WHOLE
+            )
+            spent += result.iterations
+            if result.converged and not last:
+                nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
+                continue
+            step *= 0.5
+            if not _needs_fallback(result) or step < _SMALLEST_STEP:
+                break
+        assert result is not None
+        if with_load and _needs_fallback(result):
+            result, last = self.relax(nodes, goal, stiffness), True
+            spent += result.iterations
+        told = last or result.reason is Reason.TIME_LIMIT
+        return replace(result, iterations=spent, reason=result.reason if told else Reason.ITERATION_LIMIT)
+
+
+def _needs_fallback(result: NewtonResult) -> bool:
+    """Tell whether another way should be tried."""
+    return result.reason not in (Reason.CONVERGED, Reason.TIME_LIMIT)
+
+
+_DIRECT_ITERATIONS = 200
+"""So many steps of Newton before a command is approached in load steps."""
+
+_STEP_ITERATIONS = 30
+"""So many steps of Newton for one load step."""
+
+_FIRST_STEP = 0.5
+"""Share of a command that is tried first."""
+
+_LOOSE = 0.1
+"""What may be left over on the way, as a share of the largest applied force."""
+
+_SMALLEST_WHOLE = 0.05
+"""Larger load steps are taken whole or not at all; smaller ones may begin with a step of Newton that is cut short."""
+
+_MOST_STEPS = 100
+"""Load steps of one solve."""
+
+_SMALLEST_STEP = 2.0**-7
+"""No load step is smaller than this share of a command."""
+
+
+_ROUGHEST = 0.1
+"""So far from equilibrium, in sizes of the body, no pose is of use."""

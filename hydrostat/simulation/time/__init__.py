@@ -1,0 +1,1 @@
+"""Motion in time: the integrator, its records and their files."""

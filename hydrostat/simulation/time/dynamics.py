@@ -1,0 +1,313 @@
+"""`Dynamics`: how a robot moves in time."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import ceil
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.geometry import Anchors
+from hydrostat.given import check_type
+from hydrostat.mechanics import (
+    SCHEMES,
+    Assembly,
+    Energy,
+    InertiaEnergy,
+    MaxwellBranches,
+    Metrics,
+    NewtonOptions,
+    NewtonResult,
+    RoundOff,
+    Stiffness,
+    minimise,
+)
+from hydrostat.robot import Robot, check_not_negative, check_number
+from hydrostat.simulation.body_physics import BodyPhysics
+from hydrostat.simulation.contraction_profile import ContractionProfile
+from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium
+from hydrostat.simulation.time.motion import Motion
+
+PinShifts = Mapping[int, Vector]
+"""How far pins have been moved from where they were at rest [m], by their number; the others stay where they are."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepOptions:
+    """How a step in time is made.
+
+    Attributes:
+        scheme: a name in `SCHEMES`.
+        drag: force against the motion, per mass and velocity [1/s]; 0 for none.
+        halvings: so often is a step cut in two if its minimisation fails.
+
+    Raises:
+        InputError: an unknown scheme, a negative drag, or a negative number of halvings.
+    """
+
+    scheme: str = "sdirk2"
+    drag: float = 0.0
+    halvings: int = 5
+
+    def __post_init__(self) -> None:
+        if self.scheme not in SCHEMES:
+            raise InputError(f'there is no scheme "{self.scheme}"; there are: {", ".join(SCHEMES)}')
+        check_not_negative("drag", self.drag, "1/s")
+        check_type(self.halvings, int, "halvings must be a whole number of 0 or more")
+        if self.halvings < 0:
+            raise InputError(f"halvings must be 0 or more, not {self.halvings}")
+
+
+@dataclass(frozen=True, eq=False)
+class _MotionState:
+    """What changes in time, or its rate of change."""
+
+    nodes: Nodes
+    velocities: Nodes
+    metrics: Metrics
+
+    def plus(self, step: float, rate: "_MotionState") -> "_MotionState":
+        return _MotionState(
+            self.nodes + step * rate.nodes,
+            self.velocities + step * rate.velocities,
+            self.metrics + step * rate.metrics,
+        )
+
+
+class Dynamics:
+    """Steps in time as minimisations, from a state of motion to the next (E4, E5)."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        body: BodyPhysics,
+        statics: Assembly,
+        tensions: Callable[[Nodes, Vector, Vector], Vector],
+        markers: Anchors,
+        options: NewtonOptions,
+    ) -> None:
+        """The robot's physics at rest; tensions by nodes, contractions and history; its markers; how Newton goes."""
+        material = robot.body.material
+        self.robot, self.masses = robot, body.inertias
+        self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
+        self._guides, self._begin = body.guides, body.rest_unknowns
+        branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
+        branches += [(material.viscosity, 0.0)] if material.viscosity else []
+        viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
+        self.memory = MaxwellBranches(body.rest_unknowns, body.elastic, viscosities=viscosities, times=times)
+        self._round_off = body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
+        rest = self.motion_at_rest(body.rest_unknowns, np.zeros(len(robot.winches)), None, None)
+        begin = _state(rest)
+        moving = self._energies(begin, 1.0, 0.0, list(statics.energies))[len(statics.energies) :]
+        self._assembly = statics.extended(moving, control_count=len(robot.winches))
+
+    def motion_at_rest(
+        self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector | None
+    ) -> Motion:
+        """A motion that begins at `nodes`, with all viscous branches settled there, after what `history` remembers."""
+        nodes = np.concatenate([nodes, self._begin[len(nodes) :]])  # statics has no rows of obstacles on a path
+        history = self._statics.history if history is None else history
+        still, shape = np.zeros_like(nodes), self.robot.body.mesh.nodes.shape
+        if velocities is not None and not (velocities.shape == shape and np.isfinite(velocities).all()):
+            raise InputError(f"velocities must be finite, {shape}, not {velocities.shape}")
+        begin = still.copy()
+        begin[: shape[0]] = 0.0 if velocities is None else velocities
+        state = _MotionState(nodes, begin, self.memory.settled(nodes))
+        shifts = np.zeros((len(self.robot.pins), nodes.shape[1]))
+        return self._motion(0.0, (contractions, shifts, history), state, still, None)
+
+    def step(
+        self, motion: Motion, contractions: Vector, dt: float, options: StepOptions, pin_shifts: PinShifts
+    ) -> Motion:
+        """The motion after `dt` [s], while contractions and pins go evenly to where they shall be.
+
+        Raises:
+            InputError: a step that is not above 0, or a pin that is not there.
+            NotConvergedError: not even the smallest steps converged; its text says why.
+        """
+        if not isinstance(motion, Motion):
+            raise InputError(
+                f"a step goes on from a motion, not from {type(motion).__name__}; `simulation.still(pose)` is one"
+            )
+        if not (np.isfinite(dt) and dt > 0):
+            raise InputError(f"the time step must be above 0 s, not {dt:g}")
+        shifts = self._shifts(motion, pin_shifts)
+        result, iterations = None, 0
+        for halvings in range(options.halvings + 1):
+            at, parts = motion, 2**halvings
+            for part in range(1, parts + 1):
+                share = part / parts
+                goal = (1 - share) * motion.contractions + share * contractions
+                places = (1 - share) * motion.pin_shifts + share * shifts
+                at, result = self._advance(at, goal, places, dt / parts, options)
+                iterations += result.iterations
+                if not result.converged:
+                    break
+            if result is not None and result.converged:
+                return replace(at, time=motion.time + dt, result=replace(result, iterations=iterations))
+        assert result is not None
+        raise NotConvergedError(
+            f"no step found at {motion.time:.4g} s, not even one of {dt / 2**options.halvings:.2g} s: {result.reason}; "
+            f"try another time step (force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
+            result,
+        )
+
+    def play(
+        self, profile: ContractionProfile, seconds: float, dt: float, start: Motion, options: StepOptions
+    ) -> Iterator[Motion]:
+        """The motion under contractions in time: its start, then each step as it is found.
+
+        Raises:
+            InputError: a duration or a time step that is not above 0.
+        """
+        check_number("duration", seconds, "s")
+        check_number("time step", dt, "s")
+        if not (seconds > 0 and dt > 0):
+            raise InputError(f"duration and time step must be above 0 s, not {seconds:g} and {dt:g}")
+        motion, begin, steps = start, start.time, max(1, ceil(seconds / dt - 1e-9))
+        yield motion
+        for step in range(1, steps + 1):
+            end = begin + seconds * step / steps
+            motion = self.step(motion, profile.at(end), end - motion.time, options, {})
+            yield motion
+
+    def _advance(
+        self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions
+    ) -> tuple[Motion, NewtonResult]:
+        """One step, and how its last minimisation ended; if that failed, the motion is not to be used."""
+        begin = _state(motion)
+        end, rates = begin, []
+        acceleration = _joined(motion.accelerations, motion, 2)
+        history, at = motion.history, motion.contractions
+        result, iterations = None, 0
+        for *weights, diagonal in SCHEMES[options.scheme].table:
+            base, step = begin, diagonal * dt
+            for weight, rate in zip(weights, rates, strict=True):
+                base = base.plus(weight * dt, rate)
+            base = replace(base, metrics=self.memory.sound(base.metrics, end.metrics))
+            share = sum(weights) + diagonal
+            controls = (1 - share) * motion.contractions + share * goal
+            places = (1 - share) * motion.pin_shifts + share * shifts
+            statics = self._remembering(history, end.nodes, at, places, motion.time + share * dt)
+            energies = self._energies(base, step, options.drag, statics)
+            assembly, result = self._minimise(energies, controls, base, end.nodes, acceleration, step)
+            iterations += result.iterations
+            if not result.converged:
+                return motion, replace(result, iterations=iterations)
+            history, at = assembly.with_advanced_history(result.nodes, controls).history, controls
+            velocities = (result.nodes - base.nodes) / step
+            end = _MotionState(result.nodes, velocities, self.memory.relaxed(base.metrics, result.nodes, step))
+            acceleration = (velocities - base.velocities) / step
+            rates.append(_MotionState(velocities, acceleration, (end.metrics - base.metrics) / step))
+        assert result is not None
+        counted = replace(result, iterations=iterations, stiffness=None)
+        return self._motion(motion.time + dt, (goal, shifts, history), end, acceleration, counted), counted
+
+    def _remembering(
+        self, history: Vector, nodes: Nodes, contractions: Vector, shifts: Points, instant: float
+    ) -> list[Energy]:
+        """Energies of statics at an instant [s], pins and guides where they are, after what `history` remembers."""
+        statics = self._statics.with_history(history, nodes, contractions) if len(history) else self._statics
+        energies = list(statics.energies)
+        for slot, obstacle in self._guides.items():
+            energies[slot] = energies[slot].moved(obstacle.shift(instant), np.eye(len(obstacle.at)))  # type: ignore[attr-defined]
+        return [energy.with_supports_moved(shifts) for energy in energies] if shifts.any() else energies
+
+    def _energies(self, base: _MotionState, step: float, drag: float, statics: list[Energy]) -> list[Energy]:
+        """Those of statics, inertia, and the viscous branches if there are any."""
+        energies = list(statics)
+        braked = 1 + drag * step
+        energies.append(InertiaEnergy(base.nodes + step / braked * base.velocities, self.masses * (braked / step**2)))
+        if len(self.memory):
+            energies.append(self.memory.energy(base.metrics, step))
+        return energies
+
+    def _minimise(
+        self,
+        energies: list[Energy],
+        controls: Vector,
+        base: _MotionState,
+        before: Nodes,
+        acceleration: Nodes,
+        step: float,
+    ) -> tuple[Assembly, NewtonResult]:
+        """One stage, from whichever guess has the least energy; and the energies in balance with it."""
+        assembly = self._assembly.with_terms(energies)
+        flown = base.nodes + step * base.velocities
+        guesses = [flown + step**2 * acceleration, flown, before]
+        near = assembly.with_active_terms(before)
+        guesses = [before + near.largest_step(before, guess - before) * (guess - before) for guess in guesses]
+        values = [assembly.with_active_terms(guess).value(guess, controls) for guess in guesses]
+        start = guesses[int(np.argmin(values))]
+        noise = self._noise(step)
+
+        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
+            return minimise(assembly, nodes, controls, round_off=noise, options=self._options, stiffness=known)
+
+        return find_history_equilibrium(assembly, (start, None), controls, relax, noise.force)
+
+    def _noise(self, step: float) -> RoundOff:
+        """What rounding hides in a step, inertia and viscous forces included."""
+        body = self.robot.body
+        scale = 0.0
+        if len(self.memory):
+            scale = 2 * self.memory.modulus(step) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
+        inertia = float(self.masses.max()) / step**2 * max(body.mesh.size, float(np.abs(body.mesh.nodes).max()))
+        return RoundOff(
+            force=self._round_off.force + 1e-13 * scale / body.mesh.size + 1e-15 * inertia,
+            energy=self._round_off.energy + 1e-15 * scale + 1e-19 * inertia,
+        )
+
+    def _shifts(self, motion: Motion, given: PinShifts) -> Points:
+        shifts = motion.pin_shifts.copy()
+        for index, shift in given.items():
+            if not 0 <= index < len(shifts):
+                raise InputError(f"there is no pin {index}; there are {len(shifts)}, counted from 0")
+            if np.shape(shift) != shifts[index].shape or not np.isfinite(shift).all():
+                raise InputError(f"the shift of pin {index} must be {shifts.shape[1]} finite numbers [m]")
+            shifts[index] = shift
+        return shifts
+
+    def _motion(
+        self,
+        time: float,
+        held: tuple[Vector, Points, Vector],
+        state: _MotionState,
+        accelerations: Nodes,
+        result: NewtonResult | None,
+    ) -> Motion:
+        """All of an instant; `held` are contractions, shifts of the pins and the history."""
+        (contractions, shifts, history), nodes = held, state.nodes
+        places = self._markers.positions(nodes)
+        statics = self._remembering(history, nodes, contractions, shifts, time)
+        count = len(self.robot.body.mesh.nodes)
+        carried = (nodes[count:], state.velocities[count:], accelerations[count:])
+        return Motion(
+            robot=self.robot,
+            time=time,
+            contractions=contractions,
+            pin_shifts=shifts,
+            nodes=nodes[:count],
+            velocities=state.velocities[:count],
+            accelerations=accelerations[:count],
+            carried=carried if len(carried[0]) else None,
+            metrics=state.metrics,
+            markers={marker.name: place for marker, place in zip(self.robot.markers, places, strict=True)},
+            tensions=self._tensions(nodes, contractions, history),
+            kinetic=float(0.5 * self.masses @ (state.velocities**2).sum(axis=1)),
+            potential=sum(energy.with_active_terms(nodes).value(nodes, contractions) for energy in statics)
+            + self.memory.stored(state.metrics, nodes),
+            history=history,
+            result=result,
+        )
+
+
+def _state(motion: Motion) -> _MotionState:
+    """State of motion of all unknowns."""
+    return _MotionState(_joined(motion.nodes, motion, 0), _joined(motion.velocities, motion, 1), motion.metrics)
+
+
+def _joined(rows: Nodes, motion: Motion, part: int) -> Nodes:
+    """Rows of the nodes, and those of the obstacles that move."""
+    return rows if motion.carried is None else np.concatenate([rows, motion.carried[part]])

@@ -1,0 +1,82 @@
+"""`Motion`: a robot at one instant of its motion."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.mechanics import Metrics, NewtonResult
+from hydrostat.robot import Robot
+from hydrostat.simulation.equilibrium import Equilibrium
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Motion:
+    """All that the next step depends on, and what is to be seen at this instant.
+
+    Attributes:
+        robot: that moves.
+        time: since the beginning [s].
+        contractions: cable taken in by each winch [m], in winch order.
+        pin_shifts: how far each pin has been moved [m], in pin order.
+        nodes: positions of the nodes [m].
+        velocities: of the nodes [m/s].
+        accelerations: of the nodes [m/s^2].
+        metrics: of the viscous branches in each element; none for an elastic body.
+        markers: position of each marker [m].
+        tensions: of each cable [N], in cable order.
+        kinetic: energy of the motion [J].
+        potential: energy of body, cables, pins, weight and branches [J].
+        history: what the physics remember of the way: how much cable has slipped over each point with friction [m];
+            empty without.
+        carried: unknowns of obstacles that move [m], their velocities [m/s] and accelerations [m/s^2]; None if none do.
+        result: how the last minimisation of the step ended; its energy is that of the step, its iterations are of all.
+    """
+
+    robot: Robot
+    time: float
+    contractions: Vector
+    pin_shifts: Points
+    nodes: Nodes
+    velocities: Nodes
+    accelerations: Nodes
+    metrics: Metrics
+    markers: Mapping[str, Vector]
+    tensions: Vector
+    kinetic: float
+    potential: float
+    history: Vector = field(default_factory=lambda: np.zeros(0))
+    result: NewtonResult | None = None
+    carried: tuple[Points, Points, Points] | None = None
+
+    def __repr__(self) -> str:
+        """What it is, in one line."""
+        fastest = 1e3 * float(np.linalg.norm(self.velocities, axis=1).max(initial=0.0))
+        return f"<Motion of {self.robot.name!r} at {self.time:.4g} s: no node is faster than {fastest:.2g} mm/s>"
+
+    @property
+    def energy(self) -> float:
+        """Kinetic and potential energy [J]."""
+        return self.kinetic + self.potential
+
+    @property
+    def pose(self) -> Equilibrium:
+        """What is to be seen of it, as a pose; no equilibrium, and its result is that of the last step.
+
+        Raises:
+            ValueError: the motion has not made a step yet.
+        """
+        if self.result is None:
+            raise ValueError("a motion that has not begun has no result; use the pose that it began in")
+        return Equilibrium(
+            robot=self.robot,
+            contractions=self.contractions,
+            nodes=self.nodes,
+            markers=self.markers,
+            tensions=self.tensions,
+            energy=self.potential,
+            result=self.result,
+            history=self.history,
+            carried=None if self.carried is None else self.carried[0],
+        )
