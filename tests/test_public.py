@@ -9,6 +9,7 @@ from types import ModuleType
 import pytest
 
 import hydrostat as hs
+from hydrostat.errors import InputError
 from hydrostat.robot import gallery_folder, load_robot
 
 ROOMS = ["control", "design", "drawing", "fabrication", "geometry", "grasp", "ik", "learning", "mechanics", "plot"]
@@ -28,7 +29,15 @@ def test_a_door_lists_what_it_imports(room: str) -> None:
     door = import_module(f"hydrostat{room and '.'}{room}")
     assert len(set(door.__all__)) == len(door.__all__)
     assert set(door.__all__) - {"__version__"} == set(door._homes)
-    assert not any(isinstance(getattr(door, name), ModuleType) for name in door.__all__)
+    assert not any(isinstance(_public(door, name), ModuleType) for name in door.__all__)
+
+
+def _public(door: ModuleType, name: str) -> object:
+    """A public name; None if it needs an extra that is not installed."""
+    try:
+        return getattr(door, name)
+    except InputError:
+        return None
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

@@ -33,20 +33,25 @@ def animate(
     robot: RobotFolder,
     out: OutFolder,
     name: Annotated[
-        list[str] | None, typer.Option("--pose", metavar="NAME", help="A pose; may be repeated; all if left out.")
+        list[str] | None,
+        typer.Option("--pose", metavar="NAME", help="Pose to show. Repeatable.", show_default="all"),
     ] = None,
     seconds: Annotated[
-        float | None, typer.Option(metavar="SECONDS", help="Length of the film; 2 s a way, 12 s at most, if left out.")
+        float | None,
+        typer.Option(
+            metavar="SECONDS", help="Length of the animation.", show_default="2 s per move, at most 12 s in total"
+        ),
     ] = None,
     format: Annotated[
-        list[Format] | None, typer.Option(metavar="gif|glb|mp4", help="May be repeated; gif and glb if left out.")
+        list[Format] | None,
+        typer.Option(metavar="gif|glb|mp4", help="File format. Repeatable.", show_default="gif and glb"),
     ] = None,
     width: PictureWidth = 640,
 ) -> None:
-    """Film a robot as it goes from rest to one pose after another and back.
+    """Animate a robot moving from rest through its poses and back.
 
-    Writes animation.gif, and animation.glb for Blender, browsers and 3D viewers; with --format mp4 animation.mp4.
-    A robot without poses takes in one winch after the other.
+    Writes animation.gif, and animation.glb for Blender, browsers and 3D viewers; with --format mp4, animation.mp4.
+    A robot without poses contracts its winches one by one.
 
     Example: hydrostat animate examples/starfish --pose wave --out build/wave
     """
@@ -63,7 +68,7 @@ def animate(
     for pose in name or []:
         loaded.pose(pose)
     if not loaded.cables:
-        raise InputError(f"{robot}: no cable can move it; add winches and cables, or let `hydrostat design` find them")
+        raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
     simulation = prepared(loaded)
     with progress_bar() as tell:
         stops = _stops(simulation, name or list(loaded.poses), tell)
@@ -75,8 +80,8 @@ def animate(
     print(f"{plural(len(made.frames), 'frame')}, {length:g} s: rest, {', '.join(stop.name for stop in stops)}, rest")
     if made.missing:
         print(
-            f"note: {plural(len(made.missing), 'frame')} without an equilibrium, the first after "
-            f"{made.missing[0] * made.step:.1f} s; the frame before stands in their place"
+            f"warning: no equilibrium for {plural(len(made.missing), 'frame')}, the first at "
+            f"{made.missing[0] * made.step:.1f} s. The previous frame is repeated"
         )
     print("Wrote " + ", ".join(str(file) for file in files))
 
@@ -91,7 +96,7 @@ def _stops(simulation: "Simulation", names: list[str], tell: Callable[[str, int,
     reached = []
     for index, pose in enumerate(names):
         reached.append(solve_ik(simulation, simulation.robot.pose(pose)))
-        tell("finding poses", index + 1, len(names))
+        tell("solving poses", index + 1, len(names))
     for found in reached:
         print(f"{found.wanted.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.reason}")
     return pose_stops(reached)

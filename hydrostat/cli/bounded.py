@@ -53,7 +53,7 @@ def bounded(work: Callable[[], _Result], *, file: str, words: str, seconds: floa
             os.kill(child, signal.SIGKILL)
         _, status = os.waitpid(child, 0)
     if not content:
-        raise InputError(f"{file}: reading it broke off ({_ended(status)}); simplify it, or export it again")
+        raise InputError(f"{file}: reading failed ({_ended(status)}). Simplify the file or export it again.")
     done, value = pickle.loads(content)  # of our own child
     if not done:
         raise value
@@ -69,7 +69,7 @@ def _work(work: Callable[[], Any], writer: int, seconds: float) -> NoReturn:
         try:
             answer: tuple[bool, Any] = (True, work())
         except MemoryError:
-            answer = (False, InputError("it takes more memory than there is; simplify the file"))
+            answer = (False, InputError("out of memory. Simplify the file."))
         except Exception as error:  # noqa: BLE001  # the parent raises it again
             answer = (False, error)
         with os.fdopen(writer, "wb") as pipe:
@@ -96,10 +96,10 @@ def _watched(child: int, reader: int, file: str, words: str, seconds: float, mem
         spent, taken = _spent(usage, now - began)
         if spent > seconds:
             raise InputError(
-                f"{file}: takes longer than {seconds:.3g} s; simplify it, or give it more time: --within 2min"
+                f"{file}: time limit reached ({seconds:.3g} s). Simplify it or allow more time, e.g. --within 2min."
             )
         if taken > memory:
-            raise InputError(f"{file}: takes more than {1e-9 * memory:.2g} GB of memory; simplify it")
+            raise InputError(f"{file}: memory limit reached ({1e-9 * memory:.2g} GB). Simplify the file.")
         if now - told > (PATIENCE if told == began else _AGAIN):
             told = now
             print(words if now - began < 2 * PATIENCE else f"{words} {now - began:.0f} s", flush=True)

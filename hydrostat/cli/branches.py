@@ -19,13 +19,13 @@ def branches(
     robot: RobotFolder,
     out: OutFolder,
     contract: Contract = None,
-    starts: Annotated[int, typer.Option(metavar="N", help="In how many ways the robot is brought there.")] = 16,
-    seed: Annotated[int, typer.Option(help="Of the ways that are drawn at random.")] = 0,
+    starts: Annotated[int, typer.Option(metavar="N", help="Number of loading paths to try.")] = 16,
+    seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
 ) -> None:
-    """Find out whether the same contractions can end in different poses.
+    """Test whether contractions lead to several stable poses.
 
-    Brings the robot to its contractions in many ways, tells the poses found apart, and follows the branches of
-    equilibria that lead to them, around folds, where the robot snaps. Writes branches.json and branches.png.
+    Multistability test: solves many loading paths, groups the poses found, and follows the equilibrium branches past
+    folds, where the robot snaps through. Writes branches.json and branches.png.
 
     Example: hydrostat branches examples/robot --contract left=60mm --contract right=60mm --out build/branches
     """
@@ -35,9 +35,9 @@ def branches(
     loaded = read_robot(robot)
     given = contractions(loaded, contract)
     if not any(given.values()):
-        raise InputError('--contract: nothing is taken in; name a winch and a length, for example "left=40mm"')
+        raise InputError("--contract: no contraction given. Name a winch and a length, e.g. left=40mm.")
     if starts < 1:
-        raise InputError(f"--starts {starts}: must be at least 1; 16 are enough for most robots")
+        raise InputError(f"--starts {starts}: must be at least 1. 16 is enough for most robots.")
     simulation = prepared(loaded)
     with progress_bar() as tell:
         found = find_equilibria(simulation, given, count=starts, seed=seed, progress=tell)

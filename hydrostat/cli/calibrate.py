@@ -25,24 +25,26 @@ SOFT, HARD = 0.5, 2.0  # cables that feel so much softer or stiffer than the mod
 def calibrate(
     robot: OwnRobotFolder,
     port: Annotated[
-        str, typer.Option(metavar="KIND:PORT", help="Motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
+        str, typer.Option(metavar="KIND:PORT", help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.")
     ],
     spools: Annotated[
         str,
-        typer.Option(metavar="NAMES", help="Also measure these spools by a ruler: winches with commas, or all."),
+        typer.Option(
+            metavar="NAMES", help="Also measure these spools with a ruler: winch names separated by commas, or all."
+        ),
     ] = "",
 ) -> None:
-    """Find out how far each motor stands from where its cables begin to pull.
+    """Tension each cable and record the motor zero positions.
 
-    One motor after the other lets its cable out, takes it up at low current until it feels a pull, and measures that
-    place twice. The body must be free to move and hold nothing. What is found is saved after each winch, in motors.toml
-    beside robot.toml, of emulated motors in motors_emulated.toml; nothing is written into motors. Ctrl-C stops the
-    motors; what was found until then is kept.
+    Each motor in turn pays out its cable, then reels it in at low current until the cable is taut, twice. The body must
+    be free to move and hold nothing. The result of each winch is saved in motors.toml next to robot.toml
+    (motors_emulated.toml for emulated motors). Nothing is written to the motors. Ctrl-C stops the motors and keeps the
+    results so far.
 
-    The first time motors 1, 2, ... are on the winches in their order; edit motors.toml where they are not.
+    On the first run, motors 1, 2, ... belong to the winches in order. Edit motors.toml to change this.
 
-    With --spools each named winch then takes in all its travel in steps; you type where a mark on its cable is on a
-    ruler.
+    With --spools, each named winch then reels in its full travel in steps. At each step, read the position of a mark on
+    its cable from a ruler and type it.
 
     Example: hydrostat calibrate examples/starfish --port dynamixel:/dev/ttyUSB0
     """
@@ -55,13 +57,13 @@ def calibrate(
     require_writable(folder, str(robot))  # before anything turns
     loaded = read_robot(robot)
     if not loaded.winches:
-        raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
+        raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
     chosen = _chosen(spools, loaded)
     file = control.EMULATED_CALIBRATION if port == control.EMULATED else control.CALIBRATION
     new = not (folder / file).exists()
     calibration = control.usual_calibration(loaded) if new else control.read_calibration(folder, loaded, name=file)
     kind = port.partition(":")[0]
-    with patiently(f"{kind}: finding out what each winch should feel ..."):
+    with patiently(f"{kind}: computing expected tensions ..."):
         model = control.winch_pulls(loaded)
 
     loads = [pull.at(np.arange(0.0, 0.1, 1e-4)).tolist() for pull in model]
@@ -87,7 +89,7 @@ def _chosen(spools: str, robot: "Robot") -> list[int]:
     wanted = names if spools == "all" else [name.strip() for name in spools.split(",") if name.strip()]
     for name in wanted:
         if name not in names:
-            raise InputError(f"--spools {spools}: there is no winch {name}; there are: {', '.join(names)}, or all")
+            raise InputError(f'--spools {spools}: unknown winch "{name}". Available: {", ".join(names)}, or all.')
     return [names.index(name) for name in wanted]
 
 
@@ -101,14 +103,14 @@ def _take_up(
 
     known = {motor.winch: motor for motor in calibration.motors}
     facts = bus.identify()
-    print(f"{kind}: {plural(len(facts), 'motor')} answered; they turn now, one after the other", flush=True)
+    print(f"{kind}: {plural(len(facts), 'motor')} found; they turn now, one by one", flush=True)
 
     def save(taken: "SlackCalibration") -> None:
         before, known[taken.motor.winch] = known[taken.motor.winch], taken.motor
         control.write_calibration(file.parent, control.Calibration(tuple(known.values())), name=file.name)
-        words = f"{1e3 * taken.slack:z.1f} mm taken up, measured {1e3 * taken.apart:.2f} mm apart"
+        words = f"slack {1e3 * taken.slack:z.1f} mm, repeatability {1e3 * taken.apart:.2f} mm"
         if before.zero is not None:
-            words += f"; {1e3 * abs(before.contraction(taken.motor.zero or 0.0)):.1f} mm from where it was last time"
+            words += f"; zero moved {1e3 * abs(before.contraction(taken.motor.zero or 0.0)):.1f} mm since the last run"
         print(f"{kind}: {taken.motor.winch}: {words}", flush=True)
 
     found = control.take_up_slack(bus, calibration.motors, model, save)
@@ -130,15 +132,15 @@ def _measure(
         link.identify()
         for place in chosen:
             motor, travel = calibration.motors[place], robot.winches[place].travel
-            print(f"{bus.kind}: {motor.winch}: make a mark on its cable where it is bare, and lay a ruler beside it")
+            print(f"{bus.kind}: {motor.winch}: mark its bare cable and lay a ruler next to it")
 
             def read(thought: float, place: int = place, name: str = motor.winch) -> float:
                 if truth is None:
                     return _asked(name)
                 taken = truth.motors[place].contraction(float(bus.read().angles[place]))
                 shown = 5e-4 * round(taken / 5e-4)
-                by_motor = f"{1e3 * thought:z.1f} mm by its motor"
-                print(f"{bus.kind}: {name}: {by_motor}, {1e3 * shown:z.1f} by the emulated ruler")
+                by_motor = f"motor {1e3 * thought:z.1f} mm"
+                print(f"{bus.kind}: {name}: {by_motor}, emulated ruler {1e3 * shown:z.1f} mm")
                 return shown
 
             curves.append(control.measure_spool(link, motor, place, travel, read))
@@ -147,9 +149,8 @@ def _measure(
             calibration = control.Calibration(tuple(motors))
             control.write_calibration(file.parent, calibration, name=file.name)
             print(
-                f"{bus.kind}: {motor.winch}: radius {1e3 * curves[-1].motor.radius:.2f} mm at its zero; at most "
-                f"{1e3 * curves[-1].more:+.1f} mm beside what was thought; readings {1e3 * curves[-1].scatter:.2f} mm "
-                "beside the curve",
+                f"{bus.kind}: {motor.winch}: spool radius {1e3 * curves[-1].motor.radius:.2f} mm at zero, "
+                f"max correction {1e3 * curves[-1].more:+.1f} mm, fit residual {1e3 * curves[-1].scatter:.2f} mm",
                 flush=True,
             )
     finally:
@@ -161,16 +162,16 @@ def _asked(name: str) -> float:
     """Where a person sees the mark on the ruler [m] (InputError: there is nobody to ask)."""
     while True:
         try:
-            told = input(f"{name}: where is the mark on the ruler [mm]? ")
+            told = input(f"{name}: position of the mark on the ruler [mm]: ")
         except EOFError:
-            raise InputError("--spools asks for readings of a ruler; run it in a terminal") from None
+            raise InputError("--spools: needs a terminal to type ruler readings. Run it in one.") from None
         try:
             value = float(told.strip().removesuffix("mm").replace(",", "."))
         except ValueError:
             value = float("nan")
         if abs(value) < 1e4:
             return 1e-3 * value
-        print(f"{told.strip()!r} is no number; write millimetres, such as 12.5")
+        print(f"{told.strip()!r} is not a number. Write millimeters, e.g. 12.5")
 
 
 def _tell(
@@ -192,12 +193,12 @@ def _tell(
         felt = wanted * taken.gain * constant / taken.motor.radius
         if felt < SOFT * wanted or felt > HARD * wanted:
             notes.append(
-                f"{taken.motor.winch} feels {felt:.0f} N/m where the simulation has {wanted:.0f} N/m: "
-                "look whether motor, cable and material are those of robot.toml"
+                f"{taken.motor.winch}: measured stiffness {felt:.0f} N/m, expected {wanted:.0f} N/m. "
+                "Check that motor, cable and material match robot.toml"
             )
     page = write_calibration_page(
         robot, found, model, constants, notes, file.parent / PAGE, curves, emulated=kind == EMULATED
     )
     for note in notes:
-        print(f"{kind}: note: {note}")
-    print(f"{kind}: saved {file}; open {page} to see what was felt")
+        print(f"{kind}: warning: {note}")
+    print(f"{kind}: saved {file}. Measurements: {page}")

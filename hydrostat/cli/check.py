@@ -18,15 +18,15 @@ def check(
     thorough: Annotated[
         bool,
         typer.Option(
-            "--thorough", help="Also compute the reach of markers, and how far a filled body leaves its plane."
+            "--thorough", help="Also compute marker workspaces and the out-of-plane motion of a stuffed body."
         ),
     ] = False,
     filled: Annotated[
         bool,
-        typer.Option("--filled", help="Play its poses on the filled body, cables on each face, however long."),
+        typer.Option("--filled", help="Also simulate the stuffed 3D body. Slow."),
     ] = False,
 ) -> None:
-    """Check a robot: report what is wrong with it and what is risky.
+    """Check a robot: report errors and warnings.
 
     Example: hydrostat check examples/starfish --thorough
     """
@@ -46,7 +46,7 @@ def check(
     if found.cables:
         from hydrostat.design import build_effort
 
-        print(f"to build its network: {build_effort(found, ())}; more if poses ask for stronger ones")
+        print(f"build: {build_effort(found, ())}; more if poses need stronger motors")
     if filled:
         _print_filled(found)
     elif words and thorough:
@@ -54,7 +54,7 @@ def check(
     reaches = bool(found.markers and found.cables)
     if reaches and thorough:
         _print_reach(found)
-    left_out = ["reach of markers"] * reaches + ["motion out of the plane"] * (bool(words) and not filled)
+    left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not filled)
     if left_out and not thorough:
         print(f"not computed: {' and '.join(left_out)}. Add --thorough.")
     _print_judgement(found)
@@ -70,11 +70,8 @@ def _print_judgement(robot: "Robot") -> None:
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Severity.REFUSED, Severity.MIND))
-    good = "Nothing is wrong" if robot.cables else "Nothing is wrong with the body"
-    wrong = f"{plural(refused, 'thing')} cannot be built" if refused else good
-    minded = f", {risky} risky" if risky else ""
-    missing = "" if robot.cables else "; there are no cables yet"
-    print(f"{wrong}{minded}{missing}.")
+    missing = "" if robot.cables else " (body only: no cables yet)"
+    print(f"{'' if refused else 'OK: '}{plural(refused, 'error')}, {plural(risky, 'warning')}{missing}.")
 
 
 def print_sewing(body: "Body") -> tuple[str, ...]:
@@ -85,14 +82,14 @@ def print_sewing(body: "Body") -> tuple[str, ...]:
         return ()
     from hydrostat.fabrication import find_sewing
 
-    with patiently("laying its skin flat, patch by patch ..."):
+    with patiently("flattening the skin, patch by patch ..."):
         sewing = find_sewing(body)
     if not sewing.problems:
-        print(f"to sew its skin: {sewing}")
+        print(f"skin: {sewing}")
     return sewing.problems
 
 
-FINDINGS = {"refused": "cannot be built", "limit": "not as a design would", "mind": "risky"}
+FINDINGS = {"refused": "error", "limit": "note", "mind": "warning"}
 """Beginning of the line of a finding, by its weight."""
 
 
@@ -105,15 +102,15 @@ def _print_reach(robot: "Robot") -> None:
 
     nodes = len(robot.body.mesh.nodes)
     if nodes > _LARGE:
-        print(f"reach of markers: not looked for, as {nodes} nodes take long; with larger elements it is told")
+        print(f"workspace: skipped ({nodes} nodes, maximum {_LARGE}). Use larger elements")
         return
     tension, count = Constraints().tension_limit, int(min(max(_SOLVED / nodes, _LEAST), _MOST))
     try:
         reaches = find_reach(Simulation(robot), tension=tension, count=count)
     except (InputError, NotConvergedError) as error:
-        print(f"reach: not found, {error}")
+        print(f"workspace: not computed ({error})")
         return
-    print(f"reach of markers with at most {tension:g} N in a cable, by {count} poses:")
+    print(f"Marker workspaces (maximum tension {tension:g} N, {count} poses sampled):")
     for reach in reaches:
         print(f"  {reach.marker}: {reach}")
 
@@ -129,12 +126,12 @@ def _print_out_of_plane(robot: "Robot") -> None:
 
     if not quickly_filled(robot, len(robot.poses)):
         if robot.body.outline is not None and robot.poses:
-            print("once filled: it takes long to tell how far markers leave the plane; ask by hydrostat check --filled")
+            print("3D effect when stuffed: not computed (slow). Run hydrostat check --filled")
         return
     try:
-        print(f"once filled: {filled_motion(robot, _pulled(robot))}")
+        print(f"3D effect when stuffed: {filled_motion(robot, _pulled(robot))}")
     except (InputError, NotConvergedError) as error:
-        print(f"once filled: not found, {error}")
+        print(f"3D effect when stuffed: not computed ({error})")
 
 
 def _print_filled(robot: "Robot") -> None:
@@ -143,11 +140,11 @@ def _print_filled(robot: "Robot") -> None:
     from hydrostat.simulation import filled_motion
 
     if robot.body.outline is None:
-        raise InputError("--filled is for flat robots with a drawing; leave it out")
+        raise InputError("--filled: needs a flat robot with a drawing. Remove it.")
     if not robot.poses or not robot.cables:
-        raise InputError("--filled plays the poses of a robot by its cables; it needs at least one of each")
+        raise InputError("--filled: needs at least one [[pose]] and one [[cable]]. Add them or remove --filled.")
     pulled = _pulled(robot)
-    print("Filled, with the commands of the flat model (the most of all markers and poses):")
+    print("Stuffed 3D body, contractions of the flat model (maximum over markers and poses):")
     for face in Face:
         print(f"  cables {face.words}: {filled_motion(robot, pulled, face)}")
 
@@ -170,11 +167,21 @@ def _body_lines(body: "Body") -> list[str]:
     thickness = body.measured_thickness
     (thin, few), (thick, many) = thickness.part(0.05), thickness.part(0.95)
     if mesh.dim == 2:
-        angle = f"smallest angle {smallest_angle(mesh):.0f} degrees"
+        angle = f"smallest angle {smallest_angle(mesh):.0f}°"
     else:
-        angle = f"smallest angle between faces {dihedral_angles(mesh.nodes, mesh.elements).min():.2g} degrees"
-    name = material.name or "material by its numbers"
+        angle = f"smallest angle between faces {dihedral_angles(mesh.nodes, mesh.elements).min():.2g}°"
+    name = material.name or "custom material"
     return [
-        f"{name}: {1e3 * volume * material.density:.3g} g, {1e6 * volume:.3g} cm^3",
-        f"{1e3 * thin:.0f} to {1e3 * thick:.0f} mm across, that is {few:.1f} to {many:.0f} elements; {angle}",
+        f"{name}: {_mass_text(volume * material.density)}, {_volume_text(volume)}",
+        f"thickness {1e3 * thin:.0f} to {1e3 * thick:.0f} mm ({few:.1f} to {many:.0f} elements across); {angle}",
     ]
+
+
+def _mass_text(mass: float) -> str:
+    """Mass in grams, or in kilograms from 1 kg on."""
+    return f"{mass:.3g} kg" if mass >= 1 else f"{1e3 * mass:.3g} g"
+
+
+def _volume_text(volume: float) -> str:
+    """Volume in cubic centimeters, or in liters from 1 L on."""
+    return f"{1e3 * volume:.3g} L" if volume >= 1e-3 else f"{1e6 * volume:.3g} cm³"

@@ -20,98 +20,101 @@ if TYPE_CHECKING:
     from hydrostat.fabrication import Kit
     from hydrostat.robot import Robot
 
-STOPPING = "stopping: the best network so far is solved and written ..."  # said when Ctrl-C ends a search
+STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
 
 Winches = Annotated[
     str | None,
     typer.Option(
-        metavar="N|auto", help="How many winches, 2 if left out; auto finds the fewest that keep the tolerance."
+        metavar="N|auto", help="Number of winches, or auto for the fewest that meet the tolerance.", show_default="2"
     ),
 ]
-Cables = Annotated[int | None, typer.Option(metavar="N", help="How many cables in all, at most; 6 if left out.")]
+Cables = Annotated[int | None, typer.Option(metavar="N", help="Maximum number of cables in total.", show_default="6")]
 Poses = Annotated[
-    list[str] | None, typer.Option(metavar="NAME", help="Design for this pose; may be repeated; all if left out.")
+    list[str] | None, typer.Option(metavar="NAME", help="Pose to design for. Repeatable.", show_default="all")
 ]
 Method = Annotated[
     str | None,
     typer.Option(
-        metavar="routes|trees", help="Routes priced by the pose error, or the thesis's winch trees; routes if left out."
+        metavar="routes|trees",
+        help="Search method: routes (adjoint-based) or trees (Chang 2018).",
+        show_default="routes",
     ),
 ]
 ConstraintsFile = Annotated[
-    Path | None, typer.Option(metavar="FILE.toml", help="What can be built; the options below come before it.")
+    Path | None, typer.Option(metavar="FILE.toml", help="Constraints file. Options below override it.")
 ]
-CablesPerWinch = Annotated[int | None, typer.Option(metavar="N", help="Most of one winch.")]
+CablesPerWinch = Annotated[
+    int | None, typer.Option(metavar="N", help="Maximum number of cables per winch.", show_default="6")
+]
 Clearance = Annotated[
-    str | None, typer.Option(metavar="LENGTH", help="Least distance of a cable from the edge; 5 mm if left out.")
+    str | None,
+    typer.Option(metavar="LENGTH", help="Minimum distance from cable to edge.", show_default="5 mm"),
 ]
 Depth = Annotated[
     str | None,
     typer.Option(
-        metavar="LENGTH", help="In space: cables on the skin, 0 mm, or at this depth under it, winches outside."
+        metavar="LENGTH",
+        help="Depth of cables under the skin of a 3D body, with winches outside. 0 mm = on the skin.",
+        show_default="anywhere inside",
     ),
 ]
-Tension = Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears; 20 N if left out.")]
-Slack = Annotated[
-    str | None, typer.Option(metavar="LENGTH", help="The most that a stopper may leave loose; 0 if left out.")
-]
+Tension = Annotated[str | None, typer.Option(metavar="FORCE", help="Maximum cable tension.", show_default="20 N")]
+Slack = Annotated[str | None, typer.Option(metavar="LENGTH", help="Maximum cable slack.", show_default="0 mm")]
 SteppedSpools = Annotated[
-    bool, typer.Option("--stepped-spools", help="Cables may have spools up to twice as large or small.")
+    bool, typer.Option("--stepped-spools", help="Allow cable spools from half to twice the winch spool radius.")
 ]
-Symmetric = Annotated[
-    str | None, typer.Option(metavar="x|y|z", help="The same on both sides of the mirror across this axis.")
-]
-LockWinch = Annotated[
-    list[str] | None, typer.Option(metavar="NAME", help="A winch of the robot that stays; may be repeated.")
-]
+Symmetric = Annotated[str | None, typer.Option(metavar="x|y|z", help="Require mirror symmetry about this axis.")]
+LockWinch = Annotated[list[str] | None, typer.Option(metavar="NAME", help="Keep this winch of the robot. Repeatable.")]
 LockCable = Annotated[
     list[str] | None,
-    typer.Option(metavar="NAME", help="A cable that stays, by its name or its number from 1; may be repeated."),
+    typer.Option(metavar="NAME", help="Keep this cable, by name or number from 1. Repeatable."),
 ]
-Improve = Annotated[bool, typer.Option("--improve", help="Begin with the robot's own network.")]
+Improve = Annotated[bool, typer.Option("--improve", help="Warm-start from the robot's own network.")]
 Simplicity = Annotated[
     float | None,
     typer.Option(
-        help="How much fewer winches, cables and holes are worth: 1 if left out, 0 for all that help, 10 for a network "
-        "that is quickly sewn."
+        help="Weight of simplicity in the score: fewer winches, cables and holes. 0 = ignore; 10 = quick to sew.",
+        show_default="1",
     ),
 ]
 Reach = Annotated[
     float | None,
     typer.Option(
-        help="What reach beyond the poses is worth: 0 if left out; at 1 a network whose markers reach twice as far may "
-        "miss twice as much."
+        help="Weight of workspace size in the score. 0 = ignore; 1 = twice the workspace may cost twice the error.",
+        show_default="0",
     ),
 ]
 AsModelled = Annotated[
     bool,
     typer.Option(
         "--as-modelled",
-        help="Design for a robot that is built just as its model, with no hole beside its mark and no friction.",
+        help="Assume a perfect build: no position error of holes and no cable friction.",
     ),
 ]
 Filled = Annotated[
-    bool,
-    typer.Option("--filled", help="Compare finalists on the filled body, cables on its skin, by commands found there."),
+    bool, typer.Option("--filled", help="Re-rank the best designs on the stuffed 3D body instead of the flat model.")
 ]
 Tolerance = Annotated[
     str | None,
     typer.Option(
-        metavar="LENGTH", help="With --winches auto: rms error of each pose; 1 % of the body's size if left out."
+        metavar="LENGTH",
+        help="Maximum rms error of each pose, with --winches auto.",
+        show_default="1 % of the body size",
     ),
 ]
 Fibres = Annotated[
-    str | None, typer.Option(metavar="edges|elements", help="Muscles of trees; on mesh edges if left out.")
+    str | None,
+    typer.Option(metavar="edges|elements", help="Location of muscles for --method trees.", show_default="edges"),
 ]
 Knobs = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME=VALUE",
-        help="Of trees: threshold, distance, steps or phi as in the thesis, one value each; may be repeated.",
+        help="Setting for --method trees: threshold, distance, steps or phi (Chang 2018). Repeatable.",
     ),
 ]
-WithKit = Annotated[bool, typer.Option("--kit", help="Also write the fabrication kit.")]
+WithKit = Annotated[bool, typer.Option("--kit", help="Also write the build kit.")]
 
 
 def design(
@@ -141,10 +144,10 @@ def design(
     knob: Knobs = None,
     kit: WithKit = False,
 ) -> None:
-    """Find winches and cables that reach a robot's poses.
+    """Design the winches and cable routes that reach given poses.
 
-    Writes a robot folder, report.html with pictures of every stage, score.json, and the alternatives as robot folders.
-    Ctrl-C ends the search and keeps the best network so far. A file of constraints has lines such as
+    Writes a robot folder, report.html with pictures of every stage, score.json, and alternatives as robot folders.
+    Ctrl-C ends the search and keeps the best network so far. A constraints file has lines such as
     clearance = "4 mm", tension = "15 N", locked_cables = ["left 1"], and tables [[keep_out]], [[still]] and
     [[winch_zone]] with at and radius, box, or outline.
 
@@ -185,7 +188,7 @@ def design(
         print_kit(made)
     _tell_next(network, out, kit=kit)
     if not network.complete:
-        print("stopped early: the best network so far")
+        print("interrupted: best network so far")
         raise typer.Exit(130)
 
 
@@ -198,7 +201,7 @@ def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) 
         try:
             network = find_network(source, request, progress=progress)
         except KeyboardInterrupt:
-            print("hydrostat: stopped before there was a network; nothing is written", file=sys.stderr)
+            print("hydrostat: interrupted before the first network; no files written", file=sys.stderr)
             raise typer.Exit(130) from None
         pass_over()
         progress("Writing results", 0, 1)
@@ -217,7 +220,7 @@ def _tell_count(network: "Network", request: "DesignRequest") -> None:
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
         words = f"{plural(request.winches, 'winch')} and {plural(request.cables, 'cable')}"
-        print(f"of at most {words}: more would not help, or could not be built")
+        print(f"limit: {words}. More would not reduce the error, or cannot be built")
     if request.winches == AUTO:
         print_front(network)
 
@@ -227,9 +230,9 @@ def _tell_next(network: "Network", out: Path, *, kit: bool) -> None:
     if network.alternatives:
         print(f"Alternatives: {out / 'alternatives'}")
     if kit:
-        print(f"To build it, begin with {out / 'kit' / 'assembly_sheet.pdf'}")
+        print(f"To build it, start with {out / 'kit' / 'assembly_sheet.pdf'}")
     else:
         print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))} --out {quote(str(out / 'kit'))}")
     limit = f"{network.constraints.tension_limit:g}N"
-    print(f"Its poses keep to {limit}: hydrostat pose {quote(str(out / 'robot'))} --tension {limit} --out DIR")
+    print(f"Pose it within its tension limit: hydrostat pose {quote(str(out / 'robot'))} --tension {limit} --out DIR")
     print(f"Open {out / 'report.html'}")

@@ -68,7 +68,7 @@ def _wished_tension(robot: "Robot", folder: Path) -> float | None:
     try:
         return wished_constraints(robot, read_studio_file(home).wishes).tension_limit
     except InputError as error:
-        raise InputError(f"{error}; mend the file, or say with --tension how hard cables may be pulled") from None
+        raise InputError(f"{error}. Fix the file, or set the limit with --tension") from None
 
 
 def print_poses(network: "Network", seconds: float) -> None:
@@ -96,11 +96,11 @@ def print_poses(network: "Network", seconds: float) -> None:
         if words := unconstrained_motion(reached):
             print(f"{reached.wanted.name}: {words}")
     print(
-        f"rms error: {1e3 * rest_error(network):.2f} mm at rest -> {1e3 * network.rms_error:.2f} mm reached in the "
-        f"model, {1e3 * network.built:.2f} mm to be expected once built; "
-        f"{plural(network.tried, 'network')} tried in {seconds:.1f} s"
+        f"model error {1e3 * network.rms_error:.2f} mm rms (at rest {1e3 * rest_error(network):.2f} mm), "
+        f"expected as-built error {1e3 * network.built:.2f} mm "
+        f"({plural(network.tried, 'candidate')}, {seconds:.1f} s)"
     )
-    print(f"to build it: {build_effort(robot, network.reached)}")
+    print(f"build: {build_effort(robot, network.reached)}")
     if words := face_words(robot):
         print(f"cables: {words}")
     _print_filled(network)
@@ -125,12 +125,12 @@ def _print_filled(network: "Network") -> None:
     filled = network.filled
     if filled is None:
         if network.request.filled:
-            print("filled: a pose has no equilibrium there")
+            print("stuffed 3D body: no equilibrium found for a pose")
         return
     print(
-        f"filled, the best of {plural(filled.finalists, 'network')}: {1e3 * filled.rms_error:.2f} mm with commands of "
-        f"its own ({1e3 * filled.played:.2f} mm with those above), markers up to {1e3 * filled.out:.1f} mm out of the "
-        "plane"
+        f"stuffed 3D body: {1e3 * filled.rms_error:.2f} mm rms with its own contractions "
+        f"({1e3 * filled.played:.2f} mm with those above), markers up to {1e3 * filled.out:.1f} mm out of plane "
+        f"(best of {plural(filled.finalists, 'network')})"
     )
     for reached in filled.reached:
         taken = zip(network.robot.winches, reached.pose.contractions, strict=True)
@@ -146,12 +146,12 @@ def print_front(network: "Network") -> None:
     from hydrostat.design import best_errors, on_front, size_of
 
     errors = best_errors(network.alternatives, network)
-    table = Table(title="error expected once built, against winches and cables", title_justify="left")
+    table = Table(title="expected as-built error by number of winches and cables", title_justify="left")
     for name in ("winches", "cables", "rms error"):
         table.add_column(name, justify="right")
     table.add_column("")
     for size, error in errors.items():
-        note = "chosen" if size == size_of(network) else "" if on_front(size, errors) else "fewer reach as much"
+        note = "chosen" if size == size_of(network) else "" if on_front(size, errors) else "no better than fewer"
         table.add_row(str(size[0]), str(size[1]), f"{1e3 * error:.2f} mm", note)
     Console().print(table)
 
@@ -196,5 +196,5 @@ def _words(name: str, value: Any) -> str:
     return "" if value is None else str(value)
 
 
-_UNITS = {"tension": (1.0, " N"), "torque": (1.0, " N m"), "turn": (1.0, " degrees"), "spool_ratio": (1.0, "")}
+_UNITS = {"tension": (1.0, " N"), "torque": (1.0, " N m"), "turn": (1.0, "°"), "spool_ratio": (1.0, "")}
 """Factors and units of constraints that are no lengths."""

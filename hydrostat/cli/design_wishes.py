@@ -86,7 +86,7 @@ def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
 
     constraints = Constraints() if typed.file is None else read_constraints(typed.file, robot)
     if typed.symmetric not in (None, "x", "y", "z"):
-        raise InputError(f"--symmetric {typed.symmetric}: must be the axis across the mirror: x, y or z")
+        raise InputError(f"--symmetric {typed.symmetric}: unknown axis. Allowed: x, y, z.")
     given = {
         "cables_per_winch": typed.cables_per_winch,
         "clearance": asked("--clearance", typed.clearance, LENGTH),
@@ -107,14 +107,14 @@ def _options(typed: DesignArguments, *, trees: bool, open_winches: bool) -> "Rou
     from hydrostat.units import LENGTH
 
     if typed.tolerance is not None and not open_winches:
-        raise InputError("--tolerance is for --winches auto, which finds the fewest winches that keep it")
+        raise InputError("--tolerance: needs --winches auto. Add it.")
     fibres = None if typed.fibres is None else parse_choice(FibreKind, typed.fibres, what="--fibres")
     for name, given in (("fibres", typed.fibres), ("knob", typed.knobs)):
         if given and not trees:
-            raise InputError(f"--{name} is for --method trees; routes are priced by the pose error")
+            raise InputError(f"--{name}: needs --method trees. Add it.")
     for name, given in (("simplicity", typed.simplicity), ("reach", typed.reach)):
         if given is not None and trees:
-            raise InputError(f"--{name} is for routes; method trees chooses networks by a rule of its own")
+            raise InputError(f"--{name}: not available with --method trees. Use --method routes.")
     if trees:
         options = TreeOptions.single(**dict(map(_knob, typed.knobs))) if typed.knobs else TreeOptions()
         return replace(options, fibres=fibres or options.fibres)
@@ -129,7 +129,9 @@ def _knob(text: str) -> tuple[str, Any]:
     name, _, value = text.partition("=")
     kind = {"threshold": int, "distance": float, "steps": int, "phi": float}.get(name)
     if kind is None:
-        raise InputError(f"--knob {text}: must be threshold, distance, steps or phi with its value, such as phi=0.5")
+        raise InputError(
+            f"--knob {text}: unknown setting. Write threshold, distance, steps or phi with a value, e.g. phi=0.5."
+        )
     try:
         return name, kind(value)
     except ValueError:

@@ -32,32 +32,37 @@ def drive(
         str,
         typer.Option(
             metavar="KIND",
-            help="keys, gamepad, midi:NAME@KNOB, osc:PORT, glove:/dev/ttyUSB0, glove:emulated, camera:FILE.task "
-            "or camera:PORT.",
+            help="Input device: keys, gamepad, midi:NAME@KNOB, osc:PORT, glove:/dev/ttyUSB0, glove:emulated, "
+            "camera:FILE.task or camera:PORT.",
         ),
     ] = "keys",
     port: Annotated[
-        str | None, typer.Option(metavar="KIND:PORT", help="Real motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
+        str | None,
+        typer.Option(
+            metavar="KIND:PORT",
+            help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
+            show_default="simulated motors",
+        ),
     ] = None,
-    tips: Annotated[bool, typer.Option("--tips", help="Move fingertips (markers), not winches.")] = False,
+    tips: Annotated[bool, typer.Option("--tips", help="Move fingertips (markers) instead of winches.")] = False,
     model: Annotated[
-        Path | None, typer.Option(metavar="MODEL", help="With --tips: learned, to begin each move from.")
+        Path | None, typer.Option(metavar="MODEL", help="Trained model to warm-start each move, with --tips.")
     ] = None,
     known: Annotated[
-        Path | None, typer.Option("--map", metavar="FILE", help="What hydrostat mimic has learned of a hand.")
+        Path | None, typer.Option("--map", metavar="FILE", help="Hand-to-robot map written by `hydrostat mimic`.")
     ] = None,
     smoothing: Annotated[
-        float, typer.Option(metavar="HZ", help="A hand that rests is smoothed above this frequency; 0: not at all.")
+        float, typer.Option(metavar="HZ", help="Cutoff frequency for smoothing a resting hand. 0 = no smoothing.")
     ] = 1.5,
-    seconds: Annotated[float, typer.Option(metavar="S", help="End after so long; 0: when you end it.")] = 0.0,
+    seconds: Annotated[float, typer.Option(metavar="S", help="Duration. 0 = until you stop it.")] = 0.0,
 ) -> None:
-    """Turn winches by hand: keys, gamepad, MIDI knobs, OSC, a glove, a hand before a camera.
+    """Drive winches by keys, gamepad, MIDI, OSC, glove or camera.
 
-    Without --port the motors are simulated: nothing turns, and every line says so. With it they keep the limits of the
-    winches, a watchdog and a guard that knows what each cable should pull. Motors hold when the source falls silent,
-    and stop at the end, on Ctrl-C, on SIGTERM and on any error.
+    Without --port the motors are simulated, and every line starts with "simulated". With --port, winch limits, a
+    watchdog and a tension guard protect the robot. Motors hold when the input is lost, and stop at the end, on Ctrl-C,
+    on SIGTERM and on any error.
 
-    With --tips markers are moved, and inverse kinematics finds contractions while you drive.
+    With --tips you move markers, and inverse kinematics computes the contractions while you drive.
 
     Example: hydrostat drive examples/starfish --source keys
     """
@@ -66,7 +71,7 @@ def drive(
     if port is not None:
         control.check_port(port)
     if model is not None and not tips:
-        raise InputError("--model: finds contractions for fingertips; give --tips too")
+        raise InputError("--model: needs --tips. Add it.")
     if not seconds >= 0:
         raise InputError(f"--seconds {seconds:g}: must not be negative")
     smooth = teleop.Smoothing(least=smoothing) if smoothing else None
@@ -83,7 +88,13 @@ def drive(
             asked = teleop.open_source(source, way.channels, learned, wearer, smoothing=smooth)
             motors = _motors(folder_of(robot), loaded, port, way)
             shown = _Shown(kind, motors)
-            _run(shown, f"{'fingertips' if tips else 'winches'} of {loaded.name} by {source}", way, asked, seconds)
+            _run(
+                shown,
+                f"driving {'fingertips' if tips else 'winches'} of {loaded.name} with {source}",
+                way,
+                asked,
+                seconds,
+            )
         finally:
             if motors is not None:  # before all that may take its time
                 motors.link.close()
@@ -104,7 +115,7 @@ def _run(shown: "_Shown", what: str, way: "CommandMapper", source: "DriveSource"
         code = 130 if isinstance(stop, KeyboardInterrupt) else stop.code
         raise typer.Exit(code if isinstance(code, int) else 1) from None
     except HydrostatError as error:
-        raise HydrostatError(f"{shown.kind}: the motors stopped: {error}") from None
+        raise HydrostatError(f"{shown.kind}: motors stopped: {error}") from None
     shown.end("ended")
 
 
@@ -142,7 +153,7 @@ class _Shown:
         if now - self._last < (SHOWN if self._terminal else LISTED) and driven.silent == self._silent:
             return
         self._last, self._silent = now, driven.silent
-        state = "nobody is heard: the motors hold" if driven.silent else "hold" if driven.wish.hold else ""
+        state = "input lost: motors holding" if driven.silent else "hold" if driven.wish.hold else ""
         if self._terminal:
             told = "; ".join(part for part in (state, driven.way.words) if part)
             self._draw([*self._bars(), told, driven.wish.words])
@@ -155,7 +166,7 @@ class _Shown:
 
     def end(self, word: str) -> None:
         """Say how it ended."""
-        self.say(f"{word}; the motors hold at {self._places()}")
+        self.say(f"{word}; motors holding at {self._places()}")
 
     def _bars(self) -> list[str]:
         motors, currents = self.motors, self.motors.link.currents

@@ -25,12 +25,11 @@ Tension = Annotated[
     str | None,
     typer.Option(
         metavar="FORCE",
-        help="The most that its poses pull a cable with; if left out that of its design or of the studio, else none.",
+        help="Maximum cable tension in its poses.",
+        show_default="limit of its design or of the studio, else none",
     ),
 ]
-Force = Annotated[
-    bool, typer.Option("--force", help="Write the kit even if it cannot be built well; the sheet says why.")
-]
+Force = Annotated[bool, typer.Option("--force", help="Write the kit despite errors. The assembly sheet lists them.")]
 
 
 def fabricate(
@@ -38,33 +37,37 @@ def fabricate(
     out: OutFolder,
     method: Annotated[
         str | None,
-        typer.Option(metavar="plush|foam", help="If left out: plush for what is flat or stuffed, else foam."),
+        typer.Option(
+            metavar="plush|foam", help="Build method.", show_default="plush for flat or stuffed bodies, else foam"
+        ),
     ] = None,
     motor: Annotated[
-        str, typer.Option(metavar="NAME", help="n20, xl330, 25d; auto takes the first that is strong enough.")
+        str,
+        typer.Option(metavar="NAME", help="Motor model: n20, xl330, 25d, or auto for the first that is strong enough."),
     ] = "auto",
     mould: Annotated[
-        str | None, typer.Option(metavar="printed|silicone", help="Of foam: what the mould is of; printed if left out.")
+        str | None,
+        typer.Option(metavar="printed|silicone", help="Mold material for foam robots.", show_default="printed"),
     ] = None,
     bed: Annotated[
-        str, typer.Option(metavar="LENGTHS", help="The most that your 3D printer takes, along x, y and z.")
+        str, typer.Option(metavar="LENGTHS", help="Build volume of your 3D printer along x, y and z.")
     ] = "220 x 220 x 250 mm",
     tension: Tension = None,
-    paper: Annotated[str, typer.Option(metavar="a4|letter", help="What the pages are printed on.")] = "a4",
-    seam: Annotated[str, typer.Option(metavar="LENGTH", help="Of plush: cloth between seam and cut.")] = "8 mm",
-    line: Annotated[str, typer.Option(metavar="LENGTH", help="Diameter of the cables, a braided line.")] = "0.4 mm",
+    paper: Annotated[str, typer.Option(metavar="a4|letter", help="Paper size of the printed pages.")] = "a4",
+    seam: Annotated[str, typer.Option(metavar="LENGTH", help="Seam allowance for plush robots.")] = "8 mm",
+    line: Annotated[str, typer.Option(metavar="LENGTH", help="Diameter of the braided line used as cable.")] = "0.4 mm",
     clearance: Annotated[
-        str, typer.Option(metavar="LENGTH", help="Between printed parts that move in each other, on each side.")
+        str, typer.Option(metavar="LENGTH", help="Print clearance per side between moving parts.")
     ] = "0.3 mm",
     step: Annotated[
-        bool, typer.Option("--step", help='Also write printed parts as STEP; needs pip install "hydrostat[cad]".')
+        bool, typer.Option("--step", help='Also write printed parts as STEP. Needs pip install "hydrostat[cad]".')
     ] = False,
     force: Force = False,
 ) -> None:
-    """Write all that is needed to build a robot.
+    """Write a build kit: patterns, parts, lists and assembly sheet.
 
-    Begin with assembly_sheet.pdf. pattern/ is for the laser cutter, or for a printer and scissors; parts/ and mould/
-    are for a 3D printer; lists/ tells what to buy and how long to cut cables; manifest.json is what all is made from.
+    Start with assembly_sheet.pdf. pattern/ is for a laser cutter, or a printer and scissors. parts/ and mould/ are for
+    a 3D printer. lists/ holds the bill of materials and the cable lengths. manifest.json records the inputs.
 
     Example: hydrostat fabricate examples/starfish --out build/kit
     """
@@ -89,17 +92,14 @@ def fabricate(
     kept = designed_tension(loaded, robot) if limit is None else None
     options = replace(options, tension=kept or limit)
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
-        raise InputError("--mould: is for bodies of foam; leave it out, or add --method foam")
+        raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
     kit = _built(robot, loaded, options)
     kit.write(out)
     print_kit(kit)
     if kept is not None:
-        print(
-            f"Cables: pulled with at most {kept:g} N, the limit of its design or of the studio; --tension says another"
-        )
-    print(
-        f"Wrote {len(kit.files)} files in {time.perf_counter() - began:.1f} s; begin with {out / 'assembly_sheet.pdf'}"
-    )
+        print(f"Cable tension: at most {kept:g} N, the limit of its design or of the studio. Override with --tension")
+    seconds = time.perf_counter() - began
+    print(f"Wrote {len(kit.files)} files in {seconds:.1f} s. Start with {out / 'assembly_sheet.pdf'}")
 
 
 def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
@@ -112,9 +112,9 @@ def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
             return build_kit(robot, options=options, progress=progress)
     except UnbuildableError as error:
         for reason in error.reasons:
-            print(f"cannot be built: {in_words(reason)}")
-        count = plural(len(error.reasons), "reason")
-        words = f"{folder}: cannot be built well, for {count}; mend it, or write it anyway with --force"
+            print(f"error: {in_words(reason)}")
+        count = f"{plural(len(error.reasons), 'problem')} {'prevents' if len(error.reasons) == 1 else 'prevent'}"
+        words = f"{folder}: {count} fabrication. Fix the robot, or add --force to write the kit anyway."
         raise InputError(words) from None
 
 
@@ -123,16 +123,16 @@ def print_kit(kit: "Kit") -> None:
     from hydrostat.robot import in_words
 
     for problem in kit.problems:
-        print(f"cannot be built well: {in_words(problem)}")
+        print(f"error: {in_words(problem)}")
     for warning in kit.warnings:
         print(f"warning: {in_words(warning)}")
     for line in kit.summary:
         print(line)
     held = sum(check.passed for check in kit.checks)
-    print(f"Self-check: {held} of {len(kit.checks)} hold")
+    print(f"Quality checks: {held} of {len(kit.checks)} passed")
     for check in kit.checks:
         if not check.passed:
-            print(f"  does not hold: {check.what}: {check.measured} (allowed: {check.allowed})")
+            print(f"  failed: {check.what}: {check.measured} (allowed: {check.allowed})")
 
 
 def _millimetres(option: str, text: str) -> float:
@@ -146,7 +146,9 @@ def _lengths(option: str, text: str) -> tuple[float, float, float]:
     """Three lengths such as "220 x 220 x 250 mm" [mm]."""
     match = re.fullmatch(r"\s*([\d.]+)\s*x\s*([\d.]+)\s*x\s*([\d.]+)\s*([^\W\d].*)", text)
     if match is None:
-        raise InputError(f'{option} {text}: must be three lengths and their unit, such as "220 x 220 x 250 mm"')
+        raise InputError(
+            f'{option} {text}: not a build volume. Write three lengths with a unit, e.g. "220 x 220 x 250 mm".'
+        )
     *sides, unit = match.groups()
     x, y, z = (_millimetres(option, f"{side} {unit}") for side in sides)
     return x, y, z

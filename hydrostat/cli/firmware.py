@@ -23,24 +23,37 @@ def firmware(
     robot: RobotFolder,
     out: OutFolder,
     board: Annotated[
-        str | None, typer.Option(metavar="uno|mega,...", help="Which boards: two motors each, or six.")
+        str | None,
+        typer.Option(
+            metavar="uno|mega,...",
+            help="Board types: an uno drives two motors, a mega six.",
+            show_default="smallest that fit",
+        ),
     ] = None,
     port: Annotated[
-        str | None, typer.Option(metavar="PORT,...", help="Write it to these boards: /dev/ttyACM0.")
+        str | None,
+        typer.Option(
+            metavar="PORT,...", help="Flash the boards on these ports, e.g. /dev/ttyACM0.", show_default="none"
+        ),
     ] = None,
     motor: Annotated[
         str | None,
-        typer.Option(metavar="KEY", help="Motor of the kit, n20 or 25d; that of motors.toml if left out, else 25d."),
+        typer.Option(metavar="KEY", help="Motor model: n20 or 25d.", show_default="the one in motors.toml, else 25d"),
     ] = None,
-    counts: Annotated[float | None, typer.Option(metavar="N", help="Of the encoder in a turn of the spool.")] = None,
-    rpm: Annotated[float | None, typer.Option(metavar="N", help="Turns a minute without load.")] = None,
+    counts: Annotated[
+        float | None,
+        typer.Option(metavar="N", help="Encoder counts per spool turn.", show_default="those of the motor"),
+    ] = None,
+    rpm: Annotated[
+        float | None, typer.Option(metavar="N", help="No-load speed [turns/min].", show_default="that of the motor")
+    ] = None,
 ) -> None:
-    """Build the firmware of a robot for an Arduino with geared motors, and write it to the board.
+    """Build Arduino firmware for geared motors, and flash it.
 
-    Its limits come from robot.toml and motors.toml; where a motor there has no counts they are added, and --motor or
-    --counts puts new ones there. More motors than a board bears are spread over several, each with its own port.
-    Without --port nothing is written to a board, and the command that would do it is shown. Needs Debian's gcc-avr and
-    avr-libc, and avrdude to write. Then: hydrostat calibrate ROBOT --port firmware:/dev/ttyACM0.
+    Limits come from robot.toml and motors.toml. Missing encoder counts are added to motors.toml; --motor or --counts
+    replaces them. Robots with more motors than one board drives use several boards, each with its own port. Without
+    --port the command prints the flash command instead of running it. Needs Debian's gcc-avr and avr-libc, and avrdude
+    to flash. Then run: hydrostat calibrate ROBOT --port firmware:/dev/ttyACM0.
 
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
     """
@@ -50,11 +63,11 @@ def firmware(
 
     known = {each.key: each for each in MOTORS if each.counts}
     if motor is not None and motor not in known:
-        raise InputError(f"--motor {motor}: those with an encoder are: {', '.join(known)}; or give --counts and --rpm")
+        raise InputError(f"--motor {motor}: unknown motor. Available: {', '.join(known)}. Or give --counts and --rpm.")
     folder = robot if robot.is_dir() else robot.parent
     loaded = read_robot(robot)
     if not loaded.winches:
-        raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
+        raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
     if (folder / control.CALIBRATION).exists():
         calibration = control.read_calibration(folder, loaded)
     else:
@@ -70,12 +83,13 @@ def firmware(
     given = control.Calibration(tuple(replace(each, counts=new or each.counts or usual) for each in given.motors))
     ports = port.split(",") if port else []
     if ports and len(ports) != given.boards:
-        raise InputError(f"--port {port}: {plural(given.boards, 'board')} need a port each, with commas between them")
+        words = f"{plural(len(ports), 'port')} for {plural(given.boards, 'board')}"
+        raise InputError(f"--port {port}: {words}. Separate ports by commas.")
     places = [out if given.boards == 1 else out / f"board_{number}" for number in range(1, given.boards + 1)]
     build.check_ports(ports)
     shown = ", ".join(dict.fromkeys(f"{each.counts:g}" for each in given.motors))
-    print(f"For {chosen.title} ({'as said' if motor else 'is it what the kit names? Another: --motor'}):")
-    print(f"{shown} counts in a turn of a spool, {turns:g} turns a minute without load")
+    print(f"Motor: {chosen.title}{'' if motor else ' (check the kit; change with --motor)'}")
+    print(f"{shown} counts per spool turn, no-load speed {turns:g} turns/min")
     texts = [
         build.firmware_settings(loaded, given, rpm=turns, stall=chosen.stall_current, board=number)
         for number in range(1, given.boards + 1)
@@ -87,7 +101,7 @@ def firmware(
         _tell(kind, number, given)
         _flash(kind, image, ports[number - 1] if ports else None)
     if ports:
-        print(f"{port}: written. Let all cables out, then: hydrostat calibrate {folder} --port firmware:{port}")
+        print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --port firmware:{port}")
 
 
 _USUAL = "25d"
@@ -119,7 +133,7 @@ def _tell(kind: str, number: int, given: "Calibration") -> None:
 
     motors = sorted((given.motors[place] for place in given.places(number)), key=lambda one: one.number)
     name = kind if given.boards == 1 else f"board {number}, {kind}"
-    print(f"{name}: {plural(len(motors), 'motor')}, wired so (driver's PWM, direction, encoder A and B, current):")
+    print(f"{name}: {plural(len(motors), 'motor')}, wiring (driver PWM, direction, encoder A and B, current):")
     for each, pins in zip(motors, board_kind(kind).wiring, strict=False):
         print(f"  {each.number} {each.winch}: {', '.join(pins)}")
 
@@ -129,8 +143,6 @@ def _flash(kind: str, image: "Path", port: str | None) -> None:
     from hydrostat.control import firmware_build as build
 
     command = build.flash_command(kind, port or "PORT", image)
-    print(
-        f"Wrote {image}; {'writing it to the board' if port else 'to write it to a board'}: {join(command)}", flush=True
-    )
+    print(f"Wrote {image}. {'Flashing the board' if port else 'To flash a board'}: {join(command)}", flush=True)
     if port:
         build.flash(command)

@@ -27,18 +27,18 @@ def _own(robot: Path) -> Path:
     if (folder := found_folder(robot)) != robot:
         name = folder.name
         copy = f"hydrostat new my_{name} --from {robot}"
-        raise InputError(f"{robot}: the gallery stays as it is; make a copy by {copy}, and name that")
+        raise InputError(f"{robot}: the gallery is read-only. Make a copy: {copy}")
     return robot
 
 
-_HELP = "Folder of a robot, its robot.toml"
+_HELP = "Robot folder, its robot.toml"
 RobotFolder = Annotated[
     Path, typer.Argument(metavar="ROBOT", help=f"{_HELP}, or gallery:NAME.", callback=found_folder)
 ]  # to read from
 OwnRobotFolder = Annotated[
     Path, typer.Argument(metavar="ROBOT", help=f"{_HELP.replace(',', ', or')}.", callback=_own)
 ]  # to write to
-OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the results; made if need be.")]
+OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Output folder (created if missing).")]
 
 
 def folder_of(robot: Path) -> Path:
@@ -58,7 +58,7 @@ def require_folder(out: Path) -> None:
         clear_unfinished(folder)
     for folder in (out, *out.parents):
         if folder.exists() and not folder.is_dir():
-            raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file; name a folder")
+            raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file. Name a folder.")
     require_writable(out, f"--out {out}")
 
 
@@ -66,9 +66,7 @@ def require_writable(folder: Path, what: str) -> None:
     """Before long work begins: this process may write into a folder, or make it (InputError: it may not)."""
     there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
     if not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(
-            f"{what}: nothing can be written into {there.absolute()}; name another folder, or mind its rights"
-        )
+        raise InputError(f"{what}: cannot write to {there.absolute()}. Name another folder or change its permissions.")
 
 
 @contextmanager

@@ -22,29 +22,39 @@ def grasp(
     out: OutFolder,
     thing: Annotated[
         str,
-        typer.Option("--object", metavar="SHAPE:SIZES", help="sphere:65mm, cylinder:40mm,120mm, box:40mm,40mm,60mm."),
+        typer.Option(
+            "--object",
+            metavar="SHAPE:SIZES",
+            help="Object shape and size: sphere:65mm, cylinder:40mm,120mm or box:40mm,40mm,60mm.",
+        ),
     ] = "sphere:65mm",
     pose: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Pose that closes the robot; or use --contract.")
+        str | None, typer.Option(metavar="NAME", help="Pose that closes the robot, instead of --contract.")
     ] = None,
     contract: Contract = None,
-    pull: Annotated[str, typer.Option(metavar="DIRECTION", help="Way of the pull, such as +z.")] = "+z",
+    pull: Annotated[str, typer.Option(metavar="DIRECTION", help="Pull direction, e.g. +z.")] = "+z",
     at: Annotated[
-        str | None, typer.Option(metavar="X,Y,Z", help="Middle of the thing [mm]; found near the pose if left out.")
+        str | None,
+        typer.Option(metavar="X,Y,Z", help="Object center [mm].", show_default="near the markers of the pose"),
     ] = None,
-    friction: Annotated[float, typer.Option(help="Coulomb's coefficient between robot and thing.")] = 0.5,
-    mass: Annotated[str, typer.Option(metavar="MASS", help="Of the thing.")] = "58 g",
+    friction: Annotated[float, typer.Option(help="Coulomb friction coefficient between robot and object.")] = 0.5,
+    mass: Annotated[str, typer.Option(metavar="MASS", help="Object mass.")] = "58 g",
     step: Annotated[
-        str, typer.Option(metavar="LENGTH", help="Of the pull at a time; the answer hardly depends on it.")
+        str, typer.Option(metavar="LENGTH", help="Pull increment. The result hardly depends on it.")
     ] = "2mm",
     bands: Annotated[
-        bool, typer.Option("--bands", help="Also with other friction, stiffness, place: a dozen pulls more.")
+        bool,
+        typer.Option(
+            "--bands",
+            help="Sensitivity analysis: 12 more pulls with varied friction, stiffness and object position.",
+        ),
     ] = False,
 ) -> None:
-    """Close a robot on a thing and pull it out again: the force against the way, and what it takes at most.
+    """Measure grasp strength: force to pull an object out.
 
-    The thing is rigid and goes straight. The robot feels itself and the thing, with friction on the thing. Writes
-    pull.csv, pull.png and pull.gif; with --bands also bands.csv.
+    Closes the robot on an object, pulls it out, and reports force vs. displacement. The object is rigid and moves in a
+    straight line. Self-contact and contact with the object are on, with friction on the object. Writes pull.csv,
+    pull.png and pull.gif; with --bands also bands.csv.
 
     Example: hydrostat grasp examples/caging_gripper --pose close --object sphere:65mm --pull +z --out build/grasp
     """
@@ -91,13 +101,13 @@ def _closed(robot: "Robot", name: str | None, given: dict[str, float]) -> "tuple
 
     simulation = Simulation(robot)
     if (name is None) == (not given):
-        poses = f"; poses are: {', '.join(robot.poses)}" if robot.poses else ""
-        raise InputError(f"say by --pose, or by --contract, how the robot closes{poses}")
+        poses = f" Poses: {', '.join(robot.poses)}." if robot.poses else ""
+        raise InputError(f"--pose or --contract: give exactly one of them to close the robot.{poses}")
     found = simulation.solve(given) if name is None else solve_ik(simulation, robot.pose(name)).pose
     targets = list(found.markers) if name is None else list(robot.pose(name).targets)
     places = np.array([found.markers[marker] for marker in targets])
     if not len(places):
-        raise InputError("the robot has no markers, so say by --at where the thing lies")
+        raise InputError("--at: needed, because the robot has no markers. Give the object center, e.g. --at 0,0,90.")
     return found.contractions, places
 
 
@@ -113,7 +123,9 @@ def _placed(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points")
 def _direction(text: str, dim: int) -> tuple[float, ...]:
     axes = "xyz"[:dim]
     if len(text) != 2 or text[0] not in "+-" or text[1] not in axes:
-        raise InputError(f"--pull {text}: must be one of {', '.join(sign + axis for axis in axes for sign in '+-')}")
+        raise InputError(
+            f"--pull {text}: unknown direction. Allowed: {', '.join(sign + axis for axis in axes for sign in '+-')}."
+        )
     return tuple((1.0 if text[0] == "+" else -1.0) * (axis == text[1]) for axis in axes)
 
 
@@ -130,7 +142,7 @@ def _table(pull: "PullOut") -> str:
 
 
 def _bands(cases: "tuple[PullCase, ...]") -> str:
-    lines = ["case,peak_N,work_mJ,how it ended"]
+    lines = ["case,peak_N,work_mJ,result"]
     for case in cases:
         if case.pull is None:
             lines.append(f'{case.name},,,"{case.trouble}"')
@@ -142,15 +154,15 @@ def _bands(cases: "tuple[PullCase, ...]") -> str:
 def _print(pull: "PullOut", thing: "Obstacle", cases: "tuple[PullCase, ...]") -> None:
     """Print the most that the pull took, and how it changes with what nobody knows well."""
     place = ", ".join(f"{1e3 * value:z.1f}" for value in thing.frame()[0])
-    print(f"the thing lies at ({place}) mm")
+    print(f"object at ({place}) mm")
     hardest = 1e3 * float(pull.moved[int(pull.forces.argmax())])
-    print(f"hardest pull {pull.peak:.3g} N, {hardest:.1f} mm on its way; {1e3 * pull.work:.3g} mJ; {pull.reason}")
+    print(f"peak force {pull.peak:.3g} N at {hardest:.1f} mm, work {1e3 * pull.work:.3g} mJ; {pull.reason}")
     for case in cases:
         print(f"  {case.name:<14} " + (case.trouble if case.pull is None else f"{case.pull.peak:.3g} N"))
     known = [case.pull for case in cases if case.pull is not None and case.name != "no friction"]
     if known:
         peaks = [pull.peak, *(each.peak for each in known)]
-        print(f"hardest pull from {min(peaks):.3g} to {max(peaks):.3g} N over these")
+        print(f"peak force {min(peaks):.3g} to {max(peaks):.3g} N over these cases")
     for case in cases:
         if case.name == "no friction" and case.pull is not None:
-            print(f"without friction it takes {1e3 * case.pull.work:.3g} mJ to escape along this way")
+            print(f"work without friction: {1e3 * case.pull.work:.3g} mJ to escape in this direction")

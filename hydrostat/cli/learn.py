@@ -14,30 +14,38 @@ if TYPE_CHECKING:
 
 
 def learn(
-    data: Annotated[Path, typer.Argument(metavar="DATA", help="Folder of samples that hydrostat sample has written.")],
-    out: Annotated[Path, typer.Option(metavar="MODEL", help="The file to write.")],
-    count: Annotated[int | None, typer.Option(metavar="N", help="Learn from the first N samples; default all.")] = None,
+    data: Annotated[Path, typer.Argument(metavar="DATA", help="Sample folder written by `hydrostat sample`.")],
+    out: Annotated[Path, typer.Option(metavar="MODEL", help="Model file to write.")],
+    count: Annotated[
+        int | None, typer.Option(metavar="N", help="Use only the first N samples.", show_default="all")
+    ] = None,
     members: Annotated[
-        int | None, typer.Option(metavar="N", help="Networks; their disagreement is the model's doubt.")
+        int | None,
+        typer.Option(metavar="N", help="Ensemble size. The spread is reported as uncertainty.", show_default="3"),
     ] = None,
     steps: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Of training the forward networks; more take longer and err a little less."),
+        typer.Option(
+            metavar="N",
+            help="Training steps. More is slower and slightly more accurate.",
+            show_default="6000, plus 3 per sample",
+        ),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
+    seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
     start: Annotated[
         Path | None,
-        typer.Option("--from", metavar="MODEL", help="A model of a coarser mesh, to be corrected by the samples."),
+        typer.Option("--from", metavar="MODEL", help="Model of a coarser mesh, to fine-tune with the samples."),
     ] = None,
-    threads: Annotated[int, typer.Option(metavar="N", help="Cores to train on.")] = 1,
+    threads: Annotated[int, typer.Option(metavar="N", help="Number of CPU cores for training.")] = 1,
 ) -> None:
-    """Learn from samples where a robot's markers go, and how to bring them somewhere.
+    """Train a surrogate model from samples.
 
-    Writes one file that needs no simulator and no PyTorch to be used: hydrostat pose ROBOT --model MODEL, or in Python
-    hydrostat.learning.load_model(MODEL).solve(targets). Ctrl-C ends it early; the file then holds the best so far.
+    The model predicts marker positions and solves inverse kinematics. Writes one file. It runs without simulator and
+    PyTorch: hydrostat pose ROBOT --model MODEL, or in Python hydrostat.learning.load_model(MODEL).solve(targets).
+    Ctrl-C stops early and saves the best model so far.
 
-    With --from the networks of a model learn on: a model of many samples of a coarse mesh, and a few samples of the
-    same robot with a finer one, make a model of the finer one.
+    With --from, training continues from an existing model. Train on many samples of a coarse mesh first, then fine-tune
+    with a few samples of a finer mesh of the same robot.
 
     Example: hydrostat learn build/samples --out build/starfish.model
     """
@@ -45,7 +53,9 @@ def learn(
     from hydrostat.robot import clear_unfinished
 
     if out.is_dir() or not out.parent.is_dir():
-        raise InputError(f"--out {out}: {'is a folder' if out.is_dir() else 'its folder is not there'}; name a file")
+        raise InputError(
+            f"--out {out}: {'is a folder' if out.is_dir() else 'folder not found'}. Name a file in an existing folder."
+        )
     require_writable(out.parent, f"--out {out}")
     clear_unfinished(out.parent)
     chosen = {"members": members, "steps": steps}
@@ -54,21 +64,22 @@ def learn(
     samples = samples if count is None else samples.first(count)
     if start is not None:
         if chosen != {"members": None, "steps": None}:
-            raise InputError("--from keeps the networks of its model: leave out --members and --steps")
+            raise InputError("--from: not available with --members or --steps. Remove them.")
         known = load_model(start)
-        with one_interrupt("stopping; what was learned so far is kept"):
+        with one_interrupt("stopping: saving the best model so far ..."):
             model = correct_model(known, samples, tell=told())
             save_model(model, out)
-        print(f"{len(samples)} samples: markers are expected within {1e3 * model.facts['error']:.3f} mm")
+        print(f"expected marker error {1e3 * model.facts['error']:.3f} mm ({len(samples)} samples)")
         _end(model, out)
         return
-    with one_interrupt("stopping; what was learned so far is kept"):
+    with one_interrupt("stopping: saving the best model so far ..."):
         model = learn_model(samples, options=options, tell=told())
         save_model(model, out)
     facts = model.facts
     moved, error = 1e3 * facts["displacement"], 1e3 * facts["error"]
-    print(f"{len(samples)} samples: markers that move {moved:.1f} mm are expected within {error:.3f} mm", end="")
-    print("" if facts["inverse_error"] is None else f", brought back within {1e3 * facts['inverse_error']:.3f} mm")
+    inverse = facts["inverse_error"]
+    words = "" if inverse is None else f", inverse error {1e3 * inverse:.3f} mm"
+    print(f"expected marker error {error:.3f} mm{words} (mean motion {moved:.1f} mm, {len(samples)} samples)")
     _end(model, out)
 
 
@@ -77,5 +88,5 @@ def _end(model: "LearnedModel", out: Path) -> None:
     print(f"Wrote {out}")
     if model.facts["stopped"]:
         lacks = "" if model.inverse else ", without an inverse network"
-        print(f"It was stopped early: this is the best so far{lacks}")
+        print(f"interrupted: best model so far{lacks}")
         raise typer.Exit(130)

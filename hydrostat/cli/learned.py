@@ -23,7 +23,7 @@ def read_model(path: Path, robot: "Robot") -> "tuple[LearnedModel, Robot]":
     robot = replace(robot, contact=Contact()) if silent else robot
     model.check(robot)
     if silent:
-        print("note: the model knows contact, so the body feels itself here too")
+        print("note: model was trained with contact; self-contact enabled")
     return model, robot
 
 
@@ -33,11 +33,11 @@ def learned_start(simulation: "Simulation", model: "LearnedModel", target: "Pose
 
     found = verify(simulation, model, model.solve(target))
     expected = _root_mean_square(found.errors)
-    words = f"networks expect an rms error of {1e3 * expected:.2f} mm, with a doubt of {1e3 * found.uncertainty:.2f} mm"
+    words = f"model predicts rms error {1e3 * expected:.2f} mm, uncertainty {1e3 * found.uncertainty:.2f} mm"
     if found.certified is None:
-        print(f"{target.name}: {words}; there the simulator says: {found.reason}")
+        print(f"{target.name}: {words}; simulator: {found.reason}")
         return None
-    print(f"{target.name}: {words}; the simulator finds one of {1e3 * _root_mean_square(found.certified):.2f} mm there")
+    print(f"{target.name}: {words}; simulated rms error {1e3 * _root_mean_square(found.certified):.2f} mm")
     return found.pose
 
 

@@ -37,8 +37,8 @@ from hydrostat.errors import HydrostatError, InputError
 
 app = typer.Typer(
     name="hydrostat",
-    help="From a shape to a working cable-driven soft robot: design it, simulate it, build it.",
-    epilog="Begin with: hydrostat new my_starfish --from gallery:starfish",
+    help="Design, simulate and build tendon-driven (cable-driven) soft robots.",
+    epilog="Start with: hydrostat new my_starfish --from gallery:starfish",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -92,8 +92,8 @@ for command in (
 
 
 @app.callback(invoke_without_command=True)
-def version(show: bool = typer.Option(False, "--version", help="Print the version and end.")) -> None:
-    """From a shape to a working cable-driven soft robot: design it, simulate it, build it."""
+def version(show: bool = typer.Option(False, "--version", help="Print the version and exit.")) -> None:
+    """Design, simulate and build tendon-driven (cable-driven) soft robots."""
     if show:
         from hydrostat.version import __version__
 
@@ -110,15 +110,15 @@ def main() -> None:
     try:
         _run()
     except InputError as error:
-        _stop(str(error), 2)
+        _stop(f"error: {error}", 2)
     except HydrostatError as error:
-        _stop(str(error), 1)
+        _stop(f"error: {error}", 1)
     except BrokenPipeError:
         _close_quietly()
     except OSError as error:
-        _stop(f"{error.filename or 'what was to be written'}: {error.strerror or error}", 2)
+        _stop(f"error: {error.filename or 'output'}: {error.strerror or error}", 2)
     except (KeyboardInterrupt, _InterruptError):
-        _stop("stopped; what had been written is whole", 130)
+        _stop("interrupted; files written so far are complete", 130)
 
 
 def _run() -> None:

@@ -9,9 +9,9 @@ if TYPE_CHECKING:
 
 
 def materials(
-    name: Annotated[str | None, typer.Argument(metavar="NAME", help="A material of the table.")] = None,
+    name: Annotated[str | None, typer.Argument(metavar="NAME", help="Material name, to print its source.")] = None,
 ) -> None:
-    """List the materials known by name, or say where the numbers of one come from.
+    """List all materials, or print the data and source of one.
 
     Example: hydrostat materials "ecoflex 00-30"
     """
@@ -27,7 +27,7 @@ def materials(
             f"{material.name:<{width}}  {material.density:>7.0f}  {young_text(material):>9}  {material.poisson:>7.2f}"
             f"  {range_text(material)}"
         )
-    print('Where the numbers come from: hydrostat materials "ecoflex 00-30"')
+    print('Source of each material: hydrostat materials NAME, e.g. hydrostat materials "ecoflex 00-30"')
 
 
 def _print_one(material: "Material") -> None:

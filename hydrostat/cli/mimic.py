@@ -25,20 +25,30 @@ TICK = 1 / 60  # motors are told again after so long [s]
 
 def mimic(
     robot: RobotFolder,
-    glove: Annotated[str, typer.Option(metavar="PORT", help="Of a glove; camera:FILE.task; camera:PORT; or emulated.")],
+    glove: Annotated[
+        str,
+        typer.Option(
+            metavar="PORT", help="Hand input: serial port of a glove, camera:FILE.task, camera:PORT or emulated."
+        ),
+    ],
     out: OutFolder,
-    poses: Annotated[int, typer.Option(metavar="N", help="How many poses, with those that are there already.")] = 60,
-    worn: Annotated[bool, typer.Option("--worn", help="The robot itself wears the glove.")] = False,
-    tips: Annotated[bool, typer.Option("--tips", help="Learn where fingertips are, not contractions.")] = False,
+    poses: Annotated[int, typer.Option(metavar="N", help="Total number of poses, including earlier ones in DIR.")] = 60,
+    worn: Annotated[bool, typer.Option("--worn", help="Record without prompts: the robot wears the glove.")] = False,
+    tips: Annotated[bool, typer.Option("--tips", help="Learn fingertip positions instead of contractions.")] = False,
     port: Annotated[
-        str | None, typer.Option(metavar="KIND:PORT", help="Real motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
+        str | None,
+        typer.Option(
+            metavar="KIND:PORT",
+            help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
+            show_default="simulated motors",
+        ),
     ] = None,
 ) -> None:
-    """Learn to drive a robot by a hand: the robot takes poses, you mimic them in a glove or before a camera.
+    """Teach a hand-to-robot map with a glove or camera.
 
-    Hold each pose still and press Enter: what is told for 0.3 s is averaged. The next pose is that which tells most.
-    The error of poses left out is shown as you go; pairs are kept in DIR after each, and you may go on another day.
-    With --worn the robot wears the glove, and nobody need press anything.
+    The robot shows a pose and you copy it. Hold each pose still and press Enter. The command averages 0.3 s of readings
+    and shows the most informative next pose. After each pose it prints the cross-validation error and saves the pairs
+    in DIR. Run the command again to add poses. With --worn the robot wears the glove, and you need not press Enter.
 
     Without --port the motors are simulated, and DIR/pose.png shows each pose.
 
@@ -49,7 +59,7 @@ def mimic(
     if port is not None:
         control.check_port(port)
     if poses < 4:
-        raise InputError(f"--poses {poses}: errors are known from 4 on")
+        raise InputError(f"--poses {poses}: must be at least 4")
     require_folder(out)
     loaded = read_robot(robot)
     wearer = teleop.EmulatedHand(teleop.winch_channels(loaded))
@@ -75,7 +85,7 @@ def mimic(
                 lesson.made.save(out / PAIRS)
                 session.say(lesson.told())
     except (KeyboardInterrupt, SystemExit):
-        print(f"stopped; what was taken is in {out / PAIRS}", flush=True)
+        print(f"interrupted; poses so far are in {out / PAIRS}", flush=True)
         raise typer.Exit(130) from None
     finally:
         hand.close()
@@ -94,14 +104,14 @@ def _lesson(simulation: "Simulation", hand: "HandSource", out: Path, *, tips: bo
     if tips:
         names = teleop.marker_channels(simulation).names
         pool = pool[:: len(pool) // TIPS]
-        print("solving the poses to choose from ...", flush=True)
+        print("solving candidate poses ...", flush=True)
         answers = np.array([_markers(simulation, contractions) for contractions in pool])
         pool, answers = pool[np.isfinite(answers).all(1)], answers[np.isfinite(answers).all(1)]
     made = teleop.Mimicry(hand.names, names)
     if (out / PAIRS).exists():
         made = teleop.Mimicry.open(out / PAIRS)
         if (made.sensors, made.outputs) != (hand.names, names):
-            raise InputError(f"{out / PAIRS}: is of another hand or robot, or of --tips; give another --out")
+            raise InputError(f"{out / PAIRS}: recorded with another hand, robot or --tips setting. Give another --out.")
     out.mkdir(parents=True, exist_ok=True)
     return teleop.LessonPoses(made, pool, answers)
 
@@ -171,17 +181,17 @@ class _Session:
             except HydrostatError as error:
                 if not asks:
                     raise
-                self.say(f"{error}; once more")
+                self.say(f"{error}. Try again")
                 continue
             if held.still:
                 return held
-            self.say(f"the hand moved, by {held.spread:.3f} of the range of a sensor; once more")
+            self.say(f"hand moved by {held.spread:.3f} of the sensor range. Hold still and try again")
             if not asks:
                 self.beat()
 
     def _key(self, number: int) -> str:
         """What the person types; motors are told to stay meanwhile."""
-        self.say(f"pose {number + 1}: mimic it, hold still, and press Enter (q: end)")
+        self.say(f"pose {number + 1}: copy it, hold still, press Enter (q: quit)")
         while not select.select([sys.stdin], [], [], 0.0)[0]:
             self.beat()
             time.sleep(TICK)
@@ -195,7 +205,7 @@ def _done(lesson: "LessonPoses", robot: str, out: Path, glove: str, *, tips: boo
 
     made = lesson.made
     if lesson.count < 4:
-        print(f"{lesson.count} poses are too few to learn of; they are in {out / PAIRS}")
+        print(f"too few poses for a map ({lesson.count}, minimum 4). They are saved in {out / PAIRS}")
         return
     ridge = made.learn()
     error = made.errors(ridge)[0]

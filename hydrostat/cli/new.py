@@ -30,36 +30,38 @@ LONGEST = 20.0  # no length that is asked for is longer [m]
 
 
 def new(
-    name: Annotated[Path, typer.Argument(metavar="NAME", help="Folder to make for the new robot.")],
+    name: Annotated[Path, typer.Argument(metavar="NAME", help="New robot folder.")],
     source: Annotated[
         str,
         typer.Option(
             "--from",
             metavar="SOURCE",
-            help="gallery:NAME; a drawing of a closed outline (SVG, DXF, PNG, JPG); a scan or CAD model (STL, OBJ, "
-            "PLY, OFF, 3MF); or a ready mesh of tetrahedra (VTK, VTU, MSH).",
+            help="Source: gallery:NAME, a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF), "
+            "or a tetrahedral mesh (VTK, VTU, MSH).",
         ),
     ],
-    size: Annotated[str | None, typer.Option(help='Longest side, for example "190 mm".')] = None,
-    element_size: Annotated[str | None, typer.Option(help='Length of a mesh edge, for example "12 mm".')] = None,
-    nodes: Annotated[int | None, typer.Option(help="About so many nodes, instead of an element size.")] = None,
-    thickness: Annotated[str | None, typer.Option(help='Of a flat body, for example "40 mm".')] = None,
-    inflate: Annotated[
-        str | None, typer.Option(help='Blow a drawing up to a body in space so thick, for example "60 mm".')
+    size: Annotated[str | None, typer.Option(help="Length of the longest side, e.g. 190mm.")] = None,
+    element_size: Annotated[str | None, typer.Option(help="Length of mesh edges, e.g. 12mm.")] = None,
+    nodes: Annotated[
+        int | None, typer.Option(help="Approximate number of mesh nodes, instead of --element-size.")
     ] = None,
-    material: Annotated[str | None, typer.Option(help="A material of the table: hydrostat materials.")] = None,
+    thickness: Annotated[str | None, typer.Option(help="Thickness of a flat body, e.g. 40mm.")] = None,
+    inflate: Annotated[
+        str | None, typer.Option(help="Inflate a 2D drawing to a 3D body of this thickness, e.g. 60mm.")
+    ] = None,
+    material: Annotated[str | None, typer.Option(help="Material name. List them with `hydrostat materials`.")] = None,
     inner: Annotated[
         str | None,
-        typer.Option(help="What closed shapes in a drawing are: holes, or drawn on the body (eyes, a mouth)."),
+        typer.Option(help="Closed shapes inside a drawing: holes, or drawn for features on the body (eyes, a mouth)."),
     ] = None,
     within: Annotated[
-        str | None, typer.Option(metavar="TIME", help="Give up reading, healing and meshing after so long.")
+        str | None, typer.Option(metavar="TIME", help="Time limit for reading, healing and meshing the file.")
     ] = None,
 ) -> None:
-    """Make a robot from the gallery, a drawing, a scan, a CAD model or a mesh.
+    """Make a robot from the gallery, a drawing, a scan or a mesh.
 
-    A scan or CAD model with holes, crossings, flipped triangles or specks is healed; what was found and done is told,
-    and drawn in healing.png.
+    Repairs scans and CAD models with holes, self-intersections, flipped triangles or specks, reports the repairs, and
+    draws them in healing.png.
 
     Example: hydrostat new my_hand --from scan.stl --size "190 mm" --nodes 900
     """
@@ -67,9 +69,9 @@ def new(
     from hydrostat.units import TIME
 
     if name.exists() and (not name.is_dir() or any(name.iterdir())):
-        raise InputError(f"{name}: exists already; choose another name or remove it")
+        raise InputError(f"{name} already exists. Choose another name or delete the folder.")
     if nodes is not None and element_size is not None:
-        raise InputError("--nodes and --element-size: give one of them")
+        raise InputError("--nodes and --element-size: mutually exclusive. Give one of them.")
     wish = NewRobotWish(
         name=_robot_name(name),
         size=_length("size", size),
@@ -86,11 +88,11 @@ def new(
             lines = _begin(source, folder, wish, seconds)
         except InputError as error:
             raise _of_option(error) from None
-        with patiently("reading it back, and drawing it ..."):
+        with patiently("reading the robot back and drawing it ..."):
             made = _draw(folder)
     count = len(made.body.mesh.nodes)
     if nodes is not None and abs(count / nodes - 1) > 0.1:
-        lines.append(f"nodes: {nodes} were asked for, {count} come nearest, as thin places need finer elements")
+        lines.append(f"note: {count} nodes instead of {nodes}: thin parts need finer elements")
     told = [line.replace(str(folder), str(name)) for line in lines]
     _print_made(made, name, told, chosen=bool(nodes or element_size))
 
@@ -124,7 +126,7 @@ def _length(key: str, text: str | None) -> float | None:
     option = f"--{key.replace('_', '-')}"
     value = positive(option, text, LENGTH)
     if value > LONGEST:
-        raise InputError(f"{option}: must be above 0 and at most {LONGEST:g} m, not {text}")
+        raise InputError(f"{option} {text}: must be above 0 and at most {LONGEST:g} m")
     return value
 
 
@@ -141,7 +143,7 @@ def _made_whole(name: Path) -> Iterator[Path]:
         rmtree(folder, ignore_errors=True)
         folder.mkdir()
     except OSError as error:
-        raise InputError(f"{name}: cannot be made ({error.strerror})") from None
+        raise InputError(f"{name}: cannot create the folder ({error.strerror}). Choose another name.") from None
     try:
         yield folder
         try:
@@ -149,7 +151,9 @@ def _made_whole(name: Path) -> Iterator[Path]:
                 name.rmdir()
             folder.rename(name)
         except OSError as error:
-            raise InputError(f"{name}: was made by another meanwhile, or cannot be ({error.strerror})") from None
+            raise InputError(
+                f"{name}: cannot create the folder ({error.strerror}). Another process may have created it."
+            ) from None
         made = []
     except InputError as error:
         raise InputError(str(error).replace(str(folder), str(name))) from None
@@ -184,7 +188,7 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
         replace_file(folder / "healing.txt", ("\n".join(told) + "\n").encode())
         figure = draw_healing(sketch.before, sketch.healing.surface, notes=told, places=sketch.healing.places)
         save_png(figure, folder / "healing.png")
-        lines.append(f"surface: see {folder / 'healing.png'}; the file that came is not changed")
+        lines.append(f"surface: see {folder / 'healing.png'}. The source file is unchanged")
     return lines
 
 
@@ -205,8 +209,8 @@ def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "Ne
     shapes = bounded(count, file=source, words="reading the drawing ...", seconds=seconds)
     if not shapes:
         return wish
-    what = f"The drawing has {plural(shapes, 'closed shape')} within the body."
-    drawn = typer.confirm(f"{what} Drawn on it, such as an eye (y), or cut through it, as a hole (n)?", default=True)
+    what = f"The drawing has {plural(shapes, 'closed shape')} inside the body."
+    drawn = typer.confirm(f"{what} Keep them as features such as eyes (y), or cut them as holes (n)?", default=True)
     return replace(wish, inner=Inner.DRAWN if drawn else Inner.HOLES)
 
 
@@ -214,7 +218,7 @@ def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
     """Copy a robot under its new name, if asked with other elements."""
     from hydrostat.robot import GALLERY, gallery_folder, load_robot, replace_file, with_values
 
-    wish.refuse("a gallery robot has its own; edit robot.toml", "size", "thickness", "inflate", "material")
+    wish.refuse("not available for gallery robots. Edit robot.toml", "size", "thickness", "inflate", "material")
     shelf = gallery_folder(source.removeprefix(GALLERY))
     files = {file.name: file.read_bytes() for file in sorted(shelf.iterdir()) if file.is_file()}
     wanted = wish.element_size if wish.nodes is None else load_robot(shelf).body.element_size_for(wish.nodes)
@@ -244,22 +248,22 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) ->
     mesh, flat = made.body.mesh, made.body.mesh.dim == 2
     kind = "triangles" if flat else "tetrahedra"
     print(
-        f"Made {name}: {1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}, "
+        f"Created {name}: {1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}, "
         f"poses: {', '.join(made.poses)}"
     )
     coarse = not flat and not chosen  # fewer elements than would be exact, so that all is quick at first
     for risk in find_risks(made):
         mild = coarse and "elements across" in risk
-        lines.append(f"{'coarse, to be quick at first' if mild else 'risky'}: {in_words(risk)}")
+        lines.append(f"{'note: coarse for speed' if mild else 'warning'}: {in_words(risk)}")
     for line in lines:
         print(line)
     for reason in print_sewing(made.body):
-        print(f"{FINDINGS['refused']}: {reason}")
+        print(f"{FINDINGS['mind']}: {reason}")
     scaled = made.body.size is not None
     origin = (
-        "from the middle of the drawing" if flat else "of the scaled body" if scaled else "as in the file of the body"
+        "from the center of the drawing" if flat else "in the scaled body" if scaled else "as in the file of the body"
     )
-    print(f"Edit {name / 'robot.toml'}; coordinates count {origin}, see {name / 'rest.png'}")
+    print(f"Edit {name / 'robot.toml'}. Coordinates: {origin}, see {name / 'rest.png'}")
     folder = quote(str(name))
     if flat:
         print(f"Next: hydrostat design {folder} --out {quote(str(name) + '_design')}")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.errors import InputError
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.arrays import Vector
@@ -14,13 +15,19 @@ if TYPE_CHECKING:
     from hydrostat.units import Dimension
 
 Contract = Annotated[
-    list[str] | None, typer.Option(metavar="WINCH=LENGTH", help="Cable a winch takes in; may be repeated.")
+    list[str] | None,
+    typer.Option(metavar="WINCH=LENGTH", help="Length of cable to reel in on one winch, e.g. left=12mm. Repeatable."),
 ]
-MostTension = Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears in a pose.")]
+MostTension = Annotated[
+    str | None, typer.Option(metavar="FORCE", help="Maximum cable tension, e.g. 20N.", show_default="no limit")
+]
 EqualWinches = Annotated[
-    list[str] | None, typer.Option(metavar="WINCH,WINCH", help="Winches of one contraction; may be repeated.")
+    list[str] | None,
+    typer.Option(
+        metavar="WINCH,WINCH", help="Couple winches so they share one contraction, e.g. left,right. Repeatable."
+    ),
 ]
-PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the pictures of the animation.")]
+PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the animation [pixels].")]
 
 
 def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = False) -> float:
@@ -32,7 +39,7 @@ def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = Fal
     except InputError as error:
         raise InputError(f"{option} {text}: {error}") from None
     if value < 0 or (value == 0 and not zero):
-        raise InputError(f"{option} {text}: must be {'0 or more' if zero else 'above 0'}, such as {dimension.example}")
+        raise InputError(f"{option} {text}: must be {'0 or more' if zero else 'above 0'}, e.g. {dimension.example}")
     return value
 
 
@@ -48,9 +55,10 @@ def middle(text: str, dim: int) -> "Vector":
     try:
         place = 1e-3 * np.array([float(part) for part in text.split(",")])
     except ValueError:
-        raise InputError(f"--at {text}: write the coordinates of its middle in mm, such as 0,0,90") from None
+        raise InputError(f"--at {text}: not a position. Write the object center in mm, e.g. 0,0,90.") from None
     if len(place) != dim:
-        raise InputError(f"--at {text}: the body has {dim} axes; give a coordinate for each")
+        got = plural(len(place), "coordinate")
+        raise InputError(f"--at {text}: {got} for a body with {dim} axes. Give one per axis.")
     return place
 
 
@@ -62,7 +70,7 @@ def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
     groups = [[name.strip() for name in text.split(",") if name.strip()] for text in equal or []]
     for text, names in zip(equal or [], groups, strict=True):
         if len(names) < 2:
-            raise InputError(f'--equal {text}: name two winches or more, such as "left,right"')
+            raise InputError(f'--equal {text}: too few winches. Name at least two, e.g. "left,right".')
     return Limits(tension=asked("--tension", tension, FORCE), equal=groups)
 
 
@@ -91,7 +99,7 @@ def _contraction(text: str) -> tuple[str, float]:
 
     name, equals, length = text.partition("=")
     if not equals:
-        raise InputError(f'--contract {text}: write WINCH=LENGTH, for example "left=12mm"')
+        raise InputError(f'--contract {text}: missing "=". Write WINCH=LENGTH, e.g. left=12mm.')
     sign = -1.0 if length.strip().startswith("-") else 1.0
     try:
         return name.strip(), sign * parse_quantity(length.strip().removeprefix("-"), LENGTH)
@@ -104,11 +112,13 @@ def check_contraction(robot: "Robot", name: str, value: float, *, option: str = 
     winch = robot.winch(name)
     if not -winch.release <= value <= winch.travel:
         print(
-            f"note: winch {name} can take in from {0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
-            f"{1e3 * value:g} mm is beyond it"
+            f"warning: winch {name}: contraction {1e3 * value:g} mm is outside its range "
+            f"({0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm)"
         )
     for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
         if cable.winch == name and ratio * value >= cable.length:
-            step = "" if ratio == 1 else f", by a spool {ratio:.3g} times that of the winch"
-            long = f"all of a cable that is {1e3 * cable.length:.3g} mm long"
-            raise InputError(f"{option} {name}: {1e3 * value:g} mm is {long}{step}")
+            spool = "" if ratio == 1 else f" at spool ratio {ratio:.3g}"
+            raise InputError(
+                f"{option} {name}: {1e3 * value:g} mm{spool} takes in the whole cable ({1e3 * cable.length:.3g} mm). "
+                f"Winch travel is {1e3 * winch.travel:g} mm."
+            )

@@ -25,18 +25,25 @@ SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: 
 
 def play(
     robot: RobotFolder,
-    moves: Annotated[Path, typer.Argument(metavar="MOVES.csv", help="Columns time_s, WINCH ... [mm].")],
-    loop: Annotated[int, typer.Option(metavar="N", help="How many times; 0: until it is stopped.")] = 1,
-    speed: Annotated[float, typer.Option(metavar="TIMES", help="So many times the speed of the table.")] = 1.0,
+    moves: Annotated[
+        Path, typer.Argument(metavar="MOVES.csv", help="Table of contractions: columns time_s, WINCH ... [mm].")
+    ],
+    loop: Annotated[int, typer.Option(metavar="N", help="Number of repetitions. 0 = until you stop it.")] = 1,
+    speed: Annotated[float, typer.Option(metavar="TIMES", help="Playback speed factor.")] = 1.0,
     port: Annotated[
-        str | None, typer.Option(metavar="KIND:PORT", help="Real motors, such as dynamixel:/dev/ttyUSB0; or emulated.")
+        str | None,
+        typer.Option(
+            metavar="KIND:PORT",
+            help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
+            show_default="simulated motors",
+        ),
     ] = None,
 ) -> None:
-    """Play a table of contractions on the motors of a robot, in real time.
+    """Play a table of contractions on the motors in real time.
 
-    Without --port the motors are simulated: nothing turns, and every line says so. The table is what `hydrostat
-    trajectory` and the studio write. Motors stop at its end, on Ctrl-C, on SIGTERM and on any error; with --port also
-    when a cable pulls much harder than the simulation says, or not at all.
+    Without --port the motors are simulated, and every line starts with "simulated". `hydrostat trajectory` and the
+    studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM and on any error. With --port they also stop
+    if a cable tension is far above the simulated one, or missing.
 
     Example: hydrostat play examples/starfish build/dance/trajectory.csv --loop 3
     """
@@ -48,7 +55,7 @@ def play(
     if port is not None:
         control.check_port(port)
     if loop < 0:
-        raise InputError(f"--loop {loop}: must be a number of times, or 0 to play until it is stopped")
+        raise InputError(f"--loop {loop}: must be 0 or more. 0 plays until you stop it.")
     player = control.Player()
     player.rounds = loop or inf
     try:
@@ -57,7 +64,7 @@ def play(
         raise InputError(f"--speed {speed:g}: {error}") from None
     loaded = read_robot(robot)
     if not loaded.winches:
-        raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
+        raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
     table, kind = ProfileTable.open(moves, loaded), "simulated" if port is None else port.partition(":")[0]
     fastest = control.FASTEST if port is None else control.LinkLimits().speed
     motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))), fastest=fastest)
@@ -67,13 +74,13 @@ def play(
         if port is not None and pulls is not None:
             motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
         try:
-            often = {0: "until it is stopped", 1: "once"}.get(loop, f"{loop} times")
+            often = {0: "until stopped", 1: "once"}.get(loop, f"{loop} times")
             seconds, winches = float(table.profile.times[-1]), plural(len(motors.names), "winch")
             _say(kind, f"{moves} on {loaded.name}, {winches}: {seconds:.2f} s, {often}, at {speed:g}x")
             _play(kind, motors, table.profile, player)
         finally:
             motors.link.close()
-    _say(kind, f"played; the motors hold at {_places(motors)}")
+    _say(kind, f"finished; motors holding at {_places(motors)}")
 
 
 def _play(kind: str, motors: "Motors", profile: "ContractionProfile", player: "Player") -> None:
@@ -85,19 +92,19 @@ def _play(kind: str, motors: "Motors", profile: "ContractionProfile", player: "P
     back = float(np.abs(profile.values[-1] - profile.at(0.0)).max())
     if player.rounds != 1 and back > 1e-6:
         _say(
-            kind, f"note: it does not end where it begins; each time anew a winch has {1e3 * back:.1f} mm to go at once"
+            kind, f"warning: the table does not end at its start: a winch jumps {1e3 * back:.1f} mm at each repetition"
         )
     tell, newline = _progress(kind, motors, player, float(profile.times[-1]))
     try:
         control.play(motors, profile, player, tell=tell)
     except (KeyboardInterrupt, SystemExit) as stop:
         newline()
-        _say(kind, f"stopped at {player.time:.2f} s; the motors hold at {_places(motors)}")
+        _say(kind, f"stopped at {player.time:.2f} s; motors holding at {_places(motors)}")
         code = 130 if isinstance(stop, KeyboardInterrupt) else stop.code
         raise typer.Exit(code if isinstance(code, int) else 1) from None
     except HydrostatError as error:
         newline()
-        raise HydrostatError(f"{kind}: the motors stopped at {player.time:.2f} s: {error}") from None
+        raise HydrostatError(f"{kind}: motors stopped at {player.time:.2f} s: {error}") from None
     newline()
 
 

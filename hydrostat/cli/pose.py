@@ -25,29 +25,32 @@ def pose(
     robot: RobotFolder,
     out: OutFolder,
     name: Annotated[
-        str | None, typer.Option("--pose", metavar="NAME", help="One pose; all if left out, none with --drawing.")
+        str | None,
+        typer.Option("--pose", metavar="NAME", help="Pose to reach.", show_default="all; none with --drawing"),
     ] = None,
     drawing: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The shape of the pose, drawn over the body's own drawing.")
+        Path | None, typer.Option(metavar="FILE", help="Target shape, drawn over the body's own drawing.")
     ] = None,
     tension: MostTension = None,
     equal: EqualWinches = None,
     restarts: Annotated[
-        int | None, typer.Option(metavar="N", help="How often to begin elsewhere where a goal is missed.")
+        int | None,
+        typer.Option(metavar="N", help="Random restarts if the target is not reached.", show_default="3"),
     ] = None,
     within: Annotated[
-        str | None, typer.Option(metavar="TIME", help="End each search after so long, with the best pose it has.")
+        str | None,
+        typer.Option(metavar="TIME", help="Time limit per search. Returns the best pose so far.", show_default="none"),
     ] = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
     model: Annotated[
-        Path | None, typer.Option(metavar="MODEL", help="Begin from what hydrostat learn has written.")
+        Path | None, typer.Option(metavar="MODEL", help="Warm-start from a model trained by `hydrostat learn`.")
     ] = None,
 ) -> None:
-    """Find the contractions that come nearest to a pose.
+    """Solve inverse kinematics: find contractions for a pose.
 
-    Writes contractions.json, pose.json, pose.vtu (for ParaView) and pose.png; several poses get a folder each.
-    A pose is markers at points, or with --drawing a whole shape; --pose and --drawing together are both. With --model
-    it tells what the networks expect and what the simulator finds there, and begins from it.
+    Writes contractions.json, pose.json, pose.vtu (for ParaView) and pose.png; several poses get one folder each.
+    A pose sets marker targets; --drawing sets a whole target shape. Give both to combine them. With --model, the
+    command prints the error that the model predicts and the simulated error, then starts the search from there.
 
     Example: hydrostat pose examples/starfish --pose wave --out build/wave
     """
@@ -94,7 +97,7 @@ def _targets(
     if drawing is not None:
         return [(drawing.stem, None)]
     if not loaded.poses:
-        raise InputError(f"{folder}: the robot has no [[pose]]; add one, or draw one and give it as --drawing")
+        raise InputError(f"{folder}: no [[pose]] in robot.toml. Add one, or give a target shape with --drawing.")
     return list(loaded.poses.items())
 
 
@@ -142,11 +145,11 @@ def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: fl
     print(f"  contractions: {text}")
     if reached.friction_hysteresis:
         band = ", ".join(f"{name} {1e3 * apart:.2f} mm" for name, apart in reached.friction_hysteresis.items())
-        print(f"  friction: come to from a tenth above, markers end elsewhere by: {band}")
+        print(f"  friction: hysteresis after 10 % overshoot: {band}")
     for words in reached.active_limits:
         print(f"  limit: {words}")
     if reached.active_limits or reached.optimality > _STEEP:
-        print(f"  optimality: {reached.optimality:.1g} (0 at an optimum within these limits)")
+        print(f"  optimality: {reached.optimality:.1g} (0 = optimum within these limits)")
 
 
 def _note_other_pose(simulation: "Simulation", reached: "IKResult") -> None:
@@ -156,8 +159,10 @@ def _note_other_pose(simulation: "Simulation", reached: "IKResult") -> None:
     pose = simulation.solve(reached.pose.contractions, strict=False)
     away = largest_distance(pose.nodes, reached.pose.nodes)
     if pose.result.converged and away > _APART * simulation.robot.body.mesh.size:
-        print(f"  note: at once from rest these contractions lead to another pose, up to {1e3 * away:.1f} mm away;")
-        print("  take them in step by step, or see `hydrostat branches`")
+        print(
+            f"  warning: in one step from rest, these contractions lead to another pose, up to {1e3 * away:.1f} mm away"
+        )
+        print("  Apply them in small steps, or run `hydrostat branches`.")
 
 
 def _note_crossings(loaded: "Robot", pose: "Equilibrium") -> None:
@@ -165,7 +170,7 @@ def _note_crossings(loaded: "Robot", pose: "Equilibrium") -> None:
     from hydrostat.geometry import find_crossings
 
     if words := str(find_crossings(loaded.body.mesh, pose.nodes)):
-        print(f"  note: {words}")
+        print(f"  warning: {words}")
 
 
 def _taken(loaded: "Robot", reached: "IKResult") -> dict[str, float]:

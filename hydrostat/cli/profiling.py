@@ -9,8 +9,8 @@ from pathlib import Path
 FILES = {
     "elements": "neo_hookean patch_volume energy",
     "assembly": "assembly",
-    "factorisation": "factorisation fronts supernodal stiffness",
-    "analysis of the pattern": "ordering symbolic",
+    "factorization": "factorisation fronts supernodal stiffness",
+    "symbolic analysis": "ordering symbolic",
     "arcs": "warp",
     "cables": "cable friction chain_law loading_path turns",
     "viscous branches": "viscous",
@@ -62,7 +62,7 @@ def _report(work: str, stats: pstats.Stats) -> None:
     for name, seconds in sorted(times.items(), key=lambda item: -item[1]):
         if seconds >= 0.005 * whole:
             print(f"{name:<26}{1e3 * seconds:>9.1f}{seconds / whole:>8.0%}{calls.get(name, 0) or '':>9}")
-    print(f"{'sum (the watch slows it)':<26}{1e3 * whole:>9.1f}\n")
+    print(f"{'sum (with profiler)':<26}{1e3 * whole:>9.1f}\n")
 
 
 def _owners(place: Place, entries: dict, known: dict[Place, dict[str, float]]) -> dict[str, float]:

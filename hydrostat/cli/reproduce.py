@@ -31,39 +31,58 @@ class Size(StrEnum):
 
 
 def reproduce(
-    what: Annotated[list[str], typer.Argument(metavar="TABLE...", help="table-5.1 table-5.2 figure-5.3 ...; or all.")],
+    what: Annotated[
+        list[str],
+        typer.Argument(metavar="TABLE...", help="Tables and figures: table-5.1, table-5.2, figure-5.3, ..., or all."),
+    ],
     out: OutFolder,
-    size: Annotated[str, typer.Option(metavar="minutes|hour|full", help="How much is sampled.")] = "minutes",
-    draw: Annotated[
-        str, typer.Option(metavar="WAY,WAY", help="How contractions are drawn: box, antagonist, faces.")
-    ] = "box",
-    robots: Annotated[str | None, typer.Option(metavar="NAME,NAME", help="Robots of the gallery, or folders.")] = None,
-    counts: Annotated[str | None, typer.Option(metavar="N,N", help="Numbers of samples to learn from.")] = None,
-    targets: Annotated[int | None, typer.Option(metavar="N", help="How many targets.")] = None,
-    seeds: Annotated[int | None, typer.Option(metavar="N", help="How often networks begin at random.")] = None,
-    jobs: Annotated[int, typer.Option(metavar="N", help="Processes that sample; -1: one on each core.")] = -1,
+    size: Annotated[str, typer.Option(metavar="minutes|hour|full", help="Sampling effort.")] = "minutes",
+    draw: Annotated[str, typer.Option(metavar="WAY,WAY", help="Sampling strategies: box, antagonist, faces.")] = "box",
+    robots: Annotated[
+        str | None,
+        typer.Option(metavar="NAME,NAME", help="Gallery robots or robot folders.", show_default="by --size"),
+    ] = None,
+    counts: Annotated[
+        str | None, typer.Option(metavar="N,N", help="Numbers of training samples.", show_default="by --size")
+    ] = None,
+    targets: Annotated[
+        int | None, typer.Option(metavar="N", help="Number of targets.", show_default="by --size")
+    ] = None,
+    seeds: Annotated[
+        int | None, typer.Option(metavar="N", help="Number of random seeds.", show_default="by --size")
+    ] = None,
+    jobs: Annotated[int, typer.Option(metavar="N", help="Number of sampling processes. -1 = one per core.")] = -1,
     epochs: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Epochs (500 actions) to learn by trial in.")
+        int | None,
+        typer.Option(
+            metavar="N", min=1, help="Epochs of 500 actions for reinforcement learning.", show_default="by --size"
+        ),
     ] = None,
     model: Annotated[
-        Path | None, typer.Option(metavar="MODEL", help="Networks to learn by trial in; else samples are made.")
+        Path | None,
+        typer.Option(
+            metavar="MODEL", help="Model for reinforcement learning.", show_default="trained from new samples"
+        ),
     ] = None,
 ) -> None:
-    """Make tables and figures of the thesis again, with our hand and simulator, and ways to learn that it had not.
+    """Reproduce tables and figures of Chang (2018).
 
-    There are table-5.1 (mean error of each fingertip), table-5.2 (mean, deviation, largest, and quantiles), figure-5.3
-    (learning curves), figure-5.4 (poses asked for and reached) and figure-5.14 (error over samples, and over CPU time).
-    Each answer is rolled out in the simulator. Samples and results go to DIR and are used again. The thesis had another
-    hand, and another range of motion.
+    Uses the hand and the simulator of hydrostat, and adds newer methods.
 
-    Reinforcement learning (section 5.4) has figure-5.8 (one action, five or ten) and figure-5.9 (curricula), each with
-    -small behind its name in small networks, too; figure-5.10 (tolerances and errors), figure-5.12 (from anywhere),
-    table-noise and table-reward. figure-5.14-trial puts it beside others that learn from the pairs that it tried;
-    table-policies has other ways to a policy, on the same outcomes, and table-gradient the best of them. It learns in
-    networks of our hand, one number for each finger, several seeds at once, and says which claims hold. Needs the
-    extra rl.
-    figure-5.13 is the same method in FetchReach, figure-5.13-hand in HandReach, whose curves are published; both are of
-    gymnasium-robotics.
+    Supervised learning: table-5.1 (mean error of each fingertip), table-5.2 (mean, deviation, maximum and quantiles),
+    figure-5.3 (learning curves), figure-5.4 (target and reached poses) and figure-5.14 (error over samples and over CPU
+    time). The simulator checks each answer. Samples and results are cached in DIR. The thesis used another hand with
+    another range of motion.
+
+    Reinforcement learning (section 5.4): figure-5.8 (one, five or ten actions) and figure-5.9 (curricula), each also
+    with -small appended for small networks, figure-5.10 (tolerances and errors), figure-5.12 (random starts),
+    table-noise and table-reward. figure-5.14-trial compares it with methods that train on the same pairs.
+    table-policies compares other policy methods on the same outcomes, table-gradient only the best one. Training runs
+    in networks of the hand, with one action per finger and several seeds in parallel. The output lists the claims that
+    hold. Needs pip install "hydrostat[rl]".
+
+    figure-5.13 runs the same method in FetchReach, figure-5.13-hand in HandReach (both gymnasium-robotics), and
+    compares it with published curves.
 
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
@@ -75,7 +94,7 @@ def reproduce(
     asked = there if "all" in what else tuple(what)
     for name in asked:
         if name not in there:
-            raise InputError(f"there is no {name!r}; there are: all, {', '.join(there)}")
+            raise InputError(f'unknown table or figure "{name}". Available: all, {", ".join(there)}.')
     study, bodies = _study(parse_choice(Size, size, what="--size"), draw, robots, counts, targets, seeds)
     require_folder(out)
     out.mkdir(parents=True, exist_ok=True)
@@ -116,9 +135,7 @@ def _study(
         tuple(parse_choice(SamplingScheme, each.strip(), what="--draw") for each in draw.split(",")),
     )
     if SamplingScheme.TENSION in draws:
-        raise InputError(
-            "--draw tension: is for hydrostat sample, which takes a --tension; here: box, antagonist, faces"
-        )
+        raise InputError("--draw tension: not available here. Allowed: box, antagonist, faces.")
     study = Study(
         draws=draws,
         counts=tuple(usual.counts if counts is None else _numbers(counts)),
@@ -134,10 +151,10 @@ def _numbers(text: str) -> list[int]:
 
     parts = [part.strip() for part in text.split(",")]
     if not all(part.isdecimal() and int(part) for part in parts):
-        raise InputError(f"--counts {text}: write numbers above 0, for example 100,1000")
+        raise InputError(f"--counts {text}: not a list of numbers above 0. Write e.g. 100,1000.")
     counts = [int(part) for part in parts]
     if min(counts) < LEAST:
-        raise InputError(f"--counts {text}: networks learn from {LEAST} samples or more")
+        raise InputError(f"--counts {text}: too few samples. The minimum is {LEAST}.")
     return counts
 
 
@@ -155,8 +172,8 @@ def _group(row: "StudyRow") -> tuple[str, str]:
 
 def _head(row: "StudyRow") -> str:
     return (
-        f"{row.robot}, drawn by {row.draw}: {row.targets} targets, {1e3 * row.moved:.1f} mm from the mean\n"
-        f"place of their markers; errors in mm, and in % of the body's {1e3 * row.size:.0f} mm"
+        f"{row.robot}, sampled by {row.draw}: {row.targets} targets, {1e3 * row.moved:.1f} mm from the mean marker\n"
+        f"position; errors in mm, and in % of the body size ({1e3 * row.size:.0f} mm)"
     )
 
 
@@ -173,7 +190,7 @@ def _over_seeds(rows: "Sequence[StudyRow]") -> list[str]:
     groups: dict[tuple[str, str, int, str], list[StudyRow]] = {}
     for row in rows:
         groups.setdefault((row.robot, row.draw, row.samples, row.method), []).append(row)
-    table = ["", f"{'mean error over seeds':54}{'mean':>8}{'%':>8}{'least':>8}{'largest':>8}  seeds  [mm]"]
+    table = ["", f"{'mean error over seeds':54}{'mean':>8}{'%':>8}{'min':>8}{'max':>8}  seeds  [mm]"]
     for (robot, draw, samples, method), some in groups.items():
         if len(some) > 1:
             means = [1e3 * row.errors["mean"] for row in some]
@@ -212,7 +229,7 @@ def _per_marker(rows: "Sequence[StudyRow]") -> list[list[str]]:
     table: list[list[str]] = []
     for place, row in enumerate(rows):
         if place == 0 or row.robot != rows[place - 1].robot:
-            table.append(["robot", "drawn by", "samples", "seed", "way", *row.markers, "mean", "lost"])
+            table.append(["robot", "sampled by", "samples", "seed", "method", *row.markers, "mean", "lost"])
             table += [list(line) for line in _THESIS] if row.robot == _HAND else []
         means = [*row.markers.values(), row.errors["mean"]]
         numbers = [f"{100 * mean:.4f}" for mean in means]
@@ -223,7 +240,7 @@ def _per_marker(rows: "Sequence[StudyRow]") -> list[list[str]]:
 def _spread(rows: "Sequence[StudyRow]") -> list[list[str]]:
     """Mean, deviation, quantiles and largest error [mm], shares of the size, CPU times [s]."""
     names = list(rows[0].errors)
-    head = ["robot", "drawn by", "samples", "seed", "way", *(f"{name} [mm]" for name in names)]
+    head = ["robot", "sampled by", "samples", "seed", "method", *(f"{name} [mm]" for name in names)]
     table = [[*head, "mean [% of size]", "targets", "lost", "sampling [s]", "learning [s]"]]
     for words, mean, deviation, largest in _EARLIER:
         told = {"mean": mean, "deviation": deviation, "max": largest}
@@ -246,8 +263,8 @@ def _poses(rows: "Sequence[StudyRow]", robot: "Robot", out: Path) -> "Figure":
     best = {row.method: row for row in rows if row.samples == most and row.seed == 0}
     test = read_samples(out / f"{robot.name}-{rows[0].draw}-test-{rows[0].targets}")
     count = len(best["thesis"].shown)
-    shown = {"asked for": test.contractions[:count].tolist(), "thesis's network": best["thesis"].shown}
-    shown |= {"our networks": best["search"].shown}
+    shown = {"target": test.contractions[:count].tolist(), "Chang (2018)": best["thesis"].shown}
+    shown |= {"hydrostat": best["search"].shown}
     simulation = Simulation(robot)
     columns = {name: [simulation.solve(row, strict=False).nodes for row in some] for name, some in shown.items()}
     return draw_side_by_side(robot, columns)
@@ -283,19 +300,19 @@ THINGS = ("table-5.1", "table-5.2", "figure-5.3", "figure-5.4", "figure-5.14")
 """What can be reproduced."""
 
 _WORDS = (
-    f"{'samples':>7}{'seed':>5}  {'way':22}{'mean':>8}{'%':>8}"
-    f"{'median':>9}{'p90':>9}{'p99':>9}{'max':>9}{'lost':>6}{'sampled':>9}{'learned':>9}  [CPU s]"
+    f"{'samples':>7}{'seed':>5}  {'method':22}{'mean':>8}{'%':>8}"
+    f"{'median':>9}{'p90':>9}{'p99':>9}{'max':>9}{'lost':>6}{'sampling':>9}{'learning':>9}  [CPU s]"
 )
 
 _THESIS = (
-    ["in the thesis", "", "10000", "", "thesis", "0.4559", "0.5780", "0.5498", "0.8395", "0.6245", "0.6095", ""],
-    ["in the thesis", "", "100000", "", "thesis", "0.4438", "0.5878", "0.5213", "0.7869", "0.5848", "0.5849", ""],
+    ["Chang (2018)", "", "10000", "", "thesis", "0.4559", "0.5780", "0.5498", "0.8395", "0.6245", "0.6095", ""],
+    ["Chang (2018)", "", "100000", "", "thesis", "0.4438", "0.5878", "0.5213", "0.7869", "0.5848", "0.5849", ""],
 )
 """Table 5.1 as it stands there: thumb, index, middle, ring, pinky, mean [cm] (N9)."""
 
 _EARLIER = (
-    ("its [20], another robot", "7.35", "4.72", "22.22"),
-    ("its [19], another robot", "4.2", "2.8", "12.3"),
-    ("in the thesis", "6.095", "0.607", "7.352"),
+    ("ref. 20 (different robot)", "7.35", "4.72", "22.22"),
+    ("ref. 19 (different robot)", "4.2", "2.8", "12.3"),
+    ("Chang (2018)", "6.095", "0.607", "7.352"),
 )
 """Table 5.2 as it stands there: mean, deviation, largest [mm] (N11); grouped in a way that is not told (E37)."""

@@ -62,4 +62,4 @@ def _line(name: str, ran: "Ran") -> str:
 _SIZES = {"minutes": (2, 5), "hour": (5, 10), "full": (10, 50)}
 """Seeds, and epochs of 1,000 actions."""
 
-_WORDS = f"{'reward':10}{'actions':>8}{'success at the end':>20}{'best policy left [mm]':>24}{'none missed from':>18}"
+_WORDS = f"{'reward':10}{'actions':>8}{'final success':>20}{'best error [mm]':>24}{'all reached from':>18}"

@@ -143,8 +143,8 @@ def _policies(
     )
     every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
     known = int(networks.facts["samples"])
-    print(f"\n{table}: ways to a policy of one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator")
-    print(f"{'way':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>24}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
+    print(f"\n{table}: policy methods with one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator")
+    print(f"{'method':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>24}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
     rows: list[dict[str, object]] = []
 
     def tell(name: str, pairs: int, used: int, exact: np.ndarray) -> None:
@@ -244,6 +244,6 @@ _LARGE = 100
 """Layers of so many units are large."""
 
 _WORDS = (
-    f"{'way':18}{'actions':>8}{'success at the end':>21}{'tolerance [mm]':>21}{'1st action [mm]':>21}"
+    f"{'method':18}{'actions':>8}{'final success':>21}{'tolerance [mm]':>21}{'1st action [mm]':>21}"
     f"{'last action [mm]':>21}{'simulator [mm]':>21}{'% size':>8}{'lost':>6}"
 )

@@ -18,41 +18,42 @@ if TYPE_CHECKING:
 def sample(
     robot: RobotFolder,
     out: OutFolder,
-    count: Annotated[int, typer.Option(metavar="N", help="How many samples, of all runs together.")] = 1000,
+    count: Annotated[int, typer.Option(metavar="N", help="Total number of samples over all runs.")] = 1000,
     contact: Annotated[
-        bool, typer.Option("--contact", help="The body feels itself, even if robot.toml is silent.")
+        bool, typer.Option("--contact", help="Enable self-contact even if robot.toml has no [contact].")
     ] = False,
     draw: Annotated[
         str,
         typer.Option(
             metavar="WAY,WAY",
-            help="How contractions are drawn, one sample each in turn: box, antagonist, faces, tension.",
+            help="Sampling strategies, alternated sample by sample: box, antagonist, faces, tension.",
         ),
     ] = "box",
     tension: Annotated[
-        str | None, typer.Option(metavar="FORCE", help="The most that a cable pulls in samples drawn by tension.")
+        str | None, typer.Option(metavar="FORCE", help="Maximum cable tension for --draw tension.")
     ] = None,
-    seed: Annotated[int, typer.Option(help="Of the draws.")] = 0,
-    nodes: Annotated[bool, typer.Option("--nodes", help="Keep the places of all nodes, too.")] = False,
+    seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
+    nodes: Annotated[bool, typer.Option("--nodes", help="Also save all node positions.")] = False,
     shard: Annotated[
-        str | None, typer.Option(metavar="I/N", help="Make part I of N, counted from 1, as in an array of jobs.")
+        str | None,
+        typer.Option(metavar="I/N", help="Run part I of N, counted from 1, e.g. in a job array.", show_default="1/1"),
     ] = None,
-    jobs: Annotated[int, typer.Option(metavar="N", help="Processes; -1: one on each core.")] = -1,
+    jobs: Annotated[int, typer.Option(metavar="N", help="Number of processes. -1 = one per core.")] = -1,
     backend: Annotated[
-        str, typer.Option(metavar="loky|ray", help="This machine, or a Ray cluster (RAY_ADDRESS).")
+        str, typer.Option(metavar="loky|ray", help="Backend: loky = this machine, ray = Ray cluster (RAY_ADDRESS).")
     ] = "loky",
     file_size: Annotated[
-        int, typer.Option(metavar="N", help="Samples in each file: what an interruption may cost.")
+        int, typer.Option(metavar="N", help="Samples per file. An interruption loses unfinished files.")
     ] = 64,
     export: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Also write all as one .parquet, or as .zarr.")
+        Path | None, typer.Option(metavar="FILE", help="Also write all samples to one .parquet or .zarr.")
     ] = None,
 ) -> None:
-    """Sample a robot for learning: contractions, markers, exact slopes, tensions.
+    """Sample a robot to train surrogate models.
 
-    Writes samples.json, which says what was sampled, and a .npy file for each few samples. The same command goes on
-    where it ended, and with a larger --count to that; the bytes do not depend on how many work. Python reads them by
-    hydrostat.learning.read_samples.
+    Each sample holds contractions, markers, exact gradients and tensions. Writes the settings to samples.json and the
+    samples to .npy files. Run the same command again to resume, or with a larger --count to add samples. Results do not
+    depend on the number of processes. Read them in Python with hydrostat.learning.read_samples.
 
     Example: hydrostat sample examples/starfish --count 200 --contact --out build/samples
     """
@@ -81,19 +82,23 @@ def sample(
         sample_robot(plan, out, part=part, jobs=jobs, backend=backend, tell=told())
     except KeyboardInterrupt:
         line_end = "\n" if sys.stderr.isatty() else ""  # of the line with the progress
-        print(f"{line_end}the same command goes on from here", file=sys.stderr, flush=True)
+        print(f"{line_end}interrupted: run the same command again to resume", file=sys.stderr, flush=True)
         raise
     found = read_samples(out)
     words = f"{len(found) + found.lost} of {count} samples in {out}"
-    words += f", {found.lost} of them without a stable equilibrium" if found.lost else ""
-    print(f"{words}; {found.touches.mean():.0%} touch" if plan.robot.contact else f"{words}{_crossed(found.crosses)}")
+    words += f", {found.lost} without a stable equilibrium" if found.lost else ""
+    print(
+        f"{words}; {100 * found.touches.mean():.0f} % in contact"
+        if plan.robot.contact
+        else f"{words}{_crossed(found.crosses)}"
+    )
     if export is not None:
         print(f"Wrote {export_samples(out, export)}")
 
 
 def _crossed(crosses: "np.ndarray") -> str:
     share = crosses.mean()
-    return f"; {share:.0%} of the bodies pass through themselves: --contact keeps them apart" if share else ""
+    return f"; {100 * share:.0f} % self-intersect. Add --contact to prevent this" if share else ""
 
 
 def _part(text: str | None) -> tuple[int, int]:
@@ -102,5 +107,5 @@ def _part(text: str | None) -> tuple[int, int]:
         return 0, 1
     one, slash, many = text.partition("/")
     if not (slash and one.isdecimal() and many.isdecimal() and 1 <= int(one) <= int(many)):
-        raise InputError(f"--shard {text}: write I/N, for example 2/8, with I from 1 to N")
+        raise InputError(f"--shard {text}: not a part. Write I/N with I from 1 to N, e.g. 2/8.")
     return int(one) - 1, int(many)

@@ -12,26 +12,26 @@ from hydrostat.errors import InputError
 
 def scale(
     robot: OwnRobotFolder,
-    factor: Annotated[str, typer.Argument(metavar="FACTOR", help="How many times as large, such as 1.5.")],
+    factor: Annotated[str, typer.Argument(metavar="FACTOR", help="Scale factor, e.g. 1.5.")],
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder for the scaled robot; else it is changed.")
+        Path | None, typer.Option("--out", metavar="DIR", help="Output folder.", show_default="change ROBOT in place")
     ] = None,
 ) -> None:
-    """Make a robot larger or smaller: its body with pins, markers, winches, cables, obstacles and poses together.
+    """Scale a robot with all its parts and poses.
 
-    Comments of robot.toml stay. Materials, stiffnesses and masses stay too, so a larger robot is another robot: check
-    and simulate it again.
+    Scales body, pins, markers, winches, cables, obstacles and poses. Keeps the comments in robot.toml, materials,
+    stiffnesses and masses. A scaled robot behaves differently: check and simulate it again.
 
     Example: hydrostat scale my_starfish 1.5
     """
     from hydrostat.robot import merged_text, read_text, save_robot, scaled_robot
 
     if out is not None and out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise InputError(f"{out}: exists already; choose another name or remove it")
+        raise InputError(f"{out} already exists. Choose another name or delete the folder.")
     try:
         times = float(factor.replace(",", "."))
     except ValueError:
-        raise InputError(f"{factor}: is no factor; write for example 1.5") from None
+        raise InputError(f"{factor}: not a number. Write a factor, e.g. 1.5.") from None
     loaded = read_robot(robot)
     with patiently("meshing the body ..."):
         made = scaled_robot(loaded, times)
@@ -40,5 +40,5 @@ def scale(
     path = save_robot(made, out or home, text=text)
     size = f"{1e3 * loaded.body.mesh.size:.0f} mm to {1e3 * made.body.mesh.size:.0f} mm"
     if out is None and (home / "studio.json").exists():
-        print("note: studio.json keeps its keyframes and wishes, lengths and forces, as they were; set them anew")
-    print(f"Scaled {path}: from {size}; see what is risky now: hydrostat check {out or home}")
+        print("note: keyframes and limits in studio.json are not scaled. Set them again in the studio")
+    print(f"Scaled {path}: {size}. Next: hydrostat check {out or home}")

@@ -26,26 +26,32 @@ def simulate(
     contract: Contract = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
     dynamic: Annotated[
-        bool, typer.Option("--dynamic", help="Move there in time, from where it rests at first.")
+        bool,
+        typer.Option("--dynamic", help="Run a dynamic simulation from rest instead of solving for static equilibrium."),
     ] = False,
     duration: Annotated[
-        str | None, typer.Option(metavar="TIME", help="How long; as --ramp or --play, at least 1 s, if left out.")
+        str | None,
+        typer.Option(metavar="TIME", help="Simulated time.", show_default="length of --ramp or --play, at least 1 s"),
     ] = None,
-    step: Annotated[str, typer.Option(metavar="TIME", help="Longest time step.")] = "5ms",
-    ramp: Annotated[str, typer.Option(metavar="TIME", help="In which the winches take in their cable.")] = "0.5s",
+    step: Annotated[str, typer.Option(metavar="TIME", help="Maximum time step.")] = "5ms",
+    ramp: Annotated[str, typer.Option(metavar="TIME", help="Time over which the winches reach their target.")] = "0.5s",
     play: Annotated[
-        Path | None, typer.Option(metavar="FILE.csv", help="Contractions in time: columns time_s, WINCH ... [mm].")
+        Path | None, typer.Option(metavar="FILE.csv", help="Contractions over time: columns time_s, WINCH ... [mm].")
     ] = None,
     within: Annotated[
         str | None,
-        typer.Option(metavar="TIME", help="Give up finding a pose after so long; it says what is in the way."),
+        typer.Option(
+            metavar="TIME", help="Time limit for the solver. On timeout, print a diagnosis.", show_default="none"
+        ),
     ] = None,
-    profile: Annotated[bool, typer.Option("--profile", help="Print where time went.")] = False,
+    profile: Annotated[bool, typer.Option("--profile", help="Print the CPU time of each solver stage.")] = False,
 ) -> None:
-    """Find where a robot rests when its winches take in cable, or with --dynamic how it moves.
+    """Solve for static equilibrium, or simulate a motion.
 
-    Writes pose.json, pose.vtu (for ParaView) and pose.png; of a motion these show its end, and there are also
-    motion.csv, motion.pvd (for ParaView) and motion.png.
+    Give winch contractions with --contract, and add --dynamic to simulate the motion.
+
+    Writes pose.json, pose.vtu (for ParaView) and pose.png. With --dynamic these show the final state, and the command
+    also writes motion.csv, motion.pvd (for ParaView) and motion.png.
 
     Example: hydrostat simulate examples/starfish --contract left=12mm --out build/pose
     """
@@ -59,25 +65,25 @@ def simulate(
         loaded = read_robot(robot)
     given = contractions(loaded, contract)
     if dynamic and jacobian:
-        raise InputError("--jacobian: a motion has none; leave out --dynamic")
+        raise InputError("--jacobian: not available with --dynamic. Remove one of them.")
     if not dynamic and (play is not None or duration is not None):
-        raise InputError("--play and --duration go with --dynamic; add it")
+        raise InputError("--play and --duration: need --dynamic. Add it.")
     if dynamic and within is not None:
-        raise InputError("--within: goes with a pose, not with --dynamic")
+        raise InputError("--within: not available with --dynamic. Remove one of them.")
     limit = asked("--within", within, TIME)
     with profiled(profile, "preparing"):
         simulation = prepared(loaded)
     if dynamic:
-        with profiled(profile, "moving"):
+        with profiled(profile, "simulating"):
             files = _move(simulation, given, out, duration=duration, step=step, ramp=ramp, play=play)
         print("Wrote " + ", ".join(str(file) for file in files))
         return
     began = time.process_time()
-    with profiled(profile, "finding the pose"):
+    with profiled(profile, "solving"):
         pose = simulation.solve(given, strict=False, seconds=limit)
     seconds = time.process_time() - began
     _print_places(pose, loaded)
-    print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
+    print(f"{pose.result.reason} after {plural(pose.result.iterations, 'iteration')}, {1e3 * seconds:.0f} ms")
     _print_notes(simulation, pose)
     sys.stdout.flush()  # the answer is there before the picture is drawn
     files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
@@ -104,13 +110,13 @@ def _print_notes(simulation: "Simulation", pose: "Equilibrium") -> None:
 
     if not pose.result.converged:
         for obstacle in simulation.diagnose(pose):
-            print(f"in the way: {obstacle}")
+            print(f"not converged: {obstacle}")
     if words := str(find_crossings(simulation.robot.body.mesh, pose.nodes)):
-        print(f"note: {words}")
+        print(f"warning: {words}")
     if pose.result.buckled:
-        print("note: the body buckled on the way; it could as well have gone to another side")
+        print("note: buckled: a mirror-image pose is equally likely")
     if pose.result.converged and not pose.result.stable:
-        print("note: the body is at rest on a saddle; the least push would make it leave")
+        print("warning: unstable equilibrium (saddle point)")
 
 
 def _move(
@@ -145,8 +151,8 @@ def _move(
     files.append(save_png(draw_motion(simulation.robot, table), out / "motion.png"))
     _print_places(last, simulation.robot)
     fastest = 1e3 * float((last.velocities**2).sum(axis=1).max() ** 0.5)
-    steps = f"{plural(len(table.times) - 1, 'step')} to {last.time:g} s, {spent:.1f} s of work"
-    print(f"{steps}; no node is faster than {fastest:.2g} mm/s at the end")
+    steps = f"{plural(len(table.times) - 1, 'step')} to {last.time:g} s, computed in {spent:.1f} s"
+    print(f"{steps}. Maximum speed at the end: {fastest:.2g} mm/s")
     return files
 
 
@@ -159,7 +165,7 @@ def _profile(
     if play is None:
         return ContractionProfile.ramp(simulation.as_contractions(contractions), positive("--ramp", ramp, TIME))
     if contractions:
-        raise InputError("--play and --contract: give one of them")
+        raise InputError("--play and --contract: mutually exclusive. Give one of them.")
     profile = read_profile(play, simulation.robot)
     for extreme in (profile.values.max(axis=0), profile.values.min(axis=0)):
         for winch, most in zip(simulation.robot.winches, extreme, strict=True):
@@ -170,5 +176,5 @@ def _profile(
 def _reported(motions: "Iterable[Motion]", seconds: float, tell: Callable[[str, int, int], None]) -> "Iterator[Motion]":
     """The same motions, told to the progress bar in milliseconds."""
     for motion in motions:
-        tell("moving [ms]", round(1e3 * motion.time), round(1e3 * seconds))
+        tell("simulating [ms]", round(1e3 * motion.time), round(1e3 * seconds))
         yield motion

@@ -12,23 +12,23 @@ from hydrostat.errors import InputError
 def studio(
     robot: Annotated[
         Path | None,
-        typer.Argument(metavar="[ROBOT]", help="Folder of a robot, or gallery:NAME; the gallery is shown if left out."),
+        typer.Argument(metavar="[ROBOT]", help="Robot folder, or gallery:NAME.", show_default="show the gallery"),
     ] = None,
-    port: Annotated[int, typer.Option(metavar="PORT", help="To listen at; a free one if left out.")] = 0,
+    port: Annotated[int, typer.Option(metavar="PORT", help="TCP port. 0 = any free port.")] = 0,
     host: Annotated[
-        str, typer.Option(metavar="ADDRESS", help="To listen at; others than this machine need the printed token.")
+        str, typer.Option(metavar="ADDRESS", help="Bind address. Remote clients need the printed token.")
     ] = "127.0.0.1",
     model: Annotated[
         Path | None,
-        typer.Option(metavar="MODEL", help="What `hydrostat learn` made of ROBOT: its networks answer drags first."),
+        typer.Option(metavar="MODEL", help="Model of ROBOT from `hydrostat learn`, for a fast first answer to drags."),
     ] = None,
     rooms: Annotated[
         bool,
-        typer.Option("--rooms", help="Give each browser a robot of its own, as for a class."),
+        typer.Option("--rooms", help="Give each browser its own robot, e.g. for a class."),
     ] = False,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
-    """Open the studio in the browser: pose a robot by hand, watch it design itself, drive it, export it.
+    """Open the studio: pose, design, drive and export a robot.
 
     Example: hydrostat studio examples/starfish
 
@@ -41,11 +41,11 @@ def studio(
     except ModuleNotFoundError as error:
         if error.name != "nicegui":
             raise
-        raise InputError('the studio needs the extra `studio`: pip install "hydrostat[studio]"') from None
+        raise InputError('studio: package nicegui not found. Install it: pip install "hydrostat[studio]"') from None
     from hydrostat.studio import Session, state_folder
 
     if model is not None and (robot is None or rooms):
-        raise InputError("--model needs the ROBOT that it was learned of, and no --rooms")
+        raise InputError("--model: needs its ROBOT, and is not available with --rooms.")
     if rooms:
         if robot is not None:
             from hydrostat.robot import load_robot
@@ -58,5 +58,5 @@ def studio(
         if robot is not None:
             session.open_folder(robot, model)
         served = Rooms(session)
-    words = "The studio is at {}   (Ctrl-C ends it)"
+    words = "Studio: {}   (Ctrl-C to stop)"
     serve(served, host=host, port=port, show=browser, announce=lambda at: print(words.format(at), flush=True))

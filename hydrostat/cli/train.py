@@ -18,63 +18,94 @@ if TYPE_CHECKING:
 
 def train(
     robot: RobotFolder,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="For curves, checkpoints and the policy.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Output folder for curves, checkpoints and the policy.")],
     task: Annotated[
-        str, typer.Option(metavar="NAME", help="reach, reach-with-hysteresis, push, twist or walk.")
+        str, typer.Option(metavar="NAME", help="Task: reach, reach-with-hysteresis, push, twist or walk.")
     ] = "reach",
-    method: Annotated[str, typer.Option(metavar="NAME", help="sac-her, td3-her, ddpg-her or tqc-her.")] = "sac-her",
-    steps: Annotated[int, typer.Option(metavar="N", help="Actions to learn from.")] = 10_000,
-    horizon: Annotated[int | None, typer.Option(metavar="T", help="Actions in an episode; 1 to reach.")] = None,
-    model: Annotated[
-        Path | None, typer.Option(metavar="MODEL", help="Learn in the networks that hydrostat learn wrote.")
+    method: Annotated[
+        str, typer.Option(metavar="NAME", help="Algorithm: sac-her, td3-her, ddpg-her or tqc-her.")
+    ] = "sac-her",
+    steps: Annotated[int, typer.Option(metavar="N", help="Number of training actions.")] = 10_000,
+    horizon: Annotated[
+        int | None,
+        typer.Option(
+            metavar="T", help="Actions per episode.", show_default="1 to reach, 4 to push or twist, 5 s to walk"
+        ),
     ] = None,
-    exact: Annotated[int, typer.Option(metavar="N", help="With --model: every Nth episode exact; 0: none.")] = 0,
+    model: Annotated[
+        Path | None,
+        typer.Option(metavar="MODEL", help="Train in a model from `hydrostat learn` instead of the simulator."),
+    ] = None,
+    exact: Annotated[
+        int, typer.Option(metavar="N", help="Run every Nth episode in the simulator, with --model. 0 = none.")
+    ] = 0,
     tolerance: Annotated[
         str | None,
-        typer.Option(metavar="LENGTH", help="Distance that is a success; 5 mm to reach or push, 20 to walk."),
+        typer.Option(metavar="LENGTH", help="Success distance.", show_default="5 mm to reach or push, 20 mm to walk"),
     ] = None,
     friction: Annotated[
-        float | None, typer.Option(metavar="MU", help="Of cables that rub, 0.2; of ground, 0.6; of a thing, 0.8.")
+        float | None,
+        typer.Option(
+            metavar="MU",
+            help="Friction coefficient of cables, ground or object.",
+            show_default="cables 0.2, ground 0.6, object 0.8",
+        ),
     ] = None,
     actions: Annotated[
-        str | None, typer.Option(metavar="NAME", help="To walk, what an action is: gait or contractions.")
+        str | None,
+        typer.Option(metavar="NAME", help="Action type for walk: gait or contractions.", show_default="gait"),
     ] = None,
-    sparse: Annotated[bool, typer.Option("--sparse", help="Reward 0 for success and -1, no distance.")] = False,
-    incremental: Annotated[bool, typer.Option("--incremental", help="Actions add to what was taken in.")] = False,
+    sparse: Annotated[bool, typer.Option("--sparse", help="Sparse reward: 0 on success, -1 otherwise.")] = False,
+    incremental: Annotated[
+        bool, typer.Option("--incremental", help="Let actions change the contractions instead of setting them.")
+    ] = False,
     marker: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="That shall reach; all if not given.")
+        list[str] | None, typer.Option(metavar="NAME", help="Marker to control. Repeatable.", show_default="all")
     ] = None,
     pair: Annotated[
-        list[str] | None, typer.Option(metavar="ONE,OTHER", help="Winches of one number: the one, or the other.")
+        list[str] | None,
+        typer.Option(
+            metavar="ONE,OTHER", help="Antagonistic pair: one action drives ONE or OTHER, never both. Repeatable."
+        ),
     ] = None,
     thing: Annotated[
-        str | None, typer.Option("--object", metavar="SHAPE:SIZES", help="To push or twist; else the robot's own.")
+        str | None,
+        typer.Option(
+            "--object",
+            metavar="SHAPE:SIZES",
+            help="Object to push or twist, e.g. sphere:30mm.",
+            show_default="[[obstacle]] of the robot",
+        ),
     ] = None,
-    at: Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Middle of the --object [mm]; 0 if left out.")] = None,
-    mass: Annotated[str, typer.Option(metavar="MASS", help="Of the --object.")] = "58 g",
+    at: Annotated[
+        str | None, typer.Option(metavar="X,Y,Z", help="Center of the --object [mm].", show_default="0,0,0")
+    ] = None,
+    mass: Annotated[str, typer.Option(metavar="MASS", help="Mass of the --object.")] = "58 g",
     tied: Annotated[
-        list[str] | None, typer.Option(metavar="PART", help="Winches with this in their names are moved by one number.")
+        list[str] | None,
+        typer.Option(metavar="PART", help="Tie all winches whose name contains PART to one action. Repeatable."),
     ] = None,
-    goals: Annotated[int, typer.Option(metavar="N", help="Unseen goals that policies are judged by.")] = 100,
-    seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
-    contact: Annotated[bool, typer.Option("--contact", help="The body feels itself.")] = False,
-    together: Annotated[int, typer.Option(metavar="N", help="Episodes side by side.")] = 4,
-    processes: Annotated[int, typer.Option(metavar="N", help="That share them; the curve is the same.")] = 1,
-    watch: Annotated[bool, typer.Option("--watch", help="Show in the browser how policies are judged.")] = False,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint in DIR.")] = False,
+    goals: Annotated[int, typer.Option(metavar="N", help="Number of unseen goals for evaluation.")] = 100,
+    seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
+    contact: Annotated[bool, typer.Option("--contact", help="Enable self-contact.")] = False,
+    together: Annotated[int, typer.Option(metavar="N", help="Number of parallel environments.")] = 4,
+    processes: Annotated[
+        int, typer.Option(metavar="N", help="Processes that run the environments. The curve is the same.")
+    ] = 1,
+    watch: Annotated[bool, typer.Option("--watch", help="Show evaluation episodes in the browser.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Resume from the checkpoint in DIR.")] = False,
 ) -> None:
-    """Learn by trial and error (reinforcement learning), such as to bring the markers of a robot to goals.
+    """Train a policy by reinforcement learning.
 
-    Without --model every action is an equilibrium of the simulator. Policies are always judged by the simulator itself,
-    on goals that they have not seen. curve.json and curve.png show how it went, and TensorBoard, where it is installed,
-    reads DIR/tensorboard. Episodes go on side by side, and --processes share them. Needs the extra rl. For a body
-    that stands still, inverse kinematics and `hydrostat learn` are better and cheaper; this is for comparison, and for
-    tasks that have no other way.
+    Without --model, each action is one equilibrium of the simulator. Evaluation always runs in the simulator, on unseen
+    goals. The learning curve is in curve.json and curve.png, and in DIR/tensorboard if TensorBoard is installed. Needs
+    pip install "hydrostat[rl]". For static poses, inverse kinematics and `hydrostat learn` are better and cheaper. Use
+    this command for comparison, and for tasks they cannot solve.
 
-    With --task reach-with-hysteresis cables rub, and the way counts; --model is then of the robot without friction, so
-    that what is learned from is wrong. With --task walk the robot stands on the ground, without its pins, and goes a
-    way in time; an action is half a second of a gait, or contractions for a tenth of a second. With --task push or
-    twist a thing with a mass is moved by keyframes, in time: an [[obstacle]] of the robot, or the --object.
+    Task reach-with-hysteresis: cables have friction, and the pose depends on the loading path. A --model here is one
+    without friction, with a deliberate model error. Task walk: the robot stands on the ground without its pins and
+    walks in a dynamic simulation. One action is 0.5 s of a gait, or contractions for 0.1 s. Tasks push and twist:
+    keyframes move an object with mass in a dynamic simulation, either an [[obstacle]] of the robot or the --object.
 
     Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
 
@@ -89,7 +120,9 @@ def train(
     try:
         from hydrostat import training
     except ModuleNotFoundError as error:
-        raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+        raise HydrostatError(
+            f'train: package {error.name} not found. Install it: pip install "hydrostat[rl]"'
+        ) from None
     from hydrostat.learning import load_model, save_model
     from hydrostat.simulation import write_profile
     from hydrostat.units import LENGTH, parse_quantity, plural
@@ -97,11 +130,11 @@ def train(
     require_folder(out)
     methods = [str(each) for each in training.TrainMethod]
     if method not in methods:
-        raise InputError(f"--method {method}: there are: {', '.join(methods)}")
+        raise InputError(f"--method {method}: unknown method. Available: {', '.join(methods)}.")
     if exact and model is None:
-        raise InputError("--exact is for networks, with --model; without, every episode is exact")
+        raise InputError("--exact: needs --model. Without it every episode runs in the simulator.")
     if at and not thing:
-        raise InputError("--at is for an --object; a thing of the robot's own is where robot.toml has it")
+        raise InputError("--at: needs --object. Move an [[obstacle]] of the robot in robot.toml.")
     made, loaded = training.task_of(task).env, read_robot(robot)
     asked = training.TaskOptions(
         markers=marker or (),
@@ -119,7 +152,7 @@ def train(
     env, judged = (made.for_task(loaded, asked) for _ in range(2))
     if watch:
         judged.render_mode = "human"
-        print(f"Policies are shown at {judged.page.address} while they are judged", flush=True)
+        print(f"Evaluation episodes: {judged.page.address}", flush=True)
     networks = None if model is None else load_model(model)
     if networks is not None:
         env.learn_in(networks, exact=exact)
@@ -135,19 +168,19 @@ def train(
     def tell(point: "CurvePoint") -> None:
         _row(f"{_line(point, word, factor)}   {time.process_time() - began:.0f} s")
 
-    with one_interrupt("stopping; --resume goes on from the last row above, if there is one"):
+    with one_interrupt("stopping: --resume continues from the last row above"):
         more = {"resume": resume, "processes": processes}
         listener = training.Listener(point=tell, progress=progress)
         trained, curve = training.train(env, wanted, options, out, judge_in=judged, listener=listener, **more)
     last = curve[-1]
-    share = f", {100 * last.mean / size:.2f} % of the size" if word == "mm" else ""
-    print(f"{factor * last.mean:.2f} {word}{share}, on {plural(goals, 'unseen goal')}")
+    share = f", {100 * last.mean / size:.2f} % of the body size" if word == "mm" else ""
+    print(f"mean distance {factor * last.mean:.2f} {word}{share} ({plural(goals, 'unseen goal')})")
     print(f"Wrote {_picture(curve, method, out, word, factor)}")
     policy = training.policy_of(trained, env, task=task, error=last.mean)
-    print(f"Wrote {policy.save(out / 'actor.policy')}, which runs without PyTorch")
+    print(f"Wrote {policy.save(out / 'actor.policy')} (runs without PyTorch)")
     moves = training.moves_of(judged, policy.act, wanted[0])
     write_profile(out / "moves.csv", judged.robot, moves)
-    print(f"Wrote {out / 'moves.csv'}, what it does for the first of them; motors play it by hydrostat play")
+    print(f"Wrote {out / 'moves.csv'}: motion for the first goal. Run it with hydrostat play")
     if networks is not None and env.portable:
         learned = training.portable_policy(trained, cast("ReachEnv", env), networks)
         print(f"Wrote {save_model(learned, out / 'policy.model')}")
@@ -184,5 +217,5 @@ def _picture(curve: "list[CurvePoint]", name: str, out: Path, word: str, factor:
     steps = np.array([point.steps for point in curve])
     distances = np.array([[factor * point.mean] for point in curve])
     successes = np.array([[point.success] for point in curve])
-    panes = {f"mean distance [{word}]": {name: (steps, distances)}, "share of successes": {name: (steps, successes)}}
+    panes = {f"mean distance [{word}]": {name: (steps, distances)}, "success rate": {name: (steps, successes)}}
     return save_png(draw_curves(panes), out / "curve.png")

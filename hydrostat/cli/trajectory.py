@@ -26,31 +26,38 @@ def trajectory(
     robot: RobotFolder,
     out: OutFolder,
     poses: Annotated[
-        str | None, typer.Option(metavar="NAME,NAME...", help="Poses in their order, rest among them; all if left out.")
+        str | None,
+        typer.Option(
+            metavar="NAME,NAME...",
+            help="Poses in order. Use rest for the pose without contractions.",
+            show_default="all",
+        ),
     ] = None,
     path: Annotated[
         str,
         typer.Option(
             metavar="smooth|linear|straight",
-            help="Contractions smooth, contractions along lines, or markers along lines.",
+            help="Path between poses: smooth or linear contractions, or straight marker paths.",
         ),
     ] = "smooth",
-    speed: Annotated[str, typer.Option(metavar="SPEED", help="The most of each winch.")] = "50 mm/s",
+    speed: Annotated[str, typer.Option(metavar="SPEED", help="Maximum winch speed.")] = "50 mm/s",
     acceleration: Annotated[
         str | None,
-        typer.Option(metavar="ACCELERATION", help="The most of each winch; 200 mm/s^2 if left out, none if linear."),
+        typer.Option(
+            metavar="ACCELERATION", help="Maximum winch acceleration.", show_default="200 mm/s^2; no limit if linear"
+        ),
     ] = None,
-    hold: Annotated[str, typer.Option(metavar="TIME", help="How long to stay in each pose.")] = "0s",
-    loop: Annotated[bool, typer.Option("--loop", help="Go back to rest at the end.")] = False,
+    hold: Annotated[str, typer.Option(metavar="TIME", help="Time to hold each pose.")] = "0s",
+    loop: Annotated[bool, typer.Option("--loop", help="Return to rest at the end.")] = False,
     tension: MostTension = None,
     equal: EqualWinches = None,
     width: PictureWidth = 640,
 ) -> None:
-    """Go through poses one after another, within limits on the speed and acceleration of the winches.
+    """Plan a trajectory through poses within winch limits.
 
-    Writes trajectory.csv (for simulate --dynamic --play, and for motors), trajectory.json, trajectory.png and
-    trajectory.gif. Each pose is found from the one before, and the way between them is followed; where the robot
-    snaps, or misses what it reaches from rest, that is told.
+    The limits are winch speed and acceleration. Writes trajectory.csv (for simulate --dynamic --play, and for motors),
+    trajectory.json, trajectory.png and trajectory.gif. Each pose is solved from the previous one, and the path between
+    them is simulated. The report lists snap-throughs, and poses that a search from rest reaches better.
 
     Example: hydrostat trajectory examples/starfish --poses wave,star_jump --loop --out build/dance
     """
@@ -93,11 +100,11 @@ def _keyframe_names(robot: Any, poses: str | None) -> list[str]:
     """Names of the keyframes (InputError: none, or one that the robot does not have)."""
     if poses is None:
         if not robot.poses:
-            raise InputError(f"{robot.name}: the robot has no [[pose]]; add one, or give --poses rest")
+            raise InputError(f"{robot.name}: no [[pose]] in robot.toml. Add one, or give --poses rest.")
         return list(robot.poses)
     names = [name.strip() for name in poses.split(",") if name.strip()]
     if not names:
-        raise InputError('--poses: names none; write for example "wave,rest"')
+        raise InputError('--poses: no pose named. Write e.g. "wave,rest".')
     for name in names:
         if name != REST:
             robot.pose(name)

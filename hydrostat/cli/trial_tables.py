@@ -29,7 +29,7 @@ def trials_missing() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        raise HydrostatError(f'this needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+        raise HydrostatError(f'package {error.name} not found. Install it: pip install "hydrostat[rl]"') from None
 
 
 def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[str, Any]:
@@ -41,7 +41,7 @@ def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[st
         values = claim.measure(ran)
         word = verdict(values, claim.above)
         number = f"{spanned(interquartile(values), 3)} {claim.unit}".rstrip()
-        print(f"  {claim.text}: {word}, {number}, above {claim.above:g} claimed")
+        print(f"  {claim.text}: {word}, {number} (claim: above {claim.above:g})")
         claims.append({"claim": claim.text, "verdict": word, "seeds": values.tolist(), "above": claim.above})
     runs = {
         name: {
@@ -60,7 +60,7 @@ def drawn_runs(experiment: "Experiment", ran: "Mapping[str, Ran]") -> "Figure":
     from hydrostat.plot import draw_curves
 
     words = {
-        "success": ("share of successes", 1.0),
+        "success": ("success rate", 1.0),
         "distance": ("mean distance [mm]", 10.0),
         "tolerance": ("tolerance [mm]", 10.0),
     }
@@ -78,8 +78,8 @@ def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: flo
     from hydrostat.training.shared_data import ORDERS
     from hydrostat.training.verdict import interquartile, verdict
 
-    print(f"\n{name}: trial and error (T=1, 4 x 30, shaped, the goal alone) beside others")
-    print(f"{'way':24}{'pairs':>8}{'in networks [mm]':>24}{'in the simulator [mm]':>24}{'% size':>8}{'lost':>6}")
+    print(f"\n{name}: trial and error (T=1, 4 x 30, shaped, goal only) compared with other methods")
+    print(f"{'method':24}{'pairs':>8}{'in networks [mm]':>24}{'in the simulator [mm]':>24}{'% size':>8}{'lost':>6}")
     ends, rows, curves = dict[str, np.ndarray](), list[dict[str, Any]](), dict[str, list[tuple[float, float]]]()
     for each in compared:
         expected = 10.0 * each.expected.mean(axis=1)
@@ -100,5 +100,5 @@ def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: flo
         print(f"  {order.text}: {word}, by {spanned(interquartile(lead), 3)} mm")
         claims.append({"claim": order.text, "verdict": word, "seeds": lead.tolist()})
     replace_file(out / f"{name}.json", (json.dumps({"claims": claims, "rows": rows}, indent=1) + "\n").encode())
-    axes = "pairs of actions and outcomes", "mean error in the networks [mm]"
+    axes = "action-outcome pairs", "mean error in networks [mm]"
     print(f"Wrote {save_png(draw_costs(curves, *axes), out / f'{name}.png')} and {name}.json")

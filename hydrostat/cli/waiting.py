@@ -35,7 +35,7 @@ def read_robot(path: Path) -> "Robot":
     """Robot from its folder or robot.toml; a body from a surface is meshed."""
     from hydrostat.robot import load_robot
 
-    with patiently("meshing the body: a second for each 2,000 nodes or so ..."):
+    with patiently("meshing the body (about 1 s per 2,000 nodes) ..."):
         return load_robot(path)
 
 
@@ -90,7 +90,7 @@ def told() -> Callable[[str, int, int], None]:
         words = f"{stage}: {done} of {total}"
         if made and seconds > 0:
             rate = made / seconds
-            words += f", {rate:.3g} a second" + (f", {_span((total - done) / rate)} left" if done < total else "")
+            words += f", {rate:.3g}/s" + (f", {_span((total - done) / rate)} left" if done < total else "")
         end = "\n" if done == total or not terminal else ""
         print(f"{chr(13)}{words:<70}" if terminal else words, end=end, file=sys.stderr, flush=True)
 

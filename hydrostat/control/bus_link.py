@@ -36,10 +36,10 @@ class LinkState(StrEnum):
     """How far a link is."""
 
     CLOSED = "closed"
-    IDENTIFIED = "identified: every motor has answered"
+    IDENTIFIED = "identified: every motor answered"
     CALIBRATED = "calibrated: all zeros are known"
-    ARMED = "armed: motors turn as they are told"
-    HOLD = "hold: motors stand, and must be armed anew"
+    ARMED = "armed: motors follow commands"
+    HOLD = "hold: motors locked, re-arm to move"
     STOPPED = "stopped"
     FAULT = "fault"
 

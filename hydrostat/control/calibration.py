@@ -124,7 +124,7 @@ class Calibration:
                 raise InputError(f'{CALIBRATION}: winch "{name}" has no motor; add [[motor]] with winch = "{name}"')
         for name in given:
             if name not in wanted:
-                raise InputError(f'{CALIBRATION}: there is no winch "{name}"; there are: {", ".join(wanted)}')
+                raise InputError(f'{CALIBRATION}: unknown winch "{name}". Available: {", ".join(wanted)}.')
         numbers = [(spool.board, spool.number) for spool in self.motors]
         if len(set(numbers)) < len(numbers) or len(set(given)) < len(given):
             raise InputError(
@@ -237,7 +237,7 @@ def _spool(entry: dict[str, Any], file: Path) -> WinchMotor:
     name = entry.get("winch", "?")
     for key, value in entry.items():
         if key not in _KEYS:
-            raise InputError(f'{file}: [[motor]] of "{name}": there is no key "{key}"; there are: {", ".join(_KEYS)}')
+            raise InputError(f'{file}: [[motor]] of "{name}": unknown key "{key}". Allowed: {", ".join(_KEYS)}.')
         if not isinstance(value, _KEYS[key]) or isinstance(value, bool):
             raise InputError(f'{file}: [[motor]] of "{name}": {key} cannot be {value!r}')
     for key in ("winch", "number", "radius"):

@@ -98,10 +98,10 @@ def build_firmware(settings: str, board: str, folder: Path) -> Path:
     kind = board_kind(board)
     asked = int((re.search(r"#define DCS (\d+)", settings) or [0, 0])[1])
     if asked > kind.motors:
-        more = " A Mega bears six: --board mega." if board == "uno" and asked <= BOARDS["mega"].motors else ""
-        raise InputError(f"the robot has {asked} motors, and the board {board} bears {kind.motors}.{more}")
+        more = " Use --board mega (six motors)." if board == "uno" and asked <= BOARDS["mega"].motors else ""
+        raise InputError(f"board {board} drives {kind.motors} motors, the robot has {asked}.{more}")
     if not (shutil.which("avr-gcc") and shutil.which("avr-objcopy")):
-        raise HydrostatError("firmware is built by avr-gcc, which is not there; install Debian's gcc-avr and avr-libc")
+        raise HydrostatError("avr-gcc not found. On Debian/Ubuntu: sudo apt install gcc-avr avr-libc")
     folder.mkdir(parents=True, exist_ok=True)
     given = replace_file(folder / "settings.h", settings.encode())
     built, image = folder / "winches.elf", folder / "winches.hex"
@@ -135,7 +135,7 @@ def flash(command: Sequence[str]) -> None:
 def board_kind(board: str) -> BoardKind:
     """A board by its name (InputError: no such one)."""
     if board not in BOARDS:
-        raise InputError(f"--board {board}: there are: {', '.join(BOARDS)}")
+        raise InputError(f"--board {board}: unknown board. Available: {', '.join(BOARDS)}.")
     return BOARDS[board]
 
 

@@ -79,15 +79,15 @@ class TensionGuard:
         over = felt - (limits.times * np.maximum(model, 0.0) + limits.more)
         if (worst := int(np.argmax(np.nan_to_num(over, nan=-np.inf)))) is not None and over[worst] > 0:
             return (
-                f"{self._names[worst]} pulls by {felt[worst]:.1f} N where the model pulls by {model[worst]:.1f} N: "
-                "something holds its cable; the motors hold"
+                f"{self._names[worst]}: measured tension {felt[worst]:.1f} N, expected {model[worst]:.1f} N. The cable "
+                "may be jammed; motors stopped"
             )
         missed = (model >= limits.pulls) & (felt < limits.felt * model)
         self._missed = np.where(missed, np.where(np.isnan(self._missed), now, self._missed), np.nan)
         since = now - self._missed
         for index in np.flatnonzero(np.nan_to_num(since, nan=-1.0) >= limits.seconds).tolist():
             return (
-                f"cable of {self._names[index]} is slack or broken: its motor feels {max(felt[index], 0.0):.1f} N "
-                f"where the model pulls by {model[index]:.1f} N"
+                f"{self._names[index]}: cable slack or broken ({max(felt[index], 0.0):.1f} N measured, "
+                f"{model[index]:.1f} N expected)"
             )
         return ""

@@ -131,7 +131,9 @@ def open_line(name: str, baud: int) -> Port:
     try:
         return cast(Port, serial.Serial(name, baud, timeout=0.02, write_timeout=0.1, exclusive=True))
     except (OSError, ValueError) as error:
-        raise HydrostatError(f"{name} cannot be opened ({error}); look at the plug, the name and your rights") from None
+        raise HydrostatError(
+            f"cannot open {name} ({error}). Check the cable, the port name and your permissions (dialout group)."
+        ) from None
 
 
 def _dynamixel(line: Port, _robot: Robot, calibration: Calibration, board: int) -> Bus:

@@ -18,7 +18,7 @@ TURNED = 0.75 * 2 * np.pi
 """No servo turns so far between two answers [rad]: who says so has begun to count anew."""
 LATELY = 0.1
 """Where it was heard so long ago [s] a motor may be told to stand before it is asked where it is."""
-ANEW = "it has lost its power for a moment, and its count of turns with it; calibrate it anew"
+ANEW = "lost power for a moment, and its turn count. Run hydrostat calibrate again"
 
 
 class ServoBus(Bus):

@@ -43,11 +43,11 @@ class Craft:
     motor: str  # key of the kind of motor, the same for all; empty where there is none
 
     def __str__(self) -> str:
-        """Such as "18 holes, 52 min of sewing, 165 USD for 3 motors, power and cables"; crossings if there are any."""
+        """Such as "18 holes, 52 min of sewing, 165 USD (3 motors, power, cables)"; crossings if there are any."""
         crossed = f", {plural(self.crossings, 'crossing')}" if self.crossings else ""
         return (
-            f"{plural(self.holes, 'hole')}{crossed}, {self.minutes:.0f} min of sewing, {self.price:.0f} USD for "
-            f"{plural(self.motors, 'motor')}, power and cables"
+            f"{plural(self.holes, 'hole')}{crossed}, {self.minutes:.0f} min of sewing, {self.price:.0f} USD "
+            f"({plural(self.motors, 'motor')}, power, cables)"
         )
 
     @property

@@ -62,7 +62,9 @@ def design_cables(
     for name in asked:
         if name not in DesignKeywords.__annotations__:
             known = ", ".join(DesignKeywords.__annotations__)
-            raise InputError(f'a design is not asked for "{name}"; it is for {known}; all else is in Constraints(...)')
+            raise InputError(
+                f'unknown argument "{name}". Allowed: {known}. Put build limits in constraints=Constraints(...).'
+            )
     check_type(asked.get("constraints"), (Constraints, type(None)), "constraints must be Constraints(...)")
     given = {name: value for name, value in asked.items() if value is not None}
     given["method"] = parse_choice(DesignMethod, given.get("method", DesignRequest.method), what="method")

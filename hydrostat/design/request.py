@@ -13,6 +13,7 @@ from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
 from hydrostat.ik import place
 from hydrostat.robot import PoseTarget, Robot
+from hydrostat.units import plural
 
 AUTO = "auto"  # as many winches as are needed
 
@@ -193,7 +194,7 @@ class DesignRequest:
     def __post_init__(self) -> None:
         object.__setattr__(self, "poses", tuple(self.poses))
         if not self.poses:
-            raise InputError("there is no pose to design for; add a [[pose]] to the robot")
+            raise InputError("no pose to design for. Add a [[pose]] to robot.toml.")
         for pose in self.poses:
             if not isinstance(pose, PoseTarget):
                 raise InputError(f"poses must be Pose records, such as robot.poses.values(), not {pose!r}")
@@ -233,8 +234,8 @@ class DesignRequest:
                     )
                 place(f'pose "{pose.name}": the target of {name}', point, robot.body.mesh)  # in metres
                 if name not in markers:
-                    known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
-                    raise InputError(f'pose "{pose.name}": the robot has no marker "{name}"; {known}')
+                    known = f"Available: {', '.join(markers)}." if markers else "The robot has no markers."
+                    raise InputError(f'pose "{pose.name}": unknown marker "{name}". {known}')
         self.constraints.check(robot)
         if self.filled and robot.body.outline is None:
             raise InputError("filled is for flat robots with a drawing; leave it out")
@@ -256,14 +257,14 @@ class DesignRequest:
             return
         if self.winches > self.cables:
             raise InputError(
-                f"{self.winches} winches and {self.cables} cables: there must be at least one winch, and a cable for "
-                "each"
+                f"{plural(self.winches, 'winch')} need at least {plural(self.winches, 'cable')}, got {self.cables}. "
+                "Ask for more cables or fewer winches."
             )
         most = self.winches * self.constraints.cables_per_winch
         if self.cables > most:
             raise InputError(
-                f"{self.winches} winches pull at most {most} cables, not {self.cables}; ask for more winches, or raise "
-                "cables_per_winch"
+                f"{plural(self.winches, 'winch')} can pull at most {plural(most, 'cable')}, got {self.cables}. "
+                "Ask for more winches or raise cables_per_winch."
             )
 
     def _check_trees(self) -> None:

@@ -40,7 +40,8 @@ class UnbuildableError(InputError):
     """
 
     def __init__(self, reasons: tuple[str, ...]) -> None:
-        super().__init__(f"it cannot be built well, for {plural(len(reasons), 'reason')}: {'; '.join(reasons)}")
+        count = f"{plural(len(reasons), 'problem')} {'prevents' if len(reasons) == 1 else 'prevent'}"
+        super().__init__(f"{count} fabrication: {'; '.join(reasons)}")
         self.reasons = reasons
 
 

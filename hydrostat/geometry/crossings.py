@@ -32,9 +32,7 @@ class Crossings:
         if not len(self):
             return ""
         first = ", ".join(f"{1e3 * value:.0f}" for value in self.places[0])
-        return (
-            f"the body passes through itself, for instance at [{first}] mm: contact is not simulated without [contact]"
-        )
+        return f"self-intersection, e.g. at [{first}] mm. Contact is off: add [contact] to robot.toml"
 
 
 def find_crossings(mesh: Mesh, nodes: Nodes) -> Crossings:

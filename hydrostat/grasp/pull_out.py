@@ -141,7 +141,7 @@ def pull_out(
     springs = options.along * straight + options.across * (whole - straight)
     rows: list[tuple[float, Equilibrium, Vector, Vector]] = []
     travel = options.travel or 1.5 * _size(thing)
-    count, reason = max(1, int(np.ceil(travel / options.step))), "the hand that pulls has gone all its way"
+    count, reason = max(1, int(np.ceil(travel / options.step))), "object not free at the end of the pull"
     for number in range(count + 1):
         pulled = min(number * options.step, travel)
         guide = GuideEnergy(carriage, place=place + pulled * unit, axes=axes, along=springs, turning=options.across)
@@ -158,10 +158,10 @@ def pull_out(
         if tell is not None:
             tell("pulling [mm]", round(1e3 * pulled), round(1e3 * travel))
         if number and not push.any():
-            reason = "the thing is free"
+            reason = "object is free"
             break
     if not rows:
-        raise InputError(f'"{thing.name}" finds no balance in the grasp before it is pulled: {reason}')
+        raise InputError(f'no equilibrium of "{thing.name}" in the grasp before the pull: {reason}')
     if tell is not None:
         tell("pulling [mm]", round(1e3 * travel), round(1e3 * travel))
     distances, poses, pulls, pushes = zip(*rows, strict=True)

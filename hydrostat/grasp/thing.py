@@ -32,7 +32,7 @@ def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
     shape, _, rest = text.partition(":")
     counts = {"sphere": 1, "cylinder": 2, "capsule": 2, "box": dim}
     if shape not in counts:
-        raise InputError(f'there is no thing "{text}"; write one such as {", ".join(FORMS)}')
+        raise InputError(f'unknown object "{text}". Write e.g. {", ".join(FORMS)}.')
     sizes = [parse_quantity(part.strip(), LENGTH) for part in rest.split(",")]
     if len(sizes) != counts[shape]:
         raise InputError(

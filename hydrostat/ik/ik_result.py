@@ -15,13 +15,13 @@ from hydrostat.simulation import Equilibrium
 class IKStatus(StrEnum):
     """Why inverse kinematics ended."""
 
-    REACHED = "every goal is reached"
-    LOCAL_OPTIMUM = "as near as these winches come hereabouts"
-    STALLED = "no step brings it nearer, though there is more to gain"
-    INFEASIBLE = "no pose found that keeps the limits on tension"
+    REACHED = "target reached"
+    LOCAL_OPTIMUM = "local optimum: target not reached"
+    STALLED = "stalled: line search failed before convergence"
+    INFEASIBLE = "infeasible: no pose found within the tension limits"
     ITERATION_LIMIT = "iteration limit reached"
     TIME_LIMIT = "time limit reached"
-    NO_EQUILIBRIUM = "no equilibrium could be found on the way"
+    NO_EQUILIBRIUM = "no equilibrium found on the way"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -32,7 +32,7 @@ class IKResult:
         target: what was asked for; None if only objectives were.
         pose: the equilibrium found; its `contractions` are the answer.
         errors: what is left of each goal, such as the distance of a marker from its target [m].
-        reason: why the search ended.
+        status: why the search ended.
         iterations: Gauss-Newton steps taken.
         solves: equilibria approached.
         optimality: how much the length of the residual would still fall for each metre that one channel moves, as far

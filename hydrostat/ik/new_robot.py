@@ -97,7 +97,7 @@ def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
     unknown = set(wished) - set(NewRobotWish.__dataclass_fields__)
     if unknown:
         known = ", ".join(NewRobotWish.__dataclass_fields__)
-        raise InputError(f"a new robot knows no wish {sorted(unknown)[0]!r}; it knows: {known}")
+        raise InputError(f'unknown option "{sorted(unknown)[0]}". Allowed: {known}.')
     return begin_robot(source, NewRobotWish(**wished)).robot
 
 

@@ -36,13 +36,18 @@ class FoundReach:
     size: float
 
     def __str__(self) -> str:
-        """Area or volume, and the extents with the direction of the widest."""
+        """Area or volume, the extents, and the direction of the longest."""
         dim, way = len(self.extents), self.directions[0]
-        unit = "cm^2" if dim == 2 else "cm^3"
-        along = ", ".join(f"{part:+.2f}" for part in way)
-        others = " and ".join(f"{1e3 * extent:.0f}" for extent in self.extents[1:])
-        size = f"{100.0**dim * self.size:.3g} {unit}"
-        return f"{size}, {1e3 * self.extents[0]:.0f} mm along ({along}) and {others} mm across"
+        number = 100.0**dim * self.size
+        size = f"{number:.0f}" if number >= 100 else f"{number:.2g}"
+        extents = " × ".join(f"{1e3 * extent:.0f}" for extent in self.extents)
+        along = f"at {np.degrees(np.arctan2(way[1], way[0])) % 180:.0f}°" if dim == 2 else _direction_text(way)
+        return f"{size} {'cm²' if dim == 2 else 'cm³'}, {extents} mm, long axis {along}"
+
+
+def _direction_text(way: Vector) -> str:
+    """Components of a unit vector, such as "along (+0.00, -1.00, +0.00)"."""
+    return f"along ({', '.join(f'{part:+.2f}' for part in way)})"
 
 
 def find_reach(

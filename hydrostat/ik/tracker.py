@@ -91,7 +91,7 @@ class Tracker:
         Raises:
             InputError: no simulation, limits, start, accuracy or model, or a start or a model of another robot.
         """
-        check_type(simulation, Simulation, "a pose is found by a Simulation(robot)")
+        check_type(simulation, Simulation, "simulation must be a Simulation(robot)")
         check_type(limits, (Limits, type(None)), "limits must be Limits(...), such as Limits(rate=0.05)")
         simulation.check_start(start)
         simulation.solver.with_accuracy(accuracy, simulation.robot.body.mesh.size)

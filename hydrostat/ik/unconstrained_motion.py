@@ -24,7 +24,7 @@ def unconstrained_motion(reached: IKResult) -> str:
         return ""
     goes = ", ".join(f"{name} by {1e3 * moved[name]:.0f} mm" for name in far[:_MOST])
     more = f" and {len(far) - _MOST} more" if len(far) > _MOST else ""
-    return f"what it does not name is free, and moves: {goes}{more}; name a marker where it is, and it rather stays"
+    return f"free markers move: {goes}{more}. Give them targets at rest to hold them"
 
 
 _FAR = 0.1  # of the size of the body

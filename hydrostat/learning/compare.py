@@ -78,7 +78,7 @@ def compare(
     """
     for name in methods:
         if name not in METHODS:
-            raise InputError(f"there is no way to learn called {name!r}; there are: {', '.join(METHODS)}")
+            raise InputError(f'unknown method "{name}". Available: {", ".join(METHODS)}.')
     asked = {way_of(name) for name in methods}
     for found in _learned(train, test, asked, options or LearnOptions()):
         yield from _rolled(simulation, test, found, set(methods))

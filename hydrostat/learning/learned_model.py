@@ -195,7 +195,7 @@ class LearnedModel:
         rows, dim, targets = self._rows, self.facts["dim"], target.targets
         for name, point in targets.items():
             if name not in rows:
-                raise InputError(f'the model has no marker "{name}"; it has: {", ".join(rows)}')
+                raise InputError(f'unknown marker "{name}" of the model. Available: {", ".join(rows)}.')
             if len(point) != dim:
                 raise InputError(f'target of marker "{name}" must be {dim} finite coordinates [m]')
         unknown = (np.nan,) * dim

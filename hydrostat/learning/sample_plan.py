@@ -50,12 +50,12 @@ class SamplePlan:
         if self.seed < 0:
             raise InputError(f"seed must be 0 or more, not {self.seed}")
         if not self.draws:
-            raise InputError(f"there must be a way to draw contractions; there are: {', '.join(SamplingScheme)}")
+            raise InputError(f"no sampling strategy. Available: {', '.join(SamplingScheme)}.")
         if not self.robot.winches or not self.robot.markers:
-            raise InputError(f"robot {self.robot.name!r} needs a winch to be moved by and a marker to be looked at")
+            raise InputError(f"robot {self.robot.name!r} needs at least one winch and one marker")
         limited = self.tension is not None and isfinite(self.tension) and self.tension > 0
         if SamplingScheme.TENSION in self.draws and not limited:
-            raise InputError("drawing by tension needs the most that a cable shall pull, such as 10 N")
+            raise InputError("strategy tension needs a maximum cable tension, e.g. 10 N")
 
     @property
     def shards(self) -> int:

@@ -50,7 +50,7 @@ def sample_robot(
     if jobs == 0:
         raise InputError("jobs must be 1 or more, or -1 for one on each core")
     if backend not in _BY:
-        raise InputError(f'there is no way to work called "{backend}"; there are: {", ".join(_BY)}')
+        raise InputError(f'unknown backend "{backend}". Available: {", ".join(_BY)}.')
     samples = SampleFolder.begin(folder, plan)
     mine = sum(len(plan.numbers(shard)) for shard in range(index, plan.shards, parts))
     run = _in_turn if jobs == 1 and backend == "loky" else _BY[backend]

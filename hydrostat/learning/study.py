@@ -53,7 +53,7 @@ class Study:
                 raise InputError(f"{name} must be 1 or more")
         for name in self.methods:
             if name not in METHODS:
-                raise InputError(f"there is no way to learn called {name!r}; there are: {', '.join(METHODS)}")
+                raise InputError(f'unknown method "{name}". Available: {", ".join(METHODS)}.')
 
 
 @dataclass(frozen=True, kw_only=True)

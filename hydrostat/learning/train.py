@@ -18,7 +18,7 @@ try:
     import torch  # pyright: ignore[reportMissingImports]
     from torch import Tensor  # pyright: ignore[reportMissingImports]
 except ImportError:
-    raise InputError("learning needs PyTorch; install hydrostat with its extra learn, hydrostat[learn]") from None
+    raise InputError("learning needs PyTorch. Install it: pip install 'hydrostat[learn]'") from None
 
 Tell = Callable[[str, int, int], None]
 Numbers = Sequence[Tensor]  # weights and biases of each layer, then S, each (members, ...)

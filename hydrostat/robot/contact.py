@@ -99,7 +99,7 @@ class Obstacle:
         check_name(self.name)
         kinds = [str(shape) for shape in ObstacleShape]
         if self.shape not in kinds:
-            raise InputError(f'there is no shape "{self.shape}"; there are: {", ".join(kinds)}')
+            raise InputError(f'unknown shape "{self.shape}". Allowed: {", ".join(kinds)}.')
         object.__setattr__(self, "shape", ObstacleShape(self.shape))
         needed = _NEEDED[ObstacleShape(self.shape)]
         for key in ("to", "radius", "normal", "mesh"):

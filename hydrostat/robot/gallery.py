@@ -23,7 +23,7 @@ def list_gallery() -> list[str]:
 def gallery_folder(name: str) -> Path:
     """Folder of a gallery robot (InputError: the gallery has no robot of this name)."""
     if name not in list_gallery():
-        raise InputError(f'the gallery has no robot "{name}"; it has: {", ".join(list_gallery())}')
+        raise InputError(f'unknown gallery robot "{name}". Available: {", ".join(list_gallery())}.')
     return _shelf() / name
 
 

@@ -88,8 +88,7 @@ class Material:
             raise InputError(f"largest_squeeze must be above 0 and below 1, not {self.largest_squeeze:g}")
         if self.young < SOFTEST:
             raise InputError(
-                f"young must be at least {SOFTEST:g} Pa, softer than any gel that keeps its shape, not "
-                f"{self.young:g} Pa; 30 kPa is 30e3"
+                f"young = {self.young:g} Pa is too small (minimum {SOFTEST:g} Pa). Units are Pa: for 30 kPa write 30e3."
             )
 
     @property

@@ -178,7 +178,7 @@ class RobotReader(TablesFile):
         if Path(name).name != name or "\\" in name or not name.isprintable() or name in {FILE, "..", self.file.name}:
             self.fail(key, f"{units.quote(name)} must be the plain name of a file beside robot.toml, without a folder")
         if not os.path.isfile(file):  # unlike Path.is_file, False for a name too long for the system
-            self.fail(key, f"there is no file {units.quote(name)} beside robot.toml; put it there")
+            self.fail(key, f"file {units.quote(name)} not found next to robot.toml. Put it there.")
         return file
 
 

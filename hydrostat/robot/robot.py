@@ -109,7 +109,7 @@ class Robot:
     def pose(self, name: str) -> PoseTarget:
         """The pose of this name (InputError: there is none)."""
         if name not in self.poses:
-            raise InputError(f'there is no pose "{name}"; {_choices("poses", list(self.poses))}')
+            raise InputError(f'unknown pose "{name}". {_choices("poses", list(self.poses))}')
         return self.poses[name]
 
     @property
@@ -157,7 +157,7 @@ class Robot:
         numbers = ("young", "poisson", "density", "viscosity")
         for name in changed:
             if name not in numbers:
-                raise InputError(f'a material has no number "{name}"; it has: {", ".join(numbers)}')
+                raise InputError(f'unknown material value "{name}". Allowed: {", ".join(numbers)}.')
         if changed:
             known = replace(known, **changed, name="", source="", note="")
         return replace(self, body=replace(self.body, material=known))
@@ -248,8 +248,8 @@ class Robot:
             if any(map(self._carries, self.obstacles)):
                 return
             raise InputError(
-                "there is no [[pin]]: a robot must be held somewhere, or it has no rest; add one with at and radius, "
-                "or let it lie on the ground by gravity and an [[obstacle]] with shape = plane"
+                "no [[pin]]: the body is unconstrained. Add a pin with at and radius, or gravity and a ground plane "
+                "([[obstacle]] with shape = plane)."
             )
         held = []
         for index, pin in enumerate(self.pins):
@@ -275,7 +275,7 @@ class Robot:
             for name in pose.targets:
                 if name not in names:
                     key = f"pose[{index}].targets.{name}"
-                    raise InputError(f'{key}: there is no marker "{name}"; {_choices("markers", names)}')
+                    raise InputError(f'{key}: unknown marker "{name}". {_choices("markers", names)}')
 
     def _check_cables(self) -> None:
         named = [
@@ -336,11 +336,11 @@ def _named(kind: str, kinds: str, parts: Iterable[_Part], name: str) -> _Part:
     for part in parts:
         if part.name == name:
             return part
-    raise InputError(f'there is no {kind} "{name}"; {_choices(kinds, [part.name for part in parts])}')
+    raise InputError(f'unknown {kind} "{name}". {_choices(kinds, [part.name for part in parts])}')
 
 
 def _choices(kind: str, names: list[str]) -> str:
-    return f"its {kind} are: {', '.join(names)}" if names else f"it has no {kind}"
+    return f"Available: {', '.join(names)}." if names else f"The robot has no {kind}."
 
 
 _PARTS = {"pins": Pin, "winches": Winch, "cables": Cable, "markers": Marker, "obstacles": Obstacle}

@@ -37,6 +37,4 @@ def face_words(robot: Robot) -> str:
     return _UNSAID if robot.face is None else robot.face.words
 
 
-_UNSAID = (
-    'not said where: a plush kit sews them on the front alone; face = "pairs" before [body] has them on both faces'
-)
+_UNSAID = 'side not set: a plush kit uses the front panel. Set face = "pairs" above [body] to use both panels'

@@ -124,7 +124,7 @@ class ProfileTable:
             raise InputError(f"{name}, line 1: name the columns: {TIME} and the winches, each once{other}")
         for column in head:
             if column not in (TIME, *names):
-                raise InputError(f'{name}, line 1: there is no winch "{column}"; winches are: {", ".join(names)}')
+                raise InputError(f'{name}, line 1: unknown winch "{column}". Available: {", ".join(names)}.')
         lines, times, values = [], [], []
         for line, row in rows[1:]:
             if any(cell.strip() for cell in row):

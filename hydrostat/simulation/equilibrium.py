@@ -60,9 +60,9 @@ class Equilibrium:
             told.append(f"no equilibrium: {self.result.reason}")
         told += beyond_travel(self.robot, self.contractions)
         if self.result.buckled:
-            told.append("the body buckled on the way; it could as well have gone to another side")
+            told.append("buckled: a mirror-image pose is equally likely")
         if self.result.converged and not self.result.stable:
-            told.append("the body is at rest on a saddle; the least push would make it leave")
+            told.append("unstable equilibrium (saddle point)")
         return (*told, *filter(None, [str(find_crossings(self.robot.body.mesh, self.nodes))]))
 
     @property
@@ -116,8 +116,8 @@ class Equilibrium:
 def beyond_travel(robot: Robot, contractions: Vector) -> list[str]:
     """Winches that would take in more than they can, or let out more, in words; empty where none does."""
     return [
-        f"winch {winch.name} can take in from {0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
-        f"{1e3 * value:.4g} mm is beyond it"
+        f"winch {winch.name}: contraction {1e3 * value:.4g} mm is outside its range "
+        f"({0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm)"
         for winch, value in zip(robot.winches, contractions, strict=True)
         if not -winch.release - _HAIR <= value <= winch.travel + _HAIR
     ]

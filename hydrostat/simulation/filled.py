@@ -22,11 +22,12 @@ class FilledMotion:
     nodes: int  # of the mesh in space
 
     def __str__(self) -> str:
-        """Such as "markers come 0.4 mm out of the plane, 10.0 mm aside of the flat model, which moves 56.5 mm"."""
-        return (
-            f"markers come up to {1e3 * self.out:.1f} mm out of the plane, {1e3 * self.aside:.1f} mm aside of the flat "
-            f"model, which moves {1e3 * self.moved:.1f} mm"
+        """Such as "0.4 mm out of plane, 10 mm in-plane deviation (flat model moves 57 mm)"."""
+        out, aside, moved = (
+            f"{value:.0f}" if value >= 10 else f"{value:.1f}"
+            for value in (1e3 * self.out, 1e3 * self.aside, 1e3 * self.moved)
         )
+        return f"{out} mm out of plane, {aside} mm in-plane deviation (flat model moves {moved} mm)"
 
 
 def quickly_filled(robot: Robot, poses: int) -> bool:

@@ -298,10 +298,7 @@ class _Worker:
 def _why(process: BaseProcess) -> str:
     """Why a process has said nothing more."""
     process.join(timeout=PATIENCE)
-    return (
-        f"the process that did the work has died (exit code {process.exitcode}), perhaps for want of memory; "
-        "try again with less to do"
-    )
+    return f"worker crashed (exit code {process.exitcode}), probably out of memory. Try a coarser mesh"
 
 
 def _nothing(value: Any) -> None:

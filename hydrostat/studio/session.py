@@ -146,7 +146,7 @@ class Session:
             self.tell(f"{beside[0].name}: {error}", Tone.BAD)
             return
         document.model = model
-        note = "; it knows contact, so the body feels itself here too" if silent else ""
+        note = "; trained with contact: self-contact enabled" if silent else ""
         self.tell(f"networks of {(given or beside[0]).name} answer drags first{note}")
 
     def grab(self, screen: str, hit: Hit, stamp: float = 0.0) -> bool:

@@ -29,9 +29,7 @@ class CameraHand(HandSource):
             HydrostatError: MediaPipe is not there, does not take the file, or the camera gives no pictures.
         """
         if not model.is_file():
-            raise InputError(
-                f"camera:{model}: there is no such file; it is MediaPipe's {MODEL}, which you bring yourself"
-            )
+            raise InputError(f"camera:{model}: file not found. Download MediaPipe's {MODEL} yourself.")
         try:
             import cv2  # pyright: ignore[reportMissingImports] (an extra)
             import mediapipe  # pyright: ignore[reportMissingImports]

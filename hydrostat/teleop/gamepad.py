@@ -51,7 +51,7 @@ class Gamepad(DriveSource):
         game, pad = self._pygame, self._pad
         game.event.pump()
         if not pad.attached():
-            raise HydrostatError("the gamepad is gone, and with it who drives")
+            raise HydrostatError("gamepad disconnected; motors holding")
         now = self._clock()
         passed, self._looked = min(now - self._looked, _LONGEST), now
         on, back = (

@@ -84,7 +84,7 @@ class Keys(DriveSource):
             except OSError:
                 more = b""
             if not more:
-                raise HydrostatError("the terminal is gone, and with it who drives")
+                raise HydrostatError("terminal closed; motors holding")
             data += more
         keys = []
         while data:

@@ -13,6 +13,7 @@ from hydrostat.teleop.hand_source import HandSource
 from hydrostat.teleop.mimicry import Mimicry
 from hydrostat.teleop.ridge import Table
 from hydrostat.teleop.source import DriveChannels
+from hydrostat.units import plural
 
 POOL = 400
 """Poses of which the next is chosen."""
@@ -82,7 +83,7 @@ def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -
     while motors.moving:
         if clock() > latest:
             index = int(np.abs(motors.command - motors.places).argmax())
-            raise HydrostatError(f"{motors.names[index]} does not get where it should be; see what holds it")
+            raise HydrostatError(f"{motors.names[index]}: target not reached in time. Check for a jammed cable.")
         time.sleep(TICK)
         beat()
 
@@ -119,8 +120,8 @@ class LessonPoses:
     def told(self) -> str:
         """How well the pairs so far teach, in words."""
         if self.count < 4:
-            return f"{self.count} poses; errors are known from 4 on"
+            return f"{plural(self.count, 'pose')}; errors are available from 4 poses on"
         known = self.made.learn()
         one, folds = (f"{1e3 * error:.2f} mm ({2 * error / self.span:.4f})" for error in self.made.errors(known))
-        words = f"error of poses left out {one}, of five folds {folds}"
-        return f"{self.count} poses; {words}; in brackets on a scale from -1 to 1"
+        words = f"cross-validation error: leave-one-out {one}, five-fold {folds}"
+        return f"{self.count} poses; {words}; in brackets: on a scale from -1 to 1"

@@ -56,9 +56,9 @@ class MidiKnobs(DriveSource):
             messages = list(self._port.iter_pending())
             gone = self._port.closed or (self._named and now - self._looked > LOOK and not self._there(now))
         except OSError as error:
-            raise HydrostatError(f"the MIDI port is gone ({error}), and with it who drives") from None
+            raise HydrostatError(f"MIDI port lost ({error}); motors holding") from None
         if gone:
-            raise HydrostatError("the MIDI port is gone, and with it who drives")
+            raise HydrostatError("MIDI port lost; motors holding")
         for message in messages:
             if message.type == "control_change":
                 self._turn(message.control, message.value, places)
@@ -95,5 +95,5 @@ def _open(name: str) -> Any:
         raise HydrostatError(f"MIDI is not to be had here: {error}") from None
     found = [each for each in names if name.lower() in each.lower()]
     if not found:
-        raise HydrostatError(f"there is no MIDI port {name!r}; there are: {', '.join(names) or 'none'}")
+        raise HydrostatError(f'unknown MIDI port "{name}". Available: {", ".join(names) or "none"}.')
     return mido.open_input(found[0])  # type: ignore[attr-defined]

@@ -43,7 +43,7 @@ def open_source(
     """
     kind, _, place = text.partition(":")
     if kind not in (*SOURCES, *HANDS):
-        raise InputError(f"--source {text}: there are: {', '.join(SHOWN)}")
+        raise InputError(f"--source {text}: unknown source. Available: {', '.join(SHOWN)}.")
     if kind not in HANDS:
         return SOURCES[kind](place, channels)
     if known is None:

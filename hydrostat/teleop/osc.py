@@ -59,7 +59,7 @@ class Osc(DriveSource):
             except BlockingIOError:
                 break
             except OSError as error:
-                raise HydrostatError(f"the OSC port is gone ({error}), and with it who drives") from None
+                raise HydrostatError(f"OSC port lost ({error}); motors holding") from None
             with suppress(Exception):  # what is no OSC is nothing
                 for timed in self._packet(data).messages:
                     self._heard = self._clock()

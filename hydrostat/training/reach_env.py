@@ -98,7 +98,7 @@ class ReachEnv(GoalEnv):
         names = [marker.name for marker in robot_.markers]
         for name in self.options.markers:
             if name not in names:
-                raise InputError(f'robot {robot_.name!r} has no marker "{name}"; it has: {", ".join(names)}')
+                raise InputError(f'robot {robot_.name!r}: unknown marker "{name}". Available: {", ".join(names)}.')
         rows = [names.index(name) for name in self.options.markers or names]
         self._dim = robot_.body.mesh.dim
         self.seen = (self._dim * np.array(rows)[:, None] + np.arange(self._dim)).ravel()
@@ -276,7 +276,7 @@ def _groups(robot: Robot, pairs: Sequence[Sequence[str]]) -> tuple[tuple[int, ..
     for pair in pairs:
         for name in pair:
             if name not in names:
-                raise InputError(f'robot {robot.name!r} has no winch "{name}"; it has: {", ".join(names)}')
+                raise InputError(f'robot {robot.name!r}: unknown winch "{name}". Available: {", ".join(names)}.')
             used.append(names.index(name))
         if len(pair) != 2:
             raise InputError(f"a pair has two winches, not {len(pair)}: {', '.join(pair)}")

@@ -42,5 +42,5 @@ TASKS: Mapping[str, Task] = {
 def task_of(name: str) -> Task:
     """The task of a name (InputError: there is none)."""
     if name not in TASKS:
-        raise InputError(f"there is no task {name!r}; there are: {', '.join(TASKS)}")
+        raise InputError(f'unknown task "{name}". Available: {", ".join(TASKS)}.')
     return TASKS[name]

@@ -283,9 +283,7 @@ def _tied(robot: Robot, parts: Sequence[str]) -> tuple[tuple[int, ...], ...]:
     for part in parts:
         rows = tuple(index for index, name in enumerate(names) if part in name)
         if not rows:
-            raise InputError(
-                f'no winch of robot {robot.name!r} has "{part}" in its name; there are: {", ".join(names)}'
-            )
+            raise InputError(f'robot {robot.name!r}: no winch name contains "{part}". Available: {", ".join(names)}.')
         groups.append(rows)
     used = [row for group in groups for row in group]
     if len(set(used)) < len(used):

@@ -222,7 +222,7 @@ def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[Curve
             raise InputError(f"{out}: holds a run already; go on with --resume, or name another folder")
         return []
     if not (out / "curve.json").exists():
-        raise InputError(f"{out}: there is no checkpoint to go on from; begin anew, without --resume")
+        raise InputError(f"{out}: no checkpoint to resume from. Start without --resume.")
     with _read_whole(out / "curve.json"):
         kept = json.loads((out / "curve.json").read_text())
         curve = [CurvePoint(**each) for each in kept["curve"]]

@@ -90,7 +90,7 @@ def test_one_clear_line(
     code, _, err = run("animate", starfish, *options, "--out", tmp_path / "out")
     assert code == 2
     last = err.strip().splitlines()[-1]
-    assert last.startswith("hydrostat: ")
+    assert last.startswith("hydrostat: error: ")
     for fragment in fragments:
         assert fragment in last
     assert not (tmp_path / "out").exists()

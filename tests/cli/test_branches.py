@@ -18,8 +18,8 @@ pytestmark = pytest.mark.usefixtures("unchecked")
 def test_branches_writes_what_the_library_finds(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, out, _ = run("branches", starfish, "--contract", "left=20mm", "--starts", "4", "--out", tmp_path)
     assert code == 0
-    assert "one pose from 4 starts: the contractions alone decide" in out
-    assert "from rest: the goal is reached at 100.0 % of the way" in out
+    assert "unique pose on 4 loading paths" in out
+    assert "from rest: goal reached at 100.0 % of the path" in out
     facts = json.loads((tmp_path / "branches.json").read_text())
     simulation = hs.Simulation(hs.load_robot(starfish))
     pose = simulation.solve({"left": 0.02})
@@ -27,7 +27,7 @@ def test_branches_writes_what_the_library_finds(run: Run, tmp_path: Path, starfi
     assert facts["poses"][0]["energy"] == pytest.approx(pose.energy)
     assert len(facts["poses"][0]["ways"]) == 4
     (branch,) = facts["branches"]
-    assert branch["reason"] == "the goal is reached"
+    assert branch["reason"] == "goal reached"
     assert branch["critical"] == []
     assert branch["points"][-1]["markers"]["left"] == pytest.approx(pose.markers["left"].tolist(), abs=1e-7)
     assert all(point["stable"] for point in branch["points"])
@@ -38,8 +38,8 @@ def test_branches_writes_what_the_library_finds(run: Run, tmp_path: Path, starfi
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ([], "--contract: nothing is taken in"),
-        (["--contract", "left=0mm"], "--contract: nothing is taken in"),
+        ([], "--contract: no contraction given"),
+        (["--contract", "left=0mm"], "--contract: no contraction given"),
         (["--contract", "left=12mm", "--starts", "0"], "--starts 0: must be at least 1"),
         (["--contract", "tail=12mm"], "tail"),
     ],
@@ -60,7 +60,7 @@ def test_with_friction_ways_are_compared_and_no_branch_is_followed(run: Run, tmp
     (robot / "robot.toml").write_text(text.replace("[[cable]]\n", "[[cable]]\nfriction = 0.3\n"))
     code, out, _ = run("branches", robot, "--contract", "left=15mm", "--starts", "3", "--out", tmp_path / "out")
     assert code == 0
-    assert "cables rub" in out
+    assert "cable friction is on" in out
     assert json.loads((tmp_path / "out" / "branches.json").read_text())["branches"] == []
 
 

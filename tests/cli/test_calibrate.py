@@ -36,8 +36,8 @@ def test_emulated_motors_are_calibrated_and_saved(copy: Path) -> None:
     assert (code, err) == (0, "")
     lines = out.splitlines()
     assert all(line.startswith("emulated: ") for line in lines)
-    assert sum("measured" in line for line in lines) == 3
-    assert not any("note:" in line for line in lines)
+    assert sum("repeatability" in line for line in lines) == 3
+    assert not any("warning:" in line for line in lines)
     motors = read_calibration(copy, load_robot(copy), name=EMULATED_CALIBRATION).motors
     assert not (copy / CALIBRATION).exists(), "what was measured on real motors is another file"
     assert [motor.zero for motor in motors] == pytest.approx([0.0] * 3, abs=5e-4 / 0.006)
@@ -58,13 +58,13 @@ def test_a_spool_that_is_none_is_named(run: Run, copy: Path) -> None:
     code, _, err = run("calibrate", copy, "--port", "emulated", "--spools", "right,tail")
     assert (code, err) == (
         2,
-        "hydrostat: --spools right,tail: there is no winch tail; there are: right, left, feet, or all\n",
+        'hydrostat: error: --spools right,tail: unknown winch "tail". Available: right, left, feet, or all.\n',
     )
 
 
 @pytest.mark.parametrize(
     ("port", "told"),
-    [("nonsense", "write emulated, or one such as"), ("dynamixel:/dev/nowhere", "/dev/nowhere cannot be opened")],
+    [("nonsense", "write emulated, or one such as"), ("dynamixel:/dev/nowhere", "cannot open /dev/nowhere")],
 )
 def test_ports_that_are_none_leave_nothing(run: Run, copy: Path, port: str, told: str) -> None:
     before = sorted(copy.iterdir())

@@ -62,7 +62,7 @@ def check(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -
     return run
 
 
-NO_CABLES = "Nothing is wrong with the body; there are no cables yet."
+NO_CABLES = "OK: 0 errors, 0 warnings (body only: no cables yet)."
 
 
 def test_flat_body(check: Check, tmp_path: Path) -> None:
@@ -71,26 +71,26 @@ def test_flat_body(check: Check, tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text(FLAT)
     lines = check(tmp_path)
     assert lines[0].startswith("flat: 60 mm, ")
-    assert lines[1] == "polyester fibre: 1.92 g, 48 cm^3"
-    few = float(lines[2].removeprefix("40 to 60 mm across, that is ").split(" to ")[0])
+    assert lines[1] == "polyester fibre: 1.92 g, 48 cm³"
+    few = float(lines[2].removeprefix("thickness 40 to 60 mm (").split(" to ")[0])
     assert few == pytest.approx(40 / 12, rel=0.15)
     assert "smallest angle" in lines[2]
     assert lines[3:] == ["1 pin, 0 winches, 0 cables, 0 markers, poses: none", NO_CABLES]
 
 
 def test_body_in_space(check: Check, tmp_path: Path) -> None:
-    """Oracle: 192 cm^3, 7.68 g; cubes cut in six have 45 degrees between two faces; risky lines are counted."""
+    """Oracle: 192 cm^3, 7.68 g; cubes cut in six have 45 degrees between two faces; warnings are counted."""
     for cells, risks in (((12, 4, 4), 0), ((6, 2, 2), 1)):
         mesh = box_mesh(cells, size=(0.12, 0.04, 0.04))
         (tmp_path / "solid.vtu").write_bytes(write_vtu(mesh, mesh.nodes, {}))
         (tmp_path / "robot.toml").write_text(SOLID)
         lines = check(tmp_path)
-        assert lines[1] == "material by its numbers: 7.68 g, 192 cm^3"
+        assert lines[1] == "custom material: 7.68 g, 192 cm³"
         across = cells[1] / np.sqrt(2) ** (1 / 3)
-        assert lines[2].startswith(f"40 to 120 mm across, that is {across:.1f} to {3 * across:.0f} elements; ")
-        assert lines[2].endswith("smallest angle between faces 45 degrees")
-        assert sum(line.startswith("risky: ") for line in lines) == risks
-        assert lines[-1] == (NO_CABLES.replace(";", ", 1 risky;") if risks else NO_CABLES)
+        assert lines[2].startswith(f"thickness 40 to 120 mm ({across:.1f} to {3 * across:.0f} elements across); ")
+        assert lines[2].endswith("smallest angle between faces 45°")
+        assert sum(line.startswith("warning: ") for line in lines) == risks
+        assert lines[-1] == NO_CABLES.replace("0 warnings", "1 warning" if risks else "0 warnings")
 
 
 @pytest.mark.slow
@@ -102,8 +102,8 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(check: Check,
         save_robot(replace(robot, face=face), tmp_path / face)
         lines = check(tmp_path / face)
         (place,) = (number for number, line in enumerate(lines) if line.startswith("cables: "))
-        assert re.match(r"to build its network: \d+ holes, .* USD for 1 motor, power and cables", lines[place + 1])
-        out = re.match(r"once filled: markers come up to ([\d.]+) mm out of the plane", lines[place + 2])
+        assert re.match(r"build: \d+ holes, .* USD \(1 motor, power, cables\)", lines[place + 1])
+        out = re.match(r"3D effect when stuffed: ([\d.]+) mm out of plane", lines[place + 2])
         assert out is not None
         found[lines[place].removeprefix("cables: ")] = float(out[1])
     assert 10 < found["on the front"] < 30
@@ -116,5 +116,5 @@ def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.Mon
     """Nine poses of 22,000 nodes take minutes; a limit below the starfish's nodes makes it such a body."""
     nodes = len(load_robot(gallery_folder("starfish")).body.mesh.nodes)
     monkeypatch.setattr("hydrostat.cli.check._LARGE", nodes - 1)
-    lines = [line for line in check(gallery_folder("starfish")) if line.startswith("reach of markers")]
-    assert lines == [f"reach of markers: not looked for, as {nodes} nodes take long; with larger elements it is told"]
+    lines = [line for line in check(gallery_folder("starfish")) if line.startswith("workspace")]
+    assert lines == [f"workspace: skipped ({nodes} nodes, maximum {nodes - 1}). Use larger elements"]

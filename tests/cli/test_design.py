@@ -142,9 +142,8 @@ def test_everything_is_written_and_can_be_read(run: Run, strip: Path, search: Se
     assert card["robot"] == robot_hash(hs.load_robot(out / "robot")) == robot_hash(network.robot)
     for other, folder in zip(card["alternatives"], sorted((out / "alternatives").iterdir()), strict=True):
         assert other["robot"] == robot_hash(hs.load_robot(folder))
-    assert f"-> {1e3 * network.rms_error:.2f} mm reached in the model, {1e3 * network.built:.2f} mm to be" in told
-    assert "expected once built; 4 networks tried in " in told
-    assert "rms error: 31.62 mm at rest -> " in told
+    assert f"model error {1e3 * network.rms_error:.2f} mm rms (at rest 31.62 mm), expected as-built error " in told
+    assert f"error {1e3 * network.built:.2f} mm (4 candidates, " in told
     assert f"Open {out / 'report.html'}" in told
     assert "How it grew" in (out / "report.html").read_text()
 
@@ -189,7 +188,7 @@ def test_a_search_that_is_stopped_before_it_has_found_anything(
 
     monkeypatch.setattr("hydrostat.design.find_network", stop)
     code, _, errors = run("design", strip, "--out", tmp_path / "out")
-    assert (code, errors) == (130, "hydrostat: stopped before there was a network; nothing is written\n")
+    assert (code, errors) == (130, "hydrostat: interrupted before the first network; no files written\n")
     assert not (tmp_path / "out").exists()
 
 
@@ -199,7 +198,7 @@ def test_the_best_so_far_where_the_search_is_stopped(
     search.answer = replace(plain_network(), complete=False)
     code, told, _ = run("design", strip, "--out", tmp_path / "out")
     assert code == 130
-    assert told.endswith("stopped early: the best network so far\n")
+    assert told.endswith("interrupted: best network so far\n")
     assert json.loads((tmp_path / "out" / "score.json").read_text())["complete"] is False
     assert hs.load_robot(tmp_path / "out" / "robot").cables == search.answer.robot.cables
 
@@ -224,29 +223,29 @@ BAD = {
     ("--winches", "²"): "winches must be a whole number from 1 to 20 or \"auto\", not '²'",
     ("--method", "magic"): 'method must be one of routes, trees, not "magic"',
     ("--method", "trees", "--fibres", "hairs"): '--fibres must be one of edges, elements, not "hairs"',
-    ("--fibres", "edges"): "--fibres is for --method trees; routes are priced by the pose error",
-    ("--knob", "phi=0.3"): "--knob is for --method trees; routes are priced by the pose error",
+    ("--fibres", "edges"): "--fibres: needs --method trees. Add it.",
+    ("--knob", "phi=0.3"): "--knob: needs --method trees. Add it.",
     ("--method", "trees", "--knob", "phi=3"): "TreeOptions.phis must be at least 0 and at most 1, not 3.0",
     ("--method", "trees", "--knob", "steps=some"): "--knob steps=some: must be a whole number",
-    ("--method", "trees", "--knob", "psi=3"): "--knob psi=3: must be threshold, distance, steps or phi with its value, "
-    "such as phi=0.5",
-    ("--tolerance", "1 mm"): "--tolerance is for --winches auto, which finds the fewest winches that keep it",
-    ("--winches", "auto", "--tolerance", "0 mm"): "--tolerance 0 mm: must be above 0, such as 12 mm",
+    ("--method", "trees", "--knob", "psi=3"): "--knob psi=3: unknown setting. Write threshold, distance, steps or phi "
+    "with a value, e.g. phi=0.5.",
+    ("--tolerance", "1 mm"): "--tolerance: needs --winches auto. Add it.",
+    ("--winches", "auto", "--tolerance", "0 mm"): "--tolerance 0 mm: must be above 0, e.g. 12 mm",
     ("--cables", "61"): "cables must be a whole number from 1 to 60, not 61",
     ("--method", "trees", "--winches", "auto"): STARTS,
     ("--method", "trees", "--improve"): STARTS,
     ("--method", "trees", "--stepped-spools"): 'method "trees" does not keep spool_ratio; use method "routes", '
     "which does",
     ("--clearance", "5"): '--clearance 5: "5" has no unit; write for example "12 mm"',
-    ("--tension", "0 N"): "--tension 0 N: must be above 0, such as 20 N",
-    ("--slack", "-1 mm"): "--slack -1 mm: must be 0 or more, such as 12 mm",
-    ("--symmetric", "w"): "--symmetric w: must be the axis across the mirror: x, y or z",
+    ("--tension", "0 N"): "--tension 0 N: must be above 0, e.g. 20 N",
+    ("--slack", "-1 mm"): "--slack -1 mm: must be 0 or more, e.g. 12 mm",
+    ("--symmetric", "w"): "--symmetric w: unknown axis. Allowed: x, y, z.",
     ("--symmetric", "x"): 'constraints: mirror = "x": the body must lie evenly about x = 0, not from 0 to 200 mm; '
     "move it there, or set mirror to None",
-    ("--lock-winch", "bob"): '--lock-winch bob: there is no winch "bob"; its winches are: up, down',
-    ("--lock-cable", "3"): '--lock-cable 3: there is no cable "3"; its cables are: up 1, down 1',
+    ("--lock-winch", "bob"): '--lock-winch bob: unknown winch "bob". Available: up, down.',
+    ("--lock-cable", "3"): '--lock-cable 3: unknown cable "3". Available: up 1, down 1.',
     ("--constraints", "none.toml"): "none.toml: there is no such file",
-    ("--pose", "dance"): 'there is no pose "dance"; its poses are: up',
+    ("--pose", "dance"): 'unknown pose "dance". Available: up.',
 }
 
 
@@ -255,7 +254,7 @@ def test_what_is_wrong_is_one_line(
     run: Run, strip: Path, search: Search, options: tuple[str, ...], tmp_path: Path
 ) -> None:
     code, out, errors = run("design", strip, *options, "--out", tmp_path / "out")
-    assert (code, out, errors) == (2, "", f"hydrostat: {BAD[options]}\n")
+    assert (code, out, errors) == (2, "", f"hydrostat: error: {BAD[options]}\n")
     assert search.asked is None
     assert not (tmp_path / "out").exists()
 

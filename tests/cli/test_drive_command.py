@@ -42,7 +42,7 @@ def test_keys_turn_winches_and_bars_are_shown(starfish: Path, port: list[str]) -
     assert work.wait(300) == 0
     os.close(ours)
     text = told.decode()
-    last = re.findall(r"ended; the motors hold at right (-?[0-9.]+) mm, left ([0-9.]+) mm", text)
+    last = re.findall(r"ended; motors holding at right (-?[0-9.]+) mm, left ([0-9.]+) mm", text)
     kind = "emulated" if port else "simulated"
     assert len(last) == 1
     assert float(last[0][1]) == pytest.approx(7.0, abs=0.4)
@@ -73,7 +73,7 @@ def test_messages_move_fingertips(run: Run, starfish: Path) -> None:
         sender._sock.close()
     assert (code, err) == (0, "")
     lines = out.splitlines()
-    assert lines[0] == "simulated: fingertips of starfish by osc:9321"
+    assert lines[0] == "simulated: driving fingertips of starfish with osc:9321"
     assert all(line.startswith("simulated: ") for line in lines)
     assert float(re.findall(r"left ([0-9.]+) mm", lines[-1])[0]) == pytest.approx(10.0, abs=0.2)
 
@@ -81,10 +81,10 @@ def test_messages_move_fingertips(run: Run, starfish: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (("--source", "pedals"), "--source pedals: there are: keys, gamepad:0"),
+        (("--source", "pedals"), "--source pedals: unknown source. Available: keys, gamepad:0"),
         (("--source", "glove:/dev/ttyUSB0"), "needs --map FILE; `hydrostat mimic` makes it"),
         (("--map", "none.json"), "none.json: cannot be read"),
-        (("--model", "none.model"), "--model: finds contractions for fingertips; give --tips too"),
+        (("--model", "none.model"), "--model: needs --tips. Add it."),
         (("--port", "nonsense"), "--port nonsense: write emulated"),
         (("--seconds", -1), "--seconds -1: must not be negative"),
     ],

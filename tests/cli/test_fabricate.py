@@ -21,7 +21,7 @@ Run = Callable[..., tuple[int, str, str]]
 def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, out, err = run("fabricate", starfish, "--out", tmp_path)
     assert code == 0
-    assert "Self-check: 8 of 8 hold" in out
+    assert "Quality checks: 8 of 8 passed" in out
     assert f"begin with {tmp_path / 'assembly_sheet.pdf'}" in out
     assert "Pattern ..." in err
     told = json.loads((tmp_path / "manifest.json").read_text())
@@ -34,11 +34,14 @@ BAD = {
     ("--method", "clay"): '--method must be one of plush, foam, not "clay"',
     ("--mould", "sand"): '--mould must be one of printed, silicone, not "sand"',
     ("--paper", "a5"): '--paper must be one of a4, letter, not "a5"',
-    ("--bed", "220 mm"): '--bed 220 mm: must be three lengths and their unit, such as "220 x 220 x 250 mm"',
-    ("--bed", "0x220x250mm"): "--bed 0 mm: must be above 0, such as 12 mm",
-    ("--seam", "0 mm"): "--seam 0 mm: must be above 0, such as 12 mm",
+    (
+        "--bed",
+        "220 mm",
+    ): '--bed 220 mm: not a build volume. Write three lengths with a unit, e.g. "220 x 220 x 250 mm".',
+    ("--bed", "0x220x250mm"): "--bed 0 mm: must be above 0, e.g. 12 mm",
+    ("--seam", "0 mm"): "--seam 0 mm: must be above 0, e.g. 12 mm",
     ("--clearance", "0.3"): '--clearance 0.3: "0.3" has no unit; write for example "12 mm"',
-    ("--tension", "-1 N"): "--tension -1 N: must be above 0, such as 20 N",
+    ("--tension", "-1 N"): "--tension -1 N: must be above 0, e.g. 20 N",
     ("--line", "3 mm"): "cable 3 mm, bore 1 mm and tube 2 mm must rise: the cable runs in the bore of the tube",
 }
 
@@ -48,27 +51,29 @@ def test_bad_options_are_refused_before_the_work(
     run: Run, tmp_path: Path, starfish: Path, options: tuple[str, str]
 ) -> None:
     code, out, err = run("fabricate", starfish, *options, "--out", tmp_path / "kit")
-    assert (code, out, err) == (2, "", f"hydrostat: {BAD[options]}\n")
+    assert (code, out, err) == (2, "", f"hydrostat: error: {BAD[options]}\n")
     assert not (tmp_path / "kit").exists()
 
 
 def test_a_mould_for_plush_is_refused(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, _, err = run("fabricate", starfish, "--mould", "silicone", "--out", tmp_path / "kit")
     assert code == 2
-    assert err == "hydrostat: --mould: is for bodies of foam; leave it out, or add --method foam\n"
+    assert err == "hydrostat: error: --mould: needs a foam body. Remove it, or add --method foam.\n"
 
 
 def test_a_file_in_the_way_is_said_before_the_work(run: Run, tmp_path: Path, starfish: Path) -> None:
     (tmp_path / "file").write_text("x")
     code, out, err = run("fabricate", starfish, "--out", tmp_path / "file" / "kit")
     assert (code, out) == (2, "")
-    assert err == f"hydrostat: --out {tmp_path / 'file' / 'kit'}: {tmp_path / 'file'} is a file; name a folder\n"
+    assert (
+        err == f"hydrostat: error: --out {tmp_path / 'file' / 'kit'}: {tmp_path / 'file'} is a file. Name a folder.\n"
+    )
 
 
 def test_an_unknown_motor_is_refused(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, _, err = run("fabricate", starfish, "--motor", "v8", "--out", tmp_path / "kit")
     assert code == 2
-    assert err.startswith('hydrostat: there is no motor "v8"')
+    assert err.startswith('hydrostat: error: unknown motor "v8"')
     assert not (tmp_path / "kit").exists()
 
 
@@ -77,9 +82,9 @@ def test_what_cannot_be_built_is_refused_with_every_reason(run: Run, tmp_path: P
     save_robot(near_the_edge(), tmp_path / "robot")
     code, out, err = run("fabricate", tmp_path / "robot", "--out", tmp_path / "kit")
     assert code == 2
-    reasons = [line for line in out.splitlines() if line.startswith("cannot be built: ")]
+    reasons = [line for line in out.splitlines() if line.startswith("error: ")]
     assert len(reasons) == 2
-    assert "2 reasons" in err.splitlines()[-1]
+    assert "2 problems prevent" in err.splitlines()[-1]
     assert "--force" in err.splitlines()[-1]
     assert not (tmp_path / "kit").exists()
 
@@ -89,9 +94,9 @@ def test_check_refuses_with_the_same_sentences(run: Run, tmp_path: Path) -> None
     save_robot(near_the_edge(), tmp_path / "robot")
     code, out, _ = run("check", tmp_path / "robot")
     assert code == 0
-    reasons = [line for line in out.splitlines() if line.startswith("cannot be built: ")]
+    reasons = [line for line in out.splitlines() if line.startswith("error: ")]
     assert len(reasons) == 2
-    assert out.splitlines()[-1].startswith("2 things cannot be built")
+    assert out.splitlines()[-1].startswith("2 errors, ")
 
 
 def test_the_tension_of_its_design_is_beside_a_robot(tmp_path: Path) -> None:
@@ -119,7 +124,7 @@ def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Pa
     save_work(Work(robot=robot, wishes=Wishes(tension=7.5)), tmp_path / "weak")
     assert designed_tension(robot, tmp_path / "weak") == designed_tension(robot, tmp_path / "weak/robot.toml") == 7.5
     (tmp_path / "weak" / "studio.json").write_text("{")
-    with pytest.raises(InputError, match=r"^studio\.json: .*; mend the file, or say with --tension"):
+    with pytest.raises(InputError, match=r"^studio\.json: .*\. Fix the file, or set the limit with --tension"):
         designed_tension(robot, tmp_path / "weak")
     save_work(Work(robot=robot.with_network((), ())), tmp_path / "bare")
     assert not (tmp_path / "bare" / "studio.json").exists()
@@ -133,7 +138,7 @@ def test_a_kit_keeps_to_a_tension(run: Run, tmp_path: Path, starfish: Path) -> N
     for limit, asked in {"3 N": (), "200 N": ("--tension", "200 N")}.items():
         code, out, _ = run("fabricate", robot, *asked, "--force", "--out", tmp_path / limit[0])
         assert code == 0
-        assert ("Cables: pulled with at most 3 N, the limit of" in out) == (not asked)
+        assert ("Cable tension: at most 3 N, the limit of" in out) == (not asked)
         text = (tmp_path / limit[0] / "lists" / "line_strength.csv").read_text()
         rows = [row for row in csv.reader(text.splitlines()) if row and re.fullmatch(r"C\d+", row[0])]
         largest[limit] = max(float(row[2]) for row in rows)
@@ -148,5 +153,5 @@ def test_force_builds_it_and_says_why_not(run: Run, tmp_path: Path) -> None:
     save_robot(near_the_edge(), tmp_path / "robot")
     code, out, _ = run("fabricate", tmp_path / "robot", "--force", "--out", tmp_path / "kit")
     assert code == 0
-    assert out.count("cannot be built well: ") == 2
+    assert out.count("error: ") == 2
     assert (tmp_path / "kit" / "assembly_sheet.pdf").is_file()

@@ -56,7 +56,7 @@ def test_a_robot_is_scaled_in_its_file(run: Run, tmp_path: Path) -> None:
     before = (tmp_path / "mine" / "robot.toml").read_text()
     code, out, _ = run("scale", tmp_path / "mine", "1.5")
     assert code == 0
-    assert "from 279 mm to 419 mm" in out
+    assert "279 mm to 419 mm" in out
     after = (tmp_path / "mine" / "robot.toml").read_text()
     assert comments(after) == comments(before)
     assert 'size = "420 mm"' in after
@@ -101,7 +101,7 @@ def test_at_a_terminal_it_asks_what_an_eye_is(
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     code, out, _ = run("new", tmp_path / "moby", "--from", tmp_path / "whale.svg")
     assert code == 0
-    assert "1 closed shape within the body" in out
+    assert "1 closed shape inside the body" in out
     outline = load_robot(tmp_path / "moby").body.outline
     assert outline is not None
     assert len(outline.rings) == 1 + holes
@@ -113,7 +113,7 @@ def test_robots_of_the_gallery_are_read_by_their_names_and_not_written(run: Run,
     assert "2 of 2 samples" in out
     code, _, err = run("train", "gallery:nobody", "--out", tmp_path / "policy")
     assert code == 2
-    assert 'the gallery has no robot "nobody"; it has: bear, ' in err
+    assert 'unknown gallery robot "nobody". Available: bear, ' in err
     for command in (("scale", "gallery:starfish", 2), ("calibrate", "gallery:starfish", "--port", "emulated")):
         code, _, err = run(*command)
         assert code == 2

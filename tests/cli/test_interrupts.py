@@ -115,7 +115,7 @@ def test_sampling_that_is_interrupted_says_that_it_can_go_on(
     monkeypatch.setattr("hydrostat.learning.sample_robot", stopped)
     with pytest.raises(KeyboardInterrupt):
         sample(starfish, tmp_path / "out", count=3)
-    assert capsys.readouterr().err == "the same command goes on from here\n"
+    assert capsys.readouterr().err == "interrupted: run the same command again to resume\n"
 
 
 @pytest.mark.parametrize("begun", [USUAL, IGNORED])
@@ -132,10 +132,10 @@ def test_a_command_that_is_interrupted_says_so(begun: Callable[[], object], tmp_
         preexec_fn=begun,
     )
     assert work.stderr is not None
-    assert "moving" in work.stderr.readline()
+    assert "simulating" in work.stderr.readline()
     time.sleep(0.1)
     work.send_signal(signal.SIGINT)
     printed, beside = work.communicate(timeout=300)
     assert work.returncode == 130
-    assert beside == "hydrostat: stopped; what had been written is whole\n"
+    assert beside == "hydrostat: interrupted; files written so far are complete\n"
     assert "Wrote" not in printed

@@ -77,4 +77,4 @@ def test_a_table_that_takes_in_a_whole_cable_is_refused(run: Run, starfish: Path
     played.write_text("time_s,left\n0,0\n1,900\n")
     code, _, err = run("simulate", starfish, "--dynamic", "--play", played, "--out", tmp_path / "out")
     assert code == 2
-    assert "all of a cable" in err
+    assert "takes in the whole cable (116 mm)" in err

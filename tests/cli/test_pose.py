@@ -62,8 +62,8 @@ def test_a_limit_on_the_tension_holds_and_is_told(run: Run, starfish: Path, tmp_
     assert code == 0
     facts = json.loads((tmp_path / "out" / "pose.json").read_text())
     assert max(facts["tensions"]) == pytest.approx(8.0, rel=1e-4)
-    assert facts["held"] == ["right: pulls as hard as it may, 8 N"]
-    assert "  limit: right: pulls as hard as it may, 8 N" in out
+    assert facts["held"] == ["right: at maximum tension, 8 N"]
+    assert "  limit: right: at maximum tension, 8 N" in out
     assert "  optimality: " in out
     assert facts["optimality"] < 1e-3
     assert facts["tension_limit"] == 8.0
@@ -87,7 +87,7 @@ def test_equal_winches_take_in_the_same(run: Run, starfish: Path, tmp_path: Path
     [
         (("--tension", "20"), "--tension 20: "),
         (("--tension", "-3 N"), "--tension -3 N: must be above 0"),
-        (("--equal", "left"), "--equal left: name two winches"),
+        (("--equal", "left"), "--equal left: too few winches"),
         (("--equal", "left,right", "--equal", "right,feet"), "in two groups"),
         (("--restarts", "-1"), "--restarts -1: must be 0 or more"),
         (("--drawing", "none.svg"), "none.svg: there is no such file"),

@@ -23,7 +23,7 @@ def test_files_are_what_the_library_finds(run: Run, starfish: Path, tmp_path: Pa
     options = ("--poses", "star_jump,rest", "--speed", "0.1 m/s", "--acceleration", "500 mm/s^2", "--width", "200")
     code, out, err = run("trajectory", starfish, *options, "--out", tmp_path / "out")
     assert code == 0
-    assert "following the way" in err
+    assert "following the path" in err
     robot = hs.load_robot(starfish)
     simulation = hs.Simulation(robot)
     keyframes = [robot.poses["star_jump"], hs.Keyframe(target=simulation.rest, name="rest")]
@@ -68,8 +68,8 @@ def test_the_profile_can_be_played(run: Run, starfish: Path, tmp_path: Path) -> 
         (("--hold", "-1s"), "--hold -1s: must be 0 or more"),
         (("--path", "round"), '--path must be one of smooth, linear, straight, not "round"'),
         (("--poses", "wave,dance"), "dance"),
-        (("--poses", ","), "--poses: names none"),
-        (("--equal", "left"), "--equal left: name two winches"),
+        (("--poses", ","), "--poses: no pose named"),
+        (("--equal", "left"), "--equal left: too few winches"),
         (("--equal", "left,tail"), "tail"),
         (("--path", "linear", "--acceleration", "1 m/s^2"), "no limit on the acceleration can hold"),
         (("--width", "2"), "--width 2"),

@@ -32,5 +32,5 @@ def test_a_stage_that_comes_again_has_a_clock_of_its_own(
     for at, done in ((0.0, 0), (10.0, 10), (110.0, 0), (111.0, 5), (131.0, 10)):
         now[0] = at
         tell("poses", done, 10)
-    assert "poses: 10 of 10, 1 a second" in (words := capsys.readouterr().err)
-    assert words.endswith("poses: 10 of 10, 0.476 a second\n")
+    assert "poses: 10 of 10, 1/s" in (words := capsys.readouterr().err)
+    assert words.endswith("poses: 10 of 10, 0.476/s\n")

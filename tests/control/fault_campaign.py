@@ -20,12 +20,16 @@ WORDS = {
     "deaf": ("has not answered",),
     "stuck": ("does not follow",),
     "hot": ("too hot",),
-    "anew": ("has lost its power", "does not follow", "slack or broken"),  # its torque is off, and no cable is felt
+    "anew": (
+        "lost power for a moment",
+        "does not follow",
+        "slack or broken",
+    ),  # its torque is off, and no cable is felt
     "unplugged": ("is gone",),
     "host dies": ("",),
     "host sleeps": ("nothing was told for",),
     "cut": ("slack or broken",),
-    "jammed": ("pulls by",),
+    "jammed": ("measured tension",),
 }
 WHOSE = {"deaf", "stuck", "hot", "anew", *GUARDED}  # words name the winch
 

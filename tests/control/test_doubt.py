@@ -162,7 +162,7 @@ def test_a_servo_that_lost_its_turns_is_not_armed_again(models: tuple[int, ...])
     rig.begin()
     rig.go(rig.places, 0.1)
     rig.servos[1].begin_anew()
-    with pytest.raises(HydrostatError, match="index extensor reports: it has lost its power for a moment"):
+    with pytest.raises(HydrostatError, match="index extensor reports: lost power for a moment"):
         rig.go(rig.places, 0.1)
     with pytest.raises(HydrostatError, match="calibrate them anew, as a motor"):
         rig.link.arm()

@@ -72,10 +72,10 @@ def test_motors_that_a_board_cannot_turn_are_refused(
 
 
 def test_a_board_bears_so_many_motors(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="has 3 motors, and the board uno bears 2"):
+    with pytest.raises(InputError, match="board uno drives 2 motors, the robot has 3"):
         build_firmware("#define DCS 3\n", "uno", tmp_path / "none")
     assert not (tmp_path / "none").exists()
-    with pytest.raises(InputError, match="--board due: there are: uno, mega"):
+    with pytest.raises(InputError, match=r"--board due: unknown board\. Available: uno, mega"):
         build_firmware("#define DCS 1\n", "due", tmp_path)
 
 

@@ -130,7 +130,7 @@ def test_zones_have_the_dimensions_of_the_body(field: str) -> None:
 
 def test_what_is_locked_must_be_there() -> None:
     told = misfit({"locked_winches": ("up", "left")})
-    assert told == 'constraints: locked_winches[1]: there is no winch "left"; its winches are: up, down'
+    assert told == 'constraints: locked_winches[1]: unknown winch "left". Available: up, down.'
     told = misfit({"locked_cables": ("up 1", "up 2")})
     assert told == 'constraints: locked_cables[1]: there is no cable "up 2"; its cables are: up 1, down 1'
     assert 'no cable "up 1"' in misfit({"locked_cables": ("up 1",)}, bare=True)

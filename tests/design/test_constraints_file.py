@@ -188,7 +188,7 @@ ERRORS = {
     'locked_cables = ["up"]': 'line 1: locked_cables[0]: there is no cable "up"; its cables are: up 1, down 1',
     "locked_cables = [true]": "line 1: locked_cables[0]: neither a name nor a number that counts from 1",
     'locked_winches = "up"': 'line 1: locked_winches: "up" is not a list; write for example locked_winches = ["left"]',
-    'locked_winches = ["bob"]': 'line 1: locked_winches[0]: there is no winch "bob"; its winches are: up, down',
+    'locked_winches = ["bob"]': 'line 1: locked_winches[0]: unknown winch "bob". Available: up, down.',
     "[[keep_out]]\nat = [1, 2]": "line 1: keep_out[0]: a zone about a point needs both at and radius; "
     "give the other too",
     "[[still]]\nat = [1, 2]\nradius = 0": "line 3: still[0].radius of a zone must be finite and above 0 m, not 0.0",

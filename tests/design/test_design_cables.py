@@ -166,7 +166,7 @@ def thin_robot() -> Robot:
     [
         (body(), [], 1, 1, "no pose to design for"),
         (body(), [UP], 0, 1, "winches must be a whole number from 1 to 20"),
-        (body(), [UP], 3, 2, "3 winches and 2 cables"),
+        (body(), [UP], 3, 2, "3 winches need at least 3 cables, got 2"),
         (
             body(),
             [UP, PoseTarget(name="odd", targets={"nose": (0.1, 0.0)})],

@@ -291,7 +291,7 @@ def error_of(text: str, **asked: Any) -> None:
 
 
 def test_what_is_asked_for_wrongly() -> None:
-    error_of("there is no pose to design for; add a [[pose]] to the robot", poses=[])
+    error_of("no pose to design for. Add a [[pose]] to robot.toml.", poses=[])
     error_of('method must be one of routes, trees, not "magic"', method="magic")
     error_of('options of method "routes" must be RouteOptions, not TreeOptions', options=TreeOptions())
     error_of('options of method "trees" must be TreeOptions, not RouteOptions', options=SMALL, method="trees")
@@ -301,9 +301,9 @@ def test_what_is_asked_for_wrongly() -> None:
     )  # fmt: skip
     error_of("winches must be a whole number from 1 to 20 or \"auto\", not 'two'", winches="two")
     error_of("cables must be a whole number from 1 to 60, not True", cables=True)
-    error_of("3 winches and 2 cables: there must be at least one winch, and a cable for each", winches=3)
+    error_of("3 winches need at least 3 cables, got 2. Ask for more cables or fewer winches.", winches=3)
     error_of(
-        "2 winches pull at most 4 cables, not 5; ask for more winches, or raise cables_per_winch",
+        "2 winches can pull at most 4 cables, got 5. Ask for more winches or raise cables_per_winch.",
         cables=5, constraints=Constraints(cables_per_winch=2),
     )  # fmt: skip
     error_of(

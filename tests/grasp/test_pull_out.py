@@ -32,7 +32,7 @@ def test_the_thing_is_held_and_comes_free() -> None:
     pull = pulled()
     assert pull.peak > 0.05
     assert pull.released
-    assert pull.reason == "the thing is free"
+    assert pull.reason == "object is free"
     assert pull.forces[-1] == pytest.approx(0.0, abs=1e-3 * pull.peak)
 
 

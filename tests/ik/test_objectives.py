@@ -132,7 +132,7 @@ def test_values_of_the_others() -> None:
 
 
 WRONG: Mapping[str, tuple[Simulation, Objective, str]] = {
-    "no such marker": (FLAT, MarkerTarget(targets={"toe": (0.0, 0.0)}), 'no marker "toe"; its markers are: tip, top'),
+    "no such marker": (FLAT, MarkerTarget(targets={"toe": (0.0, 0.0)}), 'unknown marker "toe". Available: tip, top'),
     "marker in space": (FLAT, MarkerTarget(targets={"tip": (0.0, 0.0, 0.0)}), "target tip has 3 coordinates"),
     "marker nowhere": (FLAT, MarkerTarget(targets={"tip": (0.0, np.nan)}), "target tip is not finite"),
     "marker's weight": (FLAT, MarkerTarget(targets={"tip": (0, 0)}, weights={"tip": -1.0}), "weight of marker tip"),
@@ -260,7 +260,7 @@ def test_a_wrong_type_is_one_clear_line(name: str, unchecked: None) -> None:
         ("effort", "objectives must be a list, such as [Effort()], not 'effort'"),
         (None, "objectives must be a list, such as [Effort()], not None"),
         (["effort"], "MarkerTarget(...) or Effort(), not 'effort'"),
-        ([Effort(), Effort], "an objective is wanted, not its class; write Effort(...)"),
+        ([Effort(), Effort], "got the class Effort. Pass an instance: Effort(...)"),
     ],
 )
 def test_objectives_are_a_list_of_them(given: object, message: str) -> None:

@@ -116,7 +116,7 @@ def test_the_tables_and_figures_of_the_thesis(
         reproduce.reproduce(["table-9"], tmp_path)
     with pytest.raises(InputError, match="--counts 1,x"):
         reproduce.reproduce(["all"], tmp_path, counts="1,x")
-    with pytest.raises(InputError, match="--counts 10,100: networks learn from 20 samples or more"):
+    with pytest.raises(InputError, match=r"--counts 10,100: too few samples\. The minimum is 20"):
         reproduce.reproduce(["all"], tmp_path, counts="10,100")
     with pytest.raises(InputError, match="--draw tension: is for hydrostat sample"):
         reproduce.reproduce(["all"], tmp_path, draw="box,tension")

@@ -70,5 +70,5 @@ def test_an_unknown_level_is_refused_in_one_line() -> None:
     code = "import sys; sys.argv[1:] = ['check', 'gallery:starfish']; from hydrostat.cli.main import main; main()"
     ended = run("v9", code=code)
     assert ended.returncode == 2
-    assert ended.stderr.startswith('hydrostat: HYDROSTAT_LEVEL: unknown level "v9". This processor has: base')
+    assert ended.stderr.startswith('hydrostat: error: HYDROSTAT_LEVEL: unknown level "v9". This processor has: base')
     assert ended.stderr.count("\n") == 1

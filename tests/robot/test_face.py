@@ -68,5 +68,5 @@ def test_a_long_name_gets_no_side(starfish: Robot) -> None:
 
 def test_it_is_told_in_words(starfish: Robot) -> None:
     assert face_words(replace(starfish, face=Face.PAIRS)) == "on both faces, in pairs"
-    assert face_words(starfish).startswith("not said where: a plush kit sews them on the front alone")
+    assert face_words(starfish).startswith("side not set: a plush kit uses the front panel")
     assert face_words(starfish.with_network((), ())) == face_words(load_robot(gallery_folder("trunk"))) == ""

@@ -13,20 +13,20 @@ from hydrostat.robot import load_robot
 
 LINES = [
     # outline and its files
-    ('outline = "body.svg"', 'outline = "gone.svg"', 'line 6: body.outline: there is no file "gone.svg" beside'),
+    ('outline = "body.svg"', 'outline = "gone.svg"', 'line 6: body.outline: file "gone.svg" not found next to'),
     ('"body.svg"', '"../body.svg"', 'line 6: body.outline: "../body.svg" must be the plain name of a file beside'),
     ('"body.svg"', '"/etc/passwd"', 'line 6: body.outline: "/etc/passwd" must be the plain name'),
     ('"body.svg"', '"a\\\\b.svg"', 'line 6: body.outline: "a\\b.svg" must be the plain name'),
     ('"body.svg"', '".."', 'line 6: body.outline: ".." must be the plain name'),
     ('"body.svg"', '"robot.toml"', 'line 6: body.outline: "robot.toml" must be the plain name'),
     ('"body.svg"', '"a\\u0000b"', 'line 6: body.outline: "a\\x00b" must be the plain name'),
-    ('"body.svg"', f'"{"語" * 199}"', "line 6: body.outline: there is no file"),
+    ('"body.svg"', f'"{"語" * 199}"', "line 6: body.outline: file "),
     ('"body.svg"', f'"{"x" * 201}"', "line 6: body.outline: ", "at most 200 characters"),
     ('outline = "body.svg"', 'outline = ""', "line 6: body.outline: must not be empty"),
     ('outline = "body.svg"\n', "", "line 5: body: give one of outline (a drawing), surface (a scan"),
     ('outline = "body.svg"', 'outline = "body.svg"\nmesh = "body.svg"', "line 5: body: give one of outline"),
     ('outline = "body.svg"', 'mesh = "body.svg"', "line 7: body.element_size: a ready mesh has its own"),
-    ('outline = "body.svg"', 'surface = "hand.stl"', 'line 6: body.surface: there is no file "hand.stl"'),
+    ('outline = "body.svg"', 'surface = "hand.stl"', 'line 6: body.surface: file "hand.stl" not found'),
     # keys
     ("format = 1", "format = 2", "line 2: format: 2 is not known; this version reads format = 1"),
     ("format = 1", 'format = "1"', 'line 2: format: "1" is not known'),
@@ -306,12 +306,12 @@ LINES = [
     (
         'winch = "right"',
         'winch = "rigth"',
-        'line 32: cable[1].winch: there is no winch "rigth"; its winches are: left, right',
+        'line 32: cable[1].winch: unknown winch "rigth". Available: left, right.',
     ),
     (
         "tip = [20, 10]",
         "top = [20, 10]",
-        'line 45: pose[0].targets.top: there is no marker "top"; its markers are: tip',
+        'line 45: pose[0].targets.top: unknown marker "top". Available: tip.',
     ),
     ("tip = [20, 10]\n", "", "line 44: pose[0].targets must name at least one marker"),
     ("at = [25, 0]", "at = [31, 0]", "line 40: marker[0].at = [31, 0] lies 1 mm outside the body; move it inside"),
@@ -326,7 +326,7 @@ LINES = [
         'tip = [20, 10]\n[[pose]]\nname = "wave"\ntargets = { tip = [0, 0] }',
         "pose[1].name: there are two",
     ),
-    ("[[pin]]\nat = [-20, 0]\nradius = 12\n", "", "robot.toml: there is no [[pin]]: a robot must be held somewhere"),
+    ("[[pin]]\nat = [-20, 0]\nradius = 12\n", "", "robot.toml: no [[pin]]: the body is unconstrained"),
     ("at = [-20, 0]\nradius = 12", "at = [-200, 0]\nradius = 12", "line 11: pin[0]: the pin lies outside the body"),
     ("radius = 12", "radius = 0", "line 11: pin[0]: the pins hold too few nodes", "widen a radius or add a pin"),
     ("radius = 12", "box = [[0, 0], [1, 1]]", "line 11: pin[0]: give either at (with a radius) or box"),

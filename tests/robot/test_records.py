@@ -154,11 +154,14 @@ POSE = PoseTarget(name="p", targets={"tip": (0.2, 0.0)})
         ({"pins": (Pin(at=(0.1, 0.0)),)}, "can still turn"),
         ({"pins": (Pin(at=(9.0, 0.0)),)}, r"pin\[0\]: the pin lies outside the body"),
         ({"pins": (Pin(at=(0.1, 0.0, 0.0)),)}, r"pin\[0\] has 3 coordinates, but the body has 2"),
-        ({"cables": (Cable(winch="no", points=LINE),)}, r'cable\[0\].winch: there is no winch "no"; .* are: up, down'),
+        ({"cables": (Cable(winch="no", points=LINE),)}, r'cable\[0\].winch: unknown winch "no"\. Available: up, down'),
         ({"winches": (Winch(name="a", at=(0.0, 0.0)),) * 2, "cables": ()}, r'winch\[1\].name: there are two .* "a"'),
         ({"winches": (Winch(name="a", at=(0.0, 9.0)),), "cables": ()}, r"winch\[0\].at = \[0, 9000\] lies 8975 mm out"),
         ({"markers": (Marker(name="m", at=(0.1, 0.0)),) * 2}, r'marker\[1\].name: there are two of the name "m"'),
-        ({"markers": (), "poses": {"p": POSE}}, r'pose\[0\].targets.tip: there is no marker "tip"; it has no markers'),
+        (
+            {"markers": (), "poses": {"p": POSE}},
+            r'pose\[0\].targets.tip: unknown marker "tip"\. The robot has no markers',
+        ),
         ({"poses": {"q": POSE}}, r'pose\[0\].name: a pose called "p" is filed under "q"'),
         (
             {"poses": {"p": PoseTarget(name="p", targets={"tip": (0.1, 0.0, 0.0)})}},
@@ -240,11 +243,11 @@ def test_look_up() -> None:
     robot = replace(strip_robot(columns=4, rows=2), poses={"p": POSE})
     assert robot.winch("down") is robot.winches[1]
     assert robot.pose("p") is POSE
-    with pytest.raises(InputError, match='there is no winch "left"; its winches are: up, down'):
+    with pytest.raises(InputError, match=r'unknown winch "left"\. Available: up, down'):
         robot.winch("left")
-    with pytest.raises(InputError, match='there is no pose "q"; its poses are: p'):
+    with pytest.raises(InputError, match=r'unknown pose "q"\. Available: p'):
         robot.pose("q")
-    with pytest.raises(InputError, match='there is no winch "left"; it has no winches'):
+    with pytest.raises(InputError, match=r'unknown winch "left"\. The robot has no winches'):
         robot.with_network([], []).winch("left")
 
 
@@ -255,7 +258,7 @@ def test_with_network() -> None:
     assert (other.winches, other.cables) == (robot.winches[:1], robot.cables[:1])
     assert all(getattr(other, field) is getattr(robot, field) for field in ("body", "pins", "markers", "poses"))
     assert len(robot.winches) == 2
-    with pytest.raises(InputError, match='there is no winch "down"'):
+    with pytest.raises(InputError, match='unknown winch "down"'):
         robot.with_network(robot.winches[:1], robot.cables)
 
 

@@ -97,7 +97,7 @@ def test_travel_on_a_larger_step(good: Robot) -> None:
     assert find_risks(replace(good, cables=cables)) == [
         "winch[0] left: the travel of 20 mm, 60 mm at its spool, is longer than a cable that it pulls (42.6 mm outside "
         "sheaths)",
-        "winch[1] right: only 10 mm from winch left, the spools collide",
+        "winch[1] right: spool overlaps that of winch left: 10 mm apart, need 12 mm. Move one winch",
     ]
 
 
@@ -120,7 +120,7 @@ def test_squeeze_on_a_larger_step(good: Robot) -> None:
 def test_spools_collide(good: Robot) -> None:
     """Oracle: two spools of radius 6 mm, 10 mm apart."""
     winches = tuple(replace(winch, spool_radius=0.006) for winch in good.winches)
-    line = "winch[1] right: only 10 mm from winch left, the spools collide"
+    line = "winch[1] right: spool overlaps that of winch left: 10 mm apart, need 12 mm. Move one winch"
     assert find_risks(replace(good, winches=winches)) == [line]
 
 

@@ -140,7 +140,7 @@ def test_load_save_load(extra: str, tmp_path: Path) -> None:
         ('"15 mm"', '"0.1 mm"', "line 6: body.element_size: elements of 0.1 mm would be about "),
         ('"15 mm"', '"0 mm"', "line 6: body.element_size must be finite and above 0, not 0 m"),
         ('"15 mm"', '"15 mm"\nsize = "-3 mm"', "line 7: body.size must be finite and above 0, not -0.003 m"),
-        ('"bar.ply"', '"rod.ply"', 'line 5: body.surface: there is no file "rod.ply" beside robot.toml'),
+        ('"bar.ply"', '"rod.ply"', 'line 5: body.surface: file "rod.ply" not found next to robot.toml'),
         ('surface = "bar.ply"', 'surface = "bar.ply"\nmesh = "bar.ply"', "line 4: body: give one of outline"),
         ("[0, 15, 10]", "[0, 15]", "line 9: pin[0] has 2 coordinates, but the body has 3"),
     ],

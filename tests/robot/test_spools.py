@@ -61,9 +61,7 @@ def test_a_travel_that_is_longer_than_the_cable_of_a_larger_step() -> None:
 def test_no_command_takes_in_all_of_a_cable() -> None:
     robot = stepped(0.015, travel=0.3)
     check_contraction(robot, "up", 0.0719)
-    with pytest.raises(
-        InputError, match=r"up: 72.1 mm is all of a cable that is 180 mm long, by a spool 2.5 times that of the winch"
-    ):
+    with pytest.raises(InputError, match=r"up: 72.1 mm at spool ratio 2.5 takes in the whole cable \(180 mm\)"):
         check_contraction(robot, "up", 0.0721)
 
 

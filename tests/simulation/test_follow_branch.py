@@ -153,7 +153,7 @@ def test_it_stops_at_a_fold_and_says_where(simulation: Simulation, branch: Branc
     assert found.reason is BranchReason.FOLD
     assert found.points[-1].share == found.folds[0] == pytest.approx(branch.folds[0], abs=1e-9)
     assert all(point.stable for point in found.points[:-1])
-    assert found.lines()[0].startswith("the branch turns back: here the robot snaps at 50.")
+    assert found.lines()[0].startswith("fold: the robot snaps through at 50.")
     assert found.lines()[1].startswith("fold at 50.")
 
 

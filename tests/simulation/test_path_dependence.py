@@ -37,7 +37,7 @@ def test_an_arch_rests_up_or_down() -> None:
     assert found.node_spread >= apart - 1e-8
     assert not found.unique
     assert found.starts == 16
-    assert found.lines()[0] == f"2 poses from 16 starts, up to {1e3 * apart:.3g} mm apart at top"
+    assert found.lines()[0] == f"2 poses on 16 loading paths, up to {1e3 * apart:.3g} mm apart at top"
     assert found.lines()[1].startswith("pose 1: energy 0.00199")
     down = next(pose for pose in found.poses if pose.pose.markers["top"][1] < 0)
     assert "back from full travel" in down.ways
@@ -47,7 +47,7 @@ def test_an_arch_rests_up_or_down() -> None:
 def test_beyond_its_folds_the_arch_has_one_pose(contraction: float) -> None:
     found = find_equilibria(Simulation(arch()), {"down": contraction})
     assert found.unique
-    assert found.lines() == ["one pose from 16 starts: the contractions alone decide"]
+    assert found.lines() == ["unique pose on 16 loading paths"]
 
 
 def test_a_column_is_straight_or_bent_to_either_side() -> None:
@@ -108,7 +108,7 @@ def test_with_friction_the_way_matters() -> None:
     found = find_equilibria(rubbing, {"up": 0.02, "down": 0.005}, count=5)
     assert found.friction
     assert len(found.poses) > 1
-    assert "cables rub, so the way there matters by nature" in found.lines()
+    assert "cable friction is on: the pose depends on the loading path" in found.lines()
     assert find_equilibria(Simulation(robot), {"up": 0.02, "down": 0.005}, count=5).unique
 
 
@@ -123,7 +123,7 @@ def test_ways_that_lead_nowhere_are_told() -> None:
 def test_progress_is_told() -> None:
     told = []
     find_equilibria(Simulation(arch()), {}, count=3, progress=lambda *given: told.append(given))
-    assert told == [("trying ways", done, 3) for done in (1, 2, 3)]
+    assert told == [("solving loading paths", done, 3) for done in (1, 2, 3)]
 
 
 @pytest.mark.parametrize(("count", "tolerance", "words"), [(0, 1e-4, "count"), (3, 0.0, "tolerance")])

@@ -48,7 +48,7 @@ def test_a_table_is_read(tmp_path: Path) -> None:
         ("time_s;down\n0;1,5\n", "each once; commas part them, not semicolons"),
         ("time_s\tdown\n0\t1\n", "each once; commas part them, not tabs"),
         ('{"times": [0.0, 1.0]}', "each once; this is JSON: hydrostat trajectory writes trajectory.csv"),
-        ("time_s,sideways\n0,1\n", 'line 1: there is no winch "sideways"; winches are: up, down'),
+        ("time_s,sideways\n0,1\n", 'line 1: unknown winch "sideways". Available: up, down.'),
         ("time_s,down\n0,1\n1,much\n", 'line 3, column down: write a number of millimetres, not "much"'),
         ("time_s,down\n0,1\n\nsoon,1\n", 'line 4, column time_s: write a number of seconds, not "soon"'),
         ("time_s,down\n0,1\n1\n", "line 3: write a number in each of the 2 columns, not 1 of them"),

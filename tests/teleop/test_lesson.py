@@ -62,7 +62,7 @@ def test_forty_poses_of_a_person_who_holds_still(bent: float, enough: float) -> 
         errors.append(known(values) - contractions)
     error = 2 * float(np.sqrt(np.mean(np.square(errors)))) / course.span
     assert error < 2 * enough
-    assert "40 poses; error of poses left out" in course.told()
+    assert "40 poses; cross-validation error: leave-one-out" in course.told()
     assert float(course.told().split("(")[1].split(")")[0]) == pytest.approx(error, rel=0.4)
 
 
@@ -85,5 +85,5 @@ def test_motors_get_there_or_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None
     go_there(motors, np.array([0.005]), lambda: motors.drive(time.monotonic()))
     assert motors.places == pytest.approx([0.005])
     monkeypatch.setattr("hydrostat.teleop.lesson_poses.LATE", 0.1)
-    with pytest.raises(HydrostatError, match="left does not get where it should be"):
+    with pytest.raises(HydrostatError, match="left: target not reached in time"):
         go_there(motors, np.array([0.02]), lambda: None)

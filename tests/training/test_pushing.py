@@ -195,7 +195,7 @@ def test_a_gripper_turns_its_disc() -> None:
         ({"thing": replace(BALL, at=(0.12, 0.0))}, '"ball" begins in the body or touches it'),
         ({"thing": replace(BALL, at=(0.12, 0.0, 0.1))}, '"ball" has 3 coordinates, but the body has 2'),
         ({"options": TwistOptions(tied=("u", "up"))}, "a winch is tied to others once only"),
-        ({"options": TwistOptions(tied=("left",))}, 'has "left" in its name; there are: up, down'),
+        ({"options": TwistOptions(tied=("left",))}, 'no winch name contains "left". Available: up, down'),
         ({"axis": (0, 0, 0)}, "the axis of turns must not be 0"),
     ],
 )

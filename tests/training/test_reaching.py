@@ -162,8 +162,8 @@ def test_markers_that_are_not_asked_for_are_not_looked_at() -> None:
     [
         ({"steps": 0}, "steps must be 1 or more"),
         ({"tolerance": 0.0}, "tolerance must be above 0"),
-        ({"markers": ["nose"]}, 'has no marker "nose"'),
-        ({"pairs": [["a", "b"]]}, 'has no winch "a"'),
+        ({"markers": ["nose"]}, 'unknown marker "nose"'),
+        ({"pairs": [["a", "b"]]}, 'unknown winch "a"'),
         ({"pairs": [["left"]]}, "a pair has two winches"),
     ],
 )

@@ -48,7 +48,7 @@ class Lists:
         for table in self.tables:
             if table.name == name:
                 return table
-        raise InputError(f'there is no list "{name}"; the lists are: {", ".join(table.name for table in self.tables)}')
+        raise InputError(f'unknown list "{name}". Available: {", ".join(table.name for table in self.tables)}.')
 
 
 def make_lists(given: ListInput) -> Lists:

@@ -91,7 +91,7 @@ class Table:
         """All cells under a title (InputError: there is no such column)."""
         titles = [column.title for column in self.columns]
         if title not in titles:
-            raise InputError(f'{self.name} has no column "{title}"; its columns are: {", ".join(titles)}')
+            raise InputError(f'{self.name}: unknown column "{title}". Available: {", ".join(titles)}.')
         place = titles.index(title)
         return tuple(row[place] for row in self.rows)
 

@@ -228,4 +228,4 @@ def choose_motor(key: str, torques: Iterable[float], *, inside: bool = False, wi
     for motor in MOTORS:
         if motor.key == key:
             return motor
-    raise InputError(f'there is no motor "{key}"; take auto or one of: {", ".join(each.key for each in MOTORS)}')
+    raise InputError(f'unknown motor "{key}". Available: auto, {", ".join(each.key for each in MOTORS)}.')

@@ -24,8 +24,8 @@ class Sewing:
     problems: tuple[str, ...]  # why it cannot be sewn, a line each
 
     def __str__(self) -> str:
-        """In words, such as "2 patches, cloth that gives 9 %"."""
-        return f"{plural(self.patches, 'patch')}, cloth that gives {self.give:.0%}"
+        """In words, such as "2 patches, cloth with 9 % stretch"."""
+        return f"{plural(self.patches, 'patch')}, cloth with {100 * self.give:.0f} % stretch"
 
 
 def find_sewing(body: Body, *, options: PatternOptions | None = None) -> Sewing:

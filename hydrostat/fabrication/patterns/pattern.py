@@ -40,7 +40,7 @@ class Pattern:
             if panel.name == name:
                 return panel
         names = ", ".join(panel.name for panel in self.panels)
-        raise InputError(f'there is no panel "{name}"; its panels are: {names}')
+        raise InputError(f'unknown panel "{name}". Available: {names}.')
 
     @property
     def gusset(self) -> tuple[Panel, ...]:

@@ -122,8 +122,8 @@ class MarkerResidual(Residual):
 def _index(robot: Robot, name: str) -> int:
     names = [marker.name for marker in robot.markers]
     if name not in names:
-        known = f"its markers are: {', '.join(names)}" if names else "it has no markers"
-        raise InputError(f'the robot has no marker "{name}"; {known}')
+        known = f"Available: {', '.join(names)}." if names else "The robot has no markers."
+        raise InputError(f'unknown marker "{name}". {known}')
     return names.index(name)
 
 

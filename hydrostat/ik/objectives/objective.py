@@ -85,7 +85,7 @@ def checked_objectives(given: object) -> tuple[Objective, ...]:
         raise InputError(f"objectives must be a list, such as [Effort()], not {describe(given)}")
     for wish in given:
         if isinstance(wish, type):
-            raise InputError(f"an objective is wanted, not its class; write {wish.__name__}(...)")
+            raise InputError(f"got the class {wish.__name__}. Pass an instance: {wish.__name__}(...)")
         if not isinstance(wish, Objective):
             raise InputError(f"an objective must be one such as MarkerTarget(...) or Effort(), not {describe(wish)}")
     return tuple(given)

@@ -310,12 +310,12 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
         winches = [winch.name for winch, own in zip(robot.winches, bounds.channels, strict=True) if own == channel]
         name = " and ".join(winches)
         if value >= bounds.high[channel] - hair[channel]:
-            words.append(f"{name}: taken in as far as it may, {1e3 * value:.4g} mm")
+            words.append(f"{name}: at maximum contraction, {1e3 * value:.4g} mm")
         elif value <= bounds.low[channel] + hair[channel] and state.posture.tensions[bounds.cables == channel].any():
-            words.append(f"{name}: let out as far as it may, {abs(round(1e3 * value, 3)):g} mm")
+            words.append(f"{name}: at maximum payout, {abs(round(1e3 * value, 3)):g} mm")
     full = state.posture.tensions >= (1.0 - _HAIR) * bounds.tension
     pulling = {robot.cables[cable].winch: bounds.tension[cable] for cable in np.flatnonzero(full)}
-    words.extend(f"{name}: pulls as hard as it may, {most:.4g} N" for name, most in pulling.items())
+    words.extend(f"{name}: at maximum tension, {most:.4g} N" for name, most in pulling.items())
     return tuple(words)
 
 

@@ -50,7 +50,7 @@ def follow(
             snaps.append(BranchJump(time=float(time), distance=distance))
         poses.append(pose.without_factors())
         if tell is not None:
-            tell("following the way", index + 1, len(times))
+            tell("following the path", index + 1, len(times))
     return (*poses[:-1], pose), tuple(snaps)
 
 

@@ -164,7 +164,7 @@ def _find(search: KeySearch, frames: list[Keyframe], begin: Equilibrium, tell: T
     for frame in frames:
         found.append(search.find(frame, found[-1].pose if found else begin))
         if tell is not None:
-            tell("finding keyframes", len(found), len(frames))
+            tell("solving keyframes", len(found), len(frames))
     return found
 
 

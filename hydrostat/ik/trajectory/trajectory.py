@@ -52,17 +52,15 @@ class KeyPose:
         head = f"{self.time:.2f} s {self.name}: "
         head += f"marker error {1e3 * self.rms_error:.2f} mm rms" if self.errors else "as given"
         if self.pose.markers:
-            head += f"; markers up to {1e3 * self.path_deviation:.2f} mm off a straight way there"
+            head += f"; markers up to {1e3 * self.path_deviation:.2f} mm off a straight path"
         lines = [head]
         if self.found is not None:
             lines[0] += f"; {self.found.status}"
             lines += [f"  {words}" for words in self.found.active_limits]
         if self.free_error is not None:
-            lines.append(f"  a search from rest comes to {1e3 * self.free_error:.2f} mm, on another branch than this")
+            lines.append(f"  a search from rest reaches {1e3 * self.free_error:.2f} mm, on another branch")
         if not self.same:
-            lines.append(
-                "  the way leads to another pose than the one that was sought: contractions do not decide here"
-            )
+            lines.append("  this path ends in another pose than planned: several poses share these contractions")
         return lines
 
 
@@ -129,16 +127,16 @@ class Trajectory:
     def lines(self) -> list[str]:
         """A plain report: keyframes, what is used of the limits, what holds and what does not."""
         lines = [line for key in self.keyframes for line in key.lines()]
-        lines.append(f"{self.seconds:.2f} s in all, {len(self.times)} samples; path {self.path}")
+        lines.append(f"{self.seconds:.2f} s in total, {len(self.times)} samples; path {self.path}")
         if self.winches:
             lines.append(self._most("speed", self.peak_speeds, self.limits.speed, "mm/s"))
             if self.path is PathKind.LINEAR:
-                lines.append("acceleration: without limit at the keyframes, as the speed changes at once there")
+                lines.append("acceleration: unlimited at the keyframes, where the speed jumps")
             else:
                 lines.append(self._most("acceleration", self.peak_accelerations, self.limits.acceleration, "mm/s^2"))
         lines += self._over_tension()
         for snap in self.branch_jumps:
-            lines.append(f"at {snap.time:.2f} s the robot snaps: a node jumps by {1e3 * snap.distance:.1f} mm")
+            lines.append(f"at {snap.time:.2f} s the robot snaps through: a node jumps {1e3 * snap.distance:.1f} mm")
         return lines
 
     def _most(self, what: str, most: Vector, limits: Vector, unit: str) -> str:
@@ -156,7 +154,7 @@ class Trajectory:
             if most > limit * (1 + _HAIR):
                 lines.append(
                     f"at {self.times[sample]:.2f} s, {self._place(sample)}, cable {cable + 1} ({self.cables[cable]}) "
-                    f"pulls with {most:.3g} N, more than {limit:.3g} N"
+                    f"reaches {most:.3g} N, above its limit of {limit:.3g} N"
                 )
         return lines
 

@@ -72,8 +72,9 @@ def _collisions(robot: Robot) -> Iterator[Risk]:
     for index, winch in enumerate(robot.winches):
         for other in robot.winches[:index]:
             gap = float(np.linalg.norm(np.subtract(winch.at, other.at)))
-            if gap < robot.largest_spool(winch) + robot.largest_spool(other):
-                text = f"only {mm(gap)} from winch {other.name}, the spools collide"
+            need = robot.largest_spool(winch) + robot.largest_spool(other)
+            if gap < need:
+                text = f"spool overlaps that of winch {other.name}: {mm(gap)} apart, need {mm(need)}. Move one winch"
                 yield Risk(_name(robot, index), -gap, text)
 
 

@@ -16,12 +16,12 @@ from hydrostat.units import plural
 class BranchReason(StrEnum):
     """Why a branch was followed no further."""
 
-    ARRIVED = "the goal is reached"
-    FOLD = "the branch turns back: here the robot snaps"
-    BIFURCATION = "the branch splits: here the robot buckles to one side"
-    BACK = "the branch leads back to the contractions it began with"
+    ARRIVED = "goal reached"
+    FOLD = "fold: the robot snaps through"
+    BIFURCATION = "bifurcation: the robot buckles to one side"
+    BACK = "branch returned to its initial contractions"
     STEP_LIMIT = "step limit reached"
-    STUCK = "no step is small enough to stay on the branch"
+    STUCK = "stalled: minimum step size reached"
 
 
 class CriticalKind(StrEnum):
@@ -118,9 +118,9 @@ class Branch:
         """A plain report."""
         unstable = sum(not point.stable for point in self.points)
         told = f"{len(self.points)} equilibria" + (f", {unstable} of them unstable" if unstable else ", all stable")
-        lines = [f"{self.reason} at {100 * self.points[-1].share:.1f} % of the way ({told})"]
+        lines = [f"{self.reason} at {100 * self.points[-1].share:.1f} % of the path ({told})"]
         for point in self.critical:
             taken = self.begin + point.share * (self.goal - self.begin)
             where = ", ".join(f"{1e3 * value:.2f}" for value in np.round(taken, 9) + 0.0)
-            lines.append(f"{point.kind} at {100 * point.share:.2f} % of the way (contractions {where} mm)")
+            lines.append(f"{point.kind} at {100 * point.share:.2f} % of the path (contractions {where} mm)")
         return lines

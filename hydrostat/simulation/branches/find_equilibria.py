@@ -76,19 +76,19 @@ class Multistability:
 
     def lines(self) -> list[str]:
         """A plain report."""
-        starts = plural(self.starts, "start")
         if not self.poses:
             lines = ["no pose found"]
         elif self.unique:
-            lines = [f"one pose from {starts}: the contractions alone decide"]
+            lines = [f"unique pose on {plural(self.starts, 'loading path')}"]
         else:
             where, far = self.largest
-            lines = [f"{len(self.poses)} poses from {starts}, up to {1e3 * far:.3g} mm apart at {where}"]
+            paths = plural(self.starts, "loading path")
+            lines = [f"{len(self.poses)} poses on {paths}, up to {1e3 * far:.3g} mm apart at {where}"]
             if self.friction:
-                lines.append("cables rub, so the way there matters by nature")
+                lines.append("cable friction is on: the pose depends on the loading path")
             lines += [self._line(number, found) for number, found in enumerate(self.poses, 1)]
         if self.lost:
-            lines.append(f"{plural(len(self.lost), 'start')} led to no stable pose: {_told(self.lost)}")
+            lines.append(f"no stable pose on {plural(len(self.lost), 'loading path')}: {_told(self.lost)}")
         return lines
 
     def _line(self, number: int, found: FoundPose) -> str:
@@ -137,7 +137,7 @@ def find_equilibria(
     for done, way in enumerate(ways, 1):
         _sort(follow_approach(simulation, way), way, goal, groups, lost, near)
         if progress is not None:
-            progress("trying ways", done, len(ways))
+            progress("solving loading paths", done, len(ways))
     groups.sort(key=lambda group: group[0].energy)
     poses = tuple(FoundPose(pose=pose, ways=tuple(names)) for pose, names in groups)
     return Multistability(

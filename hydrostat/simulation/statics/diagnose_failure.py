@@ -28,25 +28,25 @@ def diagnose_failure(
         cable = int(np.argmax(tensions))
         taken = (cables.taken(contractions)[cable] - cables.slack[cable]) / cables.rest_lengths[cable]
         told.append(
-            f"cable {robot.cables[cable].name!r} pulls hardest, {tensions[cable]:.3g} N, "
-            f"and shall take in {taken:.0%} of its bare length"
+            f"highest tension {tensions[cable]:.3g} N in cable {robot.cables[cable].name!r}, "
+            f"contracted by {100 * taken:.0f} % of its bare length"
         )
     mesh = robot.body.mesh
     now, before = (np.linalg.det(x[mesh.elements][:, 1:] - x[mesh.elements][:, :1]) for x in (nodes, mesh.nodes))
     flat = int(np.argmin(now / before))
     if now[flat] < _FLAT * before[flat]:
         place = mesh.nodes[mesh.elements[flat]].mean(axis=0)
-        told.append(f"element {flat}, {_at(place)} at rest, keeps {now[flat] / before[flat]:.2g} of its volume")
+        told.append(f"element {flat}, {_at(place)} at rest, compressed to {now[flat] / before[flat]:.2g} of its volume")
     if not told:
         node = int(np.argmax(np.abs(forces).max(axis=1)))
-        told.append(f"most force is left over at node {node}, {_at(mesh.nodes[node])} at rest")
+        told.append(f"largest residual force at node {node}, {_at(mesh.nodes[node])} at rest")
     return tuple(told)
 
 
 def not_converged(result: NewtonResult, reasons: Sequence[str]) -> NotConvergedError:
     """The error of a solve that stopped early: why, how much force is left over, and what stands in the way."""
     return NotConvergedError(
-        f"no equilibrium found after {result.iterations} iterations: {result.reason} (force left over "
+        f"no equilibrium found after {result.iterations} iterations: {result.reason} (residual force "
         f"{result.residual:.2g} N, allowed {result.allowed:.2g} N); {'; '.join(reasons)}",
         result,
     )

@@ -52,7 +52,7 @@ class StepOptions:
 
     def __post_init__(self) -> None:
         if self.scheme not in SCHEMES:
-            raise InputError(f'there is no scheme "{self.scheme}"; there are: {", ".join(SCHEMES)}')
+            raise InputError(f'unknown scheme "{self.scheme}". Allowed: {", ".join(SCHEMES)}.')
         check_not_negative("drag", self.drag, "1/s")
         check_type(self.halvings, int, "halvings must be a whole number of 0 or more")
         if self.halvings < 0:
@@ -263,7 +263,7 @@ class Dynamics:
         shifts = motion.pin_shifts.copy()
         for index, shift in given.items():
             if not 0 <= index < len(shifts):
-                raise InputError(f"there is no pin {index}; there are {len(shifts)}, counted from 0")
+                raise InputError(f"unknown pin {index}. Pins are counted from 0, and there are {len(shifts)}.")
             if np.shape(shift) != shifts[index].shape or not np.isfinite(shift).all():
                 raise InputError(f"the shift of pin {index} must be {shifts.shape[1]} finite numbers [m]")
             shifts[index] = shift

@@ -209,7 +209,7 @@ class Hardware:
                 return False
             now = time.monotonic()
             if now - self._alive > self._silent:
-                self._stand("nobody looks at the page: the motors hold; arm them anew")
+                self._stand("no active browser tab: motors holding. Re-arm to continue")
                 return True
             link.send(self._goal, now, speed=link.limits.speed)
             self._places = link.read(now)

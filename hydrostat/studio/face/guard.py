@@ -64,7 +64,7 @@ class Guard:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        reason = "that is no way to talk to a studio" if scope["type"] not in ("http", "websocket") else ""
+        reason = "Bad request" if scope["type"] not in ("http", "websocket") else ""
         reason = reason or self._refusal(scope, headers)
         if reason:
             await _refuse(scope, receive, send, reason)

@@ -65,7 +65,7 @@ def test_a_motor_that_was_named_is_taken():
 
 
 def test_an_unknown_motor_is_refused_with_those_there_are():
-    with pytest.raises(InputError, match='no motor "nema"; take auto or one of: n20, xl330, 25d'):
+    with pytest.raises(InputError, match=r'unknown motor "nema"\. Available: auto, n20, xl330, 25d'):
         choose_motor("nema", [0.1])
 
 

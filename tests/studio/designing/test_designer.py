@@ -244,7 +244,7 @@ def test_what_the_search_refuses_is_told(fresh: Studio) -> None:
 
 def test_what_cannot_be_asked_is_told_at_once(fresh: Studio) -> None:
     fresh.designer.wish(winches=2, cables=1)
-    with pytest.raises(InputError, match=r"^2 winches and 1 cables"):
+    with pytest.raises(InputError, match=r"^2 winches need at least 2 cables, got 1"):
         fresh.designer.design()
     assert not fresh.designer.running
 

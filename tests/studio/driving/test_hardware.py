@@ -75,7 +75,7 @@ def test_they_hold_when_nobody_looks_at_the_page(session: Session) -> None:
     hardware.connect("emulated")
     hardware.arm()
     assert until(lambda: not hardware.armed)  # no sign of life comes
-    assert "nobody looks at the page" in hardware.words
+    assert "no active browser tab" in hardware.words
 
 
 def test_another_stage_and_another_robot_hold_them(session: Session) -> None:
@@ -263,7 +263,7 @@ def test_who_is_told_may_fail_and_motors_are_still_told_and_armed_anew(session: 
     hardware.connect("emulated")
     hardware.arm()
     assert until(lambda: not hardware.armed)
-    assert "nobody looks at the page" in hardware.words
+    assert "no active browser tab" in hardware.words
     hardware._silent = 1e3
     session.driver.turn("left", 0.008)
 

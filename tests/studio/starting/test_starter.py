@@ -175,7 +175,7 @@ def test_the_gallery_is_opened_by_name_as_a_copy(desk: Desk) -> None:
     desk.starter.open_folder(" gallery:letter_e ")
     assert desk.document.robot == load_robot("gallery:letter_e")
     assert desk.document.folder is None
-    with pytest.raises(InputError, match='the gallery has no robot "nobody"'):
+    with pytest.raises(InputError, match='unknown gallery robot "nobody"'):
         desk.starter.open_folder("gallery:nobody")
 
 

@@ -107,5 +107,5 @@ def test_bytes_that_cannot_be_unpacked_are_told(way: int) -> None:
 
 
 def test_a_complaint_does_not_name_the_scratch_folder() -> None:
-    with pytest.raises(InputError, match=r'^"x.zip": robot.toml, line 8: body.outline: there is no file "starfish'):
+    with pytest.raises(InputError, match=r'^"x.zip": robot.toml, line 8: body.outline: file "starfish'):
         unpacked("x.zip", packed({"robot/robot.toml": TOML}))
