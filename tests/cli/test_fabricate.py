@@ -22,7 +22,7 @@ def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, out, err = run("fabricate", starfish, "--out", tmp_path)
     assert code == 0
     assert "Quality checks: 8 of 8 passed" in out
-    assert f"begin with {tmp_path / 'assembly_sheet.pdf'}" in out
+    assert f"Start with {tmp_path / 'assembly_sheet.pdf'}" in out
     assert "Pattern ..." in err
     told = json.loads((tmp_path / "manifest.json").read_text())
     files = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}

@@ -43,7 +43,7 @@ def test_a_scan_becomes_a_robot_that_can_be_checked_and_pulled(run: Run, tmp_pat
     assert len(robot.body.mesh.nodes) == pytest.approx(150, rel=0.1)
     assert f"Created {folder}: 90 mm, {len(robot.body.mesh.nodes)} nodes, {len(robot.body.mesh.elements)} tetra" in out
     assert "the surface is clean" in out
-    assert [f"risky: {risk}" in out for risk in find_risks(robot)] == [True] * out.count("risky: ")
+    assert [f"warning: {risk}" in out for risk in find_risks(robot)] == [True] * out.count("warning: ")
     _only(folder, "robot.toml", "my_bar.stl", "rest.png")
     _only(folder.parent, "bar")
     assert (folder / "rest.png").read_bytes().startswith(b"\x89PNG")

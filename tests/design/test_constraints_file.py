@@ -183,9 +183,9 @@ ERRORS = {
     "leads = 1": "line 1: leads: 1 is neither true nor false",
     "cables_per_winch = 2.5": "line 1: cables_per_winch: 2.5 is not a whole number; "
     "write for example cables_per_winch = 4",
-    "locked_cables = [1, 3]": 'line 1: locked_cables[1]: there is no cable "3"; its cables are: up 1, down 1',
-    "locked_cables = [0]": 'line 1: locked_cables[0]: there is no cable "0"; its cables are: up 1, down 1',
-    'locked_cables = ["up"]': 'line 1: locked_cables[0]: there is no cable "up"; its cables are: up 1, down 1',
+    "locked_cables = [1, 3]": 'line 1: locked_cables[1]: unknown cable "3". Available: up 1, down 1.',
+    "locked_cables = [0]": 'line 1: locked_cables[0]: unknown cable "0". Available: up 1, down 1.',
+    'locked_cables = ["up"]': 'line 1: locked_cables[0]: unknown cable "up". Available: up 1, down 1.',
     "locked_cables = [true]": "line 1: locked_cables[0]: neither a name nor a number that counts from 1",
     'locked_winches = "up"': 'line 1: locked_winches: "up" is not a list; write for example locked_winches = ["left"]',
     'locked_winches = ["bob"]': 'line 1: locked_winches[0]: unknown winch "bob". Available: up, down.',
@@ -215,7 +215,7 @@ def test_what_is_wrong_is_one_line(text: str, file: Path) -> None:
 
 def test_a_robot_without_cables_has_none_to_lock(file: Path) -> None:
     file.write_text("locked_cables = [1]")
-    with pytest.raises(InputError, match="there is no cable"):
+    with pytest.raises(InputError, match="unknown cable"):
         read_constraints(file, strip_robot().with_network((), ()))
 
 
@@ -227,7 +227,7 @@ def test_cables_by_name_or_by_number_from_1(file: Path) -> None:
     one, two = robot.cables
     renamed = robot.with_network(robot.winches, [one, replace(two, name="1")])
     assert [cable_name(given, renamed) for given in ("1", 1, "2", "up 1")] == ["1", "1", "1", "up 1"]
-    with pytest.raises(InputError, match='no cable "3"'):
+    with pytest.raises(InputError, match='unknown cable "3"'):
         cable_name("3", renamed)
 
 

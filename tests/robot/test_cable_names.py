@@ -72,7 +72,7 @@ def test_of_a_robot(tmp_path: Path) -> None:
     assert [cable.name for cable in robot.cables] == ["left 1", "thumb", "left 2"]
     assert robot.cable("thumb") is robot.cables[1]
     assert robot.cable("left 2").points[1] == (0.01, 0.005)
-    with pytest.raises(InputError, match='there is no cable "left"; its cables are: left 1, thumb, left 2'):
+    with pytest.raises(InputError, match=r'unknown cable "left"\. Available: left 1, thumb, left 2'):
         robot.cable("left")
     assert 'name = "thumb"' in robot_text(robot)
     assert "left 1" not in robot_text(robot)

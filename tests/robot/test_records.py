@@ -150,7 +150,7 @@ POSE = PoseTarget(name="p", targets={"tip": (0.2, 0.0)})
         ({"gravity": (0.0, -INF)}, r"gravity\[1\] must be from -1000 to 1000 m/s\^2, not -inf m/s"),
         ({"gravity": (1000.5, 0.0)}, r"gravity\[0\] must be from -1000 to 1000 m/s\^2, not 1000.5 m/s"),
         ({"length_unit": "nonsense"}, 'length_unit: unknown unit "nonsense"; write a length'),
-        ({"pins": ()}, r"there is no \[\[pin\]\]"),
+        ({"pins": ()}, r"no \[\[pin\]\]: the body is unconstrained"),
         ({"pins": (Pin(at=(0.1, 0.0)),)}, "can still turn"),
         ({"pins": (Pin(at=(9.0, 0.0)),)}, r"pin\[0\]: the pin lies outside the body"),
         ({"pins": (Pin(at=(0.1, 0.0, 0.0)),)}, r"pin\[0\] has 3 coordinates, but the body has 2"),

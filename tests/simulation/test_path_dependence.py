@@ -74,7 +74,7 @@ def test_a_beam_has_one_pose() -> None:
     assert np.abs(found.poses[0].pose.nodes - simulation.solve({"up": 0.03, "down": 0.01}).nodes).max() < 1e-8
     kinds = {way.partition(":")[0] for way in found.poses[0].ways}
     assert kinds == {
-        "from rest at once",
+        "from rest in one step",
         "from rest, all winches together",
         "back from full travel",
         "one winch after the other",
@@ -117,7 +117,7 @@ def test_ways_that_lead_nowhere_are_told() -> None:
     found = find_equilibria(simulation, {"down": 0.145}, count=4)
     assert len(found.lost) + found.starts == 4
     assert found.lost
-    assert found.lines()[-1].startswith(f"{len(found.lost)} start")
+    assert found.lines()[-1].startswith(f"no stable pose on {len(found.lost)} loading path")
 
 
 def test_progress_is_told() -> None:

@@ -123,7 +123,7 @@ def test_words_open_it(model: Path) -> None:
         open_hand(f"camera:{model}@x")
     with pytest.raises(InputError, match=r"needs MediaPipe's model file, camera:hand_landmarker\.task, or a port"):
         open_hand("camera:hand.jpg")
-    with pytest.raises(InputError, match=r"elsewhere\.task: there is no such file"):
+    with pytest.raises(InputError, match=r"elsewhere\.task: file not found"):
         open_hand("camera:elsewhere.task")
     model.write_bytes(b"a picture")
     with pytest.raises(HydrostatError, match=r"does not take .*task \(Unable to open zip archive\.\); is it"):

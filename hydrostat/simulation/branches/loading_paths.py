@@ -35,14 +35,14 @@ class Approach:
 def loading_paths_to(simulation: Simulation, goal: Vector, count: int, seed: int) -> list[Approach]:
     """Loading paths to contractions `goal` [m], so many, the plain ones first.
 
-    From rest at once, all winches together, back from full travel, and from full release where there is any; then in
+    From rest in one step, all winches together, back from full travel, and from full release where there is any; then in
     turn: one winch after the other, pushed aside and let go, from other contractions. Orders and pushes that are drawn
     come from `seed`.
     """
     robot = simulation.robot
     low, high = _range(robot)
     plain = [
-        Approach(name="from rest at once", stops=(goal,), at_once=True),
+        Approach(name="from rest in one step", stops=(goal,), at_once=True),
         Approach(name="from rest, all winches together", stops=(goal,)),
         Approach(name="back from full travel", stops=(high, goal)),
     ]
