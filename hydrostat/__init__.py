@@ -56,10 +56,10 @@ if TYPE_CHECKING:
         Robot,
         Winch,
         get_material,
+        list_gallery,
         load_robot,
         save_robot,
     )
-    from hydrostat.robot import list_gallery as gallery
     from hydrostat.simulation import (
         BatchResult,
         Branch,
@@ -138,8 +138,8 @@ __all__ = [
     "find_contacts",
     "find_equilibria",
     "friction_hysteresis",
-    "gallery",
     "get_material",
+    "list_gallery",
     "load_robot",
     "load_target_outline",
     "new_robot",

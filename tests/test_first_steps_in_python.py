@@ -27,7 +27,7 @@ def test_types_come_with_it() -> None:
 
 
 def test_the_gallery_is_at_the_door() -> None:
-    assert "starfish" in hs.gallery()
+    assert "starfish" in hs.list_gallery()
     assert hs.load_robot("gallery:starfish") == gallery_robot("starfish")
     with pytest.raises(hs.InputError, match='unknown gallery robot "starfsh"'):
         hs.load_robot("gallery:starfsh")
