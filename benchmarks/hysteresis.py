@@ -31,9 +31,16 @@ from scipy.optimize import lsq_linear
 
 import hydrostat as hs
 from hydrostat.arrays import Vector
-from hydrostat.training import HysteresisEnv, ReachOptions, TrainOptions, held_out_goals, judge, train
-from hydrostat.training.reach_env import BEYOND
-from hydrostat.training.verdict import interquartile
+from hydrostat.training import (
+    BEYOND,
+    HysteresisEnv,
+    ReachOptions,
+    TrainOptions,
+    held_out_goals,
+    interquartile,
+    judge,
+    train,
+)
 
 Act = Callable[[dict[str, Vector]], np.ndarray]
 

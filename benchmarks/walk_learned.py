@@ -27,8 +27,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.training import TrainMethod, TrainOptions, WalkEnv, WalkOptions, held_out_goals, judge, train
-from hydrostat.training.gait import Gait
+from hydrostat.training import Gait, TrainMethod, TrainOptions, WalkEnv, WalkOptions, held_out_goals, judge, train
 
 PUPPY = Path(__file__).parents[1] / "examples" / "puppy"
 GAIT, STEPS = WalkOptions(), WalkOptions(actions="contractions", incremental=True)

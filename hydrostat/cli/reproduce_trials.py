@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
-    from hydrostat.training.run_experiment import Judged
+    from hydrostat.training import Judged
 
 TRIALS = (
     "figure-5.8",
@@ -68,8 +68,7 @@ def reproduce_trials(
         jobs: processes that sample where there is no model.
     """
     with trials_missing():
-        from hydrostat.training.experiments import EXPERIMENTS
-        from hydrostat.training.run_experiment import run_experiment
+        from hydrostat.training import EXPERIMENTS, run_experiment
     from hydrostat.plot import save_png
     from hydrostat.robot import replace_file
     from hydrostat.simulation import Simulation
@@ -115,10 +114,7 @@ def reproduce_trials(
 
 def _shared(networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials") -> None:
     """Trial and error beside others, of the pairs that it tried and of pairs drawn evenly."""
-    from hydrostat.training.policies import Budget
-    from hydrostat.training.run_experiment import finger_pairs
-    from hydrostat.training.shared_data import compare_on_shared_data
-    from hydrostat.training.trials import NetworkReach
+    from hydrostat.training import Budget, NetworkReach, compare_on_shared_data, finger_pairs
 
     budget = Budget(steps=max(2000, usual.steps // 6), epochs=usual.small)
     trials = NetworkReach(networks, groups=finger_pairs(networks))
@@ -132,10 +128,18 @@ def _policies(
     """Table and picture of ways to a policy of one action, over the equilibria that each has used."""
     from hydrostat.plot import draw_costs, save_png
     from hydrostat.robot import replace_file
-    from hydrostat.training.policies import PAIRS_ALONE, WAYS, Budget, drawn_pairs
-    from hydrostat.training.run_experiment import certified_distances, exact_distances, exact_goals, finger_pairs
-    from hydrostat.training.trials import NetworkReach
-    from hydrostat.training.verdict import interquartile
+    from hydrostat.training import (
+        PAIRS_ALONE,
+        WAYS,
+        Budget,
+        NetworkReach,
+        certified_distances,
+        drawn_pairs,
+        exact_distances,
+        exact_goals,
+        finger_pairs,
+        interquartile,
+    )
 
     trials, effort = (
         NetworkReach(networks, groups=finger_pairs(networks)),
@@ -171,7 +175,7 @@ def _policies(
 
 def _used(name: str, pairs: int, known: int, usual: "_Trials") -> int:
     """Equilibria that a way would have cost in the simulator: its pairs, its own trials, or those of the networks."""
-    from hydrostat.training.policies import PAIRS_ALONE, UNFILLED
+    from hydrostat.training import PAIRS_ALONE, UNFILLED
 
     tried = 500 * usual.small
     if name == "gradient":
@@ -203,8 +207,7 @@ def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: 
 
 def _line(judged: "Judged", width: float) -> str:
     """A run in numbers."""
-    from hydrostat.training.experiments import final
-    from hydrostat.training.verdict import interquartile
+    from hydrostat.training import final, interquartile
 
     ran, exact = judged.ran, judged.exact
     seeds = interquartile(10.0 * np.nanmean(exact, axis=1))

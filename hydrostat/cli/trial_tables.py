@@ -13,8 +13,7 @@ from hydrostat.errors import HydrostatError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from hydrostat.training.experiments import Experiment, Ran
-    from hydrostat.training.shared_data import OfPairs
+    from hydrostat.training import Experiment, OfPairs, Ran
 
 
 def spanned(found: object, digits: int) -> str:
@@ -34,7 +33,7 @@ def trials_missing() -> Iterator[None]:
 
 def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[str, Any]:
     """Say what the claims come to; all numbers of the runs, for a file."""
-    from hydrostat.training.verdict import interquartile, verdict
+    from hydrostat.training import interquartile, verdict
 
     claims = list[dict[str, object]]()
     for claim in experiment.claims:
@@ -75,8 +74,7 @@ def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: flo
     """Tell what each way leaves after so many pairs, which claims hold at the end, and draw it; size in mm."""
     from hydrostat.plot import draw_costs, save_png
     from hydrostat.robot import replace_file
-    from hydrostat.training.shared_data import ORDERS
-    from hydrostat.training.verdict import interquartile, verdict
+    from hydrostat.training import ORDERS, interquartile, verdict
 
     print(f"\n{name}: trial and error (T=1, 4 x 30, shaped, goal only) compared with other methods")
     print(f"{'method':24}{'pairs':>8}{'in networks [mm]':>24}{'in the simulator [mm]':>24}{'% size':>8}{'lost':>6}")
