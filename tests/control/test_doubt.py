@@ -15,6 +15,7 @@ from hydrostat.control import BusLink, Calibration, DynamixelBus, LinkLimits, Li
 from hydrostat.control.dynamixel_bus import TORQUE, WATCHDOG
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.firmware_bus import FirmwareBus
+from hydrostat.control.guard import TensionGuard
 from hydrostat.control.joined_bus import JoinedBus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
@@ -360,3 +361,35 @@ def test_closing_leaves_no_gap_between_the_stop_and_the_line() -> None:
     thread.join()
     assert len(ended) == 1
     assert "the line to the motors is gone" in ended[0]
+
+
+@pytest.mark.parametrize("speed", [0.501, 5.0, 0.0, -0.1])
+def test_no_speed_above_half_a_metre_a_second_is_allowed(speed: float) -> None:
+    with pytest.raises(InputError, match=r"speed must be above 0 and at most 0\.5"):
+        LinkLimits(speed=speed)
+    assert LinkLimits(speed=0.5).speed == 0.5
+
+
+def test_a_motor_above_75_degrees_stops_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the largest temperature that docs/motors.md allows."""
+    rig, heat = Rig(), [75.0]
+    heard = rig.bus.read
+    monkeypatch.setattr(rig.bus, "read", lambda: replace(heard(), temperatures=np.array([30.0, heat[0], 30.0])))
+    rig.begin()
+    rig.go(0.005, 0.2)
+    heat[0] = 76.0
+    with pytest.raises(HydrostatError, match="76 degrees"):
+        rig.go(0.005, 0.2)
+    assert not any(servo.table[TORQUE] for servo in rig.servos) or rig.link.state is LinkState.FAULT
+
+
+def test_a_guard_forgets_a_cable_that_is_felt_again() -> None:
+    """Oracle: the time limit of the guard: two short losses are not one long one."""
+    guard = TensionGuard(lambda taken: 1e3 * taken, np.ones(1), ("left",))
+    taken, radius = np.array([0.01]), np.array([0.01])
+    felt, lost = np.array([0.1]), np.array([0.0])
+    for now, currents in ((0.0, lost), (0.4, lost), (0.45, felt), (0.5, lost), (0.9, lost)):
+        assert guard.fault(taken, currents, radius, now) == ""
+    assert "left" in guard.fault(taken, lost, radius, 1.01)
+    guard.begin()
+    assert guard.fault(taken, lost, radius, 1.1) == ""

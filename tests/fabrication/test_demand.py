@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import strip_robot
 from plush_robots import crossed
 
 import hydrostat as hs
@@ -111,3 +112,21 @@ def test_a_robot_without_cables_asks_for_nothing():
     demand = find_demand(robot)
     assert demand.tensions.shape == (0,)
     assert demand.torques == pytest.approx([0.0])
+
+
+def test_cable_that_is_paid_out_counts() -> None:
+    """Oracle: a pose that two winches make by known contractions, the one below zero."""
+    robot = strip_robot()
+    made = hs.Simulation(robot).solve({"up": 0.012, "down": -0.004})
+    targets = {name: tuple(place.tolist()) for name, place in made.markers.items()}
+    reached = hs.IKResult(
+        target=hs.PoseTarget(name="made", targets=targets),
+        pose=made,
+        errors={},
+        status=hs.IKStatus.REACHED,
+        iterations=0,
+        solves=0,
+        optimality=0.0,
+        active_limits=(),
+    )
+    np.testing.assert_allclose(demand_of(robot, [reached]).taken, [[0.0, 0.012], [-0.004, 0.0]], atol=1e-12)

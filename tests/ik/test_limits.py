@@ -175,3 +175,11 @@ def test_limits_that_cannot_be_kept_together_are_told() -> None:
     reached = solve_ik(simulation, FAR, limits=Limits(tension=0.3, contraction={"up": (0.03, 0.06)}))
     assert reached.status is IKStatus.INFEASIBLE
     assert reached.pose.result.converged
+
+
+def test_a_rate_bounds_both_directions() -> None:
+    """Oracle: rate times interval, on both sides of the contractions at the start."""
+    start = np.array([0.01, 0.02])
+    near = bounds(STRIP, Limits(rate=0.03, interval=0.1)).near(start)
+    np.testing.assert_allclose(near.high, start + 0.003, rtol=1e-12)
+    np.testing.assert_allclose(near.low, start - 0.003, rtol=1e-12)
