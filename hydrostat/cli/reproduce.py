@@ -135,7 +135,7 @@ def _study(
         tuple(parse_choice(SamplingScheme, each.strip(), what="--draw") for each in draw.split(",")),
     )
     if SamplingScheme.TENSION in draws:
-        raise InputError("--draw tension: not available here. Allowed: box, antagonist, faces.")
+        raise InputError("--draw tension: only for hydrostat sample. Allowed here: box, antagonist, faces.")
     study = Study(
         draws=draws,
         counts=tuple(usual.counts if counts is None else _numbers(counts)),

@@ -66,7 +66,7 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
             0, a rate without an interval or the other way round, a winch named twice among equal ones.
     """
     if not isinstance(simulation, Simulation):
-        raise InputError(f"a pose is found by a Simulation(robot), not by {describe(simulation)}")
+        raise InputError(f"simulation must be a Simulation(robot), not {describe(simulation)}")
     if not isinstance(limits, Limits):
         raise InputError(f"limits must be Limits(...), such as Limits(tension=5.0), not {describe(limits)}")
     robot = simulation.robot

@@ -72,7 +72,7 @@ def solve_ik(
             cables, or other physics that remember the way.
         NotConvergedError: no equilibrium where the search begins.
     """
-    check_type(simulation, Simulation, "a pose is found by a Simulation(robot)")
+    check_type(simulation, Simulation, "simulation must be a Simulation(robot)")
     check_type(options, (IKOptions, type(None)), "options must be IKOptions(...)")
     target, patience = as_pose(targets), SearchBudget.of(seconds, progress)
     require_static_obstacles(simulation.robot, "inverse kinematics")

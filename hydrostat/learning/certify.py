@@ -36,7 +36,7 @@ def verify(
     Raises:
         InputError: a model of another robot.
     """
-    check_type(simulation, Simulation, "an answer is certified by a Simulation(robot)")
+    check_type(simulation, Simulation, "simulation must be a Simulation(robot)")
     check_type(model, LearnedModel, "the model must be one that load_model gives")
     check_type(answer, LearnedPose, "the answer must be what model.solve gives")
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:

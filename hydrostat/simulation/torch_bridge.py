@@ -70,7 +70,7 @@ def solve_torch(
         InputError: values that the robot refuses, or a wrong shape.
         NotConvergedError: as for `Simulation.solve`; in `backward` as for `Simulation.jacobian`.
     """
-    check_type(simulation, Simulation, "an equilibrium is found by a Simulation(robot)")
+    check_type(simulation, Simulation, "simulation must be a Simulation(robot)")
     robot = simulation.robot
     check_type(contractions, Tensor, "contractions must be a tensor [m], such as torch.tensor([0.01, 0.0])")
     for what, value in (("slack", slack), ("young", young), ("poisson", poisson)):

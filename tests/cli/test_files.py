@@ -65,7 +65,7 @@ def test_a_robot_is_scaled_in_its_file(run: Run, tmp_path: Path) -> None:
     assert 'size = "840 mm"' in (tmp_path / "big" / "robot.toml").read_text()
     (tmp_path / "mine" / "studio.json").write_text("{}")
     assert "note: keyframes and limits in studio.json are not scaled" in run("scale", tmp_path / "mine", "1.1")[1]
-    for factor, words in (("x", "is no factor"), ("0", "must be from 0.01 to 100")):
+    for factor, words in (("x", "not a number"), ("0", "must be from 0.01 to 100")):
         code, _, errors = run("scale", tmp_path / "mine", factor)
         assert (code, errors.count("\n")) == (2, 1)
         assert words in errors

@@ -20,11 +20,7 @@ WORDS = {
     "deaf": ("has not answered",),
     "stuck": ("does not follow",),
     "hot": ("too hot",),
-    "anew": (
-        "lost power for a moment",
-        "does not follow",
-        "slack or broken",
-    ),  # its torque is off, and no cable is felt
+    "anew": ("lost power", "does not follow", "slack or broken"),  # its torque is off, and no cable is felt
     "unplugged": ("is gone",),
     "host dies": ("",),
     "host sleeps": ("nothing was told for",),

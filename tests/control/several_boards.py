@@ -203,7 +203,7 @@ class BoardsCampaign(Campaign):
         """Whether words name a board that was harmed (the guard: its winch), and what was done to it."""
         told = FIRMWARE if rig.kind == "firmware" else TOLD
         for board, harm in harmed.items():
-            named = [f"winch {place} " for place in rig.lines[board]] if harm in GUARDED else [f"board {board + 1}"]
+            named = [f"winch {place}:" for place in rig.lines[board]] if harm in GUARDED else [f"board {board + 1}"]
             if any(name in words for name in named) and any(each in words for each in told[harm]):
                 return True
         return False

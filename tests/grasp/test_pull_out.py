@@ -113,7 +113,7 @@ def test_things_are_read_from_words() -> None:
     assert read_thing("box:4cm,40mm,60mm", 3, **known).to == pytest.approx((0.02, 0.02, 0.03))
     rod = read_thing("capsule:40mm,120mm", 3, **known)
     assert (rod.to, rod.radius) == (pytest.approx((0, 0, 0.04)), pytest.approx(0.02))
-    for wrong, words in (("cone:3mm", "there is no thing"), ("sphere:3mm,4mm", "has 1 sizes"), ("sphere:3", "no unit")):
+    for wrong, words in (("cone:3mm", "unknown object"), ("sphere:3mm,4mm", "has 1 sizes"), ("sphere:3", "no unit")):
         with pytest.raises(InputError, match=words):
             read_thing(wrong, 3, **known)
 

@@ -22,5 +22,5 @@ def test_markers_that_nobody_asked_for_are_told_if_they_go_far() -> None:
             IKResult(target=target, pose=pose, errors={}, status=IKStatus.REACHED, iterations=0, solves=0)
         )
 
-    assert f"moves: left by {1e3 * way:.0f} mm;" in told("top")
+    assert f"free markers move: left by {1e3 * way:.0f} mm. " in told("top")
     assert told(*places) == ""

@@ -139,7 +139,7 @@ def test_wrong_limits_are_told_in_one_line(name: str, unchecked: None) -> None:
 
 @pytest.mark.parametrize("given", [None, STRIP.robot])
 def test_only_a_simulation_has_limits(given: Any, unchecked: None) -> None:
-    with pytest.raises(InputError, match=r"a pose is found by a Simulation\(robot\), not by (None|a Robot)$"):
+    with pytest.raises(InputError, match=r"simulation must be a Simulation\(robot\), not (None|a Robot)$"):
         bounds(given, Limits())
 
 

@@ -21,7 +21,7 @@ def test_gallery_names() -> None:
 @pytest.mark.parametrize("name", ["dragon", "", "..", "../examples/starfish", "starfish/"])
 def test_not_in_the_gallery(name: str) -> None:
     """Oracle: the message lists what there is."""
-    with pytest.raises(InputError, match=r"the gallery has no robot .*; it has: .*starfish"):
+    with pytest.raises(InputError, match=r"unknown gallery robot .*\. Available: .*starfish"):
         gallery_folder(name)
 
 

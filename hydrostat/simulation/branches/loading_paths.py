@@ -35,9 +35,9 @@ class Approach:
 def loading_paths_to(simulation: Simulation, goal: Vector, count: int, seed: int) -> list[Approach]:
     """Loading paths to contractions `goal` [m], so many, the plain ones first.
 
-    From rest in one step, all winches together, back from full travel, and from full release if there is any; then
-    in turn: one winch after the other, pushed aside and let go, from other contractions. Random orders and pushes
-    come from `seed`.
+    From rest in one step, all winches together, back from full travel, and from full release where there is any; then
+    in turn: one winch after the other, pushed aside and let go, from other contractions. Orders and pushes that are
+    drawn come from `seed`.
     """
     robot = simulation.robot
     low, high = _range(robot)
