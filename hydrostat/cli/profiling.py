@@ -12,7 +12,7 @@ FILES = {
     "factorization": "factorisation fronts supernodal stiffness",
     "symbolic analysis": "ordering symbolic",
     "arcs": "warp",
-    "cables": "cable friction chain_law loading_path turns",
+    "cables": "cable cable_friction chain_law loading_path via_point_turns",
     "viscous branches": "viscous",
     "inertia": "inertia",
     "pins": "pin",

@@ -27,9 +27,9 @@ def test_ten_thousand_faults_leave_motors_within_limits_standing_in_time_and_tol
 
 def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
     if bug == "goals far ahead":
-        monkeypatch.setattr(bus_link, "AHEAD", 5.0)
+        monkeypatch.setattr(bus_link, "MAX_LEAD_TIME", 5.0)
     elif bug == "goals too far ahead":
-        monkeypatch.setattr(bus_link, "AHEAD", 0.45)
+        monkeypatch.setattr(bus_link, "MAX_LEAD_TIME", 0.45)
     elif bug == "bounds of current that bound nothing":
         for kind in (DynamixelBus, FeetechBus):
             arm: Callable = kind.arm

@@ -30,7 +30,7 @@ def test_faults_on_several_boards_leave_motors_within_limits_standing_in_time_an
 
 def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
     if bug == "goals far ahead":
-        monkeypatch.setattr(bus_link, "AHEAD", 5.0)
+        monkeypatch.setattr(bus_link, "MAX_LEAD_TIME", 5.0)
     elif bug == "no limits":
         initialise: Callable = BusLink.__init__
 

@@ -99,7 +99,7 @@ def test_every_check_stands_on_the_sheet(kit):
 def test_a_robot_that_cannot_be_built_is_refused_with_all_reasons(tmp_path):
     """Oracle: two holes too near the seam; nothing is written."""
     robot = plush_robot(drawn_body("M0 0H100V100H0Z"), TOO_NEAR, [(-20, -10), (-49.5, 20)])
-    with pytest.raises(UnbuildableError, match=r"for 2 reasons") as refused:
+    with pytest.raises(UnbuildableError, match=r"2 problems prevent fabrication") as refused:
         write_kit(robot, tmp_path / "kit")
     assert ["cable[0].points[2]" in refused.value.reasons[0], "cable[1].points[1]" in refused.value.reasons[1]] == [
         True

@@ -185,7 +185,7 @@ def test_a_step_that_finds_nothing_is_tried_shorter(simulation: hs.Simulation, m
         if len(calls) > 2:
             return update(self, target, seconds=seconds)  # type: ignore[arg-type]
         stayed = update(hs.Tracker(simulation, start=self.pose), target, seconds=seconds)  # type: ignore[arg-type]
-        return replace(stayed, pose=self.pose, reason=IKStatus.STALLED)
+        return replace(stayed, pose=self.pose, status=IKStatus.STALLED)
 
     monkeypatch.setattr(hs.Tracker, "update", lazy)
     pose, taken = exact_steps(simulation, simulation.rest, goal, 1)

@@ -55,7 +55,7 @@ def test_a_robot_without_cables_and_markers_stays_at_rest() -> None:
     robot = replace(strip_robot(columns=6, rows=2), winches=(), cables=(), markers=())
     simulation = Simulation(robot)
     trajectory = solve_ik_trajectory(simulation, [simulation.rest], path="straight")
-    assert trajectory.lines() == ["0.02 s keyframe 1: as given", "0.02 s in all, 2 samples; path straight"]
+    assert trajectory.lines() == ["0.02 s keyframe 1: as given", "0.02 s in total, 2 samples; path straight"]
     assert len(draw_trajectory(robot, trajectory).axes) == 4
 
 

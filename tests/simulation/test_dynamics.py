@@ -341,7 +341,7 @@ def test_what_cannot_be_is_refused(viscous_strip: hs.Simulation) -> None:
             viscous_strip.step(still, {}, dt)
     with pytest.raises(hs.InputError, match="duration and time step"):
         list(viscous_strip.play(hs.ContractionProfile.ramp(np.zeros(2), 1.0), 1.0, 0.0))
-    with pytest.raises(hs.InputError, match="no pin 3"):
+    with pytest.raises(hs.InputError, match="unknown pin 3"):
         viscous_strip.step(still, {}, 0.01, pin_shifts={3: np.zeros(2)})
     with pytest.raises(hs.InputError, match="shift of pin 0"):
         viscous_strip.step(still, {}, 0.01, pin_shifts={0: np.zeros(3)})

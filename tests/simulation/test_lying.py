@@ -74,5 +74,5 @@ def test_what_needs_a_hold_says_so() -> None:
     with pytest.raises(InputError, match="no pin holds the robot"):
         hs.Simulation(robot).solve_batch([{}])
     for other in ({"gravity": None}, {"gravity": "+y"}, {"obstacles": ()}):
-        with pytest.raises(InputError, match="or let it lie on the ground by gravity"):
+        with pytest.raises(InputError, match="or gravity and a ground plane"):
             replace(robot, **other)

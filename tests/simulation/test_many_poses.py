@@ -16,7 +16,7 @@ from builders import box_robot, strip_robot
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonOptions, Reason
 from hydrostat.simulation import BatchResult, Equilibrium, Simulation
-from hydrostat.simulation import simulation as room
+from hydrostat.simulation.statics import batch_result as room
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 

@@ -272,7 +272,7 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
     pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
     with pytest.raises(InputError, match="processes must be 1 to 4"):
         train(straight(), goals, TrainOptions(), tmp_path, processes=5)
-    with pytest.raises(InputError, match="there is no checkpoint"):
+    with pytest.raises(InputError, match="no checkpoint to resume from"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
     (tmp_path / "before" / "checkpoint-4").mkdir(parents=True)
     with pytest.raises(InputError, match="before: holds a run already; go on with --resume, or name another folder"):

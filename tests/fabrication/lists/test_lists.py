@@ -30,7 +30,7 @@ def test_names_and_order() -> None:
     assert lists.problems == lists.warnings == ()
     assert all(check.passed for check in lists.checks)
     assert lists.table("cable_cuts").rows[0][0] == "C1"
-    with pytest.raises(InputError, match="the lists are: bill_of_materials"):
+    with pytest.raises(InputError, match="Available: bill_of_materials"):
         lists.table("shopping")
 
 

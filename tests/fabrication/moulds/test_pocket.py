@@ -106,7 +106,7 @@ def test_wires_find_a_way_from_the_motor_to_the_outside() -> None:
 
 
 def test_pocket_of_no_winch_or_no_size_is_refused() -> None:
-    with pytest.raises(InputError, match='no winch "w7"'):
+    with pytest.raises(InputError, match='unknown winch "w7"'):
         pockets(foam_robot(SLAB, (0.0, 0.0, 0.0)), w7=(1.0, 1.0, 1.0))
     with pytest.raises(InputError, match="must be above 0 mm"):
         pockets(foam_robot(SLAB, (0.0, 0.0, 0.0)), w0=(1.0, 0.0, 1.0))

@@ -68,7 +68,7 @@ def test_the_motor_grows_with_the_demand():
 
 
 def test_an_unknown_motor_is_refused():
-    with pytest.raises(InputError, match="no motor"):
+    with pytest.raises(InputError, match="unknown motor"):
         parts_of("letter_s", "stepper")
 
 

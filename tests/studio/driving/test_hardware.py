@@ -135,7 +135,7 @@ def test_a_line_that_is_gone_is_told(session: Session) -> None:
 
     def stopped() -> bool:
         hardware.beat()
-        return hardware.state is LinkState.FAULT
+        return hardware.state is LinkState.FAULT and bool(hardware.words)
 
     assert until(stopped)
     assert "the line to the motors is gone" in hardware.words

@@ -137,7 +137,7 @@ def test_the_tension_limit_holds(starfish: Robot, document: Document, poser: Pos
     drag_marker(starfish, poser, name, target)
     settle(poser)
     assert poser.shape().tensions.max() <= 2.0 * (1 + 2e-3)
-    assert any("as hard as it may" in note for note in poser.shape().notes)
+    assert any("at maximum tension" in note for note in poser.shape().notes)
     assert max(bar.tension for bar in poser.bars()) == pytest.approx(poser.shape().tensions.max())
 
 
@@ -191,7 +191,7 @@ def test_poses_are_chosen_renamed_and_deleted(starfish: Robot, document: Documen
     assert document.undo()
     assert document.undo()
     assert document.robot is starfish
-    with pytest.raises(InputError, match="there is no pose"):
+    with pytest.raises(InputError, match="unknown pose"):
         poser.show_pose("hello")
     with pytest.raises(InputError, match="already"):
         poser.rename_pose(order[0], order[1])
