@@ -213,7 +213,7 @@ def test_auto_tells_the_error_against_winches_and_cables(
     rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in told.splitlines() if line.startswith("│")]
     assert ["1", "1", "45.60 mm", ""] in rows
     assert ["2", "2", f"{1e3 * network.built:.2f} mm", "chosen"] in rows
-    assert "against winches" not in run("design", strip, "--out", tmp_path / "out")[1]
+    assert "by number of winches" not in run("design", strip, "--out", tmp_path / "out")[1]
 
 
 STARTS = 'method "trees" starts from nothing with a number of winches; use method "routes"'

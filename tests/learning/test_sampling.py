@@ -333,8 +333,8 @@ def test_damaged_files_are_told(plan: SamplePlan, tmp_path: Path) -> None:
         ({"count": 0}, "count must be 1 or more"),
         ({"shard": 0}, "shard must be 1 or more"),
         ({"seed": -1}, "seed must be 0 or more"),
-        ({"draws": ()}, "there must be a way"),
-        ({"draws": (SamplingScheme.TENSION,)}, "needs the most that a cable"),
+        ({"draws": ()}, "no sampling strategy"),
+        ({"draws": (SamplingScheme.TENSION,)}, "needs a maximum cable tension"),
     ],
 )
 def test_a_wrong_plan_is_one_line(plan: SamplePlan, wrong: dict, words: str) -> None:
