@@ -171,12 +171,16 @@ def _key_facts(made: "Trajectory", key: Any) -> dict[str, Any]:
         "time": key.time,
         "contractions": _by_winch(made, key.pose.contractions),
         "errors": dict(key.errors),
-        "stray": key.stray,
+        "stray": key.path_deviation,
         "rms_error_from_rest": key.free_error,
         "same_pose": key.same,
     }
     if key.found is not None:
-        facts |= {"reason": str(key.found.reason), "optimality": key.found.optimality, "held": list(key.found.held)}
+        facts |= {
+            "reason": str(key.found.status),
+            "optimality": key.found.optimality,
+            "held": list(key.found.active_limits),
+        }
     return facts
 
 

@@ -172,7 +172,7 @@ def thin_robot() -> Robot:
             [UP, PoseTarget(name="odd", targets={"nose": (0.1, 0.0)})],
             1,
             1,
-            'pose "odd".*no marker "nose".*are: tip',
+            'pose "odd".*unknown marker "nose".*Available: tip',
         ),
         (thin_robot(), [UP], 1, 1, "too thin for cables 5 mm inside its edge"),
     ],

@@ -261,7 +261,7 @@ def test_another_robot_is_refused(robot: Robot, simulation: hs.Simulation) -> No
     ("targets", "words"),
     [
         ({}, "at least one marker"),
-        ({"top": (0.0, 0.0)}, 'no marker "top"'),
+        ({"top": (0.0, 0.0)}, 'unknown marker "top"'),
         ({"tip": (0.0, 0.0, 0.0)}, "must be 2 finite coordinates"),
         ({"tip": (0.0, np.inf)}, "finite coordinates"),
     ],
