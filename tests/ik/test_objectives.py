@@ -226,11 +226,11 @@ MISTYPED: Mapping[str, tuple[type[Objective], dict[str, Any], str]] = {
         {"pose": BEFORE[2], "of": "markers", "markers": ("nose",)},
         "a closeness names 'nose', which is no marker of the robot",
     ),
-    "near nothing": (PoseRegularizer, {"pose": None}, "must be a Equilibrium, not None"),
+    "near nothing": (PoseRegularizer, {"pose": None}, "must be an Equilibrium, not None"),
     "near an answer": (
         PoseRegularizer,
         {"pose": solve_ik(FLAT, {"tip": (0.19, 0.02)})},
-        "must be a Equilibrium, not a IKResult, give its .pose",
+        "must be an Equilibrium, not an IKResult, give its .pose",
     ),
 }
 

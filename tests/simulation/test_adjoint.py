@@ -313,7 +313,7 @@ def test_what_does_not_fit_is_refused() -> None:
 @pytest.mark.parametrize("pose", [None, {"up": 0.02}])
 def test_only_a_solved_pose_has_an_adjoint(pose: Any, unchecked: None) -> None:
     simulation = Simulation(strip())
-    with pytest.raises(InputError, match=f"needs a Equilibrium, as solve.. returns it, not a {type(pose).__name__}"):
+    with pytest.raises(InputError, match=f"needs an Equilibrium, as solve.. returns it, not a {type(pose).__name__}"):
         simulation.adjoint(pose, simulation.rest.nodes)
     words: Any = "up"
     with pytest.raises(InputError, match=r"cotangent of nodes must be numbers of shape .*, not 'up'"):

@@ -54,7 +54,7 @@ class PoseRegularizer(Objective):
         weight = not_negative("weight of a closeness", self.weight)
         if not isinstance(self.pose, Equilibrium):
             hint = ", give its .pose" if isinstance(getattr(self.pose, "pose", None), Equilibrium) else ""
-            raise InputError(f"the pose to stay close to must be a Equilibrium, not {describe(self.pose)}{hint}")
+            raise InputError(f"the pose to stay close to must be an Equilibrium, not {describe(self.pose)}{hint}")
         mesh, winches = simulation.robot.body.mesh, simulation.robot.winches
         if self.pose.nodes.shape != mesh.nodes.shape or len(self.pose.contractions) != len(winches):
             raise InputError("the pose to stay close to is one of another robot")

@@ -113,7 +113,7 @@ def cotangents(
         InputError: as for `sensitivity`.
     """
     if not isinstance(pose, Equilibrium):
-        raise InputError(f"an adjoint needs a Equilibrium, as solve() returns it, not a {type(pose).__name__}")
+        raise InputError(f"an adjoint needs an Equilibrium, as solve() returns it, not a {type(pose).__name__}")
     if pose.nodes.shape != shape or pose.tensions.shape != (cables,):
         raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {shape}")
     return _checked("nodes", nodes, shape), _checked(
