@@ -62,7 +62,7 @@ def solve_ik(
         limits: what the winches may do, beside their travel and release.
         objectives: more that is wished for, or instead.
         start: a pose to begin from, and to count rates from; the rest pose if left out. Where the goals leave a choice
-            it does not matter, unless `options.unique` is off.
+            it does not matter, unless `options.min_tension` is off.
         options: tolerances and limits of the search.
         seconds: after which it ends with the best pose that it has; no limit if left out.
         progress: called at each step with the number of steps in this descent and the rms error [m] it has.

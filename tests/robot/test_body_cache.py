@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrostat.geometry.triangles import triangulate as mesher
+from hydrostat import geometry
 from hydrostat.robot import Body, load_robot
 from hydrostat.robot.body_cache import keep_body
 
@@ -49,8 +49,11 @@ def test_a_kept_body_is_the_same_body(robot: Path, folder: Path, monkeypatch: py
 def test_a_kept_body_is_not_meshed_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: a mesher that fails."""
     load_robot(STARFISH)
-    monkeypatch.setattr(mesher, "triangulate", None)
+    monkeypatch.setattr(geometry, "triangulate", None)
     load_robot(STARFISH)
+    monkeypatch.setenv("HYDROSTAT_CACHE", "")
+    with pytest.raises(TypeError):
+        load_robot(STARFISH)
 
 
 @pytest.mark.parametrize("damage", ["empty", "cut", "flipped"])

@@ -23,7 +23,7 @@ class FreePosing:
     next update. The bound on tensions keeps a goal out of reach from crushing the body.
 
     Points named as calm should rather stay where they rest: the square of what they move weighs |miss| / (2 size), as
-    in `solve_ik` (`IKOptions.stay`), and never so little that it takes too much effort to keep them.
+    in `solve_ik` (`IKOptions.hold_free_markers`), and never so little that it takes too much effort to keep them.
 
     Attributes:
         robot: whose body it is.

@@ -16,7 +16,7 @@ def anchor_untargeted_markers(
 
     It makes |r| + d^2 / (4 size) stationary, with what is missed in all, |r|, and the distance d of these markers from
     rest. A few descents do, in which d^2 weighs |r| / (2 size) with the last |r|. The answer is as it was where the
-    target is in reach or names all markers, and where `options.stay` is off.
+    target is in reach or names all markers, and where `options.hold_free_markers` is off.
     """
     problem, simulation = search.problem, search.problem.simulation
     size = simulation.robot.body.mesh.size
