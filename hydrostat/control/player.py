@@ -13,7 +13,7 @@ from hydrostat.simulation import ContractionProfile
 
 SPEEDS = (0.1, 4.0)  # slowest and fastest, as times the timeline's own
 TICK = 1 / 60  # motors that play are told and read once in this time [s]
-ARRIVAL_TIMEOUT = 2.0  # motors may take so much longer [s] to where they shall be than at their largest speed
+ARRIVAL_TIMEOUT = 2.0  # extra time for motors to arrive, beyond the time at their largest speed [s]
 
 
 class Player:

@@ -1,4 +1,4 @@
-"""`Progress` and `CandidatePairs`: who is told how the work goes on, and of networks that are found on the way."""
+"""`Progress` and `Watch`: callbacks that report the progress of a search, and the networks found on the way."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""`unconstrained_motion`: what a pose does not ask of, and moves all the same."""
+"""`unconstrained_motion`: markers without a target that a pose moves anyway."""
 
 import numpy as np
 

@@ -107,7 +107,7 @@ class Assembly:
 
     @property
     def patience(self) -> int:
-        """Corrections in a row without progress that are worth trying: the most of the energies with a history."""
+        """Largest `patience` of the energies with a history; 0 without one."""
         return max((energy.patience for energy in self.energies if energy.has_history), default=0)
 
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:

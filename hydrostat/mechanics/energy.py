@@ -114,7 +114,7 @@ class Energy(ABC):
         has_history: whether it depends on the loading path, as friction does; then a solve follows the path by
             `history_residual`, `with_corrected_history`
             and `with_advanced_history`, and `history` is kept with the pose.
-        patience: so many corrections in a row without progress are worth trying.
+        patience: number of corrections in a row without progress after which a solve with history stops.
         stiffest: its stiffest spring to a place [N/m]: what rounds positions makes forces of.
     """
 

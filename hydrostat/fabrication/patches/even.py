@@ -1,4 +1,4 @@
-"""`relax_patch`: lay a patch flat anew so that no large part of its cloth gives much, for a little more elsewhere."""
+"""`relax_patch`: flatten a patch again with less strain in large parts of its cloth, for a little more elsewhere."""
 
 from dataclasses import replace
 

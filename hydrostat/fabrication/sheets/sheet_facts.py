@@ -27,7 +27,7 @@ _PLACES = {"where the cable begins": "body"}  # what the list of tubes calls a p
 
 
 def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
-    """All words and numbers, long ones shortened; `letter_label`: a sentence on letters that cannot be printed."""
+    """All words and numbers, long ones shortened; `letters`: a sentence on letters that cannot be printed."""
     plush = given.method is Method.PLUSH
     steps = _all_steps(given)
     return {

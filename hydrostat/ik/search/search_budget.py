@@ -1,4 +1,4 @@
-"""`SearchBudget`: how long a search may take, and who is told how it goes."""
+"""`SearchBudget`: deadline of a search, and the callback for its progress."""
 
 import time
 from collections.abc import Callable
@@ -14,7 +14,7 @@ Tell = Callable[[int, float], None]
 
 @dataclass(frozen=True, kw_only=True)
 class SearchBudget:
-    """How long a search may take, and who is told how it goes; what `tell` raises ends the search."""
+    """Deadline of a search, and the callback for its progress; an exception of `tell` ends the search."""
 
     deadline: float = inf  # on the clock of `time.monotonic` [s]
     tell: Tell | None = None
