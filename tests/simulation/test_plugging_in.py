@@ -5,11 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from builders import strip_robot
-from toy_energies import Floor, Magnet, YieldingTie
+from toy_energies import Floor, Magnet, SluggishTie, YieldingTie
 
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
-from hydrostat.mechanics import Assembly, Energy, WeightEnergy
+from hydrostat.mechanics import (
+    Assembly,
+    Energy,
+    FrictionCableEnergy,
+    ObstacleEnergy,
+    SelfFrictionEnergy,
+    WeightEnergy,
+)
 from hydrostat.simulation import ContractionProfile, Simulation
 from hydrostat.testing import check_energy
 
@@ -115,6 +122,27 @@ def test_a_tie_that_yields_remembers_the_way() -> None:
     assert np.linalg.norm(there.history) > 1e-3
     assert np.linalg.norm(back.nodes[TIP] - simulation.rest.nodes[TIP]) > 1e-4
     assert (simulation.rest.history == 0).all()
+
+
+@pytest.mark.parametrize(("patience", "fits"), [(8, False), (20, True)])
+def test_an_energy_says_how_patient_its_corrections_are(patience: int, fits: bool) -> None:
+    """Oracle: a tie whose first ten corrections change nothing, beside one that yields at the first."""
+    tie = toys()["tie"]
+    assert isinstance(tie, YieldingTie)
+    slow = SluggishTie(NODES, TIP, stiffness=tie.stiffness, limit=tie.limit)
+    slow.patience = patience  # type: ignore[misc]
+    goal = np.array([0.03, 0.0])
+    prompt = Simulation(ROBOT, energies=[tie]).solve(goal)
+    found = Simulation(ROBOT, energies=[slow]).solve(goal, strict=False)
+    assert found.result.converged is fits
+    if fits:
+        assert np.abs(found.nodes - prompt.nodes).max() < 1e-5
+
+
+def test_contact_friction_is_more_patient_than_cables() -> None:
+    """Oracle: decision 0031, where eight corrections are too few for a grasp."""
+    assert FrictionCableEnergy.patience == 8
+    assert min(ObstacleEnergy.patience, SelfFrictionEnergy.patience) == 40
 
 
 def test_the_adjoint_counts_the_controls_of_all_energies() -> None:

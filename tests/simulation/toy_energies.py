@@ -146,3 +146,16 @@ class YieldingTie(Energy):
         off = self._off(nodes)
         size = float(np.linalg.norm(off))
         return self._with(self.slip + off * max(1.0 - self.limit / (self.stiffness * size), 0.0) if size else self.slip)
+
+
+class SluggishTie(YieldingTie):
+    """The same, but its slip stays for a number of corrections before it follows, as contact friction may do."""
+
+    idle = 10
+
+    def with_corrected_history(self, nodes, controls, compliance, response=None):
+        if not self.idle:
+            return super().with_corrected_history(nodes, controls, compliance, response)
+        other = copy(self)
+        other.idle -= 1
+        return other
