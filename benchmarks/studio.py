@@ -58,7 +58,7 @@ def studio(robot: str, state: str) -> Iterator[tuple[str, int]]:
     environment = {**os.environ, "XDG_STATE_HOME": state}
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
         assert process.stdout is not None
-        yield process.stdout.readline().split("at ", 1)[1].split()[0], process.pid
+        yield next(word for word in process.stdout.readline().split() if word.startswith("http://")), process.pid
         process.terminate()
 
 

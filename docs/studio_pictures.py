@@ -41,7 +41,7 @@ def studio(robot: str | None) -> Iterator[str]:
         ) as process,
     ):
         assert process.stdout is not None
-        yield process.stdout.readline().split("at ", 1)[1].split()[0]
+        yield next(word for word in process.stdout.readline().split() if word.startswith("http://"))
         process.terminate()
 
 

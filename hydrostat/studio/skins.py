@@ -34,7 +34,7 @@ class SewnSkin:
         """A line for the person, as `hydrostat check` prints it; "" where only the findings are to be told."""
         if self.sewing is None:
             return f"{TITLE} …" if self.awaited else f"whether its skin can be sewn was not found: {self.error}"
-        return "" if self.sewing.problems else f"to sew its skin: {self.sewing}"
+        return "" if self.sewing.problems else f"skin: {self.sewing}"
 
     @property
     def findings(self) -> tuple[Diagnostic, ...]:

@@ -132,7 +132,7 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     few = run(
         app, ["firmware", str(folder), "--board", "uno", "--port", "/dev/ttyACM7", "--out", str(tmp_path / "few")]
     )
-    assert "2 boards need a port each" in str(few.exception)
+    assert "1 port for 2 boards" in str(few.exception)
     assert not (tmp_path / "few").exists()
     given = ["firmware", str(folder), "--board", "mega", "--out", str(tmp_path / "built")]
     shown = run(app, given)
@@ -155,12 +155,12 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
         app, [*given[:2], "--board", "uno", "--out", str(tmp_path / "two"), "--port", ",".join(map(str, others))]
     )
     assert both.exit_code == 0, both.output
-    assert "board 2, uno: 1 motor, wired" in both.output
+    assert "board 2, uno: 1 motor, wiring" in both.output
     written = [line.split("flash:w:")[1] for line in noted.read_text().splitlines()]
     assert written == [f"{tmp_path}/two/board_{number}/winches.hex:i" for number in (1, 2)]
     assert [each.board for each in read_calibration(folder, robot_of(folder)).motors] == [1, 1, 2]
     small = run(app, [*given, "--motor", "n20"])
-    assert "3575.04 counts in a turn" in small.output
+    assert "3575.04 counts per spool turn" in small.output
     assert "micro metal gearmotor" in run(app, given).output  # what motors.toml tells is not called another motor
     assert all(each.counts == 3575.04 for each in read_calibration(folder, robot_of(folder)).motors)
 

@@ -39,7 +39,7 @@ def test_the_area_is_that_within_the_border_of_all_contractions() -> None:
     assert tip.size == pytest.approx(area, rel=0.05)
     assert tip.extents == pytest.approx(np.sort(np.ptp(border, axis=0))[::-1], rel=0.05)
     assert abs(tip.directions[0, 1]) > 0.99, "it bends up and down"
-    assert str(tip).startswith(f"{1e4 * tip.size:.3g} cm^2, ")
+    assert str(tip).startswith(f"{1e4 * tip.size:.2g} cm², ")
 
 
 def test_one_winch_reaches_a_line() -> None:

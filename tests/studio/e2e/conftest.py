@@ -50,7 +50,7 @@ def running(*arguments: str, state: Path, cache: Path) -> Iterator[str]:
         line = process.stdout.readline()
         assert "http://" in line, line
         try:
-            yield line.split("at ", 1)[1].split()[0]
+            yield next(word for word in line.split() if word.startswith("http://"))
         finally:
             process.terminate()
             process.wait(timeout=300)

@@ -134,5 +134,5 @@ def test_a_process_that_dies_is_told(starfish: Robot, document: Document, poser:
     until(lambda: poser.proposals.found(starfish), poser)
     found = poser.proposals.found(starfish)
     assert found is not None
-    assert "worker crashed" in found.words
+    assert "has died" in found.words
     assert poser.proposals.network(starfish) is None
