@@ -22,7 +22,7 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
     curve = json.loads((tmp_path / "policy" / "curve.json").read_text())["curve"]
     assert [point["steps"] for point in curve] == [4, 8, 12, 16, 20]  # four episodes side by side
     assert curve[-1]["equilibria"] >= 40  # a goal and an action each
-    assert out.splitlines()[-4].endswith("on 3 unseen goals")
+    assert out.splitlines()[-4].endswith("(3 unseen goals)")
     assert load_policy(tmp_path / "policy" / "actor.policy").facts["task"] == "reach"
     assert (tmp_path / "policy" / "curve.png").read_bytes().startswith(b"\x89PNG")
 

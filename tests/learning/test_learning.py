@@ -138,7 +138,7 @@ def test_ways_to_learn_side_by_side(samples: Samples, simulation: hs.Simulation,
     assert [name for name, found in rows.items() if found.curve is not None] == ["thesis"]
     answer = verify(simulation, model, model.solve(targets_of(new)[0]))
     assert rows["search"].distances[0, 0] == pytest.approx(answer.error, rel=1e-6)
-    with pytest.raises(InputError, match="no way to learn called 'magic'"):
+    with pytest.raises(InputError, match='unknown method "magic"'):
         next(compare(simulation, known, new, ["magic"]))
 
 
@@ -259,7 +259,7 @@ def test_what_cannot_be_certified_is_told(simulation: hs.Simulation, model: Lear
     answer = model.solve({"tip": (0.1, 0.0)})
     assert len(repr(model)) + len(repr(answer)) < 300
     for given, words in (
-        ((None, model, answer), r"by a Simulation\(robot\), not None"),
+        ((None, model, answer), r"must be a Simulation\(robot\), not None"),
         ((simulation, None, answer), "one that load_model gives, not None"),
         ((simulation, model, None), "what model.solve gives, not None"),
     ):
