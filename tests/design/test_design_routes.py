@@ -13,6 +13,7 @@ from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.network import RouteTrace
 from hydrostat.design.region import body_region
 from hydrostat.design.request import RouteOptions
+from hydrostat.design.routes import design_routes as routes
 from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import demand_of, find_refusals
@@ -164,6 +165,13 @@ def test_the_error_told_is_what_its_user_finds(name: str, unchecked: None) -> No
 def test_more_cables_do_no_harm(name: str, unchecked: None) -> None:
     """Cables that spoil what there was are left out: by two cables the strip is brought within a few millimetres."""
     assert designed(name).rms_error < 0.2 * at_rest(bare(), (UP, DOWN))
+
+
+@pytest.mark.slow
+def test_a_network_whose_kit_fits_comes_first(monkeypatch: pytest.MonkeyPatch, unchecked: None) -> None:
+    """Where no kit can be made of the refined networks, the best one on the way is taken: here one of 4 cables."""
+    monkeypatch.setattr(routes, "kit_fits", lambda network: len(network.robot.cables) == 4)
+    assert len(designed.__wrapped__("usual").robot.cables) == 4
 
 
 @pytest.mark.slow

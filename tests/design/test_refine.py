@@ -12,7 +12,7 @@ from hydrostat.design.region import body_region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import layout_of, mirrored
 from hydrostat.design.routes.bench import Bench, Trial
-from hydrostat.design.routes.design_routes import certify
+from hydrostat.design.routes.certificate import certify
 from hydrostat.design.routes.layout import CableRoute, Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import RefineOptions, linear_model, refine

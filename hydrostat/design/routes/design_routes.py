@@ -5,10 +5,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
 
-import numpy as np
-from scipy.optimize import nnls
-
-from hydrostat.arrays import Vector
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.built_error import expected_error
 from hydrostat.design.constraints import Constraints
@@ -18,10 +14,11 @@ from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial, reached_from_rest
+from hydrostat.design.routes.certificate import certify
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.refine import linear_model, pushed_back
+from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.skin_region import cable_region
@@ -35,38 +32,6 @@ from hydrostat.simulation import BodyPhysics, Simulation, cable_sensitivities
 
 Hints = Callable[[BodyPhysics], Iterable[Robot]]
 """Finds networks to begin with, when it is their turn, by the physics of the body."""
-
-
-def certify(proposals: Proposals, trial: Trial) -> Certificate:
-    """What one more cable promises, and how steeply the error falls along a move of the network that is allowed.
-
-    Both are exact to first order at the equilibria of the poses; the search for the best path keeps a few paths for
-    each edge, so what it finds is a lower bound of what the best of all paths would gain.
-    """
-    unbiased = replace(proposals, options=replace(proposals.options, lead_penalty=0.0))
-    paths = unbiased.priced(trial, count=1)
-    gain = paths[0].gain if paths else 0.0
-    model = linear_model(proposals.bench, proposals.graph.region, trial, effort=0.0, reach=_HOLDS)
-    return Certificate(
-        further=float(np.sqrt(max(trial.error**2 - 2 * gain, 0.0))),
-        paths=len(proposals.graph.edges) * 2 * proposals.options.hops,
-        slope=_slope(model.matrix, model.right, model.rows[model.left <= _HOLDS], trial.error),
-    )
-
-
-def _slope(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) -> float:
-    """The steepest fall of the error along a number that limits which hold allow [m/m] (Karush, Kuhn and Tucker)."""
-    if error == 0.0:
-        return 0.0
-    gradient = matrix.T @ right / error
-    norms = np.linalg.norm(limits, axis=1)
-    limits = limits[norms > 0] / norms[norms > 0, None]
-    if len(limits):
-        gradient = gradient + limits.T @ nnls(limits.T, -gradient)[0]
-    return float(np.abs(gradient).max(initial=0.0))
-
-
-_HOLDS = 1e-4  # a limit with a smaller margin than this [m] holds
 
 
 def design_routes(
@@ -100,7 +65,8 @@ class RouteSearch:
 
     Attributes:
         bench: solves the poses of layouts.
-        stages: networks on the way.
+        stages: networks on the way, as they are shown.
+        passed: the same networks, as the search knows them.
         sizes: the best network of each size, by its numbers of winches and cables.
     """
 
@@ -128,6 +94,7 @@ class RouteSearch:
             self.options.reach,
         )
         self.stages: list[DesignStage] = []
+        self.passed: list[Trial] = []
         self.found: list[Trial] = []
         self.best: Trial | None = None
         self.sizes: dict[tuple[int, int], Trial] = {}
@@ -304,14 +271,17 @@ class RouteSearch:
             self.sizes[size] = trial
         stage = DesignStage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.built)
         self.stages.append(stage)
+        self.passed.append(trial)
         if self.best is None or trial.cost < self.best.cost:
             self.best = trial
             self.watch(stage)
 
     def _finished(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
         """The networks found, judged as their user will find them, the best first."""
-        trials = [*self.found, *(self._simpler() if complete else [self.best])]
-        judged = [judged for trial in trials if trial is not None and (judged := self.judged(trial)) is not None]
+        judged = self._all_judged(self.found)
+        if complete and not any(kit_fits(network) for network in judged):
+            judged += self._first_to_fit()
+        judged += self._all_judged(self._simpler() if complete else [self.best])
         if not judged:
             raise HydrostatError(
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
@@ -319,6 +289,17 @@ class RouteSearch:
         judged.sort(key=self._cost)
         first = next((place for place, network in enumerate(judged) if kit_fits(network)), 0)
         return judged[first], [*judged[:first], *judged[first + 1 :]]
+
+    def _all_judged(self, trials: Iterable[Trial | None]) -> list[Alternative]:
+        return [judged for trial in trials if trial is not None and (judged := self.judged(trial)) is not None]
+
+    def _first_to_fit(self) -> list[Alternative]:
+        """The best of the networks on the way that a kit can be made of, for when none of the refined ones can."""
+        for trial in sorted(self.passed, key=lambda trial: trial.cost)[:_LOOKED_AT]:
+            judged = self.judged(trial)
+            if judged is not None and kit_fits(judged):
+                return [judged]
+        return []
 
     @property
     def _kept(self) -> Constraints:
@@ -391,4 +372,5 @@ _WORSE = 0.05  # a simpler network is told of where those that are simpler still
 _HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
 _STRONG = 0.1  # what the effort of stronger paths counts
 _DRAWN = 6  # sketches that are solved for each that is grown
+_LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
 _REFINED = 2  # networks that are refined to the end

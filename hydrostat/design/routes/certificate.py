@@ -1,0 +1,44 @@
+"""Optimality of a cable network: the gain of one more cable, and the slope left along moves that are allowed."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import nnls
+
+from hydrostat.arrays import Vector
+from hydrostat.design.network import Certificate
+from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.propose import Proposals
+from hydrostat.design.routes.refine import linear_model
+
+
+def certify(proposals: Proposals, trial: Trial) -> Certificate:
+    """What one more cable promises, and how steeply the error falls along a move of the network that is allowed.
+
+    Both are exact to first order at the equilibria of the poses; the search for the best path keeps a few paths for
+    each edge, so what it finds is a lower bound of what the best of all paths would gain.
+    """
+    unbiased = replace(proposals, options=replace(proposals.options, lead_penalty=0.0))
+    paths = unbiased.priced(trial, count=1)
+    gain = paths[0].gain if paths else 0.0
+    model = linear_model(proposals.bench, proposals.graph.region, trial, effort=0.0, reach=_HOLDS)
+    return Certificate(
+        further=float(np.sqrt(max(trial.error**2 - 2 * gain, 0.0))),
+        paths=len(proposals.graph.edges) * 2 * proposals.options.hops,
+        slope=_slope(model.matrix, model.right, model.rows[model.left <= _HOLDS], trial.error),
+    )
+
+
+def _slope(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) -> float:
+    """The steepest fall of the error along a number that limits which hold allow [m/m] (Karush, Kuhn and Tucker)."""
+    if error == 0.0:
+        return 0.0
+    gradient = matrix.T @ right / error
+    norms = np.linalg.norm(limits, axis=1)
+    limits = limits[norms > 0] / norms[norms > 0, None]
+    if len(limits):
+        gradient = gradient + limits.T @ nnls(limits.T, -gradient)[0]
+    return float(np.abs(gradient).max(initial=0.0))
+
+
+_HOLDS = 1e-4  # a limit with a smaller margin than this [m] holds
