@@ -32,7 +32,7 @@ class JobState:
 
 
 class Slots:
-    """How many long works may run at a time, of all sessions that share these; more stand in line.
+    """Number of long jobs that may run at a time in all sessions that share these slots; more wait in line.
 
     Work that goes on for as long as a person likes has as many of its own: it would keep the line waiting.
     """
@@ -95,7 +95,7 @@ class Jobs:
 
     @property
     def running(self) -> bool:
-        """Whether there is work in progress."""
+        """True if a job is running."""
         state = self.state
         return state is not None and state.running
 
@@ -190,7 +190,7 @@ class Jobs:
         on_end(error)
 
     def _given_up(self) -> bool:
-        """Whether nobody wants the work any more."""
+        """True if the job was asked to stop."""
         return self.state is not None and self.state.stopping
 
     def _in_line(self, before: int) -> None:

@@ -34,7 +34,7 @@ MOST_NOTES = 50  # so many notes are kept
 
 
 class Tone(StrEnum):
-    """What a note is."""
+    """Tone of a note."""
 
     GOOD = "good"
     PLAIN = "plain"
@@ -197,12 +197,12 @@ class Session:
 
     @property
     def undo_label(self) -> str:
-        """What would be undone; "" if nothing can be."""
+        """Label of the change that undo takes back; "" if there is none."""
         return (self.current.undo_label if self.document.is_open else "") or self.document.undo_label
 
     @property
     def redo_label(self) -> str:
-        """What would be done again; "" if nothing can be."""
+        """Label of the change that redo makes again; "" if there is none."""
         return (self.current.redo_label if self.document.is_open else "") or self.document.redo_label
 
     def undo(self) -> None:
@@ -246,12 +246,12 @@ class Session:
 
     @property
     def waiting(self) -> bool:
-        """Whether a drag waits for its answer."""
+        """True if a drag waits for its answer."""
         return self._stamp != self.answered
 
     @property
     def legend(self) -> Scale | None:
-        """What the colours of the body mean; None for plain felt, and for muscles where none move the body."""
+        """Scale of the body's colors; None for plain felt, and for muscles where none move the body."""
         if not self.document.is_open or (self.colouring is Colouring.MUSCLES and self.current.shape().muscles is None):
             return None
         return scale(self.document.robot, self.colouring)
@@ -289,7 +289,7 @@ class Session:
         return more
 
     def shown(self) -> Shown | None:
-        """What all screens show now; None without a robot."""
+        """Return the content of all screens now; None without a robot."""
         if not self.document.is_open:
             return None
         with self._lock:

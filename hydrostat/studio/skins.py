@@ -26,7 +26,7 @@ class SewnSkin:
 
     @property
     def awaited(self) -> bool:
-        """Whether it is being looked for."""
+        """True if the skin is still being computed."""
         return self.sewing is None and not self.error
 
     @property
@@ -113,6 +113,6 @@ def lay_flat(report: Report, body: Body, pattern: PatternOptions) -> Sewing:
 
 
 def _is_of(skin: SewnSkin, body: Body, options: KitOptions) -> bool:
-    """Whether it is the skin of this body, perhaps of another material."""
+    """True if it is the skin of this body, perhaps of another material."""
     same = skin.body.mesh is body.mesh and skin.body.healing is body.healing
     return (same or skin.body == body) and skin.pattern == options.pattern

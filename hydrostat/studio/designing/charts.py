@@ -26,15 +26,15 @@ class Chart:
     whole: bool = False  # whether values across are whole numbers
 
     def x(self, value: float) -> float:
-        """Where a value across is."""
+        """Horizontal position of a value on the chart [px]."""
         return LEFT + (self.width - LEFT - RIGHT) * value / self.across
 
     def y(self, value: float) -> float:
-        """Where a value upwards is."""
+        """Vertical position of a value on the chart [px]."""
         return self.height - BOTTOM - (self.height - TOP - BOTTOM) * value / self.up
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Where a pair of values is."""
+        """Position of a pair of values on the chart [px]."""
         return self.x(x), self.y(y)
 
     def line(self, points: Iterable[tuple[float, float]]) -> str:

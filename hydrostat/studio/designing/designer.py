@@ -73,7 +73,7 @@ class Designer(Stage):
 
     @property
     def wishes(self) -> Wishes:
-        """What is asked for."""
+        """Design settings of the work."""
         return self._document.work.wishes
 
     @property
@@ -109,7 +109,7 @@ class Designer(Stage):
             self._document.change("change wishes", wishes=wanted, merge=f"wish {' '.join(wishes)}")
 
     def wish_pose(self, name: str, wanted: bool) -> None:
-        """Whether a pose is to be reached (InputError: it would be the last one)."""
+        """Include a pose in the design or leave it out (InputError: it would be the last one)."""
         names = {pose.name for pose in wished_poses(self._document.robot, self.wishes)}
         kept = names | {name} if wanted else names - {name}
         if not kept:
@@ -182,7 +182,7 @@ class Designer(Stage):
         self._jobs.warm(MODULE)
 
     def leave(self) -> None:
-        """What is in hand is put away, the robot is shown as it is when one comes back; a design goes on."""
+        """Put down the paint and clear the choice of candidate and pose; a running design continues."""
         self.painter.take(None)
         self.chosen = self.pose = None
 
@@ -279,7 +279,7 @@ class Designer(Stage):
         self.outcome = f"{plural(len(found), 'network')} found before the studio ended" if found else ""
 
     def _reach(self) -> Reach | None:
-        """What is shown of a pose; None: the body at rest."""
+        """Result of the chosen candidate in the chosen pose; None: the body is shown at rest."""
         candidate = self.candidate
         if candidate is None or self.pose is None or self.painter.busy:
             return None

@@ -52,14 +52,14 @@ def with_corner(zone: Zone, index: int, place: Point) -> Zone:
 
 
 def rim_handle(zone: Zone) -> Point:
-    """Where a disc or ball is taken hold of to be resized."""
+    """Return the point at which a disc or ball is dragged to resize it [m]."""
     assert zone.at is not None
     assert zone.radius is not None
     return (zone.at[0] + zone.radius, *zone.at[1:])
 
 
 WORDS = {Paint.KEEP_OUT: "no cable here", Paint.WINCH_ZONES: "winches only here", Paint.STILL: "keep this still"}
-"""What a paint says."""
+"""Label of each paint, for undo."""
 
 NEAR = 0.02  # a click so near the first corner closes a polygon, as a share of the body
 
@@ -94,7 +94,7 @@ class Painter:
 
     @property
     def busy(self) -> bool:
-        """Whether the body must be at rest, for something is painted."""
+        """True if a zone is being painted or reshaped, so that the body must be at rest."""
         return self.paint is not None or self._shaping is not None
 
     def take(self, paint: Paint | None) -> None:
@@ -271,7 +271,7 @@ def _area(index: int, paint: Paint, zone: Zone, *, chosen: bool) -> Area:
 
 
 def _handles(index: int, paint: Paint, zone: Zone) -> list[Thing]:
-    """What the chosen zone is resized by; they stand in the world, as the body is at rest while one paints."""
+    """Resize handles of the chosen zone, fixed in the world, as the body is at rest during painting."""
     if zone.at is not None:
         places = {f"zone-rim:{index}": rim_handle(zone)}
     else:

@@ -71,12 +71,12 @@ class Hardware:
 
     @property
     def armed(self) -> bool:
-        """Whether motors turn."""
+        """True if the motors are armed and follow commands."""
         return self.state is LinkState.ARMED
 
     @property
     def places(self) -> dict[str, float]:
-        """What each winch has taken in, as its motor says [m], by name; empty without motors."""
+        """Contraction of each winch, measured by its motor [m], by name; empty without motors."""
         robot, places = self._robot, self._places
         return (
             {} if robot is None or self._link is None else dict(zip(self._names(robot), places.tolist(), strict=False))
@@ -84,7 +84,7 @@ class Hardware:
 
     @property
     def currents(self) -> dict[str, float]:
-        """What each motor draws [A], positive as it takes cable in, by its winch; empty without motors."""
+        """Current of each motor [A], positive when reeling in, by winch name; empty without motors."""
         robot, link = self._robot, self._link
         drawn = None if link is None else link.currents
         if robot is None or drawn is None:
@@ -225,7 +225,7 @@ class Hardware:
                 self.words = why
 
     def _same(self, robot: Robot) -> bool:
-        """Whether another state of the document has the same winches."""
+        """True if another state of the document has the same winches."""
         return self._robot is not None and robot.winches == self._robot.winches
 
     def _expected(self, contractions: Vector) -> Vector:
@@ -233,7 +233,7 @@ class Hardware:
         return np.where(np.abs(contractions - self._goal) < NEAR, self._pulls, np.nan)
 
     def _load(self, contractions: Vector) -> Vector:
-        """What pulls at emulated motors [N]: what is shown, once they are there."""
+        """Tensions that load emulated motors [N]: those of the shown pose, once the motors are there."""
         return np.where(contractions > self._goal - NEAR, self._pulls, 0.0)
 
     def _say(self, words: str) -> None:
@@ -249,4 +249,4 @@ class Hardware:
 
 
 _CALIBRATE = "; they are not calibrated: hydrostat calibrate finds their zeros"
-"""What is missing before they can be armed."""
+"""Reason why motors cannot be armed yet."""

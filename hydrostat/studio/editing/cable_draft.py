@@ -66,7 +66,7 @@ BEYOND = 0.06  # the line of the mirror goes so far beyond the body, as a share 
 
 
 def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> list[Thing]:
-    """What is shown beside the parts of the robot."""
+    """Return the mirror axis and the cable draft, to be shown with the parts of the robot."""
     things: list[Thing] = []
     if mirror is not None and robot.body.mesh.dim == 2:
         things.append(_axis(robot, mirror))

@@ -28,7 +28,7 @@ _ONCE = IKOptions(restarts=0)  # a pose is shown as soon as it is found
 
 
 class Export(StrEnum):
-    """What is made in a process of its own."""
+    """Output that is made in a process of its own."""
 
     KIT = "kit"
     REPORT = "report"
@@ -45,11 +45,11 @@ class _Made:
 
 
 class Exporter(Stage):
-    """What a person takes home: kit, report, pictures, the robot itself. All is in memory until it is downloaded.
+    """Export stage: kit, report, pictures and the robot itself. All is in memory until it is downloaded.
 
     A result is that of one robot: it is not shown once the robot has changed, and is back if the change is undone.
-    How the next kit is made, its method, motor and paper, is of this sitting: it is not part of the robot, is not saved
-    with it, and is not undone.
+    Options of the next kit, its method, motor and paper, are of this sitting: they are not part of the robot, not saved
+    with it, and not undone.
     """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:

@@ -39,7 +39,7 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolvedPoses:
-    """What the winches make of the poses."""
+    """Inverse-kinematics results of the poses of a robot."""
 
     robot: Robot  # whose they are
     reached: tuple[IKResult, ...]  # those that were solved, in their order

@@ -85,7 +85,7 @@ class _Sure:
                 self._button("Save over it", "save", "unelevated color=negative").mark("save-over")
 
     async def ask(self, told: list[str]) -> str:
-        """What a person chooses: "save", "elsewhere", or "" to leave all as it is."""
+        """Show the questions and return the choice: "save", "elsewhere", or "" to cancel."""
         self._words.clear()
         with self._words:
             for words in told:

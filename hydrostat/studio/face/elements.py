@@ -98,7 +98,7 @@ def winch_badge(mark: str, colour: str) -> None:
 
 
 def _shares(robot: Robot, contractions: Mapping[str, float]) -> list[float]:
-    """How far the winches go, from 0 for all that is let out to 1 for all that can be taken in."""
+    """Contractions as shares of the winch travel, from 0 (all cable let out) to 1 (all reeled in)."""
     shares = []
     for winch in robot.winches:
         share = (contractions.get(winch.name, 0.0) + winch.release) / (winch.travel + winch.release)

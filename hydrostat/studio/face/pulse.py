@@ -20,7 +20,7 @@ LONG = 0.1
 """A step that takes longer [s] does not keep the screens waiting: what changes meanwhile is shown beside it."""
 
 SEEN = (Topic.SHAPE, Topic.THINGS, Topic.ROBOT, Topic.STAGE)
-"""What changes the picture."""
+"""Topics that change the picture."""
 
 
 class Pulse:

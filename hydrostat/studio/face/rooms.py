@@ -65,7 +65,7 @@ class Rooms:
 
     @property
     def many(self) -> bool:
-        """Whether each browser has a room of its own."""
+        """True if each browser has a room of its own."""
         return self._only is None
 
     def start(self) -> None:

@@ -10,7 +10,7 @@ from hydrostat.studio.stage import StageName
 
 @dataclass(frozen=True)
 class StageWords:
-    """What a stage is for."""
+    """Texts that explain a stage."""
 
     title: str  # as on its button
     icon: str  # likewise

@@ -46,7 +46,7 @@ def view_bar(page: WindowPage, *, colours: bool = True) -> None:
 
 
 def _legend(page: WindowPage) -> None:
-    """What the colours of the body mean, in another corner."""
+    """Build the legend of the body's colors, in another corner."""
     with ui.element("div").classes("studio-legend") as box:
         title = ui.label()
         ui.element("div").classes("studio-legend-bar").style(f"background: linear-gradient(90deg, {', '.join(RAMP)})")

@@ -53,7 +53,8 @@ addEventListener("keydown", (event) => {
 });
 </script>
 """
-"""What was clicked does not keep the keyboard, or Space would press it again and not play. By Tab it does.
+"""Scripts of the page. A clicked button does not keep the keyboard focus, or Space would press it instead of
+starting playback. A button that is reached by Tab keeps it.
 
 A page that is seen gives signs of life, without which motors hold."""
 
@@ -201,7 +202,7 @@ SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 
 
 def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: SaveDialog, ask_help: Ask) -> Any:
-    """What a key does; see `tour.KEYS`. Returns what is still to be waited for, if anything."""
+    """Handle a key; see `tour.KEYS`. Return what is still to be awaited, if anything."""
     if not event.action.keydown:
         return None
     name = str(event.key.name)

@@ -64,7 +64,7 @@ class CableProposals:
             self._news.notify_all()
 
     def found(self, robot: Robot) -> Proposal | None:
-        """What was found last, if it is for a body as this robot has it."""
+        """Return the latest proposal, if it is for a body as this robot has it."""
         found = self._found
         if found is None or not self.on or not same_physics(found[0], robot, Mode.MUSCLES):
             return None

@@ -51,7 +51,7 @@ class MuscleMover(Mover):
 
     @property
     def pulls(self) -> tuple[Nodes, Vector]:
-        """Where the body is [m], and the tension of the muscle on each edge of its mesh [N]."""
+        """Positions of the nodes [m], and the tension of the muscle on each edge of the mesh [N]."""
         return self._posing.nodes, self._posing.tensions
 
     def rest(self) -> RobotShape:

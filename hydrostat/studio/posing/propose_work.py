@@ -44,7 +44,7 @@ class ProposalInput:
 
 @dataclass(frozen=True, kw_only=True)
 class Proposal:
-    """What came of a moment."""
+    """Result of one proposal input: a network, or why there is none."""
 
     winches: tuple[Winch, ...] = ()  # of the network
     cables: tuple[Cable, ...] = ()  # of the network
@@ -53,7 +53,7 @@ class Proposal:
 
 
 def asked_of_trees(robot: Robot, wishes: Wishes) -> DesignRequest:
-    """What the wishes ask of the thesis's search for the pose that is held; painted zones and a mirror it passes over.
+    """Build the request to the thesis's search for the held pose; the search ignores painted zones and a mirror.
 
     Raises InputError for counts that do not fit each other.
     """

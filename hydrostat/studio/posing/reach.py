@@ -22,7 +22,7 @@ SEED = 8
 
 
 def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int = COUNT) -> int:
-    """How many of so many poses can be held, for contractions spread evenly over what all winches can do.
+    """Sample `count` poses with contractions spread evenly over the ranges of all winches; return the number held.
 
     The report is told where the marker is, a few places (points, dim) [m] at a time. Poses that do not converge, are
     not stable or ask a cable for more than its limit [N] are left out. Where cables rub, each is come to from rest.
@@ -99,11 +99,11 @@ class MarkerReach:
 
     @property
     def running(self) -> bool:
-        """Whether it still grows."""
+        """True if the cloud is still growing."""
         return self._search is not None and self._search.running
 
     def cloud(self, robot: Robot) -> Cloud | None:
-        """What has been found so far, if it holds for this robot."""
+        """Return the workspace found so far, if it holds for this robot."""
         search = self._search
         fits = search is not None and search.fits(robot, self._document.work.wishes.tension)
         return search.cloud if search is not None and fits else None
@@ -170,5 +170,5 @@ class MarkerReach:
 
 
 def _place(robot: Robot, marker: str) -> Point | None:
-    """Where a marker is in the rest shape [m]; None if there is none of this name."""
+    """Position of a marker in the rest shape [m]; None if there is none of this name."""
     return next((own.at for own in robot.markers if own.name == marker), None)

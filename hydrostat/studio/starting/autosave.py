@@ -141,7 +141,7 @@ class Autosave:
                 self._held = None
 
     def left(self) -> list[RecoveredWork]:
-        """What studios that live no more have left, the newest first."""
+        """Return the work recovered from studios that no longer run, the newest first."""
         if self._folder is None or not self._folder.is_dir():
             return []
         found = [_left_in(folder) for folder in self._folder.iterdir() if folder.is_dir() and not is_held(folder)]

@@ -24,14 +24,14 @@ SMOOTHINGS = (0.0, 20.0)  # likewise how far the edge is smoothed [pixels]
 
 @dataclass(frozen=True, kw_only=True)
 class PhotoReading:
-    """How a person has a picture read; all as it comes by default."""
+    """Settings for tracing a picture; automatic by default."""
 
     threshold: float | None = None  # what differs from the ground by more is body; None: found in the picture
     smoothing: float = 0.0  # edges are smoothed over so many pixels of at most 1600
 
     @property
     def plain(self) -> bool:
-        """Whether nothing is asked for."""
+        """True if all settings are automatic."""
         return self.threshold is None and self.smoothing == 0
 
 
@@ -74,12 +74,12 @@ class BodyDraft:
 
     @property
     def is_picture(self) -> bool:
-        """Whether the file is a photograph or another picture of pixels."""
+        """True if the file is a photograph or another picture of pixels."""
         return self.file.endswith(PICTURES)
 
     @property
     def is_drawing(self) -> bool:
-        """Whether the file is a drawing or picture, not a surface in space."""
+        """True if the file is a drawing or picture, not a surface in space."""
         return self.file.endswith(OUTLINE_SUFFIXES)
 
 

@@ -145,7 +145,7 @@ def _halfway(knots: list[int], knot: int, count: int) -> int:
 
 
 def _sharp(ring: Ring, window: float) -> np.ndarray:
-    """Which points of a ring are corners: it turns there by a lot within a window [mm]."""
+    """Corners of a ring, as a flag for each point: the ring turns there sharply within a window [mm]."""
     sides = np.roll(ring, -1, axis=0) - ring
     lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(sides, axis=1))])
     closed, total = np.concatenate([ring, ring[:1]]), lengths[-1]

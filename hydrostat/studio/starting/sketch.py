@@ -73,7 +73,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
 
 
 def _here(words: str) -> str:
-    """What is told of a drawing, with what a person presses here."""
+    """Text on a drawing, with the name of the control in the studio in place of the option."""
     return words.replace(f"say {DRAWN_HINT}", 'choose "Drawn on it" for shapes within')
 
 
@@ -111,7 +111,7 @@ def _drawn(
 
 
 def _limit_memory() -> None:
-    """Where the system can: a file must not take the whole machine."""
+    """Limit the memory of this process where the system can: a file must not take the whole machine."""
     try:
         import resource
     except ImportError:  # Windows

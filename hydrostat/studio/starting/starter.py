@@ -93,12 +93,12 @@ class Starter(Stage):
 
     @property
     def meshing(self) -> bool:
-        """Whether a sketch is being made."""
+        """True if a sketch is being meshed."""
         return self._working is not None
 
     @property
     def is_current(self) -> bool:
-        """Whether the sketch is what the draft asks for."""
+        """True if the sketch is that of the present draft."""
         return self.sketch is not None and self.sketch.draft is self.draft and not self.problem
 
     def get_ready(self) -> None:
@@ -255,7 +255,7 @@ class Starter(Stage):
 
     @property
     def skin(self) -> SewnSkin | None:
-        """Whether the body that was sketched can be sewn; None where that is no question, or no sketch is there."""
+        """Skin of the sketched body, sewn or refused; None without a sketch, or for a body that needs no skin."""
         return None if self.sketch is None else self._document.judge.skin(self.sketch.robot)
 
     def _look_at_skin(self) -> None:

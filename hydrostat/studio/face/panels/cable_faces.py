@@ -20,7 +20,7 @@ HINT = "On one face alone cables also curl a stuffed body out of its plane; in p
 
 
 def face_choice(page: WindowPage) -> None:
-    """Where the cables of a flat robot run; nothing is shown for one in space."""
+    """Build the choice of the side on which cables of a flat robot run; hidden for a robot in space."""
     document, exporter = page.session.document, page.session.exporter
     with ui.element("div").classes("export-form") as row:
         ui.label("Cables")

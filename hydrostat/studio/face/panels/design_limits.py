@@ -68,7 +68,7 @@ def _zone(page: WindowPage, index: int, paint: Paint, size: str, *, chosen: bool
 
 
 OPEN = {"depth": "anywhere"}
-"""What is said where a wish is left open, if it is not found by the search."""
+"""Placeholder of a number that is left open, where it is not "auto"."""
 
 Show = Callable[[Wishes], Any]
 
@@ -160,7 +160,7 @@ def _mirror(page: WindowPage) -> Show:
 
 
 def _own(page: WindowPage, shows: list[Show]) -> None:
-    """What the robot has already: it can stay, or be improved."""
+    """Build the section on the robot's own network: keep parts of it, or start from it."""
     designer, document = page.session.designer, page.session.document
     with _more("What the robot has") as more:
         shows.append(_switch(page, "Begin with it and improve it", "improve"))

@@ -93,7 +93,7 @@ def _counts(page: WindowPage) -> None:
 
 
 SIMPLICITIES = {"simple": 4.0, "balanced": 1.0, "exact": 0.0}
-"""What the knob is called where it stands, and what `RouteOptions.simplicity` it is; at 4 a cable must gain 8 %."""
+"""Label of each choice and its `RouteOptions.simplicity`; at 4 a cable must reduce the error by 8 %."""
 
 
 def _simplicity(page: WindowPage) -> None:
@@ -286,7 +286,7 @@ def _words(one: Candidate, own: tuple[int, ...], *, refused: bool) -> str:
 
 
 def _more(one: Candidate) -> str:
-    """What a card has no room for."""
+    """Details of a candidate for the tooltip of its card."""
     craft = one.craft
     return (
         f"{told_error(one.error)} in the model; {plural(craft.holes, 'hole')}, "

@@ -124,7 +124,7 @@ class _Card:
 
 
 def _speed(page: WindowPage) -> None:
-    """How fast the shown motors are: at first as those of the kit where its cables pull their most."""
+    """Build the speed limit of the shown motors: at first that of the kit's motors under full load."""
     driver = page.session.driver
     with ui.element("div").classes("studio-row").style("margin-top: 6px"):
         label = ui.label("Shown at most at").classes("studio-hint")
@@ -139,7 +139,7 @@ def _speed(page: WindowPage) -> None:
 
 
 def _no_cables(page: WindowPage) -> None:
-    """What to do first."""
+    """Build the empty state of a robot without cables: the first steps."""
     ui.label("Drive").classes("studio-title")
     with ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 10px"):
         ui.label("This robot has no cables yet, so nothing can pull it.")

@@ -74,7 +74,7 @@ def _tools(page: WindowPage) -> None:
 
 
 def _mirror(page: WindowPage) -> None:
-    """Which side is edited alike, and how deep things are put into a body in space."""
+    """Build the choice of the mirror axis, and for a body in space the depth at which parts are placed."""
     editor, document = page.session.editor, page.session.document
     axes = "xyz"[: document.robot.body.mesh.dim]
     with ui.element("div").classes("studio-row"):
@@ -107,7 +107,7 @@ def _snap(page: WindowPage) -> None:
 
 
 def _several(page: WindowPage) -> None:
-    """Whether each press chooses one part more: with a finger there is no Shift."""
+    """Build the switch for multiple selection: a touch screen has no Shift key."""
     editor = page.session.editor
     words = {
         False: ("off", "edit-several-off", "A press chooses one part"),

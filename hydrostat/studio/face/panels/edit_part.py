@@ -106,7 +106,7 @@ def part_card(page: WindowPage) -> None:
 
 
 def _many(page: WindowPage, words: str) -> None:
-    """What can be done with several parts."""
+    """Build the actions on several parts."""
     editor = page.session.editor
     with ui.element("div").classes("studio-row"):
         ui.label(words).style("font-weight: 600")
@@ -228,7 +228,7 @@ def _mount(page: WindowPage, key: str) -> Show:
 
 
 def _sheath(page: WindowPage, key: str, part: Part) -> Show:
-    """Which segments run in a sheath, as chips in the order of the cable."""
+    """Build the choice of sheathed segments, as chips in the order of the cable."""
     cable = page.session.document.robot.cables[part.index]
     buttons: list[ui.button] = []
 

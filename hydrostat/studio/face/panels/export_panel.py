@@ -144,7 +144,7 @@ def _maker(
 
 
 def _result(page: WindowPage, export: Export, find: Callable[[], object], build: Callable[[], None]) -> None:
-    """What was made, drawn anew when it is another."""
+    """Build the card of an export result, redrawn when the result changes."""
     exporter = page.session.exporter
     room = ui.column().classes("export-room w-full gap-2").props(f'data-testid="result-{export}"')
     drawn: list[object] = [object()]

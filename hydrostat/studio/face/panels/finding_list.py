@@ -57,7 +57,7 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
 
 
 def _good(robot: Robot | None) -> str:
-    """That nothing is wrong; of a robot without cables, that little was looked at."""
+    """Return the text for a robot without findings; without cables, few checks apply."""
     if robot is None or robot.cables:
         return "Nothing is wrong."
     return "Nothing is wrong so far, but there are no cables yet: lay some in Edit, or let Design find them."

@@ -98,7 +98,7 @@ def held_card(page: WindowPage) -> None:
 
 
 def foretold_words(shape: RobotShape) -> str:
-    """Which answer is seen, and what networks say of theirs; "" where none are asked."""
+    """State of the shown answer and the networks' predicted error [mm], in words; "" without networks."""
     told = shape.foretold
     if told is None:
         return ""

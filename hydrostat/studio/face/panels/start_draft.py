@@ -59,7 +59,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
 
 
 def _state(page: WindowPage) -> Callable[[], None]:
-    """How far it is, or why it cannot be."""
+    """Build the progress of meshing, or the reason why it failed."""
     starter, jobs = page.session.starter, page.session.jobs
     with ui.element("div").classes("start-card") as busy, ui.row().classes("items-center w-full no-wrap"):
         ui.spinner(size="20px")
@@ -178,7 +178,7 @@ def _pictures() -> Callable[[Sketch | None], None]:
 
 
 def _skin() -> Callable[[SewnSkin | None], None]:
-    """Whether the skin of a body in space can be sewn."""
+    """Build the card on the skin of a body in space: its sewing, or why it cannot be sewn."""
     with ui.element("div").classes("start-card") as card:
         ui.label("Sewing its skin").classes("start-head")
         lines = ui.column().classes("gap-1 w-full").props('data-testid="sewing"')
@@ -297,7 +297,7 @@ def _is_flat(draft: BodyDraft) -> bool:
 
 
 def _level(draft: BodyDraft, flat: bool) -> str | None:
-    """Which fineness was asked for."""
+    """Return the mesh fineness that the draft asks for; None for a size of its own."""
     if draft.element_size is not None or (draft.nodes is not None and draft.nodes not in FINENESS[flat]):
         return None
     return LEVELS[1 if draft.nodes is None else FINENESS[flat].index(draft.nodes)]
