@@ -198,5 +198,5 @@ class Document:
     def _now(self) -> Change:
         past = self._past
         if not past:
-            raise InputError("no robot is open; choose one of the gallery, open a folder or bring a drawing")
+            raise InputError("no robot is open. Choose one from the gallery, open a folder or import a drawing")
         return past[-1]

@@ -73,7 +73,7 @@ class Slots:
     def take_live(self) -> None:
         """Begin work that goes on for as long as a person likes (InputError: too many do)."""
         if not self._live.acquire(blocking=False):
-            raise InputError("this machine does that for other rooms already; try again when they have ended it")
+            raise InputError("this machine is busy with other rooms. Try again when they have finished")
 
     def give_live(self) -> None:
         """Such work has ended."""
@@ -129,7 +129,7 @@ class Jobs:
         with self._lock:
             if self.running:
                 assert self.state is not None
-                raise InputError(f"{self.state.title} is still in progress; wait for it or stop it")
+                raise InputError(f"{self.state.title} is still running. Wait or stop it")
             if self._closed:
                 raise InputError("the studio is closing")
             self._worker, self.state = (self._ready() if self.slots is None else None), JobState(title=title)
@@ -180,7 +180,7 @@ class Jobs:
             try:
                 error = self._turn((function, arguments), on_part, on_done)
             except OSError as failed:
-                error = f"this machine begins no process for it ({failed}); try again in a moment"
+                error = f"cannot start a process ({failed}). Try again in a moment"
             finally:
                 if slots is not None:
                     slots.give()

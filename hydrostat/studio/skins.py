@@ -10,7 +10,7 @@ from hydrostat.robot import Body
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Jobs, Report, Slots
 
-TITLE = "Laying its skin flat, patch by patch"
+TITLE = "Flattening the skin, patch by patch"
 
 KEPT = 20  # so many skins are remembered
 
@@ -33,7 +33,7 @@ class SewnSkin:
     def words(self) -> str:
         """A line for the person, as `hydrostat check` prints it; "" where only the findings are to be told."""
         if self.sewing is None:
-            return f"{TITLE} …" if self.awaited else f"whether its skin can be sewn was not found: {self.error}"
+            return f"{TITLE} …" if self.awaited else f"skin pattern not computed: {self.error}"
         return "" if self.sewing.problems else f"skin: {self.sewing}"
 
     @property

@@ -94,7 +94,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint],
         across=1.06 * max([1.0, *(minutes for minutes, _ in (*errors, *way))]),
         up=1.18 * max([1e-3, *(error for _, error in (*errors, *way))]),
         name="error, mm",
-        below="minutes of sewing",
+        below="sewing time, min",
         whole=True,
     )
     points = [*errors, *way]
@@ -109,7 +109,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint],
     parts += _counts(candidates, places, chosen)
     counts = sorted({len(one.robot.winches) for one in candidates})
     keys = [(winch_count_colour(count), plural(count, "winch")) for count in counts]
-    return chart.drawn("".join([*parts, _legend(keys)]), label="error once built against minutes of sewing")
+    return chart.drawn("".join([*parts, _legend(keys)]), label="expected as-built error against sewing time")
 
 
 def _counts(candidates: Sequence[Candidate], places: Sequence[Place], chosen: int | None) -> Iterator[str]:

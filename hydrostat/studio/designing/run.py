@@ -35,7 +35,7 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
 def wished_poses(robot: Robot, wishes: Wishes) -> tuple[PoseTarget, ...]:
     """The poses to reach: those that are named and still there; all if none is (InputError: the robot has no pose)."""
     if not robot.poses:
-        raise InputError("there is no pose to design for; drag the body in Pose and store how it should be")
+        raise InputError("no poses to design for. Drag the body in Pose and store a pose")
     named = [pose for name, pose in robot.poses.items() if name in wishes.poses]
     return tuple(named or robot.poses.values())
 

@@ -99,18 +99,16 @@ class Hardware:
             HydrostatError: who is silent.
         """
         if not self.allowed:
-            raise InputError("motors of this machine are not for guests")
+            raise InputError("guests cannot use the motors of this machine")
         check_port(port)
         self.disconnect()
         robot, folder = self._document.robot, self._document.folder
         if not robot.winches:
-            raise InputError("this robot has no winches; press Design to find some")
+            raise InputError("this robot has no winches. Press Design to find some")
         if port == EMULATED:
             calibration = emulated_calibration(folder, robot)
         elif folder is None:
-            raise InputError(
-                f"save the robot first: {CALIBRATION} beside robot.toml says which motor turns which winch"
-            )
+            raise InputError(f"save the robot first. {CALIBRATION} next to robot.toml assigns motors to winches")
         else:
             calibration = read_calibration(folder, robot)
         with self._lock:
@@ -127,7 +125,7 @@ class Hardware:
         with self._lock:  # another window may have connected, or the studio closed, meanwhile
             if self._over.is_set() or self._link is not None or self._robot is not robot:
                 link.close()
-                raise HydrostatError(f"{port}: other motors were connected, or let go, meanwhile; connect again")
+                raise HydrostatError(f"{port}: the connection changed meanwhile. Connect again")
             self._link, self.port = link, port
         unjudged = not_judged(np.array([fact.constant for fact in facts]), names)
         missing = "" if link.state is LinkState.CALIBRATED else _CALIBRATE
@@ -172,7 +170,7 @@ class Hardware:
                 return
             if robot is not self._robot and not self._same(robot):
                 self.disconnect()
-                self.words = "the robot was changed, and its motors were let go: connect them anew"
+                self.words = "the robot changed: motors disconnected. Connect again"
                 return
             pulls = dict.fromkeys(self._names(robot), 0.0)
             for cable, tension in zip(robot.cables, shape.tensions.tolist(), strict=True):
@@ -197,7 +195,7 @@ class Hardware:
                     continue
             except Exception as error:  # noqa: BLE001 - whatever it is, motors stop, and this thread goes on
                 self._stand("")
-                self.words = f"the motors stopped: {error}"
+                self.words = f"motors stopped: {error}"
             with suppress(Exception):  # who shows it may have gone; this thread is who stops motors
                 self._ring()
 
@@ -248,5 +246,5 @@ class Hardware:
         return [winch.name for winch in robot.winches]
 
 
-_CALIBRATE = "; they are not calibrated: hydrostat calibrate finds their zeros"
+_CALIBRATE = "; not calibrated. Run hydrostat calibrate"
 """Reason why motors cannot be armed yet."""

@@ -47,7 +47,7 @@ def begin_cable(robot: Robot, at: Point, key: str = "") -> CableDraft:
 def end_cable(robot: Robot, draft: CableDraft, mirror: Mirror | None = None) -> Robot:
     """The robot with the cable, its winch if new, and their twins (InputError: no stopper, or a point outside)."""
     if len(draft.points) < 2:
-        raise InputError("a cable needs a stopper: click on the body where it shall end")
+        raise InputError("a cable needs a stopper. Click the body where the cable should end")
     winch, robot = draft.winch, robot if draft.winch is not None else add_winch(robot, draft.points[0])
     if winch is None:
         winch = robot.winches[-1].name

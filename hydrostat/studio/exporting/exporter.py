@@ -101,10 +101,10 @@ class Exporter(Stage):
     def make_kit(self, *, force: bool = False) -> None:
         """Make the kit as a job; if forced, even where it cannot be built well (InputError: no cables, or busy)."""
         if not self._document.robot.cables:
-            raise InputError("a kit needs cables; press Design, or place winches and cables by hand")
+            raise InputError("a kit needs cables. Press Design, or place winches and cables by hand")
         tension = wished_constraints(self._document.robot, self._document.work.wishes).tension_limit
         options = replace(self.options, tension=tension, force=force or self.options.force)
-        self._start(Export.KIT, "Making the kit", make_kit, options)
+        self._start(Export.KIT, "Building the kit", make_kit, options)
 
     def make_report(self) -> None:
         """Write the report, in a process of its own (InputError: other work is in progress)."""
@@ -117,7 +117,7 @@ class Exporter(Stage):
     def pictures_zip(self) -> Download:
         """All pictures in one file (InputError: there are none yet)."""
         if not self.pictures:
-            raise InputError("there are no pictures of this robot yet; draw them first")
+            raise InputError("no pictures of this robot yet. Draw them first")
         name = f"{file_name(self._document.robot.name)}_pictures"
         files = {picture.name: picture.content for picture in self.pictures}
         return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Pictures")

@@ -45,7 +45,7 @@ class Knob(ui.element, component="static/knob.js"):
         self.on("letgo", lambda: let_go())
 
 
-HINT = "Turn the knobs and press Add; move the playhead, turn them again, add again. Then play."
+HINT = "Turn the knobs and press Add. Move the playhead, turn the knobs and add again. Then play."
 
 
 class TimelineView(ui.element, component="static/timeline.js"):
@@ -94,7 +94,7 @@ class TimelineView(ui.element, component="static/timeline.js"):
 def winch_badge(mark: str, colour: str) -> None:
     """The mark of a winch in the kit, as W1, in its colour."""
     style = "border-radius: 4px; padding: 1px 4px; font-size: 11px; font-weight: 600; color: white; flex: none"
-    ui.label(mark).style(f"{style}; background: {colour}").tooltip("What the kit calls this winch")
+    ui.label(mark).style(f"{style}; background: {colour}").tooltip("Label of this winch in the kit")
 
 
 def _shares(robot: Robot, contractions: Mapping[str, float]) -> list[float]:

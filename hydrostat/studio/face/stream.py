@@ -81,7 +81,7 @@ class Stream:
             except InputError:
                 mistakes += 1
             except Exception:
-                logging.getLogger("hydrostat").exception("the studio stumbled over a message")
+                logging.getLogger("hydrostat").exception("error in the studio while handling a message")
                 mistakes += 1
             await asyncio.sleep(0)  # messages that wait in a row must not keep other screens waiting
         await screen.socket.close(1008)

@@ -137,9 +137,9 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
         if session.hardware.allowed:
             stop_button(page)
         undo = _tool("undo", "Undo", session.undo)
-        redo = _tool("redo", "Do again", session.redo)
+        redo = _tool("redo", "Redo", session.redo)
         save = _tool("save", "Save", ask_save.save)
-        more = ui.button(icon="arrow_drop_down", color=None).props('flat round dense aria-label="Save as, take home"')
+        more = ui.button(icon="arrow_drop_down", color=None).props('flat round dense aria-label="Save as, download"')
         with more.classes("studio-tool").style("margin-left: -10px; width: 22px"), ui.menu():
             _saving_menu(page, ask_save)
         if links is not None:
@@ -171,8 +171,8 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
 
 def _saving_menu(page: WindowPage, ask_save: SaveDialog) -> None:
     if not page.session.guest:
-        ui.menu_item("Save as ...", ask_save.save_as).props('data-testid="save-as"')
-    ui.menu_item("Take home as .zip", ask_save.take_home).props('data-testid="save-zip"').classes("no-wrap")
+        ui.menu_item("Save as…", ask_save.save_as).props('data-testid="save-as"')
+    ui.menu_item("Download as .zip", ask_save.take_home).props('data-testid="save-zip"').classes("no-wrap")
 
 
 def _tool(icon: str, words: str, action: Ask) -> ui.button:

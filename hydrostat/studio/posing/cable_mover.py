@@ -153,7 +153,7 @@ class CableMover(Mover):
         if not band:
             return ()
         name = max(band, key=lambda own: band[own])
-        return (f"friction: come to from above, markers end up to {1e3 * band[name]:.1f} mm elsewhere ({name})",)
+        return (f"friction hysteresis: after overshoot, {name} rests up to {1e3 * band[name]:.1f} mm away",)
 
     def _begin(self, pose: Equilibrium) -> None:
         self._pose, self._held, self._updates, self._still, self._near = pose, {}, 0, 0, False

@@ -82,5 +82,5 @@ class MuscleMover(Mover):
             contractions=np.zeros(len(robot.winches)),
             errors=errors,
             muscles=pulls / most,
-            notes=("as far as muscles bring this body",) if far else (),
+            notes=("muscle limit: target not reached",) if far else (),
         )

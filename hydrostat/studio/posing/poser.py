@@ -34,7 +34,7 @@ from hydrostat.studio.view.robot_things import MARKER, Bar, foretold_things, rob
 from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
 from hydrostat.studio.view.touching import touch_things
 
-READY = "getting ready ..."  # said while the physics of a robot is made
+READY = "preparing the physics…"  # said while the physics of a robot is made
 FARTHEST = 1.0  # no target is farther from the box of the body at rest, in sizes of the body
 TARGET_GHOST = "#8fb4d6"
 
@@ -198,7 +198,7 @@ class Poser(Stage):
             if mode is now.wish.mode:
                 return
             if mode is Mode.CABLES and not now.robot.cables:
-                raise InputError("this robot has no cables yet; find some in Design, or place them in Edit")
+                raise InputError("this robot has no cables yet. Find some in Design, or place them in Edit")
             ghost = None
             if mode is Mode.CABLES and now.wish.held:
                 ghost = Ghost(name="target", nodes=now.shape.nodes, colour=TARGET_GHOST)
@@ -219,7 +219,7 @@ class Poser(Stage):
         """Let go of a held point."""
         with self._lock:
             now = self._fit()
-            self._note(f"let go of {name}")
+            self._note(f"release {name}")
             left = {own: held for own, held in now.wish.held.items() if own != name}
             self._now = replace(now, wish=replace(now.wish, held=left))
             self._chosen = self._armed = ""

@@ -84,7 +84,7 @@ def sketched(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal
         usual = replace(TreeOptions(), phis=request.tree_options.phis)
         found = propose_trees(posed, replace(request, options=usual), [activation], body=body)
     if found is None:
-        return Proposal(words="no cables fit these muscles; bend the body more, or ask for fewer in Design")
+        return Proposal(words="no cables found for these muscles. Bend the body more, or ask for fewer in Design")
     reached = solve_ik(Simulation(found, body=body), posed.pose(POSE), options=OPTIONS)
     return Proposal(winches=found.winches, cables=found.cables, error=reached.rms_error)
 

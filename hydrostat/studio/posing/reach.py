@@ -31,7 +31,7 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
     last, held, places = simulation.rest, 0, []
     rubs = simulation.assembly.has_history  # the way counts there
     for index, contractions in enumerate(spread(robot, count)):
-        report.progress("trying poses", index, count)
+        report.progress("sampling poses", index, count)
         try:
             pose = simulation.solve(contractions, start=None if rubs else last, strict=False)
         except HydrostatError:
@@ -118,14 +118,14 @@ class MarkerReach:
         """Begin to look where a marker can go (InputError: no such marker, no cables, or other work is in progress)."""
         robot, tension = self._document.robot, self._document.work.wishes.tension
         if _place(robot, marker) is None:
-            raise InputError(f'there is no marker "{marker}"; choose one')
+            raise InputError(f'unknown marker "{marker}"')
         if not robot.cables:
-            raise InputError("this robot has no cables yet; find some in Design, or place them in Edit")
+            raise InputError("this robot has no cables yet. Find some in Design, or place them in Edit")
         before, search = self._search, _ReachSearch(robot, marker, tension)
         self._search = search  # work may tell something, or be over, before it is said to have begun
         try:
             self._jobs.start(
-                f"Reach of {marker}",
+                f"Workspace of {marker}",
                 sweep,
                 robot,
                 marker,

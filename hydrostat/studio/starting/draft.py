@@ -87,7 +87,7 @@ def new_draft(name: str, content: bytes) -> BodyDraft:
     """A draft of a file that a person brings, nothing asked yet (InputError: empty, too large, or of no known kind)."""
     file = safe_name(name)
     if not content:
-        raise InputError(f"{file}: the file is empty; export it again")
+        raise InputError(f"{file}: file is empty. Export it again")
     if len(content) > MOST_BYTES:
         raise InputError(f"{file}: has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read")
     material = "polyester fibre" if file.endswith(OUTLINE_SUFFIXES) else "flexfoam-it x"
@@ -103,8 +103,8 @@ def safe_name(name: str) -> str:
     if suffix not in UPLOAD_SUFFIXES:
         shown = quote(plain if len(plain) <= 60 else plain[:28] + "..." + plain[-28:])
         if suffix in _CAD:
-            raise InputError(f"{shown}: CAD files are not read; export it as STL or 3MF")
-        raise InputError(f"{shown}: cannot be read; bring a file that ends in {', '.join(UPLOAD_SUFFIXES)}")
+            raise InputError(f"{shown}: CAD files are not supported. Export it as STL or 3MF")
+        raise InputError(f"{shown}: file type not supported. Available: {', '.join(UPLOAD_SUFFIXES)}")
     stem = re.sub(r"[^\w-]+", "_", stem)[:_LONGEST_STEM].strip("_-")
     return (stem or "body") + suffix
 

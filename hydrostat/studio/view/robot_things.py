@@ -104,7 +104,7 @@ def foretold_things(shape: RobotShape) -> list[Thing]:
     if foretold is None or foretold.exact:
         return []
     return [
-        Dot(at=place, look=Look.MARKER, colour=FORETOLD, label="by networks", stuck=False)
+        Dot(at=place, look=Look.MARKER, colour=FORETOLD, label="predicted", stuck=False)
         for place in foretold.markers.values()
     ]
 

@@ -195,12 +195,12 @@ def test_poses_are_chosen_renamed_and_deleted(starfish: Robot, document: Documen
         poser.show_pose("hello")
     with pytest.raises(InputError, match="already"):
         poser.rename_pose(order[0], order[1])
-    with pytest.raises(InputError, match="needs a name"):
+    with pytest.raises(InputError, match="pose name missing"):
         poser.rename_pose(order[0], "  ")
 
 
 def test_nothing_held_is_no_pose(poser: Poser) -> None:
-    with pytest.raises(InputError, match="nothing is held"):
+    with pytest.raises(InputError, match="no targets yet"):
         poser.store("empty")
 
 

@@ -165,7 +165,7 @@ def test_an_outline_without_any_pin_is_refused() -> None:
     """Oracle: InputError that says what to do; a box far from the body."""
     work = starfish()
     far = tuple(replace(corner, x=corner.x + 800) for corner in SQUARE)
-    with pytest.raises(InputError, match="no pin would lie"):
+    with pytest.raises(InputError, match="no pin lies inside"):
         Outlining((far,), work.robot).applied(work)
 
 
