@@ -77,7 +77,7 @@ def test_what_is_drawn_is_what_is_read() -> None:
             "crosses itself at (50, 50) mm",
         ),
         ((SQUARE, (LoopCorner(40, 0), LoopCorner(60, 0), LoopCorner(60, 10))), "crossed or touched by a hole"),
-        (((LoopCorner(0, 0), LoopCorner(1, 0)),), "three corners at least"),
+        (((LoopCorner(0, 0), LoopCorner(1, 0)),), "(minimum 3)"),
         (((LoopCorner(0, 0), LoopCorner(1, 0), LoopCorner(2, 0)),), "no area"),
     ],
 )
