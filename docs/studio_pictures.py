@@ -181,7 +181,7 @@ def take_hand(browser: Browser) -> None:
     """A body in space, in the dark, coloured by strain."""
     with window(browser, "cupping_hand", dark=True) as page:
         drag(page, "marker:index", 30, 110)
-        page.get_by_label("Colours").click()
+        page.get_by_label("Colors").click()
         page.get_by_text("Strain", exact=True).click()
         page.keyboard.press("Escape")
         keep(page, "hand")

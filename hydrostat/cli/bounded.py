@@ -21,7 +21,7 @@ _Result = TypeVar("_Result")
 
 
 def bounded(work: Callable[[], _Result], *, file: str, words: str, seconds: float, memory: int = MEMORY) -> _Result:
-    """What some work gives; compiled loops cannot be interrupted, but their process can.
+    """Run work in a child process and return its result; compiled loops cannot be interrupted, but a process can.
 
     Ctrl-C ends it at once. Where processes cannot be forked the work is done here, without a limit.
 
@@ -80,7 +80,7 @@ def _work(work: Callable[[], Any], writer: int, seconds: float) -> NoReturn:
 
 
 def _watched(child: int, reader: int, file: str, words: str, seconds: float, memory: int) -> bytes:
-    """What the child sends; ended when it takes longer or more."""
+    """Return the bytes that the child sends; end it when it takes longer or more memory."""
     parts: list[bytes] = []
     began = told = time.monotonic()
     usage = Path(f"/proc/{child}")

@@ -96,7 +96,7 @@ def _chosen(spools: str, robot: "Robot") -> list[int]:
 def _take_up(
     kind: str, bus: "Bus", file: Path, calibration: "Calibration", model: "Sequence[WinchPull]"
 ) -> "tuple[tuple[SlackCalibration, ...], Vector]":
-    """What is found on each winch, saved as soon as it is, and the constants of the motors."""
+    """Return each winch's slack calibration, saved as soon as it is found, and the constants of the motors."""
     import numpy as np
 
     from hydrostat import control
@@ -159,7 +159,7 @@ def _measure(
 
 
 def _asked(name: str) -> float:
-    """Where a person sees the mark on the ruler [m] (InputError: there is nobody to ask)."""
+    """Ask for the position of the mark on the ruler [m] (InputError: there is nobody to ask)."""
     while True:
         try:
             told = input(f"{name}: position of the mark on the ruler [mm]: ")

@@ -61,7 +61,7 @@ def check(
 
 
 def _print_judgement(robot: "Robot") -> None:
-    """What is to be said before a robot is built, as the studio says it: whatever its poses ask of motors."""
+    """Print the design review of a robot, as the studio does, regardless of the motor loads in its poses."""
     from hydrostat.design import Constraints, Diagnostic, Severity, review_robot
     from hydrostat.robot import in_words
 
@@ -94,7 +94,7 @@ FINDINGS = {"refused": "error", "limit": "note", "mind": "warning"}
 
 
 def _print_reach(robot: "Robot") -> None:
-    """What each marker can be brought to: by few poses for large bodies, not at all for the largest; soon told."""
+    """Print the workspace of each marker: from few poses for large bodies, not at all for the largest; quick."""
     from hydrostat.design import Constraints
     from hydrostat.errors import NotConvergedError
     from hydrostat.ik import find_reach
@@ -120,7 +120,7 @@ _LARGE = 5000  # nodes of a body from which on even the fewest poses take long
 
 
 def _print_out_of_plane(robot: "Robot") -> None:
-    """How far a flat robot comes out of its plane with its cables where they are, if that is quickly told."""
+    """Print the out-of-plane displacement of a stuffed flat robot with its cables as routed, if quickly computed."""
     from hydrostat.errors import NotConvergedError
     from hydrostat.simulation import filled_motion, quickly_filled
 
@@ -135,7 +135,7 @@ def _print_out_of_plane(robot: "Robot") -> None:
 
 
 def _print_filled(robot: "Robot") -> None:
-    """How far a flat robot comes out of its plane once it is filled, by face."""
+    """Print the out-of-plane displacement of a flat robot once it is stuffed, by cable face."""
     from hydrostat.robot import Face
     from hydrostat.simulation import filled_motion
 

@@ -226,7 +226,7 @@ def _tell_count(network: "Network", request: "DesignRequest") -> None:
 
 
 def _tell_next(network: "Network", out: Path, *, kit: bool) -> None:
-    """Where things are."""
+    """Print the locations of the results and the next command."""
     if network.alternatives:
         print(f"Alternatives: {out / 'alternatives'}")
     if kit:

@@ -1,4 +1,4 @@
-"""What `hydrostat design` writes and prints."""
+"""Output files and printed results of `hydrostat design`."""
 
 import json
 from dataclasses import fields
@@ -108,7 +108,7 @@ def print_poses(network: "Network", seconds: float) -> None:
 
 
 def _print_findings(network: "Network") -> None:
-    """What a kit would be refused for, and what is risky, by the loads that the design found."""
+    """Print errors that would prevent a kit, and warnings, for the loads that the design found."""
     from hydrostat.cli.check import FINDINGS
     from hydrostat.design import review_robot
     from hydrostat.fabrication import demand_of
@@ -119,7 +119,7 @@ def _print_findings(network: "Network") -> None:
 
 
 def _print_filled(network: "Network") -> None:
-    """What is reached on the filled body, if that was asked for."""
+    """Print the errors on the stuffed 3D body, if these were requested."""
     from hydrostat.units import plural
 
     filled = network.filled

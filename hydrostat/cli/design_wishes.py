@@ -1,4 +1,4 @@
-"""What `hydrostat design` was asked for, from its options and its file of constraints."""
+"""Design request of `hydrostat design`, from its options and its constraints file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class DesignArguments:
-    """What a design is asked on the command line, as text; None where the file or the default counts."""
+    """Command-line arguments of a design, as text; None where the file or the default counts."""
 
     poses: Sequence[str] = ()
     winches: str | None = None

@@ -141,7 +141,7 @@ def _motors(folder: Path, robot: "Robot", port: str | None, way: "CommandMapper"
 
 
 class _Shown:
-    """What is told of the motors: bars that are drawn anew on a terminal, a line now and then elsewhere."""
+    """Display of the motors: bars that are redrawn on a terminal, a line now and then elsewhere."""
 
     def __init__(self, kind: str, motors: "Motors") -> None:
         self.kind, self.motors, self._last, self._lines = kind, motors, -inf, 0

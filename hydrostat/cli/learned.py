@@ -42,5 +42,5 @@ def learned_start(simulation: "Simulation", model: "LearnedModel", target: "Pose
 
 
 def _root_mean_square(errors: "Mapping[str, float]") -> float:
-    """Of distances from targets, as everything else that is printed of a pose."""
+    """Root mean square of distances from targets [m], the same measure as in all other printed results of a pose."""
     return math.sqrt(sum(error**2 for error in errors.values()) / len(errors))

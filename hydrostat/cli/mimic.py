@@ -190,7 +190,7 @@ class _Session:
                 self.beat()
 
     def _key(self, number: int) -> str:
-        """What the person types; motors are told to stay meanwhile."""
+        """Return the key that the person types; motors are commanded to hold meanwhile."""
         self.say(f"pose {number + 1}: copy it, hold still, press Enter (q: quit)")
         while not select.select([sys.stdin], [], [], 0.0)[0]:
             self.beat()

@@ -1,4 +1,4 @@
-"""What options say as text: quantities with units, limits, contractions."""
+"""Parsing of options given as text: quantities with units, limits, contractions."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
@@ -44,12 +44,12 @@ def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = Fal
 
 
 def asked(option: str, text: str | None, dimension: "Dimension", *, zero: bool = False) -> float | None:
-    """What `positive` gives; None for an option that is left out."""
+    """Parse an option like `positive`; return None for an option that is not given."""
     return None if text is None else positive(option, text, dimension, zero=zero)
 
 
 def middle(text: str, dim: int) -> "Vector":
-    """Where --at says that the middle of a thing is [m] (InputError: no number in mm for each axis)."""
+    """Parse the position of an object's center from --at [m] (InputError: not one number in mm for each axis)."""
     import numpy as np
 
     try:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Size(StrEnum):
-    """How much is sampled."""
+    """Size of the study: number of samples, by the time it takes."""
 
     MINUTES = "minutes"
     HOUR = "hour"
@@ -127,7 +127,7 @@ def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", ou
 def _study(
     size: Size, draw: str, robots: str | None, counts: str | None, targets: int | None, seeds: int | None
 ) -> "tuple[Study, list[str]]":
-    """What is compared, and on which robots."""
+    """Return the methods to compare, as a study, and the names of the robots."""
     from hydrostat.learning import LearnOptions, SamplingScheme, Study
 
     usual, draws = (
@@ -277,7 +277,7 @@ def _csv(rows: Sequence[Sequence[str]]) -> bytes:
 
 
 class _Usual(NamedTuple):
-    """What a size stands for."""
+    """Default settings of a study size."""
 
     robots: tuple[str, ...]
     counts: tuple[int, ...]
@@ -297,7 +297,7 @@ _SIZES = {
 """Robots, numbers of samples, targets, seeds, and how long our networks learn."""
 
 THINGS = ("table-5.1", "table-5.2", "figure-5.3", "figure-5.4", "figure-5.14")
-"""What can be reproduced."""
+"""Names of the tables and figures that can be reproduced."""
 
 _WORDS = (
     f"{'samples':>7}{'seed':>5}  {'method':22}{'mean':>8}{'%':>8}"

@@ -29,17 +29,17 @@ TRIALS = (
 """Experiments of the thesis that can be reproduced; figure-5.10 is figure 5.11 too."""
 
 POLICIES, GRADIENT = "table-policies", "table-gradient"
-"""What other ways to a policy leave, on the same actions and outcomes; and the best of them alone, on more goals."""
+"""Names of two tables: errors of other policy methods on equal actions and outcomes; the best alone, on more goals."""
 
 CERTIFIED = "certified, no policy"
-"""What inverse kinematics does with the equilibria that networks have learned from: their search, then exact steps."""
+"""Row for inverse kinematics with the equilibria that networks were trained on: their search, then exact steps."""
 
 SHARED = "figure-5.14-trial"
 """Trial and error beside others, of the pairs that it tried and of as many drawn evenly."""
 
 
 class HowMuch(NamedTuple):
-    """How long trials take.
+    """Size of trials, and settings that override it.
 
     Attributes:
         size: minutes, hour or full.
@@ -224,7 +224,7 @@ def _line(judged: "Judged", width: float) -> str:
 
 
 class _Trials(NamedTuple):
-    """What a size stands for."""
+    """Default settings of trials of one size."""
 
     samples: int
     seeds: int

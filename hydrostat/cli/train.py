@@ -187,7 +187,7 @@ def train(
 
 
 def _thing(robot: "Robot", text: str, at: str | None, mass: str, friction: float | None) -> "Obstacle":
-    """What is pushed or turned, in its place."""
+    """Return the object to push or turn, at its position."""
     from hydrostat.cli.options import middle, positive
     from hydrostat.grasp import moved_thing, read_thing
     from hydrostat.units import MASS
@@ -203,7 +203,7 @@ def _row(text: str) -> None:
 
 
 def _line(point: "CurvePoint", word: str, factor: float) -> str:
-    """How good a policy was, in numbers."""
+    """Format the results of a policy at one point of its training curve as a line of a table."""
     lengths = "  ".join(f"{factor * value:4.2f} {word}" for value in (point.mean, point.median, point.worst))
     return f"{point.steps:11}{point.equilibria:12}  {lengths}  {100 * point.success:3.0f} %"
 

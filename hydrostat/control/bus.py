@@ -18,7 +18,7 @@ def steady() -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class MotorFacts:
-    """What a motor has answered.
+    """Identification answer of one motor.
 
     Attributes:
         number: of the motor on its bus.
@@ -37,7 +37,7 @@ class MotorFacts:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reading:
-    """What was last heard of each motor; what it never told is NaN.
+    """Latest state of each motor; quantities that a motor never reported are NaN.
 
     Attributes:
         angles: of the spools, rising as they take cable in [rad].
@@ -113,7 +113,7 @@ class Bus(ABC):
 
     @abstractmethod
     def read(self) -> Reading:
-        """What was last heard; a motor that is silent keeps its old stamp (HydrostatError: the line itself is gone)."""
+        """Return the latest reading; a silent motor keeps its old stamp (HydrostatError: the line itself is gone)."""
 
     @abstractmethod
     def write(self, angles: Vector, speeds: Vector) -> None:

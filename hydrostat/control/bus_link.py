@@ -33,7 +33,7 @@ BEHIND, PATIENCE = 1e-3, 0.5
 
 
 class LinkState(StrEnum):
-    """How far a link is."""
+    """State of a link, from closed to armed."""
 
     CLOSED = "closed"
     IDENTIFIED = "identified: every motor answered"
@@ -46,7 +46,7 @@ class LinkState(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class LinkLimits:
-    """What motors may do.
+    """Speed and acceleration limits of the motors.
 
     Attributes:
         speed: of cables, at most [m/s].
@@ -112,7 +112,7 @@ class BusLink(Link):
 
     @property
     def currents(self) -> Vector | None:
-        """What motors draw, as last heard of, positive as they take cable in [A]."""
+        """Latest motor currents, positive when reeling in [A]; None before the first reading."""
         return None if self.reading is None else self._taking(self.reading)
 
     def identify(self) -> tuple[MotorFacts, ...]:

@@ -17,7 +17,7 @@ from hydrostat.robot import Robot, replace_file
 
 CALIBRATION = "motors.toml"
 EMULATED_CALIBRATION = "motors_emulated.toml"
-"""What emulated motors were found to be: kept apart, or trying it out would replace what was measured on real ones."""
+"""Calibration file of emulated motors, kept apart: a trial run must not replace what was measured on real motors."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,7 +87,7 @@ class WinchMotor:
 
     @cached_property
     def _pieces(self) -> tuple[tuple[float, float, float], ...]:
-        """Where each straight piece of the curve begins [rad], [m], and its radius [m]; the last piece first."""
+        """Start of each straight piece of the curve [rad], [m], and its radius [m]; the last piece first."""
         points = ((0.0, 0.0), *self.curve)
         return tuple((*one, (two[1] - one[1]) / (two[0] - one[0])) for one, two in pairwise(points))[::-1]
 
@@ -104,7 +104,7 @@ class Calibration:
 
     @property
     def boards(self) -> int:
-        """How many boards or lines its motors hang on."""
+        """Number of boards or serial lines that its motors are connected to."""
         return max(motor.board for motor in self.motors)
 
     def places(self, board: int) -> list[int]:
@@ -113,7 +113,7 @@ class Calibration:
 
     @property
     def done(self) -> bool:
-        """Whether all zeros are known."""
+        """True if the zeros of all motors are known."""
         return all(spool.zero is not None for spool in self.motors)
 
     def check(self, robot: Robot) -> None:

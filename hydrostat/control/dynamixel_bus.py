@@ -19,7 +19,7 @@ from hydrostat.errors import HydrostatError
 
 @dataclass(frozen=True)
 class DynamixelModel:
-    """What a model can do.
+    """Ratings and capabilities of a servo model.
 
     Attributes:
         title: as it is sold.
@@ -66,7 +66,7 @@ PROOF, SOON = 5.0 * pi / 180.0, 0.115
 """Angle that each is asked to turn while its watchdog is tried [rad], and the time that this takes [s]: whoever tries
 may die just then, and a motor whose watchdog is deaf goes on to its goal."""
 TRIED = 2
-"""Of the watchdog while it is tried [20 ms]: it should let a motor turn by a third of that angle."""
+"""Watchdog time while the watchdog is tested [20 ms]: it should let a motor turn by a third of that angle."""
 
 
 class DynamixelBus(ServoBus):
@@ -126,7 +126,7 @@ class DynamixelBus(ServoBus):
             raise self._refused(min(set(self._numbers) - armed), WATCHDOG)
 
     def read(self) -> Reading:
-        """What was last heard of each."""
+        """Return the latest reading of each servo."""
         with self._lock:
             last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
             stamps, faults = self._last.stamps.copy(), list(self._last.faults)
@@ -162,7 +162,7 @@ class DynamixelBus(ServoBus):
             self._set(number, PWM, max(1, round(FULL_PWM * min(current / model.stall, 1.0))), 2)
 
     def _steps(self, number: int) -> int:
-        """Where a servo was last heard to be."""
+        """Latest reported position of a servo [ticks]."""
         return round(float(self._last.angles[self._numbers.index(number)]) / TICK)
 
     def _hold(self, angles: dict[int, float]) -> None:
@@ -214,7 +214,7 @@ class DynamixelBus(ServoBus):
         return {number for number, each in zip(self._numbers, proved.tolist(), strict=True) if each}
 
     def _heard_anew(self) -> Vector:
-        """Where each is, by an answer to a question of now [rad]; NaN where five questions brought none."""
+        """Positions by answers to a fresh query [rad]; NaN where five queries brought none."""
         asked, reading = self._clock(), self.read()
         for _ in range(4):
             if (reading.stamps > asked).all():
@@ -237,7 +237,7 @@ class DynamixelBus(ServoBus):
         raise self._silent(number)
 
     def _fault(self, packet: Packet) -> str:
-        """What a servo reports with its answer, in words."""
+        """Fault that a servo reports with its answer, in words; empty for none."""
         if not packet.content[0] & 0x80:
             return ""
         told = self._get(packet.number, HARDWARE, 1)

@@ -36,7 +36,7 @@ from hydrostat.control.dynamixel_packets import (
 
 @dataclass
 class InjectedFaults:
-    """What is wrong with a servo.
+    """Faults injected into an emulated servo.
 
     Attributes:
         deaf: it hears nothing and says nothing, and goes on with what it was told.
@@ -106,7 +106,7 @@ class EmulatedServo:
 
     @property
     def torque(self) -> float:
-        """What the motor holds against [N m]."""
+        """Load torque at the present angle [N m]."""
         return self.load(self.angle)
 
     @property

@@ -75,7 +75,7 @@ class FeetechBus(ServoBus):
             self._holding = True
 
     def read(self) -> Reading:
-        """What was last heard of each."""
+        """Return the latest reading of each servo."""
         with self._lock:
             last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
             stamps, faults = self._last.stamps.copy(), list(self._last.faults)

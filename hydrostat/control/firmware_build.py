@@ -17,7 +17,7 @@ from hydrostat.fabrication import BOARDS, BoardKind
 from hydrostat.robot import Robot, replace_file
 
 SPARE = 0.025
-"""What a motor may turn beyond travel and release [m]: slack that calibration takes up."""
+"""Cable length that a motor may turn beyond travel and release [m]: slack that calibration takes up."""
 
 
 def on_boards(calibration: Calibration, boards: Sequence[str]) -> Calibration:

@@ -107,7 +107,7 @@ class FirmwareBus(Bus):
             self._must(f"A {self._bounds}", "its bounds of current")
 
     def read(self) -> Reading:
-        """What was last heard of each."""
+        """Return the latest reading of each motor."""
         with self._lock:
             told = (self._ask("R") or "").split()
             if len(told) == 3 + 2 * len(self._scale) and told[0] == "ok":
@@ -164,7 +164,7 @@ class FirmwareBus(Bus):
             raise HydrostatError(f"the board does not arm its motors: {ANEW}")
 
     def _stops_by_itself(self, deadline: float) -> bool:
-        """Whether the board, armed where it stands, says that silence stopped it."""
+        """True if the board, armed at its present position, reports that silence stopped it."""
         self._must("A" + f" {round(1e3 * PROOF)}" * len(self._scale), "a small current")
         self._wait(deadline + 0.05)
         return (self._ask("R") or "").startswith("ok silent ")

@@ -10,7 +10,7 @@ from hydrostat.arrays import Vector
 
 @dataclass(frozen=True, kw_only=True)
 class GuardLimits:
-    """How far motors and model may differ.
+    """Allowed difference between measured and modeled cable tension.
 
     Attributes:
         times: a cable may pull so many times what the model says ...
@@ -67,7 +67,7 @@ class TensionGuard:
         self._missed = np.full(len(self._names), np.nan)
 
     def fault(self, contractions: Vector, currents: Vector, radii: Vector, now: float) -> str:
-        """What is wrong, in words; empty for nothing.
+        """Return the fault in words; empty for none.
 
         Args:
             contractions: that the winches have [m].

@@ -28,7 +28,7 @@ class JoinedBus(Bus):
 
     @property
     def lost_position(self) -> bool:  # type: ignore[override]
-        """Whether motors of any part have lost their count."""
+        """True if motors of any part have lost their turn count."""
         return any(bus.lost_position for bus, _ in self._parts)
 
     def identify(self) -> tuple[MotorFacts, ...]:
@@ -53,7 +53,7 @@ class JoinedBus(Bus):
         self._each(lambda bus, _: bus.restart_watchdog())
 
     def read(self) -> Reading:
-        """What was last heard of all motors."""
+        """Return the latest reading of all motors."""
         told = self._each(lambda bus, _: bus.read())
 
         def joined(name: str) -> Vector:
@@ -93,7 +93,7 @@ class JoinedBus(Bus):
                 bus.close()
 
     def _each(self, ask: Callable[[Bus, np.ndarray], _Item]) -> list[_Item]:
-        """What each part answers, asked with the places of its motors; what goes wrong is told with its number."""
+        """Answers of all parts, each asked with the places of its motors; errors carry the number of the part."""
         told = []
         for number, (bus, places) in enumerate(self._parts, 1):
             try:
@@ -103,7 +103,7 @@ class JoinedBus(Bus):
         return told
 
     def _whole(self, told: Sequence[Sequence[_Item]]) -> tuple[_Item, ...]:
-        """What the parts tell of their motors, in the order of the whole."""
+        """Items that the parts report of their motors, in the order of the whole bus."""
         found: dict[int, _Item] = {}
         for (_, places), items in zip(self._parts, told, strict=True):
             found |= zip(places.tolist(), items, strict=True)

@@ -35,7 +35,7 @@ class Link(ABC):
 
     @property
     def currents(self) -> Vector | None:
-        """What motors draw, as last heard of, positive as they take cable in [A]; None where there are no currents."""
+        """Latest motor currents, positive when reeling in [A]; None where there are no currents."""
         return None
 
     @abstractmethod

@@ -17,7 +17,7 @@ STEPS = 8
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WinchPull:
-    """What a winch feels when it alone takes cable in.
+    """Cable tension of a winch as a function of its contraction, with all other winches at rest.
 
     Attributes:
         taut: contraction at which its first cable begins to pull at rest [m].
@@ -41,7 +41,7 @@ class WinchPull:
 
 
 class TensionLookup:
-    """What the cables of each winch pull together [N], by contractions [m], in poses that were solved.
+    """Total cable tension of each winch [N], interpolated by contractions [m] between solved poses.
 
     Between poses the nearest two are mixed by their distances. One thread may add while others ask.
     """
@@ -82,7 +82,7 @@ class TensionLookup:
 
 
 def tensions_along(robot: Robot, profile: ContractionProfile) -> Callable[[Vector], Vector]:
-    """What the cables of each winch pull together [N], by contractions [m] that lie near a profile or its way there.
+    """Return total cable tensions of each winch [N] by contractions [m], near a profile and the path to its start.
 
     Equilibria are solved at even steps of the way, from one to the next; between, the nearest two are mixed by their
     distances. A pose that is not found is left out.
@@ -112,7 +112,7 @@ def winch_tensions(robot: Robot, tensions: Vector) -> Vector:
 
 
 def winch_pulls(robot: Robot, most: float = 0.02) -> tuple[WinchPull, ...]:
-    """What each winch feels when it alone takes cable in, up to so much beyond its edge [m], by simulation."""
+    """Simulate each winch alone; return its tension curve up to `most` beyond the edge, where it goes taut [m]."""
     simulation, found = Simulation(robot), []
     for index, winch in enumerate(robot.winches):
         slack = [

@@ -20,7 +20,7 @@ from hydrostat.robot import Robot
 from hydrostat.units import plural
 
 EMULATED = "emulated"
-"""What is written for motors that are not there, but behave like servos."""
+"""Port name that selects emulated servos instead of hardware."""
 
 
 class EmulatedBus(DynamixelBus):
@@ -163,4 +163,4 @@ _KINDS: dict[str, tuple[Callable[[Port, Robot, Calibration, int], Bus], int]] = 
     "feetech": (_feetech, 1_000_000),
     "firmware": (_firmware, 250_000),
 }
-"""What makes a bus of a line and the number of its board, and its usual baud rate."""
+"""Factory of each kind of bus, called with a line and its board number, and the usual baud rate [bit/s]."""

@@ -17,7 +17,7 @@ from hydrostat.errors import HydrostatError
 TURNED = 0.75 * 2 * np.pi
 """No servo turns so far between two answers [rad]: who says so has begun to count anew."""
 LATELY = 0.1
-"""Where it was heard so long ago [s] a motor may be told to stand before it is asked where it is."""
+"""Maximum age of a reading [s] by which a motor may be told to hold without asking for its position first."""
 ANEW = "lost power for a moment, and its turn count. Run hydrostat calibrate again"
 
 

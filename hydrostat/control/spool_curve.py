@@ -25,7 +25,7 @@ LIKELY = (0.7, 1.6)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpoolCurve:
-    """What was measured on a spool.
+    """Ruler measurement of one spool.
 
     Attributes:
         motor: with its radius and curve.

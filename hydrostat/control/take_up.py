@@ -36,7 +36,7 @@ OLD = 0.2
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SlackCalibration:
-    """What was found on a winch.
+    """Calibrated slack and zero of one winch.
 
     Attributes:
         motor: with its zero.

@@ -12,7 +12,7 @@ from hydrostat.robot import Mount, Robot
 
 
 class Attachments:
-    """What a robot's body carries: its cables, winches and markers."""
+    """Painter of the parts on a robot's body: cables, winches and markers."""
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot

@@ -83,7 +83,7 @@ def _tracked(robot: Robot, found: Multistability, branches: Sequence[Branch]) ->
 
 
 def _moved(robot: Robot, pose: Equilibrium, name: str) -> float:
-    """How far a marker is from its place at rest, or the node that moves most [m]."""
+    """Displacement of a marker from its rest position, or of the node that moves most if no name is given [m]."""
     if not name:
         return float(np.linalg.norm(pose.nodes - robot.body.mesh.nodes, axis=1).max())
     at = next(marker.at for marker in robot.markers if marker.name == name)
@@ -153,7 +153,7 @@ def _chart(figure: Figure, index: int, rows: int, columns: int, *, last: bool) -
 
 
 def _draw_chart(axes: Axes, robot: Robot, name: str, found: Multistability, branches: Sequence[Branch]) -> None:
-    """How far one marker moves along the branches."""
+    """Draw the displacement of one marker along the branches [mm]."""
     title = f"{shorten(name)} moved [mm]" if name else "largest displacement [mm]"
     axes.set_title(title, loc="left", color=INK, fontsize=8, fontweight="bold", parse_math=False)
     for branch in branches:
@@ -193,7 +193,7 @@ def _zoom(axes: Axes, begin: float, heights: Sequence[float]) -> None:
 
 
 def _draw_key(axes: Axes, branches: Sequence[Branch]) -> None:
-    """What lines and marks mean, where there is more than one kind of them."""
+    """Draw the legend of lines and marks, if there is more than one kind."""
     dot = {"linestyle": "none", "color": ERROR, "markersize": 4.5}
     keys = {
         "stable": Line2D([], [], color=INK, linewidth=1.4),

@@ -71,7 +71,7 @@ def write_calibration_page(
 
 
 def _spools(curves: Sequence[SpoolCurve]) -> tuple[Html, ...]:
-    """What a ruler found on spools: a table and a picture of each."""
+    """Ruler measurements of spools: a table, and a picture of each."""
     rows, pictures = [], []
     for index, each in enumerate(curves):
         lengths = (each.motor.radius, each.motor.reach(float(each.readings[-1])), each.more, each.scatter)
@@ -95,7 +95,7 @@ def _draw_spool(found: SpoolCurve) -> Figure:
 
 
 def reach(found: SlackCalibration) -> float:
-    """How far beyond the edge a winch was pulled [m]."""
+    """Cable length that a winch reeled in beyond the edge, where its cable goes taut [m]."""
     return max(float(found.places.max()), 1e-3)
 
 

@@ -29,7 +29,7 @@ class DrawnBody:
     sight: tuple[Camera, Place, Render, float] | None = None  # with its shift and the shortest side [mm]; None: flat
 
     def fades(self, points: Points) -> Vector:
-        """How far things at points [m] fade behind the body: 0 in front of it, towards 1 behind it."""
+        """Fading of objects at points [m] behind the body: 0 in front of it, towards 1 behind it."""
         if self.sight is None:
             return np.zeros(len(points))
         camera, _, image, thickness = self.sight

@@ -14,7 +14,7 @@ from hydrostat.simulation import Equilibrium, Motion
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Frame:
-    """What is to be seen at one instant."""
+    """Content of a motion picture at one instant."""
 
     nodes: Nodes  # positions of the nodes [m]
     tensions: Vector  # of each cable [N]

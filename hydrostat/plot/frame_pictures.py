@@ -96,7 +96,7 @@ def _seen(robot: Robot, carried: Attachments, frames: Sequence[Frame]) -> Spread
 
 
 def _alike(one: Frame, two: Frame) -> bool:
-    """Whether two frames look the same."""
+    """True if two frames look the same."""
     if one is two:
         return True
     return (

@@ -127,7 +127,7 @@ class Glb:
         return b"".join([b"glTF", *sizes[:2], sizes[2], b"JSON", words, sizes[3], b"BIN\0", bytes(self._bytes)])
 
     def _target(self, shape: GlbPart, key: int) -> dict[str, int]:
-        """What a key adds to the mesh."""
+        """Morph target of a key: accessors of the differences from the first key."""
         base = shape.places[0].astype(np.float32)
         target = {
             "POSITION": self._array(shape.places[key] - base, bounds=True),

@@ -35,7 +35,7 @@ class LivePage:
 
     @property
     def address(self) -> str:
-        """Where it is; from now on it can be opened there."""
+        """Start the server if it is not running, and return the address of the page."""
         if self._server is None:
             self._ended = False
             self._server = _Server(("127.0.0.1", 0), _handler(self))
@@ -94,7 +94,7 @@ class _Server(ThreadingHTTPServer):
 
 
 def _handler(live: LivePage) -> type[BaseHTTPRequestHandler]:
-    """What answers requests to a page."""
+    """Return the class of HTTP handlers for a page."""
 
     class Answers(BaseHTTPRequestHandler):
         def do_GET(self) -> None:

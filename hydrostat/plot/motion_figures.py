@@ -23,9 +23,10 @@ MOST_NAMES = 12  # so many lines are named; of more, the others are only drawn
 
 
 def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, width: float = WIDTH) -> Figure:
-    """How far each marker is from where it began, what each winch takes in, and what each cable pulls, over time.
+    """Draw marker displacements, winch contractions and cable tensions over time.
 
-    A marker with the name of a winch has its colour. The title is the robot's name if left out; width in inches.
+    Displacements are from the first instant. A marker with the name of a winch has its colour.
+    The title is the robot's name if left out; width in inches.
     """
     figure = Figure(figsize=(width, 0.95 * width), layout="constrained")
     FigureCanvasAgg(figure)

@@ -72,7 +72,7 @@ def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
 
 
 def _asked(robot: Robot) -> Spread:
-    """How far markers shall go in the poses of a robot [m]; of things beside it, where these are."""
+    """Displacements of markers to their targets in the poses of a robot [m], or offsets of obstacles next to it."""
     nodes = robot.body.mesh.nodes
     beside = [thing.frame()[0] for thing in robot.obstacles if thing.shape is not ObstacleShape.PLANE]
     if beside:
@@ -83,7 +83,7 @@ def _asked(robot: Robot) -> Spread:
 
 
 def way_up(robot: Robot) -> Vector:
-    """What is up for a robot in space, a unit vector: against gravity; z where there is none."""
+    """Upward unit vector for a robot in space: against gravity; z where there is none."""
     if robot.gravity is None or not any(robot.gravity):
         return np.array([0.0, 0.0, 1.0])
     return -np.array(robot.gravity) / np.linalg.norm(robot.gravity)
@@ -133,7 +133,7 @@ def _lay_out(sides: Sequence[Place], paper: float) -> _ViewLayout:
 
 
 def _around(border: tuple[float, float, float, float]) -> Place:
-    """What a border of left, right, lower and upper width adds to a box."""
+    """Size that a border of left, right, lower and upper width adds to a box."""
     return np.array([border[0] + border[1], border[2] + border[3]])
 
 

@@ -172,7 +172,7 @@ class SpacePane(Pane):
         return self.pixel or fit_pixel(sheet, np.ptp(spots[:, :2], axis=0))
 
     def _density(self, sheet: PictureSheet) -> float:
-        """How strongly the edges of the mesh may be drawn: less, the closer together they are."""
+        """Opacity of the mesh edges from 0 to 1: lower, the closer together they are."""
         mesh = self.robot.body.mesh
         sides = np.linalg.norm(np.diff(mesh.nodes[mesh.boundary[:, :2]], axis=1)[:, 0], axis=1)
         return float(np.clip(MILLIMETRES * np.median(sides) / (9 * sheet.scale), 0.0, 1.0))
@@ -198,7 +198,7 @@ def lay_image(sheet: PictureSheet, image: Render, shift: Place, *, seam: str = S
 
 
 def _draw_pins(sheet: PictureSheet, robot: Robot, rings: list[Places]) -> None:
-    """What holds the robot: a hatched field for each pin, cut along the body's rings [mm]."""
+    """Draw the boundary conditions: a hatched field for each pin, cut along the body's rings [mm]."""
     body = shapely.Polygon()
     for ring in rings:  # a body of several parts, with holes
         body = body.symmetric_difference(shapely.Polygon(ring).buffer(0))

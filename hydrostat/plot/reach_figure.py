@@ -45,7 +45,7 @@ def draw_reach(
 
 
 def _draw_fields(sheet: PictureSheet, cells: Sequence[Places], colour: str) -> None:
-    """What convex cells cover together [mm]; where a marker only goes to and fro, a line."""
+    """Draw the union of convex cells [mm]; a line where a marker only moves to and fro."""
     hulls = [shapely.buffer(shapely.convex_hull(shapely.MultiPoint(cell)), 0.6 * sheet.scale) for cell in cells]
     for field in shapely.get_parts(shapely.union_all(hulls)):
         rings = [field.exterior, *field.interiors]

@@ -78,7 +78,7 @@ def body_part(robot: Robot) -> Html:
 
 
 def target_chapter(robot: Robot, poses: Iterable[PoseTarget]) -> Chapter:
-    """What each pose asks of the markers."""
+    """Return the chapter on the marker targets of each pose."""
     words = (
         "Each pose names targets for markers: a cross is a target; a marker with a cross and no arrow should stay, "
         "and one that is not drawn may go anywhere."
@@ -133,7 +133,7 @@ def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> H
 
 
 def reach_chapters(network: Network) -> list[Chapter]:
-    """What each marker can be brought to beside the poses that were asked for; nothing where no pose is found."""
+    """Return the chapters on the workspace of each marker beyond the requested poses; none where no pose is found."""
     robot = network.robot
     limit = network.constraints.tension_limit
     reaches = find_reach(Simulation(robot), tension=limit, count=MOST_TRIED)
@@ -150,7 +150,7 @@ def reach_chapters(network: Network) -> list[Chapter]:
 
 
 def muscle_chapters(network: Network, trace: TreeTrace) -> list[Chapter]:
-    """What muscles would do, and the routes that grew from them; nothing where there were no muscles."""
+    """Return the chapters on muscle activations and the routes grown from them; none where there were no muscles."""
     return [_activations(network, trace), _routes(network, trace)] if trace.activations else []
 
 
@@ -188,7 +188,7 @@ CHART = 7.2  # width of a chart [inch]
 
 
 def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
-    """How the network grew; nothing where no stage was kept."""
+    """Return the chapter on the growth of the network; none where no stage was kept."""
     if not trace.stages:
         return []
     words = (
@@ -243,7 +243,7 @@ def evenly(count: int, most: int) -> list[int]:
 
 
 def certificate_words(error: float, certificate: Certificate | None) -> str:
-    """What first-order optimality says of a network of some error [m]."""
+    """Return the first-order optimality of a network with some error [m], in words."""
     if certificate is None:
         return "The search was stopped before it could tell what one more cable would gain."
     gain = (

@@ -26,7 +26,7 @@ def filled_chapters(network: Network) -> list[Chapter]:
 
 
 def _played(network: Network) -> str:
-    """How far markers leave the plane with the commands of the flat model, if that is quickly told."""
+    """Return the out-of-plane displacement with the commands of the flat model, in words, if quickly computed."""
     pulled = [reached.pose.contractions for reached in network.reached]
     if network.robot.body.outline is None:
         return "How far it leaves the plane is told of drawings only, and this body is a mesh."
@@ -40,7 +40,7 @@ def _played(network: Network) -> str:
 
 
 def _judged(network: Network, filled: FilledReach) -> Html:
-    """What each pose reaches there, by commands that were found there."""
+    """Return a table of the pose errors on the stuffed 3D body, by commands that were found there [mm]."""
     rows = [
         (
             pose.wanted.name,

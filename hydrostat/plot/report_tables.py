@@ -126,7 +126,7 @@ def tension_table(robot: Robot, reached: IKResult) -> Html:
 
 
 def footer(network: Network, facts: Mapping[str, object]) -> Html:
-    """How the numbers came about, and what is needed to get them again."""
+    """Return the footer with the settings and versions that reproduce the numbers."""
     from hydrostat.version import __version__
 
     known = {

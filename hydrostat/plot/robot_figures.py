@@ -179,7 +179,7 @@ def draw_reached(
     outline: Outline | None = None,
     width: float = WIDTH,
 ) -> Figure:
-    """What the winches reach of a pose: targets as crosses, each marker's error as a red line with its millimetres.
+    """Draw the inverse-kinematics result of a pose: targets as crosses, marker errors as red lines labeled in mm.
 
     The title is the pose's name if left out, nothing if empty; the outline is the shape that a flat body should take,
     dashed; width in inches.
@@ -281,7 +281,7 @@ def _in_pose(
 
 
 def _rests(pose: Equilibrium) -> str:
-    """Whether a pose is an equilibrium, in words."""
+    """Equilibrium state of a pose, in words."""
     if not pose.result.converged:
         return f"not at rest under the given contractions: {pose.result.reason}"
     return "at rest under the given contractions" + ("" if pose.result.stable else ", on a saddle")

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 
 class Topic(StrEnum):
-    """What may have changed."""
+    """Topic of a change notification."""
 
     ROBOT = "robot"
     STAGE = "stage"

@@ -54,12 +54,12 @@ class Document:
 
     @property
     def is_open(self) -> bool:
-        """Whether there is a robot."""
+        """True if a robot is open."""
         return bool(self._past)
 
     @property
     def work(self) -> Work:
-        """What is worked on (InputError: no robot is open)."""
+        """Present work: robot, keyframes and design settings (InputError: no robot is open)."""
         return self._now.work
 
     @property
@@ -89,17 +89,17 @@ class Document:
 
     @property
     def saved(self) -> bool:
-        """Whether the file has all that was done."""
+        """True if all changes are saved."""
         return not self._past or self._past[-1].work is self._saved
 
     @property
     def undo_label(self) -> str:
-        """What would be undone; "" if nothing can be."""
+        """Label of the change that undo takes back; "" if there is none."""
         return self._past[-1].label if len(self._past) > 1 else ""
 
     @property
     def redo_label(self) -> str:
-        """What would be done again; "" if nothing can be."""
+        """Label of the change that redo makes again; "" if there is none."""
         return self._future[-1].label if self._future else ""
 
     def open(
@@ -198,5 +198,5 @@ class Document:
     def _now(self) -> Change:
         past = self._past
         if not past:
-            raise InputError("no robot is open; choose one of the gallery, open a folder or bring a drawing")
+            raise InputError("no robot is open. Choose one from the gallery, open a folder or import a drawing")
         return past[-1]

@@ -32,7 +32,7 @@ class JobState:
 
 
 class Slots:
-    """How many long works may run at a time, of all sessions that share these; more stand in line.
+    """Number of long jobs that may run at a time in all sessions that share these slots; more wait in line.
 
     Work that goes on for as long as a person likes has as many of its own: it would keep the line waiting.
     """
@@ -73,7 +73,7 @@ class Slots:
     def take_live(self) -> None:
         """Begin work that goes on for as long as a person likes (InputError: too many do)."""
         if not self._live.acquire(blocking=False):
-            raise InputError("this machine does that for other rooms already; try again when they have ended it")
+            raise InputError("this machine is busy with other rooms. Try again when they have finished")
 
     def give_live(self) -> None:
         """Such work has ended."""
@@ -95,7 +95,7 @@ class Jobs:
 
     @property
     def running(self) -> bool:
-        """Whether there is work in progress."""
+        """True if a job is running."""
         state = self.state
         return state is not None and state.running
 
@@ -129,7 +129,7 @@ class Jobs:
         with self._lock:
             if self.running:
                 assert self.state is not None
-                raise InputError(f"{self.state.title} is still in progress; wait for it or stop it")
+                raise InputError(f"{self.state.title} is still running. Wait or stop it")
             if self._closed:
                 raise InputError("the studio is closing")
             self._worker, self.state = (self._ready() if self.slots is None else None), JobState(title=title)
@@ -180,7 +180,7 @@ class Jobs:
             try:
                 error = self._turn((function, arguments), on_part, on_done)
             except OSError as failed:
-                error = f"this machine begins no process for it ({failed}); try again in a moment"
+                error = f"cannot start a process ({failed}). Try again in a moment"
             finally:
                 if slots is not None:
                     slots.give()
@@ -190,7 +190,7 @@ class Jobs:
         on_end(error)
 
     def _given_up(self) -> bool:
-        """Whether nobody wants the work any more."""
+        """True if the job was asked to stop."""
         return self.state is not None and self.state.stopping
 
     def _in_line(self, before: int) -> None:

@@ -19,7 +19,7 @@ KEPT = 80  # so many robots are remembered, the candidates of some designs among
 
 @dataclass(frozen=True, eq=False)
 class _Known:
-    """What has come to be known of a robot."""
+    """Facts about a robot that other work has found."""
 
     robot: Robot
     demand: Demand | None = None  # loads of its poses, as a design has found them
@@ -66,7 +66,7 @@ class Judge:
         self._seen: tuple[Robot, Wishes, KitOptions, float] | None = None
 
     def of(self, robot: Robot, wishes: Wishes) -> tuple[Diagnostic, ...] | None:
-        """What is said of a robot; None until it has been judged."""
+        """Return the findings on a robot; None until it has been reviewed."""
         case = self._case(robot, wishes)
         if case is None:
             return None
@@ -95,7 +95,7 @@ class Judge:
             self._bell.ring(Topic.JOB, Topic.THINGS)
 
     def refused(self, robot: Robot) -> bool | None:
-        """Whether a kit of a network that `weigh` has looked at would be refused, as far as known; None: not yet."""
+        """True if a kit of a network that `weigh` has reviewed would be refused, as far as known; None: not known."""
         weighed = self._weighed_of(robot)
         return None if weighed is None else weighed.refused
 
@@ -147,7 +147,7 @@ class Judge:
 
 
 def _alike(one: Robot, other: Robot) -> bool:
-    """Whether two robots have the same body, network and poses, so that what is known of one is known of the other."""
+    """True if two robots have the same body, network and poses, so that facts about one hold for the other."""
     return one is other or (
         one.body is other.body
         and one.winches == other.winches
@@ -170,7 +170,7 @@ def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _Known | Non
 
 
 def _is_refused(robot: Robot, options: KitOptions, known: _Known | None) -> bool:
-    """Whether there is any reason; what cannot be judged has none."""
+    """True if a kit would be refused for any reason; a robot that cannot be reviewed has none."""
     try:
         return bool((known and known.refused) or find_refusals(robot, known.demand if known else None, options=options))
     except HydrostatError:

@@ -34,7 +34,7 @@ MOST_NOTES = 50  # so many notes are kept
 
 
 class Tone(StrEnum):
-    """What a note is."""
+    """Tone of a note."""
 
     GOOD = "good"
     PLAIN = "plain"
@@ -110,7 +110,7 @@ class Session:
                 return
             self._let_go()
             self.current.leave()
-            self.hardware.hold("another stage was shown, and the motors hold: arm them anew")
+            self.hardware.hold("stage changed: motors holding. Re-arm to continue")
             self.stage = name
             self.current.enter()
         self.bell.ring(Topic.STAGE, Topic.SHAPE, Topic.THINGS)
@@ -147,13 +147,13 @@ class Session:
             return
         document.model = model
         note = "; trained with contact: self-contact enabled" if silent else ""
-        self.tell(f"networks of {(given or beside[0]).name} answer drags first{note}")
+        self.tell(f"surrogate model {(given or beside[0]).name} predicts drags first{note}")
 
     def grab(self, screen: str, hit: Hit, stamp: float = 0.0) -> bool:
         """Take hold of a hit by a screen's pointer; whether it did. The first frame with the answer has the stamp."""
         with self._lock:
             if self._holder is not None and self._holder != screen:
-                self.tell("another window is holding something; wait until it lets go", Tone.PLAIN)
+                self.tell("another window is dragging. Wait until it releases", Tone.PLAIN)
                 return False
             self._let_go()
             held = self._try(lambda: self.document.is_open and self.current.grab(hit))
@@ -197,12 +197,12 @@ class Session:
 
     @property
     def undo_label(self) -> str:
-        """What would be undone; "" if nothing can be."""
+        """Label of the change that undo takes back; "" if there is none."""
         return (self.current.undo_label if self.document.is_open else "") or self.document.undo_label
 
     @property
     def redo_label(self) -> str:
-        """What would be done again; "" if nothing can be."""
+        """Label of the change that redo makes again; "" if there is none."""
         return (self.current.redo_label if self.document.is_open else "") or self.document.redo_label
 
     def undo(self) -> None:
@@ -211,7 +211,7 @@ class Session:
         with self._lock:
             done = self.current.undo if self.document.is_open and self.current.undo_label else self.document.undo
             done()
-        self.tell(f"undone: {label}" if label else "there is nothing to undo")
+        self.tell(f"undone: {label}" if label else "nothing to undo")
 
     def redo(self) -> None:
         """Do again what was undone."""
@@ -219,7 +219,7 @@ class Session:
         with self._lock:
             done = self.current.redo if self.document.is_open and self.current.redo_label else self.document.redo
             done()
-        self.tell(f"done again: {label}" if label else "there is nothing to do again")
+        self.tell(f"redone: {label}" if label else "nothing to redo")
 
     def save(self, folder: Path | None = None) -> None:
         """Save the robot where it was, or in another folder (InputError: it has none yet, or cannot be written)."""
@@ -242,16 +242,16 @@ class Session:
 
     def _at_home(self) -> None:
         if self.guest:
-            raise InputError("folders of this machine are not for guests; bring a .zip, or take one home")
+            raise InputError("guests cannot open or save folders of this machine. Upload or download a .zip")
 
     @property
     def waiting(self) -> bool:
-        """Whether a drag waits for its answer."""
+        """True if a drag waits for its answer."""
         return self._stamp != self.answered
 
     @property
     def legend(self) -> Scale | None:
-        """What the colours of the body mean; None for plain felt, and for muscles where none move the body."""
+        """Scale of the body's colors; None for plain felt, and for muscles where none move the body."""
         if not self.document.is_open or (self.colouring is Colouring.MUSCLES and self.current.shape().muscles is None):
             return None
         return scale(self.document.robot, self.colouring)
@@ -289,7 +289,7 @@ class Session:
         return more
 
     def shown(self) -> Shown | None:
-        """What all screens show now; None without a robot."""
+        """Return the content of all screens now; None without a robot."""
         if not self.document.is_open:
             return None
         with self._lock:
@@ -327,7 +327,7 @@ class Session:
             return
         self._unsewn = skin
         if self.stage in (StageName.POSE, StageName.DRIVE):
-            self.tell(f"its skin cannot be sewn: {in_words(skin.findings[0].text)}", Tone.BAD)
+            self.tell(f"skin cannot be sewn: {in_words(skin.findings[0].text)}", Tone.BAD)
 
     def _let_go(self) -> None:
         if self._holder is not None:

@@ -10,7 +10,7 @@ from hydrostat.robot import Body
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Jobs, Report, Slots
 
-TITLE = "Laying its skin flat, patch by patch"
+TITLE = "Flattening the skin, patch by patch"
 
 KEPT = 20  # so many skins are remembered
 
@@ -26,14 +26,14 @@ class SewnSkin:
 
     @property
     def awaited(self) -> bool:
-        """Whether it is being looked for."""
+        """True if the skin is still being computed."""
         return self.sewing is None and not self.error
 
     @property
     def words(self) -> str:
         """A line for the person, as `hydrostat check` prints it; "" where only the findings are to be told."""
         if self.sewing is None:
-            return f"{TITLE} …" if self.awaited else f"whether its skin can be sewn was not found: {self.error}"
+            return f"{TITLE} …" if self.awaited else f"skin pattern not computed: {self.error}"
         return "" if self.sewing.problems else f"skin: {self.sewing}"
 
     @property
@@ -113,6 +113,6 @@ def lay_flat(report: Report, body: Body, pattern: PatternOptions) -> Sewing:
 
 
 def _is_of(skin: SewnSkin, body: Body, options: KitOptions) -> bool:
-    """Whether it is the skin of this body, perhaps of another material."""
+    """True if it is the skin of this body, perhaps of another material."""
     same = skin.body.mesh is body.mesh and skin.body.healing is body.healing
     return (same or skin.body == body) and skin.pattern == options.pattern

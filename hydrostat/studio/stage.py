@@ -22,7 +22,7 @@ class StageName(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Hit:
-    """What is under the pointer."""
+    """Object and place under the pointer."""
 
     key: str = ""  # of a thing, such as "marker:tip"; "body" for the body, "" for nothing
     rest: Point | None = None  # the place of the body under the pointer, in the rest shape [m]; None beside the body
@@ -31,7 +31,7 @@ class Hit:
 
 
 class Stage(ABC):
-    """What one stage does with the pointer, and what it shows. It knows no network and no screen.
+    """Stage of the studio: handles the pointer and returns its view, without access to network or screen.
 
     All but `step` return at once. `step` is called by a thread of its own, again and again while it returns True.
     """
@@ -42,7 +42,7 @@ class Stage(ABC):
 
     @abstractmethod
     def things(self) -> Sequence[Thing]:
-        """What is shown beside the body, in an order that does not change while a person drags."""
+        """Objects shown with the body, in an order that does not change during a drag."""
 
     def enter(self) -> None:
         """Begin: the stage is shown from now on."""
@@ -69,12 +69,12 @@ class Stage(ABC):
 
     @property
     def undo_label(self) -> str:
-        """What of this stage alone would be undone, before a change of the document; "" if nothing."""
+        """Label of the step of this stage alone that undo takes back before a change of the document; "" if none."""
         return ""
 
     @property
     def redo_label(self) -> str:
-        """What of this stage alone would be done again; "" if nothing."""
+        """Label of the step of this stage alone that redo makes again; "" if none."""
         return ""
 
     def undo(self) -> None:

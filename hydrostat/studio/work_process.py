@@ -51,7 +51,7 @@ def run_work(pipe: Connection) -> None:
     except EOFError:
         return
     except Exception as error:  # noqa: BLE001 such as work that cannot be unpickled
-        pipe.send(("error", f"the work could not be begun: {_words(error)}"))
+        pipe.send(("error", f"the job could not start: {_words(error)}"))
         return
     report = _Report(pipe)
     signal.signal(signal.SIGTERM, report.interrupt)
@@ -81,7 +81,7 @@ def _send(pipe: Connection, message: tuple[str, Any]) -> None:
     except OSError:
         return  # nobody listens any more
     except Exception as error:  # noqa: BLE001 pickling fails in many ways
-        pipe.send(("error", f"the result cannot be handed over: {_words(error)}"))
+        pipe.send(("error", f"the result cannot be transferred: {_words(error)}"))
 
 
 class _Report:

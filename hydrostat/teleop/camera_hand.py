@@ -13,7 +13,7 @@ from hydrostat.teleop.hand_source import HandReading, HandSource
 from hydrostat.teleop.landmarks import COUNT, HandLandmarks, bends
 
 MODEL = "hand_landmarker.task"
-"""What MediaPipe calls the file of its hand landmarker; hydrostat neither brings nor fetches it."""
+"""File name of MediaPipe's hand landmarker; hydrostat neither ships nor downloads it."""
 
 
 class CameraHand(HandSource):

@@ -14,7 +14,7 @@ from hydrostat.teleop.hand_source import HandReading, HandSource
 BAUD = 115200
 SENSORS = 22
 ASKS = 3
-"""How often it is asked before it is silent."""
+"""Number of queries before the glove counts as silent."""
 _FINGERS = ("index", "middle", "ring", "pinky")
 _THUMB = ("thumb roll", "thumb inner", "thumb outer", "thumb abduction")
 _SPREADS = {"middle": "middle-index abduction", "ring": "ring-middle abduction", "pinky": "pinky-ring abduction"}

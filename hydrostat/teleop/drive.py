@@ -14,13 +14,13 @@ from hydrostat.teleop.ways import CommandMapper
 TICK = 1 / 60
 """Motors are told at least once in this time, and read about as often [s]."""
 SHARE = 0.35
-"""Of the time that telling and reading takes on a line: telling alone takes about so much."""
+"""Share of sending alone in the time that sending and reading take on a line, approximately."""
 SWITCHING = 5e-4
 """Threads of Python give way to one another after so long [s], in place of 5 ms: the one that solves poses is busy."""
 
 
 class DriveLoop:
-    """What drives motors, step by step.
+    """Loop that drives motors, step by step, as a person commands.
 
     Attributes:
         silent: whether nobody is heard just now; motors hold.

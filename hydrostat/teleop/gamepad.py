@@ -15,7 +15,7 @@ DEAD = 0.12
 """Share of the way of a stick that is taken for its middle."""
 HELP = "cross: choose   stick: out, in   A: hold   B: rest   start: end"
 _LONGEST = 0.1
-"""What passes from one look at the sticks to the next counts as so long at most [s]."""
+"""Maximum time step counted between two readings of the sticks [s]."""
 
 
 class Gamepad(DriveSource):
@@ -47,7 +47,7 @@ class Gamepad(DriveSource):
         self._chosen, self._hold, self._down = 0, False, set[int]()
 
     def read(self) -> DriveWish:
-        """How far the sticks moved what is chosen since they were last looked at."""
+        """Return the steps that the sticks gave the chosen channels since the previous read."""
         game, pad = self._pygame, self._pad
         game.event.pump()
         if not pad.attached():

@@ -8,7 +8,7 @@ from hydrostat.arrays import Vector
 
 @dataclass(frozen=True, eq=False)
 class HandReading:
-    """What a source tells of a hand.
+    """Sensor reading of a hand.
 
     Attributes:
         values: of its sensors, each from 0 to 1.

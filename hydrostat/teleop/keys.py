@@ -11,7 +11,7 @@ from hydrostat.errors import HydrostatError
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 FINE, COARSE = 0.5e-3, 3e-3
-"""How far a key moves a channel [m], and with a capital letter, or page up and down."""
+"""Step of a channel per key press [m], and with a capital letter or page up and down [m]."""
 HELP = "tab next; arrows out, in; Shift+A, D further; r rest; space hold; q end"
 _ARROWS = {b"\x1b[A": "w", b"\x1b[B": "s", b"\x1b[C": "d", b"\x1b[D": "a", b"\x1b[5~": "D", b"\x1b[6~": "A"}
 _BACK = b"\x1b[Z"
@@ -40,7 +40,7 @@ class Keys(DriveSource):
             raise HydrostatError("--source keys needs a terminal (of Linux or macOS); choose another source") from None
 
     def read(self) -> DriveWish:
-        """What was pressed since it was last read."""
+        """Return the commands of the keys pressed since the previous read."""
         steps, places, over = dict[str, float](), dict[str, float](), False
         for key in self._pressed():
             if key == "q":

@@ -31,7 +31,7 @@ STILL = 0.012
 
 @dataclass(frozen=True, eq=False)
 class HeldStill:
-    """What was told while a person held a pose.
+    """Averaged sensor readings while a person held a pose.
 
     Attributes:
         values: mean of each sensor.
@@ -45,7 +45,7 @@ class HeldStill:
 
     @property
     def still(self) -> bool:
-        """Whether the hand stood still."""
+        """True if the hand was still."""
         return self.spread < STILL
 
 
@@ -118,7 +118,7 @@ class LessonPoses:
         self.made.add(number, held.values, answer, time.time())
 
     def told(self) -> str:
-        """How well the pairs so far teach, in words."""
+        """Summary of the cross-validation errors of the pairs so far, in words."""
         if self.count < 4:
             return f"{plural(self.count, 'pose')}; errors are available from 4 poses on"
         known = self.made.learn()

@@ -17,7 +17,7 @@ from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 SILENCE = 0.25
 """A hand that is not heard for so long is not there [s]."""
 USUAL_SMOOTHING = Smoothing()
-"""Of what a hand tells: each of its readings is one byte, and trembles."""
+"""Smoothing of hand readings: each is one byte, and trembles."""
 PATIENCE = 5.0
 """Errors of the source in a row end the drive after so long [s]."""
 
@@ -47,7 +47,7 @@ class MappedHand(DriveSource):
         self._thread.start()
 
     def read(self) -> DriveWish:
-        """What the newest reading asks for."""
+        """Return the command of the newest reading."""
         reading, error = self._reading, self._error
         if error and self._clock() - self._well > PATIENCE:
             raise HydrostatError(error)

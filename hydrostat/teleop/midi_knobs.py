@@ -11,7 +11,7 @@ from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 USUAL = 1
 """Controller number of the first knob unless told otherwise."""
 LOOK = 1.0
-"""Whether a port is still there is looked at so often [s]."""
+"""Interval between checks that the port still exists [s]."""
 
 
 class MidiKnobs(DriveSource):
@@ -50,7 +50,7 @@ class MidiKnobs(DriveSource):
         self._unknown, self._looked = "", clock()
 
     def read(self) -> DriveWish:
-        """Where knobs were turned to since it was last read."""
+        """Return the positions of the knobs turned since the previous read."""
         now, places = self._clock(), dict[str, float]()
         try:
             messages = list(self._port.iter_pending())

@@ -37,12 +37,12 @@ class Mimicry:
 
     @property
     def inputs(self) -> Table:
-        """What the sensors told (rows, sensors)."""
+        """Sensor values of the pairs (rows, sensors)."""
         return np.array(self._inputs).reshape(-1, len(self.sensors))
 
     @property
     def answers(self) -> Table:
-        """What the robot did (rows, outputs)."""
+        """Robot outputs of the pairs (rows, outputs)."""
         return np.array(self._answers).reshape(-1, len(self.outputs))
 
     def add(self, pose: int, sensors: Vector, answer: Vector, stamp: float = 0.0) -> None:
@@ -72,7 +72,7 @@ class Mimicry:
         return left_out_error(*table), folded_error(*table)
 
     def next_pose(self, candidates: Table) -> int:
-        """Which of the candidates to mimic next: that which makes the determinant of the information largest.
+        """Return the index of the candidate to mimic next: it maximizes the determinant of the information (D-optimal).
 
         Information is that of a straight map with a constant between candidates (rows, outputs) and sensors, so that
         nothing has to be known of the sensors.

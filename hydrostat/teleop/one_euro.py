@@ -11,7 +11,7 @@ from hydrostat.errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class Smoothing:
-    """How values from 0 to 1 are smoothed.
+    """Options of the one-euro filter for values from 0 to 1.
 
     Attributes:
         least: frequency above which a value that rests is smoothed [Hz].

@@ -28,7 +28,7 @@ def open_source(
     *,
     smoothing: Smoothing | None = USUAL_SMOOTHING,
 ) -> DriveSource:
-    """What drives a robot.
+    """Open the source of commands that drives a robot.
 
     Args:
         text: KIND or KIND:PLACE, of a kind of `SOURCES`.
@@ -89,7 +89,7 @@ class EmulatedHand(HandSource):
         self._glove, self.waves = CyberGlove(self.person.glove, clock=clock), True
 
     def read(self) -> HandReading:
-        """What the glove tells; 90 times a second, as a glove of metal would."""
+        """Return the glove's reading, 90 times a second as a real glove would."""
         if self.waves:
             self.person.wave(self._clock() - self._begin)
         time.sleep(1 / 90)
@@ -134,7 +134,7 @@ SOURCES: Mapping[str, Callable[[str, DriveChannels], DriveSource]] = {
     "midi": _midi,
     "osc": _osc,
 }
-"""What makes a source of a place and of channels."""
+"""Factory of each kind of source, called with a place and channels."""
 SHOWN = (
     "keys",
     "gamepad:0",

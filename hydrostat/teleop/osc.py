@@ -51,7 +51,7 @@ class Osc(DriveSource):
         self.address = self._socket.getsockname()
 
     def read(self) -> DriveWish:
-        """What was told since it was last read."""
+        """Return the commands received since the previous read."""
         places, over = dict[str, float](), False
         for _ in range(_MOST):
             try:

@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 Table = Float[np.ndarray, "rows _"]
 """Numbers in rows; two in one signature have as many."""
 PENALTIES = tuple(10.0**power for power in range(-8, 3))
-"""That are tried: times the mean square of the inputs."""
+"""Candidate ridge penalties, as multiples of the mean square of the inputs."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from hydrostat.arrays import Vector
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DriveChannels:
-    """What a person may turn: winches, or coordinates of fingertips.
+    """Channels that a person may command: winches, or coordinates of fingertips.
 
     Attributes:
         names: of them.
@@ -35,7 +35,7 @@ class DriveChannels:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DriveWish:
-    """What a person asks for just now.
+    """Command of a person at one instant.
 
     Attributes:
         stamp: when the person was last heard, by a clock that only runs forward [s].

@@ -143,7 +143,7 @@ class MarkerMapper(CommandMapper):
                 self._settle()
 
     def held(self, places: Vector) -> Vector:
-        """Where the markers are, by simulation, when they hold [m]."""
+        """Hold at contractions [m]; return the simulated marker positions [m]."""
         with self._lock:
             self._jobs, self._asked, self.contractions = self._jobs + 1, None, places.copy()
             self._hold, self._settled = self._jobs, True

@@ -88,7 +88,7 @@ def test_a_slot_is_given_back_where_no_process_can_be_begun(monkeypatch: pytest.
     slots = Slots(1)
     heard = Heard(Jobs(Bell(), slots))
     monkeypatch.setattr("hydrostat.studio.jobs._Worker.started", refuse)
-    assert "begins no process for it (too many processes)" in heard.begin(works.add, 1).end().error
+    assert "cannot start a process (too many processes)" in heard.begin(works.add, 1).end().error
     assert slots.wait(lambda: True, print)
 
 
@@ -111,7 +111,7 @@ def test_all_who_listen_are_told() -> None:
     [
         (works.refuse, "2 winches and 1 cable: ask for more"),
         (works.stumble, "ZeroDivisionError: by nothing"),
-        (works.unpicklable, "the result cannot be handed over"),
+        (works.unpicklable, "the result cannot be transferred"),
         (works.die, "exit code 7"),
         (works.leave, "exit code 3"),
     ],
@@ -163,7 +163,7 @@ def test_what_goes_wrong_on_this_side_ends_the_work(heard: Heard) -> None:
 
 def test_one_at_a_time(heard: Heard) -> None:
     heard.begin(works.wait)
-    with pytest.raises(InputError, match="Working is still in progress; wait for it or stop it"):
+    with pytest.raises(InputError, match=r"Working is still running\. Wait or stop it"):
         heard.jobs.start("Other", works.add)
     heard.jobs.stop()
     heard.end()

@@ -200,7 +200,7 @@ def test_undo_tells_what_it_took_back(session: Session, work: Work) -> None:
     session.document.change("add marker ear", robot=work.robot)
     session.undo()
     session.undo()
-    assert [note.text for note in session.notes][-2:] == ["undone: add marker ear", "there is nothing to undo"]
+    assert [note.text for note in session.notes][-2:] == ["undone: add marker ear", "nothing to undo"]
 
 
 def test_the_same_picture_keeps_its_scene(session: Session) -> None:

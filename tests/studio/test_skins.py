@@ -97,7 +97,7 @@ def test_where_no_list_is_shown_a_note_tells_it_once(session: Session, settle: C
     session.step(0.0)
     session.step(1.0)
     assert [note.text for note in session.notes if find_sewing(robot.body).problems[0] in note.text] == [
-        f"its skin cannot be sewn: {find_sewing(robot.body).problems[0]}"
+        f"skin cannot be sewn: {find_sewing(robot.body).problems[0]}"
     ]
 
 
@@ -108,7 +108,7 @@ def test_a_bear_can_be_sewn(session: Session, settle: Callable[[Robot], None], c
     judge.skins.look(robot.body, judge.options)
     skin = judge.skin(robot)
     assert skin is not None
-    assert skin.words == "Laying its skin flat, patch by patch …"
+    assert skin.words == "Flattening the skin, patch by patch …"
     settle(robot)
     assert print_sewing(robot.body) == ()
     printed = capsys.readouterr().out.strip()

@@ -86,7 +86,7 @@ def read_cards(content: bytes, robot: Robot) -> list[Candidate]:
             return []
         return [_candidate(record, robot, number) for number, record in enumerate(file.cards, start=1)]
     except ValueError as error:  # also of pydantic, and of lists of other lengths
-        raise InputError(f"the networks that were found before cannot be read: {error}".splitlines()[0]) from None
+        raise InputError(f"networks from an earlier session cannot be read: {error}".splitlines()[0]) from None
 
 
 def body_stamp(body: Body) -> str:
@@ -148,7 +148,7 @@ def _reach(record: ReachRecord, robot: Robot) -> Reach:
     """With arrays (InputError: of other shapes than the body)."""
     nodes = np.array(record.nodes)
     if nodes.shape != robot.body.mesh.nodes.shape:
-        raise InputError("the networks that were found before are of another body")
+        raise InputError("networks from an earlier session are of another body")
     return Reach(
         pose=record.pose,
         nodes=nodes,

@@ -26,15 +26,15 @@ class Chart:
     whole: bool = False  # whether values across are whole numbers
 
     def x(self, value: float) -> float:
-        """Where a value across is."""
+        """Horizontal position of a value on the chart [px]."""
         return LEFT + (self.width - LEFT - RIGHT) * value / self.across
 
     def y(self, value: float) -> float:
-        """Where a value upwards is."""
+        """Vertical position of a value on the chart [px]."""
         return self.height - BOTTOM - (self.height - TOP - BOTTOM) * value / self.up
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Where a pair of values is."""
+        """Position of a pair of values on the chart [px]."""
         return self.x(x), self.y(y)
 
     def line(self, points: Iterable[tuple[float, float]]) -> str:
@@ -94,7 +94,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint],
         across=1.06 * max([1.0, *(minutes for minutes, _ in (*errors, *way))]),
         up=1.18 * max([1e-3, *(error for _, error in (*errors, *way))]),
         name="error, mm",
-        below="minutes of sewing",
+        below="sewing time, min",
         whole=True,
     )
     points = [*errors, *way]
@@ -109,7 +109,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint],
     parts += _counts(candidates, places, chosen)
     counts = sorted({len(one.robot.winches) for one in candidates})
     keys = [(winch_count_colour(count), plural(count, "winch")) for count in counts]
-    return chart.drawn("".join([*parts, _legend(keys)]), label="error once built against minutes of sewing")
+    return chart.drawn("".join([*parts, _legend(keys)]), label="expected as-built error against sewing time")
 
 
 def _counts(candidates: Sequence[Candidate], places: Sequence[Place], chosen: int | None) -> Iterator[str]:

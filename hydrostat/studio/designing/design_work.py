@@ -25,7 +25,7 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reach:
-    """What a network reaches of a pose."""
+    """Result of a network in one pose."""
 
     pose: PoseTarget  # that was wanted
     nodes: Nodes  # where they come to [m]
@@ -79,17 +79,17 @@ class Candidate:
         return max((float(reach.tensions.max(initial=0.0)) for reach in self.reaches), default=0.0)
 
     def reach(self, pose: str) -> Reach | None:
-        """What it reaches of a pose; None if it was not designed for it."""
+        """Return the result in a pose; None if the network was not designed for it."""
         return next((reach for reach in self.reaches if reach.pose.name == pose), None)
 
 
 def network_words(robot: Robot) -> str:
-    """How many winches and cables a robot has."""
+    """Numbers of winches and cables of a robot, in words."""
     return f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
 
 
 def solution(found: Network | Alternative) -> Solution:
-    """What is sent of a network."""
+    """Return the solution record that a design process sends to the studio."""
     return Solution(
         winches=found.robot.winches,
         cables=found.robot.cables,
@@ -126,7 +126,7 @@ class BestSoFar:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignsFound:
-    """What a search has found."""
+    """Results of a search."""
 
     solutions: tuple[Solution, ...]  # the network that it returns, then its alternatives, each once
     tried: int  # networks whose poses were solved

@@ -73,7 +73,7 @@ class Designer(Stage):
 
     @property
     def wishes(self) -> Wishes:
-        """What is asked for."""
+        """Design settings of the work."""
         return self._document.work.wishes
 
     @property
@@ -106,14 +106,14 @@ class Designer(Stage):
         """Change what is asked for; one step to undo (InputError: a number out of its range)."""
         wanted = replace(self.wishes, **wishes)
         if wanted != self.wishes:
-            self._document.change("change wishes", wishes=wanted, merge=f"wish {' '.join(wishes)}")
+            self._document.change("change design settings", wishes=wanted, merge=f"wish {' '.join(wishes)}")
 
     def wish_pose(self, name: str, wanted: bool) -> None:
-        """Whether a pose is to be reached (InputError: it would be the last one)."""
+        """Include a pose in the design or leave it out (InputError: it would be the last one)."""
         names = {pose.name for pose in wished_poses(self._document.robot, self.wishes)}
         kept = names | {name} if wanted else names - {name}
         if not kept:
-            raise InputError("a design reaches at least one pose; choose another before this one is left out")
+            raise InputError("a design needs at least one pose. Select another pose before you leave this one out")
         every = tuple(self._document.robot.poses)
         self.wish(poses=() if kept == set(every) else tuple(other for other in every if other in kept))
 
@@ -165,7 +165,7 @@ class Designer(Stage):
         """Put the chosen network into the robot, one step to undo (InputError: none is, or it is of another body)."""
         candidate = self.candidate
         if candidate is None:
-            raise InputError("choose one of the networks first; those of another body cannot be accepted")
+            raise InputError("no network selected for this body. Select one of its networks, then accept it")
         drawn = self._document.robot.with_network(candidate.robot.winches, candidate.robot.cables)
         robot = replace(drawn, face=candidate.robot.face)
         wishes = after_design(self._document.work, robot)
@@ -182,7 +182,7 @@ class Designer(Stage):
         self._jobs.warm(MODULE)
 
     def leave(self) -> None:
-        """What is in hand is put away, the robot is shown as it is when one comes back; a design goes on."""
+        """Put down the paint and clear the choice of candidate and pose; a running design continues."""
         self.painter.take(None)
         self.chosen = self.pose = None
 
@@ -276,10 +276,10 @@ class Designer(Stage):
         self._all, self._numbered = tuple(found), max(len(found), self._numbered)
         for candidate in found:
             self._document.judge.learn(candidate.robot, demand=candidate.demand)
-        self.outcome = f"{plural(len(found), 'network')} found before the studio ended" if found else ""
+        self.outcome = f"{plural(len(found), 'network')} restored from an earlier session" if found else ""
 
     def _reach(self) -> Reach | None:
-        """What is shown of a pose; None: the body at rest."""
+        """Result of the chosen candidate in the chosen pose; None: the body is shown at rest."""
         candidate = self.candidate
         if candidate is None or self.pose is None or self.painter.busy:
             return None
@@ -339,10 +339,10 @@ class Designer(Stage):
         self._keep()
         best = made[0]
         seconds = time.monotonic() - run.began
-        early = "" if found.complete else "stopped early, the best so far: "
+        early = "" if found.complete else "stopped early, best so far: "
         self.outcome = (
-            f"{early}{network_words(best.robot)}, {told_error(best.built)} off once built, in {seconds:.0f} s "
-            f"({plural(found.tried, 'network')} tried)"
+            f"{early}{network_words(best.robot)}, expected as-built error {told_error(best.built)} "
+            f"({plural(found.tried, 'candidate')}, {seconds:.0f} s)"
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name
 
@@ -351,7 +351,7 @@ class Designer(Stage):
         if self.run is None or self.run.request is not request:
             return  # the next design has begun
         if error:
-            self.outcome = "stopped before there was a network" if error == "stopped" else error
+            self.outcome = "stopped before a network was found" if error == "stopped" else error
         self.running = False
         self._jobs.warm(MODULE)
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)

@@ -32,7 +32,7 @@ def lasso(points: tuple[Point, ...], size: float) -> Zone:
     parts = whole.geoms if isinstance(whole, BaseMultipartGeometry) else [whole]
     polygons = [part for part in parts if isinstance(part, Polygon) and not part.is_empty]
     if not polygons or max(part.area for part in polygons) < (LEAST * size) ** 2:
-        raise InputError("the line goes round nothing; draw it round the part that is meant")
+        raise InputError("the line encloses no area. Draw it around a part of the body")
     largest = max(polygons, key=lambda part: part.area).exterior.simplify(COARSE * size)
     return Zone(outline=tuple((float(x), float(y)) for x, y in list(largest.coords)[:-1]))
 
@@ -52,14 +52,14 @@ def with_corner(zone: Zone, index: int, place: Point) -> Zone:
 
 
 def rim_handle(zone: Zone) -> Point:
-    """Where a disc or ball is taken hold of to be resized."""
+    """Return the point at which a disc or ball is dragged to resize it [m]."""
     assert zone.at is not None
     assert zone.radius is not None
     return (zone.at[0] + zone.radius, *zone.at[1:])
 
 
-WORDS = {Paint.KEEP_OUT: "no cable here", Paint.WINCH_ZONES: "winches only here", Paint.STILL: "keep this still"}
-"""What a paint says."""
+WORDS = {Paint.KEEP_OUT: "no-cable zone", Paint.WINCH_ZONES: "winch zone", Paint.STILL: "rigid zone"}
+"""Name of the zone of each paint, in the list of zones and for undo."""
 
 NEAR = 0.02  # a click so near the first corner closes a polygon, as a share of the body
 
@@ -94,7 +94,7 @@ class Painter:
 
     @property
     def busy(self) -> bool:
-        """Whether the body must be at rest, for something is painted."""
+        """True if a zone is being painted or reshaped, so that the body must be at rest."""
         return self.paint is not None or self._shaping is not None
 
     def take(self, paint: Paint | None) -> None:
@@ -140,7 +140,7 @@ class Painter:
         elif draft is not None and draft[0] is None:
             self._add(draft[1], draft[2])
         elif draft is not None:
-            self._change(self._verb + " a zone", draft)
+            self._change(self._verb + " zone", draft)
 
     def click(self, hit: Hit) -> None:
         """Choose a zone, or set a corner of a polygon."""
@@ -170,7 +170,7 @@ class Painter:
             return
         zones = wishes.zones[:index] + wishes.zones[index + 1 :]
         self.chosen = None
-        self._document.change("delete a zone", wishes=replace(wishes, zones=zones))
+        self._document.change("delete zone", wishes=replace(wishes, zones=zones))
 
     def things(self) -> list[Thing]:
         """Zones, with handles on the chosen one, and what is being drawn."""
@@ -228,7 +228,7 @@ class Painter:
     def _corner(self, place: Point) -> None:
         """One more corner; near the first one the polygon is closed."""
         if not self._flat:
-            raise InputError("on a body in space zones are balls; drag on the body from the middle of one outward")
+            raise InputError("zones of a body in space are balls. Drag on the body from the center of a ball outward")
         first = self._corners[0] if self._corners else None
         if (
             first is not None
@@ -271,7 +271,7 @@ def _area(index: int, paint: Paint, zone: Zone, *, chosen: bool) -> Area:
 
 
 def _handles(index: int, paint: Paint, zone: Zone) -> list[Thing]:
-    """What the chosen zone is resized by; they stand in the world, as the body is at rest while one paints."""
+    """Resize handles of the chosen zone, fixed in the world, as the body is at rest during painting."""
     if zone.at is not None:
         places = {f"zone-rim:{index}": rim_handle(zone)}
     else:

@@ -12,7 +12,7 @@ from hydrostat.studio.records.wishes import Wishes
 
 
 def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> DesignRequest:
-    """What a person's wishes for a robot ask of a design (InputError: no pose, or wishes that do not fit the robot).
+    """Build the design request from the design settings (InputError: no pose, or settings that do not fit the robot).
 
     The options are of the search for routes; if left out its usual ones, with the wished tolerance and simplicity.
     Winch trees are grown as the thesis does it, by one value of each of its knobs (R46).
@@ -35,7 +35,7 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
 def wished_poses(robot: Robot, wishes: Wishes) -> tuple[PoseTarget, ...]:
     """The poses to reach: those that are named and still there; all if none is (InputError: the robot has no pose)."""
     if not robot.poses:
-        raise InputError("there is no pose to design for; drag the body in Pose and store how it should be")
+        raise InputError("no poses to design for. Drag the body in Pose and store a pose")
     named = [pose for name, pose in robot.poses.items() if name in wishes.poses]
     return tuple(named or robot.poses.values())
 
@@ -53,7 +53,7 @@ class ProgressPoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignRun:
-    """How far a design is."""
+    """Progress of a design."""
 
     robot: Robot  # that is designed for
     request: DesignRequest  # what was asked

@@ -146,7 +146,7 @@ class Driver(Stage):
         """Play from the playhead, or from the start if that is at the end (InputError: there is nothing to play)."""
         timeline = self.keyframes.timeline
         if not timeline.keys:
-            raise InputError("there are no keyframes yet: turn the knobs and press Add")
+            raise InputError("no keyframes yet. Turn the knobs and press Add")
         with self._lock:
             self._machine.meet()
             self._machine.notice = ""
@@ -202,7 +202,7 @@ class Driver(Stage):
         with self._lock:
             commands = self.commands()
             if not commands:
-                raise InputError("this robot has no winches; press Design to find some")
+                raise InputError("this robot has no winches. Press Design to find some")
             self._machine.halt()
             self.keyframes.put(self.player.time, commands)
             self._machine.mind_keys()
@@ -219,7 +219,7 @@ class Driver(Stage):
         robot = simulation.robot
         found = solve_ik(simulation, robot.pose(name))
         if self._document.robot is not robot:
-            raise InputError("the robot was changed meanwhile; ask again")
+            raise InputError("the robot changed meanwhile. Try again")
         with self._lock:
             self._machine.meet(robot)
             self._machine.halt()

@@ -34,9 +34,11 @@ STEPS = {FilmKind.GIF: 0.05, FilmKind.MP4: 0.04, FilmKind.GLB: 0.05}  # time of 
 def check_film(timeline: Timeline, kind: FilmKind) -> None:
     """Refuse what cannot be filmed before work begins (InputError: no keyframes, too long, or MP4 without ffmpeg)."""
     if not timeline.keys:
-        raise InputError("there are no keyframes to film; turn the knobs and press Add")
+        raise InputError("no keyframes to record. Turn the knobs and press Add")
     if timeline.seconds > LONGEST_FILM:
-        raise InputError(f"a film may be {LONGEST_FILM:g} s long, not {timeline.seconds:.1f} s; make it shorter")
+        raise InputError(
+            f"the timeline is {timeline.seconds:.1f} s long (maximum {LONGEST_FILM:g} s for a video). Shorten it"
+        )
     if kind is FilmKind.MP4:
         find_ffmpeg()
 
@@ -77,7 +79,7 @@ def film_frames(robot: Robot, timeline: Timeline, step: float, tell: Callable[[s
         if pose.result.converged and upright(robot, pose):
             last = pose
         elif last is None:
-            raise InputError("no shape was found for the start of the timeline; let it begin nearer to rest")
+            raise InputError("no equilibrium found at the start of the timeline. Start it closer to rest")
         frames.append(Frame.of(last))
         tell("solving", number + 1, count)
     return frames
@@ -120,5 +122,5 @@ class Recorder:
             self.latest = Recording(name=name, content=content)
             self._document.bell.ring(Topic.DRIVE)
 
-        self._title = f"Filming {work.robot.name} ({kind})"
+        self._title = f"Recording {work.robot.name} ({kind})"
         self._jobs.start(self._title, record_film, work.robot, work.timeline, kind, on_done=done)

@@ -71,12 +71,12 @@ class Hardware:
 
     @property
     def armed(self) -> bool:
-        """Whether motors turn."""
+        """True if the motors are armed and follow commands."""
         return self.state is LinkState.ARMED
 
     @property
     def places(self) -> dict[str, float]:
-        """What each winch has taken in, as its motor says [m], by name; empty without motors."""
+        """Contraction of each winch, measured by its motor [m], by name; empty without motors."""
         robot, places = self._robot, self._places
         return (
             {} if robot is None or self._link is None else dict(zip(self._names(robot), places.tolist(), strict=False))
@@ -84,7 +84,7 @@ class Hardware:
 
     @property
     def currents(self) -> dict[str, float]:
-        """What each motor draws [A], positive as it takes cable in, by its winch; empty without motors."""
+        """Current of each motor [A], positive when reeling in, by winch name; empty without motors."""
         robot, link = self._robot, self._link
         drawn = None if link is None else link.currents
         if robot is None or drawn is None:
@@ -99,18 +99,16 @@ class Hardware:
             HydrostatError: who is silent.
         """
         if not self.allowed:
-            raise InputError("motors of this machine are not for guests")
+            raise InputError("guests cannot use the motors of this machine")
         check_port(port)
         self.disconnect()
         robot, folder = self._document.robot, self._document.folder
         if not robot.winches:
-            raise InputError("this robot has no winches; press Design to find some")
+            raise InputError("this robot has no winches. Press Design to find some")
         if port == EMULATED:
             calibration = emulated_calibration(folder, robot)
         elif folder is None:
-            raise InputError(
-                f"save the robot first: {CALIBRATION} beside robot.toml says which motor turns which winch"
-            )
+            raise InputError(f"save the robot first. {CALIBRATION} next to robot.toml assigns motors to winches")
         else:
             calibration = read_calibration(folder, robot)
         with self._lock:
@@ -127,7 +125,7 @@ class Hardware:
         with self._lock:  # another window may have connected, or the studio closed, meanwhile
             if self._over.is_set() or self._link is not None or self._robot is not robot:
                 link.close()
-                raise HydrostatError(f"{port}: other motors were connected, or let go, meanwhile; connect again")
+                raise HydrostatError(f"{port}: the connection changed meanwhile. Connect again")
             self._link, self.port = link, port
         unjudged = not_judged(np.array([fact.constant for fact in facts]), names)
         missing = "" if link.state is LinkState.CALIBRATED else _CALIBRATE
@@ -172,7 +170,7 @@ class Hardware:
                 return
             if robot is not self._robot and not self._same(robot):
                 self.disconnect()
-                self.words = "the robot was changed, and its motors were let go: connect them anew"
+                self.words = "the robot changed: motors disconnected. Connect again"
                 return
             pulls = dict.fromkeys(self._names(robot), 0.0)
             for cable, tension in zip(robot.cables, shape.tensions.tolist(), strict=True):
@@ -197,7 +195,7 @@ class Hardware:
                     continue
             except Exception as error:  # noqa: BLE001 - whatever it is, motors stop, and this thread goes on
                 self._stand("")
-                self.words = f"the motors stopped: {error}"
+                self.words = f"motors stopped: {error}"
             with suppress(Exception):  # who shows it may have gone; this thread is who stops motors
                 self._ring()
 
@@ -225,7 +223,7 @@ class Hardware:
                 self.words = why
 
     def _same(self, robot: Robot) -> bool:
-        """Whether another state of the document has the same winches."""
+        """True if another state of the document has the same winches."""
         return self._robot is not None and robot.winches == self._robot.winches
 
     def _expected(self, contractions: Vector) -> Vector:
@@ -233,7 +231,7 @@ class Hardware:
         return np.where(np.abs(contractions - self._goal) < NEAR, self._pulls, np.nan)
 
     def _load(self, contractions: Vector) -> Vector:
-        """What pulls at emulated motors [N]: what is shown, once they are there."""
+        """Tensions that load emulated motors [N]: those of the shown pose, once the motors are there."""
         return np.where(contractions > self._goal - NEAR, self._pulls, 0.0)
 
     def _say(self, words: str) -> None:
@@ -248,5 +246,5 @@ class Hardware:
         return [winch.name for winch in robot.winches]
 
 
-_CALIBRATE = "; they are not calibrated: hydrostat calibrate finds their zeros"
-"""What is missing before they can be armed."""
+_CALIBRATE = "; not calibrated. Run hydrostat calibrate"
+"""Reason why motors cannot be armed yet."""

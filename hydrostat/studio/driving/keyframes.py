@@ -94,7 +94,7 @@ class Keyframes:
         while self.timeline.index_at(time) is not None:
             time += APART
         if time > LONGEST:
-            raise InputError(f"there is no room for another keyframe before {LONGEST:g} s; move some first")
+            raise InputError(f"no free time for another keyframe before {LONGEST:g} s. Move or delete one")
         self._document.change("duplicate keyframe", timeline=self.timeline.with_key(replace(key, time=time)))
         self._choose(time)
         return time
@@ -114,14 +114,14 @@ class Keyframes:
     def set_smooth(self, smooth: bool) -> None:
         """Go gently from key to key, or along a line."""
         if smooth != self.timeline.smooth:
-            label = "interpolate smoothly" if smooth else "interpolate along lines"
+            label = "interpolate smoothly" if smooth else "interpolate linearly"
             self._document.change(label, timeline=replace(self.timeline, smooth=smooth))
 
     def set_length(self, seconds: float) -> None:
         """Make the timeline longer or shorter [s] (InputError: it is too short, too long, or shorter than its keys)."""
         last = self.timeline.keys[-1].time if self.timeline.keys else 0.0
         if seconds < last:
-            raise InputError(f"the last keyframe is at {last:.2f} s; move or delete it before it is cut off")
+            raise InputError(f"the last keyframe is at {last:.2f} s. Move or delete it before you shorten the timeline")
         if seconds != self.timeline.length:
             timeline = replace(self.timeline, length=seconds)
             self._document.change(f"set length to {seconds:g} s", timeline=timeline, merge="set length")
@@ -131,7 +131,7 @@ class Keyframes:
 
     def _key(self, index: int | None) -> Key:
         if index is None:
-            raise InputError("choose a keyframe first: click on its diamond")
+            raise InputError("no keyframe selected. Click the diamond of one")
         if not 0 <= index < len(self.timeline.keys):
-            raise InputError(f"there is no keyframe {index + 1}; there are {len(self.timeline.keys)}")
+            raise InputError(f"unknown keyframe {index + 1}. Available: 1 to {len(self.timeline.keys)}")
         return self.timeline.keys[index]

@@ -40,8 +40,8 @@ class Follower:
         if pose.result.converged and upright(simulation.robot, pose):
             self._last, self.failure = pose, ""
         else:
-            why = pose.result.reason if not pose.result.converged else "the body would turn inside out"
-            self.failure = f"no shape was found there ({why}); the last one is shown: go back a little"
+            why = pose.result.reason if not pose.result.converged else "elements inverted"
+            self.failure = f"no equilibrium found ({why}). The last one is shown; go back a little"
         if self._last is None:
             return rest_shape(simulation.robot)
         last = self._last
@@ -210,6 +210,6 @@ class Machine:
 def _strained(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:
     """Sentences on cables that bear what they should not."""
     return tuple(
-        f"a cable of {robot.cables[index].winch} pulls {tensions[index]:.1f} N, more than {most:g} N"
+        f"{robot.cables[index].winch}: cable tension {tensions[index]:.1f} N, maximum {most:g} N"
         for index in np.flatnonzero(tensions > most)[:3]
     )

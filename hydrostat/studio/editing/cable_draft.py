@@ -47,7 +47,7 @@ def begin_cable(robot: Robot, at: Point, key: str = "") -> CableDraft:
 def end_cable(robot: Robot, draft: CableDraft, mirror: Mirror | None = None) -> Robot:
     """The robot with the cable, its winch if new, and their twins (InputError: no stopper, or a point outside)."""
     if len(draft.points) < 2:
-        raise InputError("a cable needs a stopper: click on the body where it shall end")
+        raise InputError("a cable needs a stopper. Click the body where the cable should end")
     winch, robot = draft.winch, robot if draft.winch is not None else add_winch(robot, draft.points[0])
     if winch is None:
         winch = robot.winches[-1].name
@@ -66,7 +66,7 @@ BEYOND = 0.06  # the line of the mirror goes so far beyond the body, as a share 
 
 
 def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> list[Thing]:
-    """What is shown beside the parts of the robot."""
+    """Return the mirror axis and the cable draft, to be shown with the parts of the robot."""
     things: list[Thing] = []
     if mirror is not None and robot.body.mesh.dim == 2:
         things.append(_axis(robot, mirror))

@@ -106,7 +106,7 @@ def check_range(name: str, value: float, least: float, most: float) -> None:
 
 def _free(name: str, names: list[str]) -> None:
     if names.count(name) > 1:
-        raise InputError(f'there is one of the name "{name}" already; names must be unique')
+        raise InputError(f'the name "{name}" is already in use. Choose another name')
 
 
 def sheathed_segments(cable: Cable) -> list[int]:
@@ -147,7 +147,7 @@ def remesh(
     if element_size is None or element_size == body.element_size:
         return body
     if body.source is Source.MESH:
-        raise InputError("a ready mesh has its own elements, their size cannot be chosen")
+        raise InputError("this body is an imported mesh. Its element size cannot be changed")
     given = {"file": body.file, "material": body.material, "element_size": element_size, "size": body.size}
     if body.source is Source.SURFACE:
         unit = float(units.unit_factor(robot.length_unit, units.LENGTH))

@@ -48,7 +48,7 @@ def pasted(robot: Robot, source: Robot, keys: Collection[str]) -> tuple[Robot, t
     A winch brings its cables; a cable alone is laid once more from its own winch. An InputError says that there is no
     room beside them, or that the winch of a cable is gone.
     """
-    reach, refused = source.body.mesh.size, InputError("there is no room beside them")
+    reach, refused = source.body.mesh.size, InputError("no free space next to the parts")
     for share in SHARES:
         for way in _ways(robot.body.mesh.dim):
             try:

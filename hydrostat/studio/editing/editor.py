@@ -117,7 +117,7 @@ class Editor(Stage):
     def paste(self) -> None:
         """Put in what was copied once more, beside it, and select that (InputError: nothing was copied, or no room)."""
         if self._copied is None:
-            raise InputError("nothing was copied; choose parts and press Ctrl C")
+            raise InputError("nothing copied. Select parts and press Ctrl C")
         robot, keys = pasted(self._document.robot, *self._copied)
         self._change(f"paste {plural(len(keys), 'part')}", robot)
         self._copied = (robot, keys)
@@ -157,7 +157,7 @@ class Editor(Stage):
         """Edit both sides of the plane where a coordinate is 0 alike; "": no longer (InputError: no such axis)."""
         axes = "xyz"[: self._document.robot.body.mesh.dim]
         if axis not in axes:
-            raise InputError(f'there is no axis "{axis}"; the body has {", ".join(axes)}')
+            raise InputError(f'unknown axis "{axis}". Available: {", ".join(axes)}')
         self.mirror = Mirror(axis=axes.index(axis)) if axis else None
         self._ring()
 
@@ -216,7 +216,7 @@ class Editor(Stage):
         while True:
             robot = self._document.robot  # parts of it may have been changed meanwhile
             if robot.body is not before:
-                raise InputError(f"{words}: the body is another one by now, so nothing was changed; ask for it again")
+                raise InputError(f"{words}: the body changed meanwhile, so nothing was changed. Try again")
             changed = replace(robot, body=body)
             if self._document.robot is robot:
                 self._change(f"change {words}", changed)
@@ -354,7 +354,7 @@ class Editor(Stage):
         """Lay the ruler on a part, or on a place of the body."""
         at = place_of(self._document.robot, hit.key) or hit.rest
         if at is None:
-            raise InputError("click on a part or on the body to measure from there")
+            raise InputError("click a part or the body to measure from there")
         self.ruler = Ruler((at,)) if self.ruler is None else self.ruler.to(at)
         self._ring()
 
@@ -362,7 +362,7 @@ class Editor(Stage):
         """The place in the body that a click means."""
         robot = self._document.robot
         if hit.rest is None:
-            raise InputError(f"click on the body to place a {self.tool}")
+            raise InputError(f"click the body to place a {self.tool}")
         asked = gridded(hit.rest, self.snap)
         at = inside(robot.body, asked) if skin else below_skin(robot.body, asked, self.depth)
         return self.mirror.on_plane(at) if self.mirror is not None and self.mirror.near(robot, at) else at

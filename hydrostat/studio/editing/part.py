@@ -9,7 +9,7 @@ from hydrostat.robot import Point, Robot
 
 
 class Kind(StrEnum):
-    """What a part is."""
+    """Kind of a part."""
 
     PIN = "pin"
     WINCH = "winch"

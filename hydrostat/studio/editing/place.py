@@ -118,7 +118,7 @@ def remove(robot: Robot, keys: Collection[str]) -> Robot:
             vias.setdefault(part.index, set()).add(part.place)
         gone[part.kind].add(part.index)
     if len(gone[Kind.PIN]) == len(robot.pins):
-        raise InputError("the last pin stays: a robot must be held somewhere; place another one first")
+        raise InputError("the last pin cannot be deleted: the body would be unconstrained. Place another pin first")
     winches = tuple(winch for index, winch in enumerate(robot.winches) if index not in gone[Kind.WINCH])
     names = {winch.name for winch in winches}
     markers = tuple(marker for index, marker in enumerate(robot.markers) if index not in gone[Kind.MARKER])
@@ -139,7 +139,7 @@ def remove(robot: Robot, keys: Collection[str]) -> Robot:
 def _found(robot: Robot, key: str) -> Part:
     part = find_part(robot, key)
     if part is None:
-        raise InputError(f"there is no {key} to be removed")
+        raise InputError(f"unknown part {key}")
     return part
 
 
@@ -149,7 +149,7 @@ def _without_points(index: int, cable: Cable, places: Collection[int]) -> Cable:
         return cable
     kept = [place for place in range(len(cable.points)) if place not in places]
     if len(kept) < 2:
-        raise InputError(f"cable {index + 1} needs its winch and a stopper; delete the cable itself")
+        raise InputError(f"cable {index + 1} needs a winch and a stopper. Delete the whole cable instead")
     sheaths = []
     for start, end in cable.sheathed:
         inside = [new for new, old in enumerate(kept) if start <= old <= end]

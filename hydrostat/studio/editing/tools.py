@@ -18,6 +18,6 @@ KEYS = {  # the key of each tool
     "v": Tool.MOVE, "p": Tool.PIN, "m": Tool.MARKER, "w": Tool.WINCH, "c": Tool.CABLE, "d": Tool.RULER,
 }  # fmt: skip
 ARROWS = {"arrowleft": (-1, 0), "arrowright": (1, 0), "arrowdown": (-1, 1), "arrowup": (1, 1)}
-"""Which way each arrow moves what is chosen: along the first axis, or along the last, which is up."""
+"""Axis and sign by which each arrow key moves the selection: the first axis, or the last, which is up."""
 
 NUDGE, PUSH = 1e-3, 1e-2  # how far an arrow moves it, and with Shift [m]

@@ -28,7 +28,7 @@ _ONCE = IKOptions(restarts=0)  # a pose is shown as soon as it is found
 
 
 class Export(StrEnum):
-    """What is made in a process of its own."""
+    """Output that is made in a process of its own."""
 
     KIT = "kit"
     REPORT = "report"
@@ -45,11 +45,11 @@ class _Made:
 
 
 class Exporter(Stage):
-    """What a person takes home: kit, report, pictures, the robot itself. All is in memory until it is downloaded.
+    """Export stage: kit, report, pictures and the robot itself. All is in memory until it is downloaded.
 
     A result is that of one robot: it is not shown once the robot has changed, and is back if the change is undone.
-    How the next kit is made, its method, motor and paper, is of this sitting: it is not part of the robot, is not saved
-    with it, and is not undone.
+    Options of the next kit, its method, motor and paper, are of this sitting: they are not part of the robot, not saved
+    with it, and not undone.
     """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
@@ -101,10 +101,10 @@ class Exporter(Stage):
     def make_kit(self, *, force: bool = False) -> None:
         """Make the kit as a job; if forced, even where it cannot be built well (InputError: no cables, or busy)."""
         if not self._document.robot.cables:
-            raise InputError("a kit needs cables; press Design, or place winches and cables by hand")
+            raise InputError("a kit needs cables. Press Design, or place winches and cables by hand")
         tension = wished_constraints(self._document.robot, self._document.work.wishes).tension_limit
         options = replace(self.options, tension=tension, force=force or self.options.force)
-        self._start(Export.KIT, "Making the kit", make_kit, options)
+        self._start(Export.KIT, "Building the kit", make_kit, options)
 
     def make_report(self) -> None:
         """Write the report, in a process of its own (InputError: other work is in progress)."""
@@ -117,7 +117,7 @@ class Exporter(Stage):
     def pictures_zip(self) -> Download:
         """All pictures in one file (InputError: there are none yet)."""
         if not self.pictures:
-            raise InputError("there are no pictures of this robot yet; draw them first")
+            raise InputError("no pictures of this robot yet. Draw them first")
         name = f"{file_name(self._document.robot.name)}_pictures"
         files = {picture.name: picture.content for picture in self.pictures}
         return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Pictures")

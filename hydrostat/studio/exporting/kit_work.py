@@ -26,9 +26,9 @@ class KitMade:
 
     @property
     def told(self) -> str:
-        """Count of the checks that hold, such as "8 of 8 checks hold"."""
+        """Count of the passed checks, such as "8 of 8 checks passed"."""
         held = sum(check.passed for check in self.checks)
-        return f"{held} of {len(self.checks)} checks hold"
+        return f"{held} of {len(self.checks)} checks passed"
 
 
 SHEET, PATTERN = "assembly_sheet.pdf", "pattern/pattern.svg"

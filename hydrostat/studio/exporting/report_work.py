@@ -39,7 +39,7 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolvedPoses:
-    """What the winches make of the poses."""
+    """Inverse-kinematics results of the poses of a robot."""
 
     robot: Robot  # whose they are
     reached: tuple[IKResult, ...]  # those that were solved, in their order
@@ -123,7 +123,7 @@ def _hero(solved: SolvedPoses) -> Html:
     robot = solved.robot
     parts = (
         f"A soft body, {plural(len(robot.winches), 'winch')} and {plural(len(robot.cables), 'cable')}, "
-        f"{plural(len(robot.poses), 'pose')}. This page tells what the robot is, and what its winches reach."
+        f"{plural(len(robot.poses), 'pose')}. This page describes the robot and its poses."
     )
     steps: list[Html] = []
     if solved.reached:
@@ -132,7 +132,7 @@ def _hero(solved: SolvedPoses) -> Html:
         tension = max(float(np.max(reached.pose.tensions)) for reached in solved.reached)
         share = f"{100 * error / robot.body.mesh.size:.1f} % of the body's size"
         steps.append(fact(f"{MILLIMETRES * error:.1f}", "mm rms", f"of all markers in all poses: {share}", best=True))
-        steps.append(fact(f"{tension:.1f}", "N", "the largest tension of a cable in these poses"))
+        steps.append(fact(f"{tension:.1f}", "N", "maximum cable tension in these poses"))
     return tag(
         "div",
         tag("p", "hydrostat \N{MIDDLE DOT} robot report", class_="eyebrow"),
@@ -145,10 +145,9 @@ def _hero(solved: SolvedPoses) -> Html:
 
 def _body(robot: Robot) -> Chapter:
     words = (
-        f"{robot.body.file} as soft material. The hatched fields are held; the white dots are the markers, points to "
-        "be watched."
+        f"{robot.body.file} as soft material. Hatched areas are fixed. White dots are the markers, the tracked points."
     )
-    risks = [tag("div", tag("b", "Mind: "), risk, class_="note") for risk in find_risks(robot)]
+    risks = [tag("div", tag("b", "Warning: "), risk, class_="note") for risk in find_risks(robot)]
     return Chapter("The body", words, [body_part(robot), *risks])
 
 
@@ -182,4 +181,4 @@ def _footer(robot: Robot) -> Html:
         "An error is the distance from a marker to its target in the body's equilibrium, solved by finite elements; "
         "rms is the root of the mean of the squared errors."
     )
-    return tag("footer", tag("h2", "How this was made"), tag("p", words), table(("", ""), rows))
+    return tag("footer", tag("h2", "Methods"), tag("p", words), table(("", ""), rows))

@@ -17,7 +17,7 @@ class SaveDialog:
         """Build the dialogs of a window."""
         self._page, self._document = page, page.session.document
         with ui.dialog() as self._dialog, ui.card().classes("q-pa-md").style("min-width: 420px"):
-            ui.label("Save the robot").classes("studio-title")
+            ui.label("Save robot").classes("studio-title")
             ui.label("A folder with robot.toml and the file of the body.").classes("studio-hint")
             self._folder = ui.input("Folder").classes("w-full").mark("save-folder")
             with ui.row().classes("w-full justify-end"):
@@ -45,7 +45,7 @@ class SaveDialog:
         if name:
             await self._save_in(Path(name).expanduser())
         elif told is not None and self._folder.value is not None and not self._folder.value.strip():
-            self._page.tell("name a folder")
+            self._page.tell("folder name missing")
 
     async def take_home(self) -> None:
         """Hand the robot over as a zip."""
@@ -77,15 +77,15 @@ class _Sure:
 
     def __init__(self) -> None:
         with ui.dialog() as self._dialog, ui.card().classes("q-pa-md").style("width: 480px"):
-            ui.label("Save over what is there?").classes("studio-title")
+            ui.label("Overwrite existing files?").classes("studio-title")
             self._words = ui.column().classes("w-full gap-2")
             with ui.row().classes("w-full justify-end"):
                 self._button("Cancel", "", "flat").mark("save-cancel")
-                self._button("Save elsewhere", "elsewhere", "flat").mark("save-elsewhere")
-                self._button("Save over it", "save", "unelevated color=negative").mark("save-over")
+                self._button("Save as…", "elsewhere", "flat").mark("save-elsewhere")
+                self._button("Overwrite", "save", "unelevated color=negative").mark("save-over")
 
     async def ask(self, told: list[str]) -> str:
-        """What a person chooses: "save", "elsewhere", or "" to leave all as it is."""
+        """Show the questions and return the choice: "save", "elsewhere", or "" to cancel."""
         self._words.clear()
         with self._words:
             for words in told:
@@ -104,13 +104,13 @@ async def may_leave(page: WindowPage) -> bool:
     if document.saved:
         return True
     with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
-        ui.label(f"{document.robot.name} is not saved").classes("studio-title")
-        ui.label("Another robot takes its place, and what was changed would be lost.").classes("studio-hint")
+        ui.label(f"Unsaved changes in {document.robot.name}").classes("studio-title")
+        ui.label("If you open another robot now, they are lost.").classes("studio-hint")
         with ui.row().classes("w-full justify-end items-center"):
             for words, answer, look in (
-                ("Go back", "no", "flat"),
-                ("Throw the changes away", "yes", "flat color=negative"),
-                ("Take home" if page.session.guest else "Save", "save", "unelevated"),
+                ("Cancel", "no", "flat"),
+                ("Discard changes", "yes", "flat color=negative"),
+                ("Download" if page.session.guest else "Save", "save", "unelevated"),
             ):
                 button = ui.button(words, on_click=partial(dialog.submit, answer))
                 button.props(f'{look} no-caps data-testid="leave-{answer}"')

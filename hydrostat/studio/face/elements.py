@@ -45,7 +45,7 @@ class Knob(ui.element, component="static/knob.js"):
         self.on("letgo", lambda: let_go())
 
 
-HINT = "Turn the knobs and press Add; move the playhead, turn them again, add again. Then play."
+HINT = "Turn the knobs and press Add. Move the playhead, turn the knobs and add again. Then play."
 
 
 class TimelineView(ui.element, component="static/timeline.js"):
@@ -94,11 +94,11 @@ class TimelineView(ui.element, component="static/timeline.js"):
 def winch_badge(mark: str, colour: str) -> None:
     """The mark of a winch in the kit, as W1, in its colour."""
     style = "border-radius: 4px; padding: 1px 4px; font-size: 11px; font-weight: 600; color: white; flex: none"
-    ui.label(mark).style(f"{style}; background: {colour}").tooltip("What the kit calls this winch")
+    ui.label(mark).style(f"{style}; background: {colour}").tooltip("Label of this winch in the kit")
 
 
 def _shares(robot: Robot, contractions: Mapping[str, float]) -> list[float]:
-    """How far the winches go, from 0 for all that is let out to 1 for all that can be taken in."""
+    """Contractions as shares of the winch travel, from 0 (all cable let out) to 1 (all reeled in)."""
     shares = []
     for winch in robot.winches:
         share = (contractions.get(winch.name, 0.0) + winch.release) / (winch.travel + winch.release)

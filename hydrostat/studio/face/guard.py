@@ -80,14 +80,14 @@ class Guard:
         """Why a request is not passed on; "" if it is."""
         hosts, origins = headers.getlist("host"), headers.getlist("origin")
         if len(hosts) != 1 or not self._is_ours(hosts[0].lower()):
-            return "this studio is not reached by that name"
+            return "unknown host name. Open the address that the studio printed"
         if origins not in ([], [f"http://{hosts[0].lower()}"]) or not _is_near(scope, headers):
-            return "another page may not use this studio"
+            return "request from another page refused"
         lengths = headers.getlist("content-length")
         if len(lengths) > 1 or any(not _is_count(text) or int(text) > self._largest for text in lengths):
-            return "that is too much to send"
+            return "request too large"
         if self._token is not None and not self._brings_token(scope, headers):
-            return "open the address that the studio printed: it has a token"
+            return "token missing. Open the address that the studio printed"
         return ""
 
     def _is_ours(self, host: str) -> bool:

@@ -1,4 +1,4 @@
-"""What a screen may say to the studio: small JSON messages and numbers, checked before anything is done with them."""
+"""Messages from a screen to the studio: small JSON messages and numbers, validated before use."""
 
 from typing import Annotated, Any, Literal
 

@@ -20,7 +20,7 @@ LONG = 0.1
 """A step that takes longer [s] does not keep the screens waiting: what changes meanwhile is shown beside it."""
 
 SEEN = (Topic.SHAPE, Topic.THINGS, Topic.ROBOT, Topic.STAGE)
-"""What changes the picture."""
+"""Topics that change the picture."""
 
 
 class Pulse:
@@ -109,8 +109,8 @@ class Pulse:
         try:
             return action()
         except Exception as error:
-            logging.getLogger("hydrostat").exception("the studio stumbled")
-            words = f"something went wrong: {type(error).__name__}: {error}"
+            logging.getLogger("hydrostat").exception("error in the studio")
+            words = f"internal error: {type(error).__name__}: {error}"
             if not self._session.notes or self._session.notes[-1].text != words:
                 self._session.tell(words, Tone.BAD)
             time.sleep(PATIENCE)

@@ -65,7 +65,7 @@ class Rooms:
 
     @property
     def many(self) -> bool:
-        """Whether each browser has a room of its own."""
+        """True if each browser has a room of its own."""
         return self._only is None
 
     def start(self) -> None:
@@ -87,7 +87,7 @@ class Rooms:
         if self._only is not None:
             return self._only
         if not _KEY.fullmatch(key):
-            raise InputError("there is no such room; open the address that the studio printed")
+            raise InputError("unknown room. Open the address that the studio printed")
         with self._lock:
             room = self._rooms.get(key)
             if room is None:
@@ -119,7 +119,7 @@ class Rooms:
         idle = [room for room in self._rooms.values() if not room.stream.screens]
         oldest = min(idle, key=lambda room: room.seen, default=None)
         if oldest is None or time.monotonic() - oldest.seen < IDLE:
-            raise InputError(f"this studio has {MOST} rooms, and somebody is in each; try again later")
+            raise InputError(f"all {MOST} rooms of this studio are in use. Try again later")
         del self._rooms[oldest.key]
         Thread(target=oldest.close, name="closing a room", daemon=True).start()
 

@@ -105,7 +105,7 @@ def _add_pages(rooms: Rooms, token: str | None, cookie: str) -> None:
     def watcher(key: str) -> Response | None:
         room = rooms.watched(key)
         if room is None:
-            return PlainTextResponse("hydrostat: nobody works in that room just now\n", status_code=404)
+            return PlainTextResponse("hydrostat: this room is not in use now\n", status_code=404)
         page = build_watch(room.session, f"/watched/{key}")
         ui.context.client.on_delete(page.close)
         return None
@@ -149,6 +149,6 @@ def _listener(host: str, port: int) -> socket.socket:
         listener.bind((host, port))
         listener.listen()  # who follows the printed address at once must wait, not be refused
     except OSError as error:
-        words = f"--host {host} --port {port}: cannot be listened at ({error.strerror}); try another"
+        words = f"--host {host} --port {port}: cannot open this address ({error.strerror}). Choose another port or host"
         raise InputError(words) from None
     return listener

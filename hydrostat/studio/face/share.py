@@ -19,8 +19,8 @@ def share_dialog(links: Links) -> Callable[[], object]:
     with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3").style("width: 520px; max-width: 92vw"):
         ui.label("Share this room").classes("studio-title")
         for words, hint, link, name in (
-            ("Work together", "Whoever opens it can do all that you can.", links.work, "share-work"),
-            ("Only watch", "The robot as it moves, and nothing to press.", links.watch, "share-watch"),
+            ("Work together", "People with this link can edit everything.", links.work, "share-work"),
+            ("View only", "People with this link see the robot move and cannot edit.", links.watch, "share-watch"),
         ):
             with ui.column().classes("w-full gap-1"):
                 ui.label(words).classes("studio-section")

@@ -44,7 +44,7 @@ class Stream:
 
     @property
     def screens(self) -> int:
-        """How many look at it."""
+        """Number of connected screens."""
         return len(self._screens)
 
     async def serve(self, socket: WebSocket, *, watching: bool = False) -> None:
@@ -81,7 +81,7 @@ class Stream:
             except InputError:
                 mistakes += 1
             except Exception:
-                logging.getLogger("hydrostat").exception("the studio stumbled over a message")
+                logging.getLogger("hydrostat").exception("error in the studio while handling a message")
                 mistakes += 1
             await asyncio.sleep(0)  # messages that wait in a row must not keep other screens waiting
         await screen.socket.close(1008)
@@ -104,7 +104,7 @@ class Stream:
                 self._session.click(name, hit)
 
     def _hit(self, message: Pointer) -> Hit:
-        """What is under the pointer, with as many coordinates as the body."""
+        """Return the object under the pointer, with as many coordinates as the body."""
         dim = 3
         if self._session.document.is_open:
             dim = self._session.document.robot.body.mesh.dim

@@ -37,7 +37,7 @@ class Toasts:
 
     @property
     def words(self) -> list[str]:
-        """What is shown, the oldest first."""
+        """Texts on the screen, the oldest first."""
         return [words for _, _, words in self._shown]
 
     def _drop(self, toast: ui.element) -> None:

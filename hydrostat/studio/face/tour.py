@@ -10,7 +10,7 @@ from hydrostat.studio.stage import StageName
 
 @dataclass(frozen=True)
 class StageWords:
-    """What a stage is for."""
+    """Texts that explain a stage."""
 
     title: str  # as on its button
     icon: str  # likewise
@@ -20,49 +20,49 @@ class StageWords:
 
 STAGES = {  # in the order of work
     StageName.START: StageWords(
-        "Start", "home", "Choose a robot, or bring a drawing, a picture or a scan.",
-        "Choose a robot of the gallery, open a folder, or bring a drawing, a picture or a scan: "
-        "it becomes a soft body.",
+        "Start", "home", "Choose a robot, or import a drawing, a picture or a scan.",
+        "Choose a robot from the gallery, open a folder, or import a drawing, a picture or a scan. "
+        "It becomes a soft body.",
     ),
     StageName.EDIT: StageWords(
-        "Edit", "edit", "Place and move pins, markers, winches and cables; the check looks on."
+        "Edit", "edit", "Place pins, markers, winches and cables. Checks run as you edit."
     ),
     StageName.POSE: StageWords(
-        "Pose", "back_hand", "Drag the body as if full of muscle, or let its own winches follow.",
-        "Take hold of any point and drag: the body bends as if it were full of muscle. "
-        "Or let its own winches follow your hand. Keep what you like as a pose.",
+        "Pose", "back_hand", "Drag the body: by muscles everywhere, or by its own winches.",
+        "Drag any point. The body bends as if it were full of muscle, "
+        "or its own winches follow by inverse kinematics. Store a shape you like as a pose.",
     ),
     StageName.DESIGN: StageWords(
-        "Design", "auto_awesome", "From poses to winches and cables, within what can be built.",
-        "Say how many winches and cables, paint where none may be, and press Design. "
-        "The best network so far appears on the body while it works.",
+        "Design", "auto_awesome", "Find winches and cables for the poses, within build limits.",
+        "Set the numbers of winches and cables, paint no-cable zones, and press Design. "
+        "The best network so far appears on the body during the search.",
     ),
     StageName.DRIVE: StageWords(
         "Drive", "tune", "Turn the winches by hand, set keyframes, play and record.",
-        "Turn a knob for each winch. Set keyframes, play them in a loop, record a film, "
-        "or take the contractions along as a table.",
+        "Turn a knob for each winch. Set keyframes, play them in a loop, record a video, "
+        "or export the contractions as a table.",
     ),
     StageName.EXPORT: StageWords(
-        "Export", "ios_share", "Take home the kit, a report, pictures and the robot itself.",
-        "Make the kit: patterns or moulds, parts to print, what to buy, and a sheet to follow. "
-        "Then build the robot.",
+        "Export", "ios_share", "Download the kit, a report, pictures and the robot itself.",
+        "Build the kit: patterns or moulds, parts to print, a shopping list and an assembly sheet. "
+        "Then make the robot.",
     ),
 }  # fmt: skip
 
 
 KEYS = (  # and what they do
-    (("G",), "move what is chosen: click or drag to where it should go"),
+    (("G",), "move the selection: click or drag to its target"),
     (("R",), "back to rest"),
     (("Z",), "undo"),
-    (("Shift", "Z"), "do again"),
-    (("Space",), "play, or stop playing"),
+    (("Shift", "Z"), "redo"),
+    (("Space",), "play or stop"),
     (("1", "3", "7"), "view from the front, the side, the top"),
-    (("Shift", "click"), "choose several parts; Ctrl A: all"),
-    (("Ctrl", "C"), "copy what is chosen; Ctrl V: paste, Ctrl D: both"),
-    (("\u2190", "\u2192", "\u2191", "\u2193"), "move what is chosen by 1 mm; with Shift by 10 mm"),
-    (("Delete",), "remove what is chosen"),
-    (("Esc",), "choose nothing; stop what was begun"),
-    (("Ctrl", "S"), "save; with Shift somewhere else"),
+    (("Shift", "click"), "select several parts; Ctrl A: all"),
+    (("Ctrl", "C"), "copy the selection; Ctrl V: paste, Ctrl D: duplicate"),
+    (("\u2190", "\u2192", "\u2191", "\u2193"), "move the selection by 1 mm; with Shift by 10 mm"),
+    (("Delete",), "delete the selection"),
+    (("Esc",), "clear the selection; cancel"),
+    (("Ctrl", "S"), "save; with Shift: save as"),
     (("?",), "this help"),
 )
 SEEN = "hydrostat-tour"  # where the browser keeps that it has shown the tour
@@ -127,7 +127,7 @@ class Tour:
         self._words.set_text(words.tour)
         self._count.set_text(f"{self._step + 1} of {len(self._stops)}")
         self._back.set_visibility(self._step > 0)
-        self._next.set_text("Next" if self._step + 1 < len(self._stops) else "Begin")
+        self._next.set_text("Next" if self._step + 1 < len(self._stops) else "Start")
         self._set_visible(True)
         ui.run_javascript(PLACE % (self._card.id, self._ring.id, stage))
 

@@ -30,10 +30,10 @@ def view_bar(page: WindowPage, *, colours: bool = True) -> None:
             icon_button("crop_portrait", "Front (1)", lambda: view.view("front"))
             icon_button("flip", "Side (3)", lambda: view.view("side"))
             icon_button("layers", "Top (7)", lambda: view.view("top"))
-            with icon_button("view_in_ar", "Looks", None):
+            with icon_button("view_in_ar", "View options", None):
                 _space_menu(page)
         if colours:
-            with icon_button("palette", "Colours", None):
+            with icon_button("palette", "Colors", None):
                 _colour_menu(page)
         mesh = icon_button("grid_4x4", "Mesh", None)
         mesh.on_click(lambda: _toggle_mesh(page, mesh))
@@ -46,7 +46,7 @@ def view_bar(page: WindowPage, *, colours: bool = True) -> None:
 
 
 def _legend(page: WindowPage) -> None:
-    """What the colours of the body mean, in another corner."""
+    """Build the legend of the body's colors, in another corner."""
     with ui.element("div").classes("studio-legend") as box:
         title = ui.label()
         ui.element("div").classes("studio-legend-bar").style(f"background: linear-gradient(90deg, {', '.join(RAMP)})")
@@ -69,7 +69,7 @@ def _space_menu(page: WindowPage) -> None:
     view = page.viewport
     with ui.menu(), ui.column().classes("q-pa-md gap-2").style("min-width: 220px"):
         ui.switch("Perspective", value=True, on_change=lambda event: view.orthographic(not event.value))
-        ui.label("See through").classes("studio-section")
+        ui.label("Opacity").classes("studio-section")
         ui.slider(min=0.1, max=1.0, step=0.05, value=1.0, on_change=lambda event: view.opacity(event.value or 1.0))
         ui.label("Section").classes("studio-section")
         share = ui.slider(min=0.0, max=1.0, step=0.01, value=0.5)

@@ -83,5 +83,5 @@ class Viewport(ui.element, component="static/viewport.js"):
         self.run_method("mesh", on)
 
     async def picture(self) -> str:
-        """What is seen, as a PNG in a data URL."""
+        """Return the view as a PNG in a data URL."""
         return await self.run_method("picture", timeout=10.0)

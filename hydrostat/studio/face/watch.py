@@ -33,7 +33,7 @@ def build_watch(session: Session, stream: str) -> WindowPage:
         document = session.document
         name.set_text(document.robot.name if document.is_open else "")
         stage.set_text(
-            f"You watch: {STAGES[session.stage].title}" if document.is_open else "You watch: no robot is open"
+            f"View only: {STAGES[session.stage].title}" if document.is_open else "View only: no robot is open"
         )
 
     page.on((Topic.ROBOT, Topic.STAGE), show, lasting=True)

@@ -53,7 +53,8 @@ addEventListener("keydown", (event) => {
 });
 </script>
 """
-"""What was clicked does not keep the keyboard, or Space would press it again and not play. By Tab it does.
+"""Scripts of the page. A clicked button does not keep the keyboard focus, or Space would press it instead of
+starting playback. A button that is reached by Tab keeps it.
 
 A page that is seen gives signs of life, without which motors hold."""
 
@@ -136,9 +137,9 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
         if session.hardware.allowed:
             stop_button(page)
         undo = _tool("undo", "Undo", session.undo)
-        redo = _tool("redo", "Do again", session.redo)
+        redo = _tool("redo", "Redo", session.redo)
         save = _tool("save", "Save", ask_save.save)
-        more = ui.button(icon="arrow_drop_down", color=None).props('flat round dense aria-label="Save as, take home"')
+        more = ui.button(icon="arrow_drop_down", color=None).props('flat round dense aria-label="Save as, download"')
         with more.classes("studio-tool").style("margin-left: -10px; width: 22px"), ui.menu():
             _saving_menu(page, ask_save)
         if links is not None:
@@ -170,8 +171,8 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
 
 def _saving_menu(page: WindowPage, ask_save: SaveDialog) -> None:
     if not page.session.guest:
-        ui.menu_item("Save as ...", ask_save.save_as).props('data-testid="save-as"')
-    ui.menu_item("Take home as .zip", ask_save.take_home).props('data-testid="save-zip"').classes("no-wrap")
+        ui.menu_item("Save as…", ask_save.save_as).props('data-testid="save-as"')
+    ui.menu_item("Download as .zip", ask_save.take_home).props('data-testid="save-zip"').classes("no-wrap")
 
 
 def _tool(icon: str, words: str, action: Ask) -> ui.button:
@@ -201,7 +202,7 @@ SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 
 
 def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: SaveDialog, ask_help: Ask) -> Any:
-    """What a key does; see `tour.KEYS`. Returns what is still to be waited for, if anything."""
+    """Handle a key; see `tour.KEYS`. Return what is still to be awaited, if anything."""
     if not event.action.keydown:
         return None
     name = str(event.key.name)

@@ -17,9 +17,9 @@ from hydrostat.studio.view.touching import with_touches
 
 PATIENCE = 150  # so many updates are made towards targets that stay where they are
 CALM, CALMEST = 4.0, 0.3
-"""What is not held should rather stay, or all fingers of a hand move for a hair that they gain for one: a metre of the
-whole body away from rest counts beside a metre of error by so many times the error in sizes of the body, at most the
-second. So it hides no target: it fades as one is reached."""
+"""Weights that keep free parts at rest, or all fingers of a hand move for a hair that they gain for one: a meter of the
+whole body away from rest counts by so many times the error, in sizes of the body, relative to a meter of error, at most
+the second. So it hides no target: it fades as one is reached."""
 
 GAIN = 0.5
 """Markers that nobody holds rather stay, as in `solve_ik`: the square of their distance from rest weighs this times the
@@ -42,7 +42,7 @@ ENDS = {IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM}
 
 
 def _goal(held: Mapping[str, HeldPoint]) -> PointTarget:
-    """What is held, where it should be."""
+    """Return the objective that draws held points to their targets."""
     return PointTarget(
         points={name: point.at for name, point in held.items()},
         targets={name: point.target for name, point in held.items()},
@@ -145,7 +145,7 @@ class CableMover(Mover):
         return calm
 
     def _band(self) -> tuple[str, ...]:
-        """How far apart friction leaves the markers, in words; nothing without it."""
+        """Width of the friction hysteresis at the markers [mm], in words; empty without friction."""
         try:
             band = friction_hysteresis(self._simulation, self._pose)
         except NotConvergedError:
@@ -153,7 +153,7 @@ class CableMover(Mover):
         if not band:
             return ()
         name = max(band, key=lambda own: band[own])
-        return (f"friction: come to from above, markers end up to {1e3 * band[name]:.1f} mm elsewhere ({name})",)
+        return (f"friction hysteresis: after overshoot, {name} rests up to {1e3 * band[name]:.1f} mm away",)
 
     def _begin(self, pose: Equilibrium) -> None:
         self._pose, self._held, self._updates, self._still, self._near = pose, {}, 0, 0, False

@@ -14,7 +14,7 @@ from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.posing.propose_work import Proposal, ProposalInput, propose_work
 from hydrostat.studio.records.work import after_design
 
-LOST = "the process that proposes cables has died; switch it off and on again"
+LOST = "the proposal process crashed. Switch proposals off and on again"
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class CableProposals:
             self._news.notify_all()
 
     def found(self, robot: Robot) -> Proposal | None:
-        """What was found last, if it is for a body as this robot has it."""
+        """Return the latest proposal, if it is for a body as this robot has it."""
         found = self._found
         if found is None or not self.on or not same_physics(found[0], robot, Mode.MUSCLES):
             return None
@@ -85,7 +85,7 @@ class CableProposals:
         work = self._document.work
         robot = self.network(work.robot)
         if robot is None:
-            raise InputError("there is no network yet; drag the body until one is proposed")
+            raise InputError("no network proposed yet. Drag the body until one appears")
         self._document.change("keep proposed cables", robot=robot, wishes=after_design(work, robot))
 
     def forget(self) -> None:

@@ -44,7 +44,7 @@ class Predictor:
         self._model.check(robot)
 
     def knows(self, held: Mapping[str, HeldPoint]) -> bool:
-        """Whether only markers of the model are held."""
+        """True if markers are held, and all of them are markers of the model."""
         return bool(held) and all(self._places.get(name) == point.at for name, point in held.items())
 
     def stay(self, pose: Equilibrium) -> None:

@@ -13,7 +13,7 @@ from hydrostat.studio.view.things import Ghost, RobotShape
 
 
 class Mode(StrEnum):
-    """What moves the body."""
+    """Actuation of the body: by muscles or by cables."""
 
     MUSCLES = "muscles"
     CABLES = "cables"
@@ -72,7 +72,7 @@ class Anchored:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseState:
-    """What belongs together, so that no thread sees an old wish with a new body."""
+    """State of posing, replaced as a whole so that no thread sees old targets with a new body."""
 
     robot: Robot  # that is posed
     wish: PoseTargets  # what a person wants of it

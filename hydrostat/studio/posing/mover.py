@@ -51,7 +51,7 @@ class MuscleMover(Mover):
 
     @property
     def pulls(self) -> tuple[Nodes, Vector]:
-        """Where the body is [m], and the tension of the muscle on each edge of its mesh [N]."""
+        """Positions of the nodes [m], and the tension of the muscle on each edge of the mesh [N]."""
         return self._posing.nodes, self._posing.tensions
 
     def rest(self) -> RobotShape:
@@ -82,5 +82,5 @@ class MuscleMover(Mover):
             contractions=np.zeros(len(robot.winches)),
             errors=errors,
             muscles=pulls / most,
-            notes=("as far as muscles bring this body",) if far else (),
+            notes=("muscle limit: target not reached",) if far else (),
         )

@@ -34,14 +34,14 @@ from hydrostat.studio.view.robot_things import MARKER, Bar, foretold_things, rob
 from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
 from hydrostat.studio.view.touching import touch_things
 
-READY = "getting ready ..."  # said while the physics of a robot is made
+READY = "preparing the physics…"  # said while the physics of a robot is made
 FARTHEST = 1.0  # no target is farther from the box of the body at rest, in sizes of the body
 TARGET_GHOST = "#8fb4d6"
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Hold:
-    """What the pointer has hold of."""
+    """Point that the pointer drags."""
 
     name: str  # of the point
     point: HeldPoint  # of the body
@@ -73,17 +73,17 @@ class Poser(Stage):
 
     @property
     def mode(self) -> Mode:
-        """What moves the body."""
+        """Actuation of the body: by muscles or by cables."""
         return self._fit().wish.mode
 
     @property
     def held(self) -> Mapping[str, HeldPoint]:
-        """What is held where, by name."""
+        """Held points with their targets, by name."""
         return self._fit().wish.held
 
     @property
     def armed(self) -> bool:
-        """Whether the next click or drag moves what is chosen."""
+        """True if the next click or drag moves the chosen point."""
         return bool(self._armed)
 
     @property
@@ -198,7 +198,7 @@ class Poser(Stage):
             if mode is now.wish.mode:
                 return
             if mode is Mode.CABLES and not now.robot.cables:
-                raise InputError("this robot has no cables yet; find some in Design, or place them in Edit")
+                raise InputError("this robot has no cables yet. Find some in Design, or place them in Edit")
             ghost = None
             if mode is Mode.CABLES and now.wish.held:
                 ghost = Ghost(name="target", nodes=now.shape.nodes, colour=TARGET_GHOST)
@@ -219,7 +219,7 @@ class Poser(Stage):
         """Let go of a held point."""
         with self._lock:
             now = self._fit()
-            self._note(f"let go of {name}")
+            self._note(f"release {name}")
             left = {own: held for own, held in now.wish.held.items() if own != name}
             self._now = replace(now, wish=replace(now.wish, held=left))
             self._chosen = self._armed = ""
@@ -254,7 +254,7 @@ class Poser(Stage):
         self._document.change(f"delete pose {name}", robot=robot, wishes=wishes_after(work.wishes, robot))
 
     def bars(self) -> list[Bar]:
-        """What each winch does."""
+        """Bars of all winches: contraction and tension."""
         now = self._fit()
         return winch_bars(now.robot, now.shape, self._document.work.wishes.tension)
 
@@ -317,7 +317,7 @@ class Poser(Stage):
         self._ring()
 
     def _note(self, label: str) -> None:
-        """What is held changes now, and can be undone."""
+        """Note for undo that the held points change now."""
         self._trail.note(label, self._fit().wish.held)
 
     def _propose(self, robot: Robot, wish: PoseTargets) -> None:
@@ -343,7 +343,7 @@ class Poser(Stage):
         self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def _fit(self) -> PoseState:
-        """What belongs together for the robot as it is now."""
+        """Return the state of posing for the robot as it is now, rebuilt if the robot has changed."""
         now = self._now
         if now is not None and now.robot is self._document.robot:
             return now
@@ -383,7 +383,7 @@ class Poser(Stage):
             self._hold = None if gone else replace(hold, name=name)
 
     def _place(self, now: PoseState, name: str, point: HeldPoint) -> tuple[float, ...]:
-        """Where a point of the body is [m]."""
+        """Position of a point of the body [m]."""
         return tuple(Anchored(now.robot.body.mesh).places({name: point}, now.shape.nodes)[0].tolist())
 
     def _hold_at(self, name: str, point: HeldPoint, target: np.ndarray) -> None:

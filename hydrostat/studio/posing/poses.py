@@ -16,7 +16,7 @@ def with_pose(robot: Robot, name: str, held: Mapping[str, HeldPoint]) -> Robot:
     """A robot with one more pose, or another of its name; held points get markers (InputError: no name or point)."""
     name = checked_name(name)
     if not held:
-        raise InputError("nothing is held yet; drag a point of the body, then store the pose")
+        raise InputError("no targets yet. Drag a point of the body, then store the pose")
     known = {marker.name for marker in robot.markers}
     new = tuple(Marker(name=own, at=point.at) for own, point in held.items() if own not in known)
     pose = PoseTarget(name=name, targets={own: point.target for own, point in held.items()})
@@ -37,7 +37,7 @@ def renamed_pose(robot: Robot, old: str, new: str) -> Robot:
     """A robot with another name for a pose, in its old place (InputError: no such pose, no name, or a taken one)."""
     pose, new = robot.pose(old), checked_name(new)
     if new != old and new in robot.poses:
-        raise InputError(f'there is a pose "{new}" already; choose another name')
+        raise InputError(f'the pose name "{new}" is already in use. Choose another name')
     poses = {new if name == old else name: own for name, own in robot.poses.items()}
     return replace(robot, poses={**poses, new: replace(pose, name=new)})
 
@@ -65,5 +65,5 @@ def checked_name(given: str) -> str:
     """A name without spaces at its ends, fit for a robot's file (InputError: empty, too long, wrong letters)."""
     name = given.strip()
     if not name:
-        raise InputError("a pose needs a name, such as wave")
+        raise InputError("pose name missing. Type one, e.g. wave")
     return check_name(name)

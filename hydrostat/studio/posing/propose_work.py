@@ -44,7 +44,7 @@ class ProposalInput:
 
 @dataclass(frozen=True, kw_only=True)
 class Proposal:
-    """What came of a moment."""
+    """Result of one proposal input: a network, or why there is none."""
 
     winches: tuple[Winch, ...] = ()  # of the network
     cables: tuple[Cable, ...] = ()  # of the network
@@ -53,7 +53,7 @@ class Proposal:
 
 
 def asked_of_trees(robot: Robot, wishes: Wishes) -> DesignRequest:
-    """What the wishes ask of the thesis's search for the pose that is held; painted zones and a mirror it passes over.
+    """Build the request to the thesis's search for the held pose; the search ignores painted zones and a mirror.
 
     Raises InputError for counts that do not fit each other.
     """
@@ -84,7 +84,7 @@ def sketched(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal
         usual = replace(TreeOptions(), phis=request.tree_options.phis)
         found = propose_trees(posed, replace(request, options=usual), [activation], body=body)
     if found is None:
-        return Proposal(words="no cables fit these muscles; bend the body more, or ask for fewer in Design")
+        return Proposal(words="no cables found for these muscles. Bend the body more, or ask for fewer in Design")
     reached = solve_ik(Simulation(found, body=body), posed.pose(POSE), options=OPTIONS)
     return Proposal(winches=found.winches, cables=found.cables, error=reached.rms_error)
 

@@ -22,7 +22,7 @@ SEED = 8
 
 
 def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int = COUNT) -> int:
-    """How many of so many poses can be held, for contractions spread evenly over what all winches can do.
+    """Sample `count` poses with contractions spread evenly over the ranges of all winches; return the number held.
 
     The report is told where the marker is, a few places (points, dim) [m] at a time. Poses that do not converge, are
     not stable or ask a cable for more than its limit [N] are left out. Where cables rub, each is come to from rest.
@@ -31,7 +31,7 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
     last, held, places = simulation.rest, 0, []
     rubs = simulation.assembly.has_history  # the way counts there
     for index, contractions in enumerate(spread(robot, count)):
-        report.progress("trying poses", index, count)
+        report.progress("sampling poses", index, count)
         try:
             pose = simulation.solve(contractions, start=None if rubs else last, strict=False)
         except HydrostatError:
@@ -99,11 +99,11 @@ class MarkerReach:
 
     @property
     def running(self) -> bool:
-        """Whether it still grows."""
+        """True if the cloud is still growing."""
         return self._search is not None and self._search.running
 
     def cloud(self, robot: Robot) -> Cloud | None:
-        """What has been found so far, if it holds for this robot."""
+        """Return the workspace found so far, if it holds for this robot."""
         search = self._search
         fits = search is not None and search.fits(robot, self._document.work.wishes.tension)
         return search.cloud if search is not None and fits else None
@@ -118,14 +118,14 @@ class MarkerReach:
         """Begin to look where a marker can go (InputError: no such marker, no cables, or other work is in progress)."""
         robot, tension = self._document.robot, self._document.work.wishes.tension
         if _place(robot, marker) is None:
-            raise InputError(f'there is no marker "{marker}"; choose one')
+            raise InputError(f'unknown marker "{marker}"')
         if not robot.cables:
-            raise InputError("this robot has no cables yet; find some in Design, or place them in Edit")
+            raise InputError("this robot has no cables yet. Find some in Design, or place them in Edit")
         before, search = self._search, _ReachSearch(robot, marker, tension)
         self._search = search  # work may tell something, or be over, before it is said to have begun
         try:
             self._jobs.start(
-                f"Reach of {marker}",
+                f"Workspace of {marker}",
                 sweep,
                 robot,
                 marker,
@@ -170,5 +170,5 @@ class MarkerReach:
 
 
 def _place(robot: Robot, marker: str) -> Point | None:
-    """Where a marker is in the rest shape [m]; None if there is none of this name."""
+    """Position of a marker in the rest shape [m]; None if there is none of this name."""
     return next((own.at for own in robot.markers if own.name == marker), None)

@@ -32,12 +32,12 @@ class Trail:
 
     @property
     def undo_label(self) -> str:
-        """What would be undone; "" if the document has to be undone first, or nothing was dragged."""
+        """Label of the drag that undo takes back; "" if the document has to be undone first, or nothing was dragged."""
         return self._label(self._past)
 
     @property
     def redo_label(self) -> str:
-        """What would be done again; "" if nothing."""
+        """Label of the drag that redo makes again; "" if there is none."""
         return self._label(self._future)
 
     def note(self, label: str, held: Mapping[str, HeldPoint]) -> None:
@@ -47,11 +47,11 @@ class Trail:
         self._future = []
 
     def undo(self, held: Mapping[str, HeldPoint]) -> Mapping[str, HeldPoint]:
-        """What was held before the last step; `held` is held now. Asked only where there is an `undo_label`."""
+        """Return the points held before the last step; `held` are held now. Call only if there is an `undo_label`."""
         return self._move(self._past, self._future, held)
 
     def redo(self, held: Mapping[str, HeldPoint]) -> Mapping[str, HeldPoint]:
-        """What was held after the step that was undone last. Asked only where there is a `redo_label`."""
+        """Return the points held after the step that was undone last. Call only if there is a `redo_label`."""
         return self._move(self._future, self._past, held)
 
     def _label(self, steps: list[_Step]) -> str:

@@ -1,1 +1,1 @@
-"""What the studio keeps of one robot beside the robot itself: plain frozen records."""
+"""Records that the studio keeps with a robot: plain and frozen."""

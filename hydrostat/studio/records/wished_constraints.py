@@ -6,7 +6,7 @@ from hydrostat.studio.records.wishes import Paint, Wishes
 
 
 def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
-    """What can be built as wished, but for parts to keep that are gone (InputError: limits that cannot be)."""
+    """Constraints of the design settings, without parts to keep that are gone (InputError: impossible limits)."""
     zones = {paint: tuple(zone for other, zone in wishes.zones if other is paint) for paint in Paint}
     names = {winch.name for winch in robot.winches}
     return Constraints(

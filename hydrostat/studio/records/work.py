@@ -10,7 +10,7 @@ from hydrostat.studio.records.wishes import Wishes
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Work:
-    """What a person works on; each change makes a new one."""
+    """Robot, keyframes and design settings that a person works on; each change makes a new record."""
 
     robot: Robot  # body, pins, winches, cables, markers, poses
     timeline: Timeline = field(default_factory=Timeline)  # keyframes

@@ -141,7 +141,7 @@ class Autosave:
                 self._held = None
 
     def left(self) -> list[RecoveredWork]:
-        """What studios that live no more have left, the newest first."""
+        """Return the work recovered from studios that no longer run, the newest first."""
         if self._folder is None or not self._folder.is_dir():
             return []
         found = [_left_in(folder) for folder in self._folder.iterdir() if folder.is_dir() and not is_held(folder)]
@@ -178,8 +178,8 @@ class Autosave:
                     self._write(self._folder, self._document.work, state[2])
             except (OSError, HydrostatError) as error:
                 if not self.problem:
-                    logging.getLogger("hydrostat").exception("the work cannot be kept for restoring")
-                self.problem = f"unsaved work cannot be kept for restoring: {error}".splitlines()[0]
+                    logging.getLogger("hydrostat").exception("autosave failed")
+                self.problem = f"autosave failed: {error}".splitlines()[0]
                 return False
             self._kept, self.problem = state, ""
         return True
@@ -228,7 +228,7 @@ def _left_in(folder: Path) -> RecoveredWork | None:
 def _read(path: Path) -> RecoveredWork:
     meta = json.loads((path / "meta.json").read_text(encoding="utf-8"))
     if not (path / "work" / "robot.toml").is_file():
-        raise InputError(f"{path}: there is no robot in it")
+        raise InputError(f"{path}: no robot found")
     origin = meta["origin"]
     return RecoveredWork(
         folder=path,

@@ -24,14 +24,14 @@ SMOOTHINGS = (0.0, 20.0)  # likewise how far the edge is smoothed [pixels]
 
 @dataclass(frozen=True, kw_only=True)
 class PhotoReading:
-    """How a person has a picture read; all as it comes by default."""
+    """Settings for tracing a picture; automatic by default."""
 
     threshold: float | None = None  # what differs from the ground by more is body; None: found in the picture
     smoothing: float = 0.0  # edges are smoothed over so many pixels of at most 1600
 
     @property
     def plain(self) -> bool:
-        """Whether nothing is asked for."""
+        """True if all settings are automatic."""
         return self.threshold is None and self.smoothing == 0
 
 
@@ -74,12 +74,12 @@ class BodyDraft:
 
     @property
     def is_picture(self) -> bool:
-        """Whether the file is a photograph or another picture of pixels."""
+        """True if the file is a photograph or another picture of pixels."""
         return self.file.endswith(PICTURES)
 
     @property
     def is_drawing(self) -> bool:
-        """Whether the file is a drawing or picture, not a surface in space."""
+        """True if the file is a drawing or picture, not a surface in space."""
         return self.file.endswith(OUTLINE_SUFFIXES)
 
 
@@ -87,7 +87,7 @@ def new_draft(name: str, content: bytes) -> BodyDraft:
     """A draft of a file that a person brings, nothing asked yet (InputError: empty, too large, or of no known kind)."""
     file = safe_name(name)
     if not content:
-        raise InputError(f"{file}: the file is empty; export it again")
+        raise InputError(f"{file}: file is empty. Export it again")
     if len(content) > MOST_BYTES:
         raise InputError(f"{file}: has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read")
     material = "polyester fibre" if file.endswith(OUTLINE_SUFFIXES) else "flexfoam-it x"
@@ -103,8 +103,8 @@ def safe_name(name: str) -> str:
     if suffix not in UPLOAD_SUFFIXES:
         shown = quote(plain if len(plain) <= 60 else plain[:28] + "..." + plain[-28:])
         if suffix in _CAD:
-            raise InputError(f"{shown}: CAD files are not read; export it as STL or 3MF")
-        raise InputError(f"{shown}: cannot be read; bring a file that ends in {', '.join(UPLOAD_SUFFIXES)}")
+            raise InputError(f"{shown}: CAD files are not supported. Export it as STL or 3MF")
+        raise InputError(f"{shown}: file type not supported. Available: {', '.join(UPLOAD_SUFFIXES)}")
     stem = re.sub(r"[^\w-]+", "_", stem)[:_LONGEST_STEM].strip("_-")
     return (stem or "body") + suffix
 

@@ -11,6 +11,7 @@ from shapely import points as shapely_points
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, Ring
+from hydrostat.units import plural
 
 HANDLE = 0.35
 """Length of the handles of a curve, in distances of its ends: the one that fits circles of four to eight corners best.
@@ -40,7 +41,7 @@ def read_loops(raw: Any) -> tuple[Loop, ...]:
     try:
         loops = tuple(tuple(LoopCorner(float(x), float(y), bool(smooth)) for x, y, smooth in loop) for loop in raw)
     except (TypeError, ValueError, OverflowError):
-        raise InputError("the outline that was sent is not understood") from None
+        raise InputError("invalid outline data") from None
     if len(loops) > MOST_LOOPS or sum(map(len, loops)) > MOST_CORNERS:
         raise InputError(f"an outline has at most {MOST_LOOPS} loops and {MOST_CORNERS} corners")
     for corner in (corner for loop in loops for corner in loop):
@@ -88,7 +89,7 @@ def outline_of(loops: Sequence[Loop]) -> Outline:
     """
     for loop in loops:
         if len(loop) < 3:
-            raise InputError(f"a loop needs three corners at least, one has {len(loop)}")
+            raise InputError(f"a loop has {plural(len(loop), 'corner')} (minimum 3)")
     return Outline(*_sorted([1e-3 * curve(loop) for loop in loops]))
 
 
@@ -145,7 +146,7 @@ def _halfway(knots: list[int], knot: int, count: int) -> int:
 
 
 def _sharp(ring: Ring, window: float) -> np.ndarray:
-    """Which points of a ring are corners: it turns there by a lot within a window [mm]."""
+    """Corners of a ring, as a flag for each point: the ring turns there sharply within a window [mm]."""
     sides = np.roll(ring, -1, axis=0) - ring
     lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(sides, axis=1))])
     closed, total = np.concatenate([ring, ring[:1]]), lengths[-1]
@@ -161,7 +162,7 @@ def _sharp(ring: Ring, window: float) -> np.ndarray:
 
 def _sorted(rings: list[Ring]) -> tuple[Ring, tuple[Ring, ...]]:
     if not rings:
-        raise InputError("there is no outline yet; click to set its corners")
+        raise InputError("no outline yet. Click to set its corners")
     areas = [abs(Polygon(ring).area) if len(ring) > 2 else 0.0 for ring in rings]
     rim = int(np.argmax(areas))
     return rings[rim], tuple(ring for index, ring in enumerate(rings) if index != rim)

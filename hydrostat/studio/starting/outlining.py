@@ -43,7 +43,7 @@ class Outlining:
     def of(cls, robot: Robot) -> "Outlining":
         """Edit the outline of a robot, as few corners (InputError: it was not drawn)."""
         if robot.body.outline is None:
-            raise InputError(f"{robot.name} has no outline; only flat bodies that were drawn have one")
+            raise InputError(f"{robot.name} has no outline. Only flat bodies made from a drawing have one")
         return cls(fitted(robot.body.outline), robot)
 
     def take(self, raw: Any) -> None:
@@ -164,7 +164,7 @@ def _within_body(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, tuple[
         except InputError:
             dropped.append(f"pin {number}")
     if not pins:
-        raise InputError("no pin would lie in the new outline; keep the part that is held, or move a pin first")
+        raise InputError("no pin lies inside the new outline. Keep the pinned area, or move a pin first")
     worlds = {winch.name for winch in robot.winches if winch.mount is Mount.WORLD}
     winches = [
         winch for winch in parts.rest["winches"] if winch.name in worlds or fits(f"winch {winch.name}", (winch.at,))

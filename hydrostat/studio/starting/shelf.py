@@ -80,7 +80,7 @@ def is_robot(folder: Path) -> bool:
 
 
 def card_of(folder: Path) -> Card:
-    """What a folder holds."""
+    """Return the card of a robot's folder."""
     return Card(name=folder.name, folder=folder, words=_words(folder))
 
 
@@ -90,7 +90,7 @@ def _picture(name: str) -> Path | None:
 
 
 def _words(folder: Path) -> str:
-    """What robot.toml says at a glance; "" if it says nothing that is understood."""
+    """Summary of robot.toml in a few words; "" if it cannot be read."""
     try:
         table = tomllib.loads((folder / "robot.toml").read_text(encoding="utf-8"))
         kind = "flat" if "outline" in table["body"] else "in space"

@@ -33,9 +33,9 @@ def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
     try:
         return _sketch(report, draft)
     except MemoryError:
-        raise InputError(f"{draft.file}: needs more than {MOST_MEMORY >> 30} GB of memory; simplify it") from None
+        raise InputError(f"{draft.file}: needs more than {MOST_MEMORY >> 30} GB of memory. Simplify it") from None
     except RecursionError:
-        raise InputError(f"{draft.file}: is nested too deep; export it again") from None
+        raise InputError(f"{draft.file}: nested too deep. Export it again") from None
     except InputError as error:
         raise InputError(_here(str(error))) from None
 
@@ -73,8 +73,8 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
 
 
 def _here(words: str) -> str:
-    """What is told of a drawing, with what a person presses here."""
-    return words.replace(f"say {DRAWN_HINT}", 'choose "Drawn on it" for shapes within')
+    """Text on a drawing, with the name of the control in the studio in place of the option."""
+    return words.replace(f"say {DRAWN_HINT}", 'choose "Surface lines" for shapes inside')
 
 
 def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:
@@ -111,7 +111,7 @@ def _drawn(
 
 
 def _limit_memory() -> None:
-    """Where the system can: a file must not take the whole machine."""
+    """Limit the memory of this process where the system can: a file must not take the whole machine."""
     try:
         import resource
     except ImportError:  # Windows

@@ -70,7 +70,7 @@ class Starter(Stage):
     def open_folder(self, text: str) -> None:
         """Open the robot in a folder, or a copy of gallery:NAME (InputError: there is none, or it is wrong)."""
         if not text.strip():
-            raise InputError("name the folder of a robot")
+            raise InputError("folder name missing")
         if is_of_gallery(text.strip()):
             self.open_gallery(gallery_folder(text.strip().removeprefix(GALLERY)))
             return
@@ -78,7 +78,7 @@ class Starter(Stage):
             folder = Path(text.strip()).expanduser()
             work = open_work(folder)
         except (OSError, ValueError, RuntimeError) as error:
-            raise InputError(f"this folder cannot be read ({error})") from None
+            raise InputError(f"cannot read this folder ({error})") from None
         home = folder.parent if folder.suffix == ".toml" else folder
         self._document.open(work, folder=home, text=text_of(home))
 
@@ -93,12 +93,12 @@ class Starter(Stage):
 
     @property
     def meshing(self) -> bool:
-        """Whether a sketch is being made."""
+        """True if a sketch is being meshed."""
         return self._working is not None
 
     @property
     def is_current(self) -> bool:
-        """Whether the sketch is what the draft asks for."""
+        """True if the sketch is that of the present draft."""
         return self.sketch is not None and self.sketch.draft is self.draft and not self.problem
 
     def get_ready(self) -> None:
@@ -131,7 +131,7 @@ class Starter(Stage):
         with self._lock:
             sketch = self.sketch
             if sketch is None or not self.is_current or self.meshing:
-                raise InputError(self.problem or "the robot is still being meshed; wait a moment")
+                raise InputError(self.problem or "meshing in progress. Wait a moment")
             self._document.open(Work(robot=sketch.robot), saved=False)
             self.drop()
 
@@ -166,7 +166,7 @@ class Starter(Stage):
         """Begin to correct the outline of the sketch, over its picture if there is one (InputError: it is not flat)."""
         sketch = self.sketch
         if sketch is None or sketch.robot.body.outline is None:
-            raise InputError("there is no flat outline yet")
+            raise InputError("no flat outline yet")
         self.outlining = Outlining(fitted(sketch.robot.body.outline), behind=sketch.behind)
         self._document.bell.ring(Topic.JOB)
 
@@ -203,10 +203,10 @@ class Starter(Stage):
         while True:
             before = self._document.work
             if outlining.robot is not None and outlining.robot.body.content != before.robot.body.content:
-                raise InputError("another body was opened meanwhile, and this outline was drawn for the one before")
+                raise InputError("outline not applied: another body was opened meanwhile")
             work = outlining.applied(before).work
             if self.outlining is not outlining or outlining.loops != asked:
-                raise InputError("the outline was changed meanwhile; apply it again when it is done")
+                raise InputError("the outline changed meanwhile. Apply it again when it is done")
             if self._document.work is before:  # else it is made again, for what was changed meanwhile
                 break
         self._document.change("edit outline", robot=work.robot, timeline=work.timeline, wishes=work.wishes)
@@ -255,7 +255,7 @@ class Starter(Stage):
 
     @property
     def skin(self) -> SewnSkin | None:
-        """Whether the body that was sketched can be sewn; None where that is no question, or no sketch is there."""
+        """Skin of the sketched body, sewn or refused; None without a sketch, or for a body that needs no skin."""
         return None if self.sketch is None else self._document.judge.skin(self.sketch.robot)
 
     def _look_at_skin(self) -> None:

@@ -42,7 +42,7 @@ def unpacked(name: str, content: bytes) -> tuple[Work, str]:
         raise InputError(str(error).replace(f"{folder}/", f"{shown}: ")) from None
     except (BadZipFile, EOFError, NotImplementedError, RuntimeError, OSError, zlib.error, LZMAError) as error:
         words = str(error).replace(f"{folder}/", "")
-        raise InputError(f"{shown}: cannot be unpacked ({words}); take the robot home again") from None
+        raise InputError(f"{shown}: cannot be unpacked ({words}); download the robot again") from None
 
 
 def _checked(entries: list[ZipInfo], shown: str) -> dict[PurePosixPath, ZipInfo]:
@@ -69,9 +69,9 @@ def _home(paths: list[PurePosixPath], shown: str) -> PurePosixPath:
     """The folder of the robot in the archive."""
     homes = sorted((path.parent for path in paths if path.name == FILE), key=lambda home: len(home.parts))
     if not homes:
-        raise InputError(f"{shown}: there is no {FILE} in it; a kit or pictures are no robot, take the robot home")
+        raise InputError(f"{shown}: no {FILE} found. This is not a robot: use Download robot, not a kit or pictures")
     if len(homes) > 1 and len(homes[1].parts) == len(homes[0].parts):
-        raise InputError(f"{shown}: has {len(homes)} robots in it; bring one at a time")
+        raise InputError(f"{shown}: has {len(homes)} robots in it. Import one at a time")
     return homes[0]
 
 

@@ -1,1 +1,1 @@
-"""What the studio shows, as plain records: bodies, dots, lines, ghosts, clouds and zones; and as bytes for a screen."""
+"""Content of the studio's view as plain records (bodies, dots, lines, ghosts, clouds, zones) and as bytes."""

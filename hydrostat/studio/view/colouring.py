@@ -12,7 +12,7 @@ from hydrostat.studio.view.things import RobotShape
 
 
 class Colouring(StrEnum):
-    """What the colours of the body mean."""
+    """Quantity that the body's colors show."""
 
     FELT = "felt"
     STRAIN = "strain"
@@ -22,7 +22,7 @@ class Colouring(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Scale:
-    """What a legend says."""
+    """Content of a legend."""
 
     title: str  # what is shown, such as "strain"
     most: float  # value of the last colour, in SI; the first is 0. It does not change as the body moves.
@@ -34,7 +34,7 @@ FULL = 0.5  # strain of the last colour, if the material does not say how far it
 
 
 def scale(robot: Robot, colouring: Colouring) -> Scale | None:
-    """What the colours of a robot mean; None for plain felt.
+    """Return the color scale of a robot; None for plain felt.
 
     The last colour of the stress is what uniaxial tension of the last strain would be, were the body linear.
     """

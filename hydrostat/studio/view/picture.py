@@ -54,7 +54,7 @@ KINDS_OF_THINGS = {Dot: "dot", Strand: "line", Ghost: "ghost", Cloud: "cloud", A
 
 
 class Picture:
-    """What stays the same from frame to frame: faces, styles, and how points are stuck to the body.
+    """Scene that stays the same from frame to frame: faces, styles, and how points are stuck to the body.
 
     A *scene* is sent once, a *frame* for each new place. Every point has three coordinates, the last 0 in a flat body.
 
@@ -121,7 +121,7 @@ class Picture:
 
     @cached_property
     def _beside(self) -> Points:
-        """How far they lie from the body at rest, such as corners of a zone that goes beyond it; 0 on the body [m]."""
+        """Offsets of stuck points from the body at rest [m], such as corners of a zone beyond it; 0 on the body."""
         return self._rest[self._stuck] - self._anchors.positions(self.robot.body.mesh.nodes)
 
 
@@ -149,7 +149,7 @@ def _points(thing: Thing) -> Points:
 
 
 def _stuck(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]:
-    """Which of all points are stuck to the body, and all points as given."""
+    """Return flags of the points that are stuck to the body, and all points as given [m]."""
     flags, places = [np.zeros(0, dtype=bool)], [np.zeros((0, dim))]
     for thing in things:
         points = _points(thing)
@@ -164,7 +164,7 @@ def _stuck(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]:
 
 
 def _styles(things: Sequence[Thing]) -> list[dict[str, Any]]:
-    """How things look, and which points are theirs."""
+    """Return the style of each object, and the range of its points."""
     styles, first = [], 0
     for thing in things:
         count = len(_points(thing))
@@ -191,7 +191,7 @@ def _style(thing: Thing) -> dict[str, Any]:
 
 
 def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
-    """What a scene is made of: if it is the same, so is the scene."""
+    """Return the content of a scene as a tuple: equal tuples mean an equal scene."""
     marks: list[Any] = [robot.name]
     for thing in things:
         if isinstance(thing, Dot):

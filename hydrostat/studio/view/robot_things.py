@@ -28,7 +28,7 @@ def robot_things(
     chosen: Collection[str] = (),
     vias: bool = False,
 ) -> list[Thing]:
-    """What a robot has, in the order obstacles, drawn lines, pins, cables, winches, markers; chosen keys are selected.
+    """Return a robot's obstacles, drawn lines, pins, cables, winches and markers, in this order; `chosen` are selected.
 
     Keys are "pin:0", "cable:0", "via:0:2" (cable and point), "winch:left" and "marker:tip". Tensions of the cables [N]
     are drawn on a scale up to the largest, obstacles that move where they are carried to [m]. With `vias` each point of
@@ -104,7 +104,7 @@ def foretold_things(shape: RobotShape) -> list[Thing]:
     if foretold is None or foretold.exact:
         return []
     return [
-        Dot(at=place, look=Look.MARKER, colour=FORETOLD, label="by networks", stuck=False)
+        Dot(at=place, look=Look.MARKER, colour=FORETOLD, label="predicted", stuck=False)
         for place in foretold.markers.values()
     ]
 
@@ -141,7 +141,7 @@ def _vias(index: int, cable: Cable, colour: str, chosen: Collection[str], *, eve
 
 @dataclass(frozen=True, kw_only=True)
 class Bar:
-    """What one winch does."""
+    """State of one winch, as a bar."""
 
     winch: str  # its name
     mark: str  # of it in the kit, as W1

@@ -13,7 +13,7 @@ from hydrostat.simulation import ContactPatch
 
 @dataclass(frozen=True, kw_only=True)
 class Prediction:
-    """What networks say of markers that are held."""
+    """Prediction of the networks for held markers."""
 
     markers: Mapping[str, Point]  # where they expect each [m]
     error: float  # mean distance from the targets that they expect [m]

@@ -12,7 +12,7 @@ from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, 
 MOST = 8  # places that are shown, the hardest
 LONGEST = 0.05  # arrow at the hardest, in sizes of the body
 FAINTEST = 0.02  # what presses with less than this share of the hardest is not shown
-OFF = "contact is off: the body passes through itself here"
+OFF = "contact off: the body intersects itself here"
 TOUCH = "#8a2be2"
 
 

@@ -138,7 +138,7 @@ def test_a_candidate_is_a_dot_where_its_minutes_and_its_error_are() -> None:
     assert place(way)[0] - LEFT == pytest.approx(across[2] / 8, abs=0.1)
     words = all_of(svg, "text", "chart-count")
     assert sorted(part.text or "" for part in words) == sorted(str(len(one.cables)) for _, one, _, _ in told)
-    assert "minutes of sewing" in svg
+    assert "sewing time, min" in svg
 
 
 def test_numbers_of_dots_that_coincide_are_one_number_that_of_the_chosen() -> None:

@@ -72,7 +72,7 @@ def test_cards_come_back_with_their_poses_and_loads(crashed: Session, tmp_path: 
         np.testing.assert_array_equal(new.reaches[0].contractions, old.reaches[0].contractions)
         np.testing.assert_array_equal(new.demand.torques, old.demand.torques)
         np.testing.assert_array_equal(new.demand.taken, old.demand.taken)
-    assert session.designer.outcome == "2 networks found before the studio ended"
+    assert session.designer.outcome == "2 networks restored from an earlier session"
     session.designer.show(after[1].number, after[1].reaches[0].pose.name)
     session.designer.accept()
     assert len(session.document.robot.cables) == 1
@@ -97,7 +97,7 @@ def test_cards_of_another_body_damaged_ones_and_too_many(
     assert read_cards(content, replace(starfish, body=replace(starfish.body, mesh=moved))) == []
     assert len(read_cards(content, starfish)) == 2
     for damaged in (b"{}", content[:-9], content.replace(b'"built":0.004', b'"built":"x"', 1)):
-        with pytest.raises(InputError, match="the networks that were found before cannot be read"):
+        with pytest.raises(InputError, match="networks from an earlier session cannot be read"):
             read_cards(damaged, starfish)
     monkeypatch.setattr(cards_file, "LARGEST", len(content) - 200)
     assert len(read_cards(cards_content(crashed.designer.candidates), starfish)) == 1, "the best is kept"

@@ -98,7 +98,7 @@ def test_a_line_that_crosses_itself_keeps_its_larger_part() -> None:
 
 def test_a_line_round_nothing_is_refused(painter: Painter, document: Document) -> None:
     painter.take(Paint.KEEP_OUT)
-    with pytest.raises(InputError, match="goes round nothing"):
+    with pytest.raises(InputError, match="encloses no area"):
         stroke(painter, on_body(0.0, 0.0, shift=True), on_body(0.02, 0.0))
     assert painted(document) == ()
     assert not [thing for thing in painter.things() if isinstance(thing, Strand)]
@@ -149,7 +149,7 @@ def test_a_zone_is_chosen_by_a_click_and_moved_by_a_drag(painter: Painter, with_
     stroke(painter, on_body(0.01, 0.0, key="zone:0"), on_body(0.02, 0.01), on_body(0.03, 0.02))
     assert painted(with_zones)[0][1].at == pytest.approx((0.02, 0.02))
     assert painted(with_zones)[0][1].radius == 0.02
-    assert with_zones.undo_label == "move a zone"
+    assert with_zones.undo_label == "move zone"
     stroke(painter, on_body(0.01, 0.0, key="zone:1"), on_body(0.02, 0.0))
     assert painted(with_zones)[1][1].outline[0] == pytest.approx((0.01, 0.0))
 
@@ -167,7 +167,7 @@ def test_handles_resize_and_reshape(painter: Painter, with_zones: Document) -> N
     painter.chosen = 1
     stroke(painter, on_body(0.04, 0.0, key="zone-corner:1:1"), on_body(0.05, 0.01))
     assert painted(with_zones)[1][1].outline == ((0.0, 0.0), (0.05, 0.01), (0.02, 0.03))
-    assert with_zones.undo_label == "reshape a zone"
+    assert with_zones.undo_label == "reshape zone"
 
 
 def test_delete_removes_the_chosen_zone(painter: Painter, with_zones: Document) -> None:
@@ -215,7 +215,7 @@ def test_in_space_zones_are_balls() -> None:
     zone = painted(document)[0][1]
     assert (zone.at, zone.radius) == (place, pytest.approx(0.02))
     painter.take(Paint.KEEP_OUT)
-    with pytest.raises(InputError, match="zones are balls"):
+    with pytest.raises(InputError, match="zones of a body in space are balls"):
         painter.click(on_body(*place))
 
 

@@ -69,10 +69,10 @@ def test_what_cannot_be_filmed_is_told_at_once(starfish: Robot, monkeypatch: pyt
     document = Document(Bell())
     document.open(Work(robot=starfish))
     jobs = Jobs(document.bell)
-    with pytest.raises(InputError, match="no keyframes to film"):
+    with pytest.raises(InputError, match="no keyframes to record"):
         Recorder(document, jobs).start(FilmKind.GIF)
     assert not jobs.running
-    with pytest.raises(InputError, match=r"60 s long, not 61.0 s"):
+    with pytest.raises(InputError, match=r"61\.0 s long \(maximum 60 s for a video\)"):
         check_film(Timeline(keys=SHORT.keys, length=61.0), FilmKind.GLB)
     monkeypatch.setattr("shutil.which", lambda program: None)
     with pytest.raises(InputError, match="needs the program ffmpeg"):

@@ -84,11 +84,11 @@ def test_another_stage_and_another_robot_hold_them(session: Session) -> None:
     hardware.arm()
     session.go(StageName.POSE)
     assert not hardware.armed
-    assert "arm them anew" in hardware.words
+    assert "Re-arm to continue" in hardware.words
     session.open_folder(gallery_folder("fish_tail"))
     session.step(time.monotonic())
     assert hardware.state is None
-    assert "connect them anew" in hardware.words
+    assert "motors disconnected. Connect again" in hardware.words
 
 
 def test_a_pose_that_is_dragged_streams_its_iterates(session: Session) -> None:
@@ -169,7 +169,7 @@ def test_two_windows_that_connect_at_once_leave_no_port_open(session: Session) -
         window.join()
     assert len(opened) == 2
     assert len(closed) == 1
-    assert "meanwhile; connect again" in wrong[0]
+    assert "meanwhile. Connect again" in wrong[0]
     hardware.arm()
     assert hardware.armed
     hardware.close()
@@ -178,7 +178,7 @@ def test_two_windows_that_connect_at_once_leave_no_port_open(session: Session) -
 
 def test_guests_have_none() -> None:
     guest = Session(guest=True)
-    with pytest.raises(InputError, match="not for guests"):
+    with pytest.raises(InputError, match="guests cannot"):
         guest.hardware.connect("emulated")
     guest.close()
 

@@ -142,7 +142,7 @@ def test_from_the_gallery_to_a_kit_and_back(studio: Studio, window: Open, tmp_pa
         start = place(page, "marker:right")
         drag(page, "marker:right", -30, -60)
         # the held marker has a target, an error in millimetres, and cables that pull it most of the way there
-        page.get_by_label("Let go of right").wait_for()
+        page.get_by_label("Release right").wait_for()
         page.wait_for_function(
             "([x, y]) => { const [marker, target] = ['marker', 'target'].map("
             "kind => __app.things.find(t => t.key === kind + ':right'));"
@@ -276,7 +276,7 @@ def test_the_tour_has_five_steps_and_comes_once(studio: Studio, window: Open) ->
         tour.wait_for()
         for step in range(1, 6):
             tour.get_by_text(f"{step} of 5").wait_for()
-            tour.get_by_role("button", name=re.compile("Next|Begin")).click()
+            tour.get_by_role("button", name=re.compile("Next|Start")).click()
         tour.wait_for(state="hidden")
         page.reload()
         wait_for_view(page)
@@ -333,7 +333,7 @@ def test_a_class_each_with_a_robot_and_who_watches(studio: Studio, window: Open,
         wait_for_view(watcher)
         watcher.get_by_test_id("watching").wait_for()
         go(one, "edit")
-        watcher.get_by_text("You watch: Edit").wait_for()
+        watcher.get_by_text("View only: Edit").wait_for()
         assert not watcher.get_by_label("Undo", exact=True).count()
         one.wait_for_function("__app.things.some(t => t.key === 'via:0:1')")
         start = place(two, "marker:top")

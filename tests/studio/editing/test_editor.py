@@ -259,7 +259,7 @@ def test_a_slow_mesh_loses_nothing(
         assert document.robot.markers[0].at == (0.01, 0.12)
         assert len(document.robot.body.mesh.nodes) < len(starfish.body.mesh.nodes)
     else:
-        with pytest.raises(InputError, match="another one by now"):
+        with pytest.raises(InputError, match="the body changed meanwhile"):
             editor.set_body(element_size=0.016)
         assert document.robot is thick
 

@@ -142,7 +142,7 @@ def test_what_a_robot_cannot_do_without_stays(starfish: Robot) -> None:
     short = add_cable(starfish, "left", ((-0.04, 0.0),))
     with pytest.raises(InputError, match="stopper"):
         remove(short, ["via:5:1"])
-    with pytest.raises(InputError, match="no winch:nobody"):
+    with pytest.raises(InputError, match="unknown part winch:nobody"):
         remove(starfish, ["winch:nobody"])
 
 
@@ -159,9 +159,9 @@ def test_names_are_changed_everywhere(starfish: Robot) -> None:
     assert all("head" in pose.targets and "top" not in pose.targets for pose in robot.poses.values())
     assert rename(rename(robot, "winch:legs", "feet"), "marker:head", "top") == starfish
     for key, name, words in (
-        ("winch:feet", "left", "unique"),
+        ("winch:feet", "left", "already in use"),
         ("marker:top", "a/b", "letters"),
-        ("cable:0", "left 1", "unique"),
+        ("cable:0", "left 1", "already in use"),
         ("cable:0", "a/b", "letters"),
         ("pin:0", "x", "no name"),
     ):

@@ -97,7 +97,7 @@ def test_a_kit_is_the_files_of_the_library_in_one_zip(
         assert {entry.date_time for entry in zipped.infolist()} == {(1980, 1, 1, 0, 0, 0)}
     assert unpacked == {f"starfish_kit/{path}": content for path, content in plush_kit.files.items()}
     assert made.summary == plush_kit.summary
-    assert made.told == f"{len(plush_kit.checks)} of {len(plush_kit.checks)} checks hold"
+    assert made.told == f"{len(plush_kit.checks)} of {len(plush_kit.checks)} checks passed"
     assert "Pattern" in told.stages
 
 
@@ -127,7 +127,7 @@ def test_what_cannot_be_built_is_told_and_made_all_the_same_if_forced(starfish: 
 def test_results_belong_to_the_robot_they_were_made_of(exporter: Exporter) -> None:
     document = exporter._document
     exporter.make_pictures()
-    with pytest.raises(InputError, match="in progress"):
+    with pytest.raises(InputError, match="still running"):
         exporter.make_report()
     finished(exporter)
     assert exporter.errors == {}
@@ -166,7 +166,7 @@ def test_work_that_fails_at_once_leaves_nothing_busy(exporter: Exporter) -> None
 
 def test_work_that_is_refused_leaves_all_as_it_was(exporter: Exporter) -> None:
     exporter.make_pictures()
-    with pytest.raises(InputError, match="in progress"):
+    with pytest.raises(InputError, match="still running"):
         exporter.make_report()
     assert exporter.busy is Export.PICTURES
     exporter._jobs.close()

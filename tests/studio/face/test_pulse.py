@@ -110,5 +110,5 @@ def test_a_stage_that_stumbles_does_not_end_the_studio(session: Session, caplog:
     stage.fails = False
     assert stage.enough.wait(60.0)
     pulse.stop()
-    assert any("something went wrong" in note.text for note in session.notes)
+    assert any("internal error" in note.text for note in session.notes)
     assert "a slip" in caplog.text

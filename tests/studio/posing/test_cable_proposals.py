@@ -87,7 +87,7 @@ def test_cables_are_proposed_while_muscles_follow_and_can_be_kept(
     starfish: Robot, document: Document, poser: Poser
 ) -> None:
     poser.set_mode(Mode.MUSCLES)
-    with pytest.raises(InputError, match="no network yet"):
+    with pytest.raises(InputError, match="no network proposed yet"):
         poser.proposals.keep()
     poser.proposals.switch(True)
     poser.show_pose("wave")
@@ -134,5 +134,5 @@ def test_a_process_that_dies_is_told(starfish: Robot, document: Document, poser:
     until(lambda: poser.proposals.found(starfish), poser)
     found = poser.proposals.found(starfish)
     assert found is not None
-    assert "has died" in found.words
+    assert "crashed" in found.words
     assert poser.proposals.network(starfish) is None

@@ -76,7 +76,7 @@ def test_networks_answer_first_and_the_exact_pose_follows(poser: Poser, starfish
     assert not first.contractions.any()  # what is shown of winches, and sent to motors, is of a pose
     dots = {dot.at for dot in foretold_things(first)}
     assert dots == {tuple(model.markers[marker.name].tolist()) for marker in starfish.markers}
-    assert foretold_words(first).startswith("Dots by networks: 1.0 mm expected, doubt 1.0 mm.")
+    assert foretold_words(first).startswith("Dots by surrogate model: predicted error 1.0 mm ± 1.0 mm.")
     poser.step(0.1)
     second = poser.shape()
     assert max(second.errors.values()) < 0.05 * max(first.errors.values())  # one update, as far as the networks lead
@@ -146,7 +146,7 @@ def test_a_model_beside_the_robot_is_found_and_another_robots_refused(starfish: 
     session = Session()
     session.open_folder(folder)
     assert session.document.model is not None
-    assert "networks of star.model answer drags first" in [note.text for note in session.notes]
+    assert "surrogate model star.model predicts drags first" in [note.text for note in session.notes]
     other = tmp_path / "other"
     save_robot(replace(starfish, markers=starfish.markers[:1], poses={}), other)
     with pytest.raises(InputError, match="learned of another robot"):

@@ -195,12 +195,12 @@ def test_poses_are_chosen_renamed_and_deleted(starfish: Robot, document: Documen
         poser.show_pose("hello")
     with pytest.raises(InputError, match="already"):
         poser.rename_pose(order[0], order[1])
-    with pytest.raises(InputError, match="needs a name"):
+    with pytest.raises(InputError, match="pose name missing"):
         poser.rename_pose(order[0], "  ")
 
 
 def test_nothing_held_is_no_pose(poser: Poser) -> None:
-    with pytest.raises(InputError, match="nothing is held"):
+    with pytest.raises(InputError, match="no targets yet"):
         poser.store("empty")
 
 
@@ -241,7 +241,7 @@ def test_rubbing_cables_are_posed_as_they_rub_and_the_band_is_told(
     assert max(poser.shape().errors.values()) < max(best.errors.values()) + 1e-3
     smooth = Simulation(starfish).solve(poser.shape().contractions).nodes
     assert np.abs(poser.shape().nodes - smooth).max() > 1e-4, "without friction the body would be elsewhere"
-    (note,) = [note for note in poser.shape().notes if note.startswith("friction: ")]
+    (note,) = [note for note in poser.shape().notes if note.startswith("friction hysteresis: ")]
     assert float(note.split("up to ")[1].split(" mm")[0]) == pytest.approx(
         1e3 * max(best.friction_hysteresis.values()), rel=0.3
     )

@@ -80,7 +80,7 @@ def test_the_cloud_grows_in_another_process() -> None:
     document.bell.listen(lambda _: ended.set() if reach.marker and not reach.running else None)
     try:
         reach.start(ROBOT.markers[0].name, 16)
-        with pytest.raises(InputError, match="still in progress"):
+        with pytest.raises(InputError, match="still running"):
             reach.start(ROBOT.markers[0].name, 16)
         assert ended.wait(20)
         cloud = reach.cloud(ROBOT)
@@ -96,7 +96,7 @@ def test_a_reach_needs_a_marker_and_cables() -> None:
     document = Document(Bell())
     document.open(Work(robot=ROBOT.with_network((), ())))
     reach = MarkerReach(document, Jobs(document.bell))
-    with pytest.raises(InputError, match="no marker"):
+    with pytest.raises(InputError, match="unknown marker"):
         reach.start("nobody")
     with pytest.raises(InputError, match="no cables"):
         reach.start(ROBOT.markers[0].name)

@@ -77,7 +77,7 @@ def test_what_is_drawn_is_what_is_read() -> None:
             "crosses itself at (50, 50) mm",
         ),
         ((SQUARE, (LoopCorner(40, 0), LoopCorner(60, 0), LoopCorner(60, 10))), "crossed or touched by a hole"),
-        (((LoopCorner(0, 0), LoopCorner(1, 0)),), "three corners at least"),
+        (((LoopCorner(0, 0), LoopCorner(1, 0)),), "(minimum 3)"),
         (((LoopCorner(0, 0), LoopCorner(1, 0), LoopCorner(2, 0)),), "no area"),
     ],
 )
@@ -165,7 +165,7 @@ def test_an_outline_without_any_pin_is_refused() -> None:
     """Oracle: InputError that says what to do; a box far from the body."""
     work = starfish()
     far = tuple(replace(corner, x=corner.x + 800) for corner in SQUARE)
-    with pytest.raises(InputError, match="no pin would lie"):
+    with pytest.raises(InputError, match="no pin lies inside"):
         Outlining((far,), work.robot).applied(work)
 
 

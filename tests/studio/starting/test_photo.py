@@ -128,7 +128,7 @@ def test_shapes_within_a_drawing_are_holes_or_drawn_on_it() -> None:
     pierced = sketch_of(eye)
     assert pierced.robot.body.outline is not None
     assert len(pierced.robot.body.outline.holes) == 1
-    assert any('choose "Drawn on it"' in line and "--" not in line for line in pierced.lines)
+    assert any('choose "Surface lines"' in line and "--" not in line for line in pierced.lines)
     drawn = sketch_of(replace(eye, inner=Inner.DRAWN))
     assert drawn.robot.body.outline is not None
     assert len(drawn.robot.body.outline.holes) == 0

@@ -185,7 +185,7 @@ def test_other_numbers_in_a_row_end_with_the_last(desk: Desk) -> None:
     desk.starter.bring("bar.svg", BAR)
     desk.starter.revise(size=0.2)
     desk.starter.revise(size=0.4)
-    with pytest.raises(InputError, match="wait a moment"):
+    with pytest.raises(InputError, match="Wait a moment"):
         desk.starter.make()
     desk.settle()
     assert desk.starter.is_current
@@ -232,7 +232,7 @@ def test_another_job_is_told_of(desk: Desk) -> None:
     """Oracle: the problem names what is in progress."""
     desk.jobs.start("Designing cables", make_sketch, new_draft("other.svg", BAR))
     desk.starter.bring("bar.svg", BAR)
-    assert "Designing cables is still in progress" in desk.starter.problem
+    assert "Designing cables is still running" in desk.starter.problem
     assert not desk.starter.meshing
 
 

@@ -47,7 +47,7 @@ def test_where_contact_is_off(dim: int) -> None:
     """A ring with words where the body passes through itself; in space once it has settled."""
     shape = shown(dim, contact=False)
     assert shape.touches == ()
-    assert shape.notes[-1] == "contact is off: the body passes through itself"
+    assert shape.notes[-1] == "contact off: the body intersects itself"
     (ring,) = touch_things(shape, 0.12)
     assert isinstance(ring, Dot)
     assert (ring.look, ring.label, ring.at) == (Look.FLAG, OFF, shape.crossing)

@@ -6,24 +6,24 @@ from hydrostat.robot import Face
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
 
-UNSAID = "Not said: the front"
+UNSAID = "Default: front"
 
 FACES = {
     "": UNSAID,
-    Face.FRONT.value: "On the front",
-    Face.BACK.value: "On the back",
-    Face.PAIRS.value: "On both, in pairs",
-    Face.MIDDLE.value: "In the middle, cast",
+    Face.FRONT.value: "Front",
+    Face.BACK.value: "Back",
+    Face.PAIRS.value: "Both, in pairs",
+    Face.MIDDLE.value: "Middle, cast",
 }
 
-HINT = "On one face alone cables also curl a stuffed body out of its plane; in pairs they do not."
+HINT = "Side of the body that cables run on. Cables on one side curl a stuffed body out of its plane; pairs do not."
 
 
 def face_choice(page: WindowPage) -> None:
-    """Where the cables of a flat robot run; nothing is shown for one in space."""
+    """Build the choice of the side on which cables of a flat robot run; hidden for a robot in space."""
     document, exporter = page.session.document, page.session.exporter
     with ui.element("div").classes("export-form") as row:
-        ui.label("Cables")
+        ui.label("Cable side")
         choice = ui.select(FACES, value="").props("dense outlined options-dense").props('data-testid="cable-face"')
         choice.tooltip(HINT)
 

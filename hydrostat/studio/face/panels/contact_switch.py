@@ -13,8 +13,8 @@ from hydrostat.studio.view.things import RobotShape
 def contact_switch(page: WindowPage, mark: str) -> None:
     """Build the switch, found under a mark; obstacles are written into robot.toml."""
     editor, document = page.session.editor, page.session.document
-    switch = ui.switch("Parts touch, and do not pass through").mark(mark)
-    switch.tooltip("Contact of the body with itself. Poses take longer; obstacles are added in robot.toml.")
+    switch = ui.switch("Self-contact").mark(mark)
+    switch.tooltip("The body cannot pass through itself. Solving takes longer. Add obstacles in robot.toml.")
 
     def send() -> None:
         if switch.value != (document.robot.contact is not None):

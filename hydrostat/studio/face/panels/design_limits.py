@@ -12,17 +12,17 @@ from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.records.wishes import Paint, Wishes
 
-SHORT = {Paint.KEEP_OUT: "No cable here", Paint.WINCH_ZONES: "Winches only here", Paint.STILL: "Keep this still"}
+SHORT = {Paint.KEEP_OUT: "No-cable zone", Paint.WINCH_ZONES: "Winch zone", Paint.STILL: "Keep rigid (sheathed)"}
 
-FLAT = "Drag on the body from the middle outward. With Shift, draw round a part; or click corner after corner."
-SPACE = "Drag on the body from the middle of a ball outward."
-CHOSEN = "Drag it to move it, drag its handle to shape it. Delete removes it."
+FLAT = "Drag on the body from the center outward. With Shift, draw around a part. Or click corner after corner."
+SPACE = "Drag on the body from the center of a ball outward."
+CHOSEN = "Drag the zone to move it, or a handle to resize it. Press Delete to remove it."
 
 
 def design_paint(page: WindowPage) -> None:
     """Build the section."""
     designer, document = page.session.designer, page.session.document
-    ui.label("Painted on the body").classes("studio-section")
+    ui.label("Painted zones").classes("studio-section")
     buttons: dict[Paint, ui.element] = {}
     with ui.element("div").classes("studio-row").style("gap: 6px; align-items: stretch"):
         for paint, words in SHORT.items():
@@ -63,12 +63,12 @@ def _zone(page: WindowPage, index: int, paint: Paint, size: str, *, chosen: bool
     with row.style(f"--tint: {COLOURS[paint]}"):
         ui.element("span").classes("design-spot")
         ui.label(WORDS[paint] + size).classes("flex-1").style("font-size: 13px")
-        remove = ui.button(icon="close", color=None).props('flat round dense size=sm aria-label="Delete this zone"')
+        remove = ui.button(icon="close", color=None).props('flat round dense size=sm aria-label="Delete zone"')
         remove.on("click.stop", page.doing(designer.painter.remove, index))
 
 
 OPEN = {"depth": "anywhere"}
-"""What is said where a wish is left open, if it is not found by the search."""
+"""Placeholder of a number that is left open, where it is not "auto"."""
 
 Show = Callable[[Wishes], Any]
 
@@ -80,23 +80,23 @@ def design_limits(page: WindowPage) -> None:
     with _more("Limits"):
         with ui.element("div").classes("studio-row"):
             shows += [
-                number_box(page, "Tension, at most", "N", "tension"),
-                number_box(page, "From the edge", "mm", "clearance"),
+                number_box(page, "Maximum tension", "N", "tension"),
+                number_box(page, "Edge clearance", "mm", "clearance"),
             ]
         if page.session.document.robot.body.mesh.dim == 3:
-            shows.append(number_box(page, "Cables on the skin, under it by", "mm", "depth"))
+            shows.append(number_box(page, "Cable depth below the skin", "mm", "depth"))
         shows.append(_mirror(page))
         with ui.element("div").classes("studio-row"):
             shows += [
-                number_box(page, "Close enough", "mm", "tolerance"),
-                number_box(page, "Slack, at most", "mm", "slack"),
+                number_box(page, "Tolerance", "mm", "tolerance"),
+                number_box(page, "Maximum slack", "mm", "slack"),
             ]
         with ui.element("div").classes("studio-row"):
             shows += [
-                number_box(page, "Cables a winch", "", "cables_per_winch"),
-                number_box(page, "Torque", "N m", "torque"),
+                number_box(page, "Cables per winch", "", "cables_per_winch"),
+                number_box(page, "Maximum torque", "N m", "torque"),
             ]
-        shows.append(_switch(page, "Spools may differ in radius", "stepped"))
+        shows.append(_switch(page, "Different spool radii", "stepped"))
     _own(page, shows)
 
     def show() -> None:
@@ -150,7 +150,7 @@ def _mirror(page: WindowPage) -> Show:
     designer, robot = page.session.designer, page.session.document.robot
     choices = {"": "off", **{axis: axis for axis in "xyz"[: robot.body.mesh.dim]}}
     with ui.element("div").classes("studio-row"):
-        ui.label("Same on both sides of").classes("flex-1").style("font-size: 13px")
+        ui.label("Mirror symmetry").classes("flex-1").style("font-size: 13px")
         choice = ui.toggle(choices, value="").props('dense no-caps unelevated padding="2px 12px"')
         choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
         choice.classes("design-toggle")
@@ -160,11 +160,11 @@ def _mirror(page: WindowPage) -> Show:
 
 
 def _own(page: WindowPage, shows: list[Show]) -> None:
-    """What the robot has already: it can stay, or be improved."""
+    """Build the section on the robot's own network: keep parts of it, or start from it."""
     designer, document = page.session.designer, page.session.document
-    with _more("What the robot has") as more:
-        shows.append(_switch(page, "Begin with it and improve it", "improve"))
-        keep = ui.select([], multiple=True, label="These stay").props("dense outlined use-chips options-dense")
+    with _more("Current network") as more:
+        shows.append(_switch(page, "Start from the current network", "improve"))
+        keep = ui.select([], multiple=True, label="Lock these parts").props("dense outlined use-chips options-dense")
         keep.classes("w-full").props('data-testid="wish-keep"')
     shown: list[str] = []
 

@@ -11,9 +11,7 @@ from hydrostat.studio.face.panels.design_limits import number_box
 
 METHODS = {DesignMethod.ROUTES: "routes", DesignMethod.TREES: "winch trees"}
 
-HINT = (
-    "The thesis's search as it was published: muscles that would pull, trees that grow from the strongest, one network."
-)
+HINT = "Search of Chang (2018): trees of cables grow from the strongest muscles. It returns one network."
 
 
 def design_method(page: WindowPage) -> None:
@@ -27,11 +25,11 @@ def design_method(page: WindowPage) -> None:
     with ui.column().classes("w-full").style("gap: 8px") as room:
         ui.label(HINT).classes("studio-hint")
         with ui.element("div").classes("studio-row"):
-            shows = [number_box(page, "Fibres kept", "", "threshold"), number_box(page, "phi, 0 to 1", "", "phi")]
+            shows = [number_box(page, "Fibers kept", "", "threshold"), number_box(page, "phi, 0 to 1", "", "phi")]
         with ui.element("div").classes("studio-row"):
             shows += [
-                number_box(page, "Gap, at most", "edges", "distance"),
-                number_box(page, "Fibres joined", "", "steps"),
+                number_box(page, "Maximum gap", "edges", "distance"),
+                number_box(page, "Fibers joined", "", "steps"),
             ]
 
     def send(value: Any) -> None:

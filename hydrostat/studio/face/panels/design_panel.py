@@ -29,7 +29,7 @@ def design_panel(page: WindowPage) -> None:
     _progress(page)
     design_paint(page)
     design_limits(page)
-    ui.label("Before it is built").classes("studio-section")
+    ui.label("Design review").classes("studio-section")
     finding_list(page, lambda: page.session.designer.shown)
     with page.bottom:
         design_compare(page)
@@ -68,8 +68,8 @@ def _poses(page: WindowPage) -> None:
 
 def _no_pose(page: WindowPage) -> None:
     with ui.element("div").classes("studio-card column"):
-        ui.label("There is no pose to design for yet.").style("font-weight: 600")
-        ui.label("Drag the body to where it should go, and store that as a pose.").classes("studio-hint")
+        ui.label("No poses to design for yet.").style("font-weight: 600")
+        ui.label("Drag the body to a target shape and store it as a pose.").classes("studio-hint")
         go = ui.button("Go to Pose", icon="back_hand", on_click=lambda: page.go(StageName.POSE))
         go.props('outline no-caps data-testid="design-to-pose"').classes("w-full")
 
@@ -79,9 +79,9 @@ def _counts(page: WindowPage) -> None:
     designer = page.session.designer
     with ui.column().classes("w-full").style("gap: 4px"):
         winches = _stepper(page, "Winches", "winches", least=0)
-        cables = _stepper(page, "Cables, at most", "cables", least=1)
+        cables = _stepper(page, "Maximum cables", "cables", least=1)
     _simplicity(page)
-    hint = ui.label("As few winches as bring every pose close enough.").classes("studio-hint")
+    hint = ui.label("Fewest winches that reach every pose within the tolerance.").classes("studio-hint")
 
     def show() -> None:
         wishes = designer.wishes
@@ -93,7 +93,7 @@ def _counts(page: WindowPage) -> None:
 
 
 SIMPLICITIES = {"simple": 4.0, "balanced": 1.0, "exact": 0.0}
-"""What the knob is called where it stands, and what `RouteOptions.simplicity` it is; at 4 a cable must gain 8 %."""
+"""Label of each choice and its `RouteOptions.simplicity`; at 4 a cable must reduce the error by 8 %."""
 
 
 def _simplicity(page: WindowPage) -> None:
@@ -101,13 +101,13 @@ def _simplicity(page: WindowPage) -> None:
     designer = page.session.designer
     choices = {value: words for words, value in SIMPLICITIES.items()}
     with ui.element("div").classes("studio-row") as row:
-        ui.label("Network").classes("flex-1")
+        ui.label("Complexity").classes("flex-1")
         choice = ui.toggle(choices, value=designer.wishes.simplicity if designer.wishes.simplicity in choices else None)
         choice.props('dense no-caps unelevated padding="2px 10px"')
         choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
         choice.classes("design-toggle").props('data-testid="wish-simplicity"')
         with choice:  # above, for the button to begin with is below
-            ui.tooltip("Simple: fewer cables and holes to sew, further off. Exact: all that brings poses nearer").props(
+            ui.tooltip("Simple: fewer cables and holes to sew, larger error. Exact: smallest error.").props(
                 'anchor="top middle" self="bottom middle"'
             )
 
@@ -181,12 +181,12 @@ def _progress(page: WindowPage) -> None:
         if not designer.running or run is None or state is None:
             return
         best = run.trail[-1] if run.trail else None
-        error.set_text("Searching" if best is None else f"{told_error(best.error)} off once built")
-        count.set_text(_so_far(best.winches, best.cables) if best else f"{1e3 * run.rest:.3g} mm off at rest")
+        error.set_text("Searching" if best is None else f"{told_error(best.error)} as-built error")
+        count.set_text(_so_far(best.winches, best.cables) if best else f"{1e3 * run.rest:.3g} mm error at rest")
         chart.set_content(growth_chart(run, designer.seconds))
         bar.set_value(state.done / state.total if state.total else 0.0)
         stage.set_text("Finishing with the best so far" if state.stopping else state.stage)
-        stop.set_text("End now" if state.stopping else "Stop")
+        stop.set_text("Stop now" if state.stopping else "Stop")
 
     page.on(Topic.JOB, show)
     ui.timer(1.0, lambda: show() if designer.running else None)
@@ -225,7 +225,7 @@ def design_compare(page: WindowPage) -> None:
 def _front(page: WindowPage, candidates: tuple[Candidate, ...]) -> None:
     designer = page.session.designer
     with ui.element("div").classes("design-front"):
-        ui.label("What more sewing gains").classes("studio-section").style("margin: 0 0 8px")
+        ui.label("Error vs. sewing time").classes("studio-section").style("margin: 0 0 8px")
         ui.html(front_chart(candidates, designer.trail, designer.chosen), sanitize=False).classes("w-full")
 
 
@@ -235,16 +235,16 @@ def _head(page: WindowPage, own: tuple[int, ...]) -> None:
     chosen = designer.candidate
     with ui.element("div").classes("studio-row").style("min-height: 36px"):
         if chosen is None:
-            ui.label("Choose a network to see it").classes("studio-hint flex-1")
+            ui.label("Select a network to show it").classes("studio-hint flex-1")
         else:
             with ui.element("div").classes("row flex-1").style("gap: 6px; min-width: 0"):
                 _pose_chip(page, chosen, None, "rest")
                 for reach in chosen.reaches:
                     _pose_chip(page, chosen, reach.pose.name, f"{reach.pose.name}, {told_error(reach.error)}")
         clear = ui.button("Clear", on_click=page.doing(designer.clear)).props("flat no-caps dense")
-        clear.props('data-testid="design-clear"').tooltip("Forget all that was found")
+        clear.props('data-testid="design-clear"').tooltip("Clear results")
         accept = ui.button("Accept", icon="check", on_click=page.doing(designer.accept)).props("unelevated no-caps")
-        accept.props('data-testid="design-accept"').tooltip("Put this network into the robot")
+        accept.props('data-testid="design-accept"').tooltip("Use this network in the robot")
         accept.set_enabled(chosen is not None and chosen.number not in own)
 
 
@@ -281,15 +281,15 @@ def _words(one: Candidate, own: tuple[int, ...], *, refused: bool) -> str:
         lines.append(plural(craft.crossings, "crossing"))
     if one.number in own or not one.complete:
         lines.append("in the robot" if one.number in own else "stopped early")
-    mark = '<i class="design-bad">cannot be built so</i>' if refused else ""
-    return f"<b>{told_error(one.built)} once built</b>{mark}" + "".join(f"<span>{line}</span>" for line in lines)
+    mark = '<i class="design-bad">cannot be built</i>' if refused else ""
+    return f"<b>{told_error(one.built)} as built</b>{mark}" + "".join(f"<span>{line}</span>" for line in lines)
 
 
 def _more(one: Candidate) -> str:
-    """What a card has no room for."""
+    """Details of a candidate for the tooltip of its card."""
     craft = one.craft
     return (
-        f"{told_error(one.error)} in the model; {plural(craft.holes, 'hole')}, "
-        f"{1e3 * one.length:.0f} mm of cable pulled with up to {one.tension:.1f} N. "
-        "Price: motors, power and cables; the kit's list adds cloth, screws and what comes in packs only"
+        f"Model error {told_error(one.error)}; {plural(craft.holes, 'hole')}, "
+        f"{1e3 * one.length:.0f} mm of cable, maximum tension {one.tension:.1f} N. "
+        "The price covers motors, power and cables. The kit's list adds cloth, screws and full packs"
     )

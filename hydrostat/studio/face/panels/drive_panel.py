@@ -32,8 +32,8 @@ def drive_panel(page: WindowPage) -> None:
         ui.space()
         rest = ui.button("Rest", icon="restart_alt", on_click=page.doing(driver.rest), color=None)
         rest.props("flat dense no-caps").style("color: var(--accent)")
-        unfocused(rest).tooltip("Let all cable out (R)").mark("drive-rest")
-    ui.label("Turn a knob, type a length, or pull a winch in the view downwards.").classes("studio-hint")
+        unfocused(rest).tooltip("Release all cables (R)").mark("drive-rest")
+    ui.label("Turn a knob, type a length, or drag a winch in the view down.").classes("studio-hint")
     notes = ui.label().classes("studio-hint").style(f"color: {ERROR}; white-space: pre-line").mark("drive-notes")
     box = ui.column().classes("w-full").style("gap: 8px")
     cards: list[_Card] = []
@@ -84,7 +84,7 @@ class _Card:
                 with ui.element("div").style("height: 5px; border-radius: 3px; background: var(--line); width: 100%"):
                     self._bar = ui.element("div").style("height: 5px; border-radius: 3px; width: 0%")
                 self._pull = ui.label("0.0 N").classes("studio-hint studio-figure").style("line-height: 1")
-                self._pull.tooltip("Largest tension of its cables")
+                self._pull.tooltip("Maximum tension of its cables")
             self._box = ui.number(min=least, max=most, step=STEP, format="%.1f", suffix="mm", value=0.0)
             self._box.props(f'dense outlined aria-label="{winch.name}, millimetres"').classes("drive-box")
             self._box.style("width: 88px; flex: none")
@@ -124,26 +124,26 @@ class _Card:
 
 
 def _speed(page: WindowPage) -> None:
-    """How fast the shown motors are: at first as those of the kit where its cables pull their most."""
+    """Build the speed limit of the shown motors: at first that of the kit's motors under full load."""
     driver = page.session.driver
     with ui.element("div").classes("studio-row").style("margin-top: 6px"):
-        label = ui.label("Shown at most at").classes("studio-hint")
+        label = ui.label("Speed limit").classes("studio-hint")
         if driver.kit:
-            label.tooltip(f"At first as fast as the kit's slowest winch under full load: {driver.kit}")
+            label.tooltip(f"Initial value: the kit's slowest winch under full load, {driver.kit}")
         ui.space()
         speed = ui.number(min=1, max=1000, step=10, value=1e3 * driver.motors.fastest, format="%.0f", suffix="mm/s")
-        speed.props('dense outlined debounce=400 aria-label="Largest speed of the motors"').style("width: 120px")
+        speed.props('dense outlined debounce=400 aria-label="Speed limit of the motors"').style("width: 120px")
     speed.on_value_change(
         lambda event: page.act(driver.motors.set_fastest, 1e-3 * event.value) if event.value is not None else None
     )
 
 
 def _no_cables(page: WindowPage) -> None:
-    """What to do first."""
+    """Build the empty state of a robot without cables: the first steps."""
     ui.label("Drive").classes("studio-title")
     with ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 10px"):
-        ui.label("This robot has no cables yet, so nothing can pull it.")
-        ui.label("Let hydrostat find winches and cables for its poses, or place them by hand.").classes("studio-hint")
+        ui.label("No cables yet.")
+        ui.label("Press Design to find winches and cables for the poses, or place them in Edit.").classes("studio-hint")
         with ui.element("div").classes("studio-row"):
             design = ui.button("Design", icon="auto_awesome", on_click=lambda: page.go(StageName.DESIGN))
             design.props("unelevated no-caps").mark("drive-design")

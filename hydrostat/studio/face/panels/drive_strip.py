@@ -16,8 +16,8 @@ from hydrostat.studio.session import Tone
 SPEEDS = {0.1: "0.1x", 0.25: "0.25x", 0.5: "0.5x", 1.0: "1x", 2.0: "2x", 4.0: "4x"}
 
 FILMS = {
-    FilmKind.GIF: "GIF, for pages",
-    FilmKind.MP4: "MP4 (where the program ffmpeg is)",
+    FilmKind.GIF: "GIF, for web pages",
+    FilmKind.MP4: "MP4 (needs ffmpeg)",
     FilmKind.GLB: "GLB, for Blender and 3D viewers",
 }
 
@@ -44,8 +44,8 @@ def _player(page: WindowPage) -> None:
     driver = page.session.driver
     play = ui.button(icon="play_arrow", on_click=page.doing(driver.toggle))
     play.props('unelevated round dense aria-label="Play"')
-    unfocused(play).tooltip("Play, or stop playing (space)").mark("drive-play")
-    loop = _button("repeat", "Begin anew at the end", lambda: page.act(driver.set_loop, not driver.player.loop))
+    unfocused(play).tooltip("Play or stop (Space)").mark("drive-play")
+    loop = _button("repeat", "Loop", lambda: page.act(driver.set_loop, not driver.player.loop))
     time = ui.label().classes("studio-figure").style("width: 58px; text-align: right; white-space: nowrap")
     time.mark("drive-time")
     ui.label("of").classes("studio-hint")
@@ -88,9 +88,9 @@ def _keys(page: WindowPage) -> None:
     driver = page.session.driver
     add = ui.button("Add", icon="add", on_click=page.doing(driver.add_key)).props("unelevated dense no-caps no-wrap")
     add.style("padding: 2px 12px 2px 8px; flex: none")
-    unfocused(add).tooltip("Keep the knobs as a keyframe at the playhead").mark("drive-add")
-    copy = _button("content_copy", "Duplicate the keyframe", page.doing(driver.duplicate_key))
-    delete = _button("delete_outline", "Delete the keyframe", page.doing(driver.delete_key))
+    unfocused(add).tooltip("Add the knob positions as a keyframe at the playhead").mark("drive-add")
+    copy = _button("content_copy", "Duplicate keyframe", page.doing(driver.duplicate_key))
+    delete = _button("delete_outline", "Delete keyframe", page.doing(driver.delete_key))
     smooth = ui.toggle({False: "Linear", True: "Smooth"}, value=False)
     smooth.props(
         "dense no-caps unelevated toggle-color=primary color=transparent text-color=grey padding='2px 9px'"
@@ -109,7 +109,7 @@ def _keys(page: WindowPage) -> None:
 def _poses(page: WindowPage) -> None:
     """Keys from stored poses."""
     driver, document = page.session.driver, page.session.document
-    button = _button("accessibility_new", "A keyframe from a stored pose", None)
+    button = _button("accessibility_new", "Add keyframe from a pose", None)
     with button:
         menu = _menu()
 
@@ -124,7 +124,7 @@ def _poses(page: WindowPage) -> None:
         for name in document.robot.poses:
             ui.menu_item(name, on_click=partial(add, name))
         if not document.robot.poses:
-            ui.menu_item("no poses yet: store one in Pose", auto_close=True).props("disable")
+            ui.menu_item("No poses yet. Store one in Pose.", auto_close=True).props("disable")
 
     page.on_new(Topic.ROBOT, lambda: tuple(document.robot.poses), menu, build)
 
@@ -135,8 +135,8 @@ def _films(page: WindowPage) -> None:
     asked: list[Any] = []
     with ui.element("div").classes("studio-row").style("width: 168px; gap: 6px") as busy:
         words = ui.label().classes("studio-hint").style("white-space: nowrap; flex: 1; text-align: right")
-        _button("close", "Stop filming", recorder.stop)
-    button = _button("movie", "Record a film", None)
+        _button("close", "Stop recording", recorder.stop)
+    button = _button("movie", "Record video", None)
 
     def start(kind: FilmKind) -> None:
         asked[:] = [recorder.latest]
@@ -200,7 +200,7 @@ def _tables(page: WindowPage) -> None:
             label="Choose or drop a CSV", auto_upload=True, max_file_size=LARGEST, on_upload=load,
             on_rejected=lambda: page.tell("a table may have 4 MB", Tone.BAD),
         ).props("accept=.csv flat bordered").classes("w-full")  # fmt: skip
-    with _button("table_view", "Contractions as a table", None), _menu():
+    with _button("table_view", "Contraction table", None), _menu():
         ui.menu_item("Export CSV", on_click=export).mark("drive-export")
         ui.menu_item("Import CSV", on_click=dialog.open)
 

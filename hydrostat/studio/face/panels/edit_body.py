@@ -14,7 +14,7 @@ from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
 from hydrostat.units import plural
 
-OWN = "its own numbers"  # what a material is called that is not of the table
+OWN = "custom"  # what a material is called that is not of the table
 
 
 def body_card(page: WindowPage) -> None:
@@ -81,8 +81,8 @@ def _gravity(page: WindowPage) -> None:
     editor, document = page.session.editor, page.session.document
     choice = ui.select({}, label="Gravity").props("dense outlined options-dense").classes("w-full")
     choice.mark("edit-gravity")
-    words = {"": "none", **{way: f"towards {way}" for way in DIRECTIONS[: 2 * document.robot.body.mesh.dim]}}
-    own = "by its components"
+    words = {"": "none", **{way: f"along {way}" for way in DIRECTIONS[: 2 * document.robot.body.mesh.dim]}}
+    own = "custom"
 
     def now() -> str:
         gravity = document.robot.gravity

@@ -19,13 +19,13 @@ TOOLS = {  # icon, name and what to do with each tool
     Tool.MOVE: (
         "near_me",
         "Select and move",
-        "Drag a part, or a point out of a cable. Shift and click, or Several, chooses more than one.",
+        "Drag a part, or a cable to add a via point. Shift-click, or switch on Multiple, to select several.",
     ),
-    Tool.PIN: ("push_pin", "Place pins", "Click on the body where it is held."),
-    Tool.MARKER: ("my_location", "Place markers", "Click on a point to track."),
-    Tool.WINCH: ("album", "Place winches", "Click on the body where a winch sits."),
-    Tool.CABLE: ("polyline", "Lay cables", "Click at a winch, then point after point. Enter or a double click ends."),
-    Tool.RULER: ("straighten", "Measure", "Click on two parts or places: how far apart they are at rest."),
+    Tool.PIN: ("push_pin", "Place pins", "Click the body where it should be fixed."),
+    Tool.MARKER: ("my_location", "Place markers", "Click a point to track."),
+    Tool.WINCH: ("album", "Place winches", "Click the body where a winch should sit."),
+    Tool.CABLE: ("polyline", "Lay cables", "Click a winch, then point after point. Enter or double-click to finish."),
+    Tool.RULER: ("straighten", "Measure", "Click two parts or points to measure their distance at rest."),
 }
 
 
@@ -74,7 +74,7 @@ def _tools(page: WindowPage) -> None:
 
 
 def _mirror(page: WindowPage) -> None:
-    """Which side is edited alike, and how deep things are put into a body in space."""
+    """Build the choice of the mirror axis, and for a body in space the depth at which parts are placed."""
     editor, document = page.session.editor, page.session.document
     axes = "xyz"[: document.robot.body.mesh.dim]
     with ui.element("div").classes("studio-row"):
@@ -83,7 +83,7 @@ def _mirror(page: WindowPage) -> None:
         ui.space()
         chips = {axis: chip(axis or "off", page.doing(editor.mirror_about, axis)) for axis in ("", *axes)}
         for axis, button in chips.items():
-            button.tooltip(f"Both sides of {axis} = 0 alike" if axis else "No mirror")
+            button.tooltip(f"Mirror edits across {axis} = 0" if axis else "No mirror")
             button.mark(f"edit-mirror-{axis or 'off'}")
 
     def show() -> None:
@@ -107,13 +107,13 @@ def _snap(page: WindowPage) -> None:
 
 
 def _several(page: WindowPage) -> None:
-    """Whether each press chooses one part more: with a finger there is no Shift."""
+    """Build the switch for multiple selection: a touch screen has no Shift key."""
     editor = page.session.editor
     words = {
-        False: ("off", "edit-several-off", "A press chooses one part"),
-        True: ("on", "edit-several-on", "Each press chooses one part more"),
+        False: ("off", "edit-several-off", "Each click selects one part"),
+        True: ("on", "edit-several-on", "Each click adds a part to the selection"),
     }
-    _choice(page, "checklist", "Several", words, editor.choose_several, lambda: editor.several)
+    _choice(page, "checklist", "Multiple", words, editor.choose_several, lambda: editor.several)
 
 
 def _choice(
@@ -151,7 +151,7 @@ def _depth(page: WindowPage) -> None:
         depth.show(1e3 * editor.depth)
 
     with ui.element("div").classes("studio-row"):
-        depth = EditNumber("Winches and cables below the skin", "mm", take, mark="edit-depth")
+        depth = EditNumber("Depth of winches and cables below the skin", "mm", take, mark="edit-depth")
     depth.show(1e3 * editor.depth)
 
 

@@ -106,7 +106,7 @@ def part_card(page: WindowPage) -> None:
 
 
 def _many(page: WindowPage, words: str) -> None:
-    """What can be done with several parts."""
+    """Build the actions on several parts."""
     editor = page.session.editor
     with ui.element("div").classes("studio-row"):
         ui.label(words).style("font-weight: 600")
@@ -209,8 +209,8 @@ def _number(page: WindowPage, key: str, field: str, label: str, unit: str, scale
 
 def _mount(page: WindowPage, key: str) -> Show:
     """Tell whether a winch sits in the body."""
-    switch = ui.switch("Fixed beside the body").props("dense").style("font-size: 13px").mark("edit-mount")
-    switch.tooltip("The winch stays where it is in space while the body moves")
+    switch = ui.switch("Fixed outside the body").props("dense").style("font-size: 13px").mark("edit-mount")
+    switch.tooltip("The winch stays in place while the body moves")
     shown = [False]
 
     def send() -> None:
@@ -228,7 +228,7 @@ def _mount(page: WindowPage, key: str) -> Show:
 
 
 def _sheath(page: WindowPage, key: str, part: Part) -> Show:
-    """Which segments run in a sheath, as chips in the order of the cable."""
+    """Build the choice of sheathed segments, as chips in the order of the cable."""
     cable = page.session.document.robot.cables[part.index]
     buttons: list[ui.button] = []
 
@@ -236,7 +236,7 @@ def _sheath(page: WindowPage, key: str, part: Part) -> Show:
         now = set(sheathed_segments(page.session.document.robot.cables[part.index]))
         page.session.editor.set(key, sheathed=sheaths(now ^ {segment}))
 
-    ui.label("In a sheath of fixed length, from the winch on").classes("studio-hint")
+    ui.label("Sheathed segments, from the winch").classes("studio-hint")
     with ui.element("div").classes("w-full").style("display: flex; flex-wrap: wrap; gap: 4px"):
         for segment in range(len(cable.points) - 1):
             button = chip(f"{segment + 1}", page.doing(toggle, segment))

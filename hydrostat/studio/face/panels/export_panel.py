@@ -18,12 +18,12 @@ from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
 from hydrostat.units import plural
 
-OUTDATED = "The robot has changed since; make it again."
+OUTDATED = "Outdated: the robot has changed. Make it again."
 
 
 def export_panel(page: WindowPage) -> None:
     """Build the panel."""
-    ui.label("Take it home").classes("studio-title")
+    ui.label("Export").classes("studio-title")
     ui.label("Nothing is written to your disk until you download it.").classes("studio-hint")
     _kit_card(page)
     _report_card(page)
@@ -33,17 +33,17 @@ def export_panel(page: WindowPage) -> None:
 
 def _kit_card(page: WindowPage) -> None:
     exporter = page.session.exporter
-    with _card("Kit", "All files to build it: patterns or moulds, parts to print, lists, and a sheet to follow."):
+    with _card("Kit", "All files to build the robot: patterns or moulds, parts to print, lists and an assembly sheet."):
         bare = ui.column().classes("w-full gap-2")
         with bare:
-            ui.label("A kit needs winches and cables, and this robot has none yet.").classes("studio-hint")
+            ui.label("No cables yet. A kit needs winches and cables.").classes("studio-hint")
             design = ui.button("Go to Design", icon="auto_awesome", on_click=lambda: page.go(StageName.DESIGN))
             design.props("outline no-caps").classes("w-full").props('data-testid="export-design"')
         with ui.column().classes("w-full gap-2") as work:
             face_choice(page)
             kit_choices(page)
             finding_list(page, lambda: page.session.document.robot)
-            _maker(page, Export.KIT, "Make the kit", "inventory_2", exporter.make_kit, lambda: exporter.kit)
+            _maker(page, Export.KIT, "Build kit", "inventory_2", exporter.make_kit, lambda: exporter.kit)
             _result(page, Export.KIT, lambda: exporter.kit, lambda: kit_result(page))
 
     def show() -> None:
@@ -56,9 +56,9 @@ def _kit_card(page: WindowPage) -> None:
 
 def _report_card(page: WindowPage) -> None:
     exporter = page.session.exporter
-    words = "One page of the robot, its network and what it reaches in each pose, with errors and tensions."
+    words = "One page with the robot, its network and its poses, with errors and tensions."
     with _card("Report", words):
-        _maker(page, Export.REPORT, "Write the report", "article", exporter.make_report, lambda: exporter.report)
+        _maker(page, Export.REPORT, "Write report", "article", exporter.make_report, lambda: exporter.report)
 
         def result() -> None:
             if exporter.report is not None:
@@ -75,7 +75,7 @@ def _pictures_card(page: WindowPage) -> None:
             choice.classes("flex-1").props('data-testid="export-pose"')
             view = ui.button(icon="photo_camera", on_click=lambda: _save_view(page)).tooltip("This view as PNG")
             view.props('flat dense aria-label="This view as PNG" data-testid="export-view"')
-        _maker(page, Export.PICTURES, "Draw all pictures", "image", exporter.make_pictures, lambda: exporter.pictures)
+        _maker(page, Export.PICTURES, "Draw pictures", "image", exporter.make_pictures, lambda: exporter.pictures)
         _result(page, Export.PICTURES, lambda: exporter.pictures or None, lambda: _pictures(page))
 
     def show() -> None:
@@ -106,7 +106,7 @@ def _robot_card(page: WindowPage) -> None:
             if found is not None:
                 send(found)
 
-        button = ui.button("Download the robot", icon="download", on_click=save).props("outline no-caps")
+        button = ui.button("Download robot", icon="download", on_click=save).props("outline no-caps")
         button.classes("w-full").props('data-testid="export-robot"')
 
 
@@ -144,7 +144,7 @@ def _maker(
 
 
 def _result(page: WindowPage, export: Export, find: Callable[[], object], build: Callable[[], None]) -> None:
-    """What was made, drawn anew when it is another."""
+    """Build the card of an export result, redrawn when the result changes."""
     exporter = page.session.exporter
     room = ui.column().classes("export-room w-full gap-2").props(f'data-testid="result-{export}"')
     drawn: list[object] = [object()]
@@ -222,7 +222,7 @@ def kit_choices(page: WindowPage) -> None:
 
 def _more_choices() -> dict[str, Any]:
     given: dict[str, Any] = {}
-    door = ui.expansion("More choices").props("dense").classes("export-more w-full")
+    door = ui.expansion("More options").props("dense").classes("export-more w-full")
     with door, ui.element("div").classes("export-form"):
         ui.label("Printer bed [mm]")
         with ui.element("div").classes("studio-row").style("gap: 4px"):
@@ -250,22 +250,22 @@ def kit_result(page: WindowPage) -> None:
         return
     download_button(kit.zip)
     if replace(kit.options, force=False, tension=None) != replace(exporter.options, force=False, tension=None):
-        ui.label("Made with other choices than those above.").classes("studio-hint")
+        ui.label("Built with other options than those above.").classes("studio-hint")
     for line in kit.summary:
         head, _, words = line.partition(": ")
         with ui.element("div").classes("export-line"):
             ui.label(head).classes("export-head")
             ui.label(words or "")
     _pages(kit)
-    _lines("that cannot be built well", kit.problems, "error_outline", "export-bad")
-    _lines("to mind", kit.warnings, "info_outline", "export-mind")
+    _lines("error", kit.problems, "error_outline", "export-bad")
+    _lines("warning", kit.warnings, "info_outline", "export-mind")
     _checks(kit)
 
 
 def _refused(page: WindowPage) -> None:
     """Its reasons are among the findings above."""
-    refused = ui.label("It cannot be built well as it is").classes("studio-section").props('data-testid="kit-refused"')
-    button = ui.button("Make it all the same", on_click=page.doing(lambda: page.session.exporter.make_kit(force=True)))
+    refused = ui.label("Errors prevent the kit").classes("studio-section").props('data-testid="kit-refused"')
+    button = ui.button("Build anyway", on_click=page.doing(lambda: page.session.exporter.make_kit(force=True)))
     button.props("outline no-caps").classes("w-full").props('data-testid="make-forced"')
     ui.run_javascript(  # once it is drawn
         f"setTimeout(() => getHtmlElement({refused.id})?.scrollIntoView({{block: 'nearest', behavior: 'smooth'}}), 100)"
@@ -281,10 +281,10 @@ def _pages(kit: KitMade) -> None:
             picture(pattern, "Pattern", lambda: show_large([pattern], "Pattern", kind="svg"), kind="svg")
 
 
-def _lines(words: str, lines: tuple[str, ...], icon: str, kind: str) -> None:
+def _lines(level: str, lines: tuple[str, ...], icon: str, kind: str) -> None:
     if not lines:
         return
-    door = ui.expansion(f"{plural(len(lines), 'thing')} {words}", value=len(lines) < 3).props("dense")
+    door = ui.expansion(plural(len(lines), level), value=len(lines) < 3).props("dense")
     with door.classes("export-more w-full"):
         for line in lines:
             _line(line, icon, kind)

@@ -14,9 +14,9 @@ from hydrostat.studio.view.finding_things import TONES
 GOOD = "#00795f"
 ICONS = {Severity.REFUSED: "block", Severity.LIMIT: "straighten", Severity.MIND: "error_outline"}
 HEADS = {
-    Severity.REFUSED: "It cannot be built so",
-    Severity.LIMIT: "Not as a design would have it",
-    Severity.MIND: "To mind",
+    Severity.REFUSED: "Errors",
+    Severity.LIMIT: "Design limits exceeded",
+    Severity.MIND: "Warnings",
 }
 
 
@@ -37,7 +37,7 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
     def build() -> None:
         found = said()
         if found is None:
-            ui.label("Looking it over").classes("studio-hint")
+            ui.label("Checking").classes("studio-hint")
             return
         skin = sewn()
         if skin is not None and (words := skin.words):
@@ -57,10 +57,10 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
 
 
 def _good(robot: Robot | None) -> str:
-    """That nothing is wrong; of a robot without cables, that little was looked at."""
+    """Return the text for a robot without findings; without cables, few checks apply."""
     if robot is None or robot.cables:
-        return "Nothing is wrong."
-    return "Nothing is wrong so far, but there are no cables yet: lay some in Edit, or let Design find them."
+        return "OK: 0 errors, 0 warnings."
+    return "0 errors, 0 warnings, but no cables yet. Lay cables in Edit, or press Design."
 
 
 def _line(page: WindowPage, finding: Diagnostic, *, chosen: bool) -> None:

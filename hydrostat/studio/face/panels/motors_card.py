@@ -12,8 +12,8 @@ from hydrostat.studio.face.page import WindowPage
 WORDS = {
     LinkState.CLOSED: "not connected",
     LinkState.IDENTIFIED: "not calibrated",
-    LinkState.CALIBRATED: "ready to be armed",
-    LinkState.ARMED: "armed, do what is shown",
+    LinkState.CALIBRATED: "ready to arm",
+    LinkState.ARMED: "armed, following the screen",
     LinkState.HOLD: "holding",
     LinkState.STOPPED: "stopped, holding",
     LinkState.FAULT: "fault, holding",
@@ -39,15 +39,15 @@ def motors_card(page: WindowPage) -> None:
                 "motors-port"
             )
             port.tooltip(
-                "emulated, dynamixel:PORT, feetech:PORT or firmware:PORT; @BAUD after it sets another rate, "
-                "a comma parts the ports of several boards"
+                "emulated, dynamixel:PORT, feetech:PORT or firmware:PORT. Append @BAUD for another rate. "
+                "Separate the ports of several boards by commas."
             )
             connect = ui.button("Connect", on_click=lambda: page.act_slowly(hardware.connect, str(port.value).strip()))
             connect.props("flat dense no-caps").mark("motors-connect")
         with ui.element("div").classes("studio-row").style("gap: 8px") as after:
             arm = ui.button("Arm", icon="power", on_click=page.doing_slowly(hardware.arm))
             arm.props("unelevated dense no-caps").style("padding: 4px 14px").mark("motors-arm")
-            arm.tooltip("From now on they turn: they go to what is shown")
+            arm.tooltip("Motors are live and follow the pose on screen")
             ui.button("Disconnect", on_click=page.doing_slowly(hardware.disconnect)).props("flat dense no-caps")
         found = ui.label().classes("studio-hint studio-figure").style("white-space: pre-line").mark("motors-places")
         words = ui.label().classes("studio-hint").style("white-space: pre-line").mark("motors-words")

@@ -15,12 +15,13 @@ def muscles_card(page: WindowPage) -> None:
     session, poser, document = page.session, page.session.poser, page.session.document
     with ui.column().classes("w-full").style("gap: 6px") as room:
         ui.label("Muscles").classes("studio-section")
-        colours = ui.switch("Show which of them pull").props("dense").style("font-size: 13px").mark("pose-colours")
-        propose = ui.switch("Propose cables as I drag").props("dense").style("font-size: 13px").mark("pose-propose")
+        colours = ui.switch("Show muscle activation").props("dense").style("font-size: 13px").mark("pose-colours")
+        propose = ui.switch("Propose cables while dragging").props("dense").mark("pose-propose")
+        propose.style("font-size: 13px")
         with ui.element("div").classes("studio-row") as row:
             words = ui.label().classes("studio-hint studio-figure flex-1").style("min-width: 0").mark("pose-proposed")
             keep = ui.button("Keep", icon="check", on_click=page.doing(poser.proposals.keep))
-            keep.props("unelevated no-caps size=sm").mark("pose-keep").tooltip("Put these cables into the robot")
+            keep.props("unelevated no-caps size=sm").mark("pose-keep").tooltip("Add these cables to the robot")
 
     def colour(on: bool) -> None:
         if on != (session.colouring is Colouring.MUSCLES):
@@ -39,10 +40,10 @@ def muscles_card(page: WindowPage) -> None:
     def _words() -> str:
         found = poser.proposals.found(document.robot)
         if found is None:
-            return "Looking for cables" if poser.held else "Hold a point, and drag it."
+            return "Searching for cables" if poser.held else "Drag a point to get a proposal."
         if not found.cables:
             return f"{found.words[:1].upper()}{found.words[1:]}"
-        off = "" if found.error is None else f", {told_error(found.error)} off"
+        off = "" if found.error is None else f", error {told_error(found.error)}"
         return f"{plural(len(found.winches), 'winch')}, {plural(len(found.cables), 'cable')}{off}"
 
     colours.on_value_change(lambda event: colour(bool(event.value)))

@@ -15,12 +15,13 @@ from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.view.robot_things import Bar
 from hydrostat.studio.view.things import RobotShape
+from hydrostat.units import plural
 
 MODES = {Mode.CABLES: "Cables", Mode.MUSCLES: "Muscles"}
 
 HINTS = {
-    Mode.CABLES: "Drag a marker or any point of the body: the winches find what to take in.",
-    Mode.MUSCLES: "Drag a marker or any point of the body: it follows as if it were full of muscles.",
+    Mode.CABLES: "Drag a marker or any point of the body. The winches follow by inverse kinematics.",
+    Mode.MUSCLES: "Drag a marker or any point of the body. The body follows as if it were full of muscle.",
 }
 
 
@@ -32,7 +33,7 @@ def pose_panel(page: WindowPage) -> None:
         ui.space()
         rest = ui.button("Rest", icon="restart_alt", on_click=page.doing(poser.rest), color=None)
         rest.props("flat dense no-caps").style("color: var(--accent)")
-        rest.tooltip("No targets, all cable let out (R)").mark("pose-rest")
+        rest.tooltip("Clear targets and release all cables (R)").mark("pose-rest")
     choice = ui.toggle(MODES, value=poser.mode).props("spread no-caps unelevated toggle-color=primary")
     choice.classes("w-full").style("flex: none; border-radius: 10px; overflow: hidden; border: 1px solid var(--line)")
     choice.mark("pose-mode")
@@ -45,7 +46,7 @@ def pose_panel(page: WindowPage) -> None:
 
     def show() -> None:
         choice.set_value(poser.mode)
-        hint.set_text("Click where it should go." if poser.armed else HINTS[poser.mode])
+        hint.set_text("Click the target position." if poser.armed else HINTS[poser.mode])
 
     choice.on_value_change(choose)
     page.on(Topic.THINGS, show)
@@ -66,7 +67,7 @@ def held_card(page: WindowPage) -> None:
     """Build the list."""
     poser = page.session.poser
     with ui.element("div").classes("studio-card"):
-        empty = ui.label("Nothing is held.").classes("studio-hint")
+        empty = ui.label("No targets yet. Drag a point to add one.").classes("studio-hint")
         rows = ui.column().classes("w-full").style("gap: 2px")
         told = ui.label().classes("studio-hint studio-figure").style("margin-top: 6px").mark("pose-foretold")
         notes = ui.label().classes("studio-hint").style("white-space: pre-line; margin-top: 6px").mark("pose-notes")
@@ -98,15 +99,15 @@ def held_card(page: WindowPage) -> None:
 
 
 def foretold_words(shape: RobotShape) -> str:
-    """Which answer is seen, and what networks say of theirs; "" where none are asked."""
+    """State of the shown answer and the networks' predicted error [mm], in words; "" without networks."""
     told = shape.foretold
     if told is None:
         return ""
-    known = f"{told_error(told.error)} expected, doubt {told_error(told.uncertainty)}"
+    known = f"predicted error {told_error(told.error)} ± {told_error(told.uncertainty)}"
     left = told_error(sum(shape.errors.values()) / max(len(shape.errors), 1))
     if told.exact:
-        return f"Exact: {left} left on average. By networks: {known}."
-    return f"Dots by networks: {known}. The body follows, exact: {left} so far."
+        return f"Exact: mean error {left}. Surrogate model: {known}."
+    return f"Dots by surrogate model: {known}. Exact solve in progress: mean error {left}."
 
 
 def _held_row(page: WindowPage, name: str, chosen: bool) -> ui.label:
@@ -121,7 +122,7 @@ def _held_row(page: WindowPage, name: str, chosen: bool) -> ui.label:
         label.on("click", page.doing(poser.choose, name))
         ui.space()
         figure = ui.label().classes("studio-figure").mark(f"pose-error-{name}")
-        icon_button("close", f"Let go of {name}", page.doing(poser.clear, name)).style("color: var(--muted)")
+        icon_button("close", f"Release {name}", page.doing(poser.clear, name)).style("color: var(--muted)")
     return figure
 
 
@@ -166,7 +167,7 @@ class _BarRow:
                 name = ui.label(bar.winch).style(
                     "flex: 1; min-width: 0; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
                 )
-                name.tooltip(f"takes in up to {1e3 * bar.travel:g} mm, lets out up to {1e3 * bar.release:g} mm")
+                name.tooltip(f"contraction up to {1e3 * bar.travel:g} mm, payout up to {1e3 * bar.release:g} mm")
                 figure = "width: 66px; text-align: right"
                 self._length = ui.label().classes("studio-figure").style(figure)
                 self._pull = ui.label().classes("studio-figure").style(figure)
@@ -206,7 +207,7 @@ def poses_card(page: WindowPage) -> None:
             name = ui.input(placeholder="name").props('dense outlined aria-label="Name of the pose"')
             name.classes("flex-1").mark("pose-name")
             button = ui.button("Store", icon="bookmark_add").props("unelevated no-caps")
-            button.tooltip("Keep what is held as a pose").mark("pose-store")
+            button.tooltip("Store the targets as a pose").mark("pose-store")
 
     def store() -> None:
         given = name.value or fresh_name("pose", document.robot.poses)
@@ -214,14 +215,14 @@ def poses_card(page: WindowPage) -> None:
         page.act(poser.store, given)
         if document.serial != before:
             if replaced:
-                page.tell(f"{given} was there and is replaced; undo brings it back")
+                page.tell(f"pose {given} replaced. Undo restores it")
             elif twin := same_as(document.robot, given.strip()):
-                page.tell(f"{given.strip()} is stored, and is the same pose as {twin}")
+                page.tell(f"pose {given.strip()} stored. It equals pose {twin}")
             name.set_value("")
 
     def draw() -> None:
         if not document.robot.poses:
-            ui.label("None yet: hold some points, then store them.").classes("studio-hint")
+            ui.label("No poses yet. Drag points to targets, then store them.").classes("studio-hint")
         for own in document.robot.poses:
             _pose_row(page, own)
 
@@ -241,7 +242,7 @@ def _pose_row(page: WindowPage, name: str) -> None:
     with ui.element("div").classes("studio-row").style("min-height: 32px; gap: 2px"):
         show = ui.button(name, icon="accessibility_new", on_click=page.doing(poser.show_pose, name), color=None)
         show.props("flat dense no-caps align=left").classes("flex-1").style("min-width: 0; color: var(--ink)")
-        show.tooltip("Go there").mark(f"pose-show-{name}")
+        show.tooltip("Show this pose").mark(f"pose-show-{name}")
         for icon, words, action in (
             ("edit", "Rename", lambda: _ask_name(page, name)),
             ("delete_outline", "Delete", page.doing(poser.delete_pose, name)),
@@ -271,14 +272,14 @@ def reach_card(page: WindowPage) -> None:
     """Build the choice of a marker and what begins and ends the search."""
     poser, document = page.session.poser, page.session.document
     with ui.column().classes("w-full").style("gap: 6px") as room:
-        ui.label("Reach").classes("studio-section")
+        ui.label("Workspace").classes("studio-section")
         with ui.element("div").classes("studio-row"):
             marker = ui.select([], label=None).props('dense outlined options-dense aria-label="Marker"')
             marker.classes("flex-1").style("min-width: 0").mark("pose-reach-marker")
             start = ui.button("Show", icon="scatter_plot").props("unelevated no-caps").mark("pose-reach")
-            start.tooltip("All that this marker can reach with its winches")
+            start.tooltip("Sample the workspace of this marker")
             stop = ui.button("Stop", icon="stop", on_click=page.doing(poser.reach.stop)).props("unelevated no-caps")
-            clear = icon_button("close", "Hide the cloud", page.doing(poser.reach.clear))
+            clear = icon_button("close", "Hide workspace", page.doing(poser.reach.clear))
         words = ui.label().classes("studio-hint studio-figure")
     start.on_click(lambda: page.act(poser.reach.start, marker.value or ""))
 
@@ -296,7 +297,7 @@ def reach_card(page: WindowPage) -> None:
         stop.set_visibility(reach.running)
         clear.set_visibility(bool(reach.marker) and not reach.running)
         words.set_visibility(bool(reach.marker))
-        words.set_text(f"{reach.count} places of {reach.marker}" + (" so far" if reach.running else ""))
+        words.set_text(f"{reach.marker}: {plural(reach.count, 'pose')}" + (" so far" if reach.running else ""))
 
     page.on(Topic.ROBOT, draw)
     page.on((Topic.THINGS, Topic.JOB), show)

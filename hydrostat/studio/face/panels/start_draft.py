@@ -59,7 +59,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
 
 
 def _state(page: WindowPage) -> Callable[[], None]:
-    """How far it is, or why it cannot be."""
+    """Build the progress of meshing, or the reason why it failed."""
     starter, jobs = page.session.starter, page.session.jobs
     with ui.element("div").classes("start-card") as busy, ui.row().classes("items-center w-full no-wrap"):
         ui.spinner(size="20px")
@@ -73,7 +73,7 @@ def _state(page: WindowPage) -> Callable[[], None]:
     def refresh() -> None:
         busy.set_visibility(starter.meshing)
         words = jobs.state.stage if jobs.state is not None else ""
-        stage.set_text({"starting": "Reading ..."}.get(words, f"{words[:1].upper()}{words[1:]} ..."))
+        stage.set_text({"starting": "Reading…"}.get(words, f"{words[:1].upper()}{words[1:]}…"))
         wrong.set_visibility(bool(starter.problem))
         problem.set_text(starter.problem)
 
@@ -85,13 +85,13 @@ def _photo(page: WindowPage) -> Callable[[], None]:
     starter = page.session.starter
     with ui.element("div").classes("start-card") as card:
         with ui.element("div").classes("studio-row"):
-            ui.label("The outline over the picture").classes("start-head")
+            ui.label("Outline on the picture").classes("start-head")
             ui.space()
-            correct = ui.button("Correct it by hand", icon="draw", on_click=page.doing_slowly(starter.outline_correct))
+            correct = ui.button("Edit outline", icon="draw", on_click=page.doing_slowly(starter.outline_correct))
             correct.props("outline no-caps dense padding='4px 12px' data-testid=\"outline-correct\"")
         view = ui.html("", sanitize=False).classes("start-photo")
-        threshold = _Reading(page, "threshold", "Body is what differs from the ground by more than", THRESHOLDS)
-        smoothing = _Reading(page, "smoothing", "Smooth the edge", SMOOTHINGS)
+        threshold = _Reading(page, "threshold", "Background threshold (0–441)", THRESHOLDS)
+        smoothing = _Reading(page, "smoothing", "Edge smoothing", SMOOTHINGS)
     shown: Sketch | None = None
 
     def refresh() -> None:
@@ -121,7 +121,7 @@ class _Reading:
             with ui.element("div").classes("studio-row").style("min-height: 30px"):
                 self._label = ui.label().classes("start-small studio-figure")
                 ui.space()
-                self._auto = ui.button("As found", on_click=lambda: self._ask(None if key == "threshold" else 0.0))
+                self._auto = ui.button("Auto", on_click=lambda: self._ask(None if key == "threshold" else 0.0))
                 self._auto.props("flat no-caps dense size=sm")
             self._slider = ui.slider(min=ends[0], max=ends[1], step=1.0, value=ends[0])
             self._slider.props(f'aria-label="{words}"').mark(f"reading-{key}")
@@ -132,8 +132,8 @@ class _Reading:
         value = getattr(reading, self._key)
         found = value is None or (self._key == "smoothing" and value == 0)
         self._auto.set_visibility(not found)
-        unit = " pixels" if self._key == "smoothing" else " of 441 steps of colour"
-        self._label.set_text(f"{self._words}: {'as found' if found else f'{value:g}{unit}'}")
+        unit = " px" if self._key == "smoothing" else ""
+        self._label.set_text(f"{self._words}: {'auto' if found else f'{value:g}{unit}'}")
         self._slider.set_value(60.0 if value is None else value)
 
     def _ask(self, value: float | None) -> None:
@@ -168,7 +168,7 @@ def _pictures() -> Callable[[Sketch | None], None]:
         mesh = sketch.robot.body.mesh
         kind = "triangles" if mesh.dim == 2 else "tetrahedra"
         words.set_text(f"{1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}")
-        head.set_text("Nothing had to be mended" if sketch.clean else "What was found and done")
+        head.set_text("No repairs needed" if sketch.clean else "Repairs")
         lines.clear()
         with lines:
             for line in sketch.lines:
@@ -178,9 +178,9 @@ def _pictures() -> Callable[[Sketch | None], None]:
 
 
 def _skin() -> Callable[[SewnSkin | None], None]:
-    """Whether the skin of a body in space can be sewn."""
+    """Build the card on the skin of a body in space: its sewing, or why it cannot be sewn."""
     with ui.element("div").classes("start-card") as card:
-        ui.label("Sewing its skin").classes("start-head")
+        ui.label("Skin pattern").classes("start-head")
         lines = ui.column().classes("gap-1 w-full").props('data-testid="sewing"')
     shown: SewnSkin | None = None
 
@@ -216,11 +216,11 @@ class _Fields:
         with ui.element("div").classes("start-fields"):
             self._name = ui.input("Name").props("outlined dense debounce=500")
             self._size = _Length("Longest side", lambda value: self._ask(size=value), "size")
-            self._kind = ui.toggle({"flat": "Flat", "round": "Blown up"}).props(spread).classes("w-full")
+            self._kind = ui.toggle({"flat": "Flat", "round": "Inflated"}).props(spread).classes("w-full")
             self._thick = _Length("Thickness", self._thicken, "thickness")
             with ui.element("div").classes("w-full") as self._within:
-                ui.label("Shapes within the outline").classes("start-small")
-                self._inner = ui.toggle({Inner.HOLES: "Holes", Inner.DRAWN: "Drawn on it"}).props(spread)
+                ui.label("Shapes inside the outline").classes("start-small")
+                self._inner = ui.toggle({Inner.HOLES: "Holes", Inner.DRAWN: "Surface lines"}).props(spread)
                 self._inner.classes("w-full").props('data-testid="inner"')
             self._fine = ui.toggle(list(LEVELS)).props(spread).classes("w-full")
             self._element = _Length(
@@ -297,7 +297,7 @@ def _is_flat(draft: BodyDraft) -> bool:
 
 
 def _level(draft: BodyDraft, flat: bool) -> str | None:
-    """Which fineness was asked for."""
+    """Return the mesh fineness that the draft asks for; None for a size of its own."""
     if draft.element_size is not None or (draft.nodes is not None and draft.nodes not in FINENESS[flat]):
         return None
     return LEVELS[1 if draft.nodes is None else FINENESS[flat].index(draft.nodes)]

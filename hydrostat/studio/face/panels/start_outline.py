@@ -23,7 +23,7 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
     with ui.row().classes("items-center no-wrap w-full gap-2"):
         back = ui.button(icon="arrow_back", on_click=page.doing(starter.outline_cancel)).mark("back")
         back.props('flat round aria-label="Back"')
-        title = "New outline" if outlining.behind is None else "Correct the outline"
+        title = "New outline" if outlining.behind is None else "Edit outline"
         ui.label(title if robot is None else f"Outline of {robot.name}").classes("start-title")
         ui.space()
         tools = ui.row().classes("items-center no-wrap gap-1")
@@ -36,7 +36,7 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
         sign = ui.icon("check_circle").classes("text-lg")
         words = ui.label().classes("start-small studio-figure").props('data-testid="outline-words"')
         ui.space()
-        hint = ui.label("Click: corner. Drag: move. Double click: round or sharp. Delete: remove. Wheel: zoom.")
+        hint = ui.label("Click: add corner. Drag: move. Double-click: round or sharp. Delete: remove. Wheel: zoom.")
         hint.classes("start-small")
     with tools:
         _tools(editor, new=robot is None and not outlining.loops)
@@ -77,9 +77,9 @@ def _tools(editor: OutlineEditor, *, new: bool) -> None:
             ui.button(name, on_click=partial(editor.show, loops)).props("flat no-caps dense padding='4px 10px'")
     for icon, words, action in (
         ("undo", "Undo (Ctrl Z)", editor.undo),
-        ("redo", "Do again", editor.redo),
-        ("add_circle_outline", "Another loop: a hole, if inside", editor.add_loop),
-        ("delete_outline", "Remove the chosen corner (Delete)", editor.remove_corner),
+        ("redo", "Redo", editor.redo),
+        ("add_circle_outline", "Add loop (a hole if inside)", editor.add_loop),
+        ("delete_outline", "Delete corner (Delete)", editor.remove_corner),
         ("fit_screen", "Fit", editor.fit),
     ):
         icon_button(icon, words, action, small=False, colour="primary")
@@ -90,6 +90,6 @@ def _tools(editor: OutlineEditor, *, new: bool) -> None:
 
 async def _agreed(page: WindowPage, found: Reshaped) -> bool:
     """Ask whether what lies outside may go; True if nothing does."""
-    words = f"They would be removed: {', '.join(found.dropped)}."
-    title = "Some parts lie outside the new outline"
-    return not found.dropped or await ask(page, title, words, "Go on drawing", "Remove them", name="outline")
+    words = f"If you apply it, these are removed: {', '.join(found.dropped)}."
+    title = "Parts outside the new outline"
+    return not found.dropped or await ask(page, title, words, "Cancel", "Remove parts", name="outline")

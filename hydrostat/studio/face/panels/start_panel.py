@@ -30,7 +30,7 @@ def shelf_view(page: WindowPage) -> Callable[[], None]:
     starter = page.session.starter
     for left in starter.autosave.left()[:MOST_LEFT]:
         _left(page, left)
-    ui.label("Begin with a shape").classes("start-title")
+    ui.label("New robot").classes("start-title")
     with ui.element("div").classes("start-ways"):
         _drop(page)
         _draw(page)
@@ -73,25 +73,25 @@ def _left(page: WindowPage, left: RecoveredWork) -> None:
     autosave = page.session.starter.autosave
     with ui.element("div").classes("start-left") as row:
         ui.icon("history").classes("text-xl")
-        ui.label(f"Work of {left.words} was not saved.")
+        ui.label(f"Unsaved work: {left.words}")
         ui.space()
         restore = ui.button("Restore").props("unelevated no-caps dense padding='4px 14px' data-testid=restore")
         restore.on_click(lambda: open_with(page, row, partial(autosave.restore, left)))
 
         async def forget() -> None:
-            title = f"Forget the work of {left.words}?"
-            if await ask(page, title, "It cannot be brought back.", "Keep", "Forget", name="forget", negative=True):
+            title = f"Delete the unsaved work {left.words}?"
+            if await ask(page, title, "You cannot undo this.", "Cancel", "Delete", name="forget", negative=True):
                 await page.act_slowly(autosave.forget, left)
                 row.delete()
 
-        ui.button("Forget", on_click=forget).props("flat no-caps dense padding='4px 10px'")
+        ui.button("Delete", on_click=forget).props("flat no-caps dense padding='4px 10px'")
 
 
 def _drop(page: WindowPage) -> None:
     card = ui.element("div").classes("start-card start-drop")
-    with card.props('tabindex=0 role=button aria-label="Bring a file"'):
-        _head("upload_file", "Bring a drawing or a scan")
-        words = "Drop a file, or click to choose one: you see how it is meshed and mended. A .zip is a robot again."
+    with card.props('tabindex=0 role=button aria-label="Import a file"'):
+        _head("upload_file", "Import a drawing or scan")
+        words = "Drop a file or click to choose one. You see its mesh and repairs first. A .zip opens a saved robot."
         ui.label(words).classes("start-small")
         wrong = ui.label().classes("start-problem").props('data-testid="upload-wrong"')
         wrong.bind_visibility_from(wrong, "text", bool)
@@ -122,7 +122,7 @@ def _drop(page: WindowPage) -> None:
             complain("")
 
     upload.on_upload(brought)
-    upload.on_rejected(lambda: complain(f"one file of at most {MOST_BYTES // 10**6} MB at a time is read"))
+    upload.on_rejected(lambda: complain(f"file refused. Import one file at a time, at most {MOST_BYTES // 10**6} MB"))
     pick = f"() => getElement({upload.id}).$refs.qRef.pickFiles()"
     card.on("click", js_handler=pick)
     card.on("keydown.enter", js_handler=pick)
@@ -132,19 +132,19 @@ def _draw(page: WindowPage) -> None:
     starter, document = page.session.starter, page.session.document
     with ui.element("div").classes("start-card"):
         _head("draw", "Draw an outline")
-        ui.label("Set corners, make them round, cut holes: the outline of a flat, stuffed body.").classes("start-small")
+        ui.label("Draw the outline of a flat, stuffed body: corners, curves and holes.").classes("start-small")
         ui.space()
         new = ui.button("New outline", icon="add", on_click=page.doing(starter.outline_new))
         new.props("unelevated no-caps").props('data-testid="outline-new"')
         if document.is_open and document.robot.body.outline is not None:
-            edit = ui.button(f"Edit that of {document.robot.name}", on_click=page.doing_slowly(starter.outline_open))
+            edit = ui.button(f"Edit outline of {document.robot.name}", on_click=page.doing_slowly(starter.outline_open))
             edit.props("outline no-caps").props('data-testid="outline-edit"')
 
 
 def _folder(page: WindowPage) -> None:
     with ui.element("div").classes("start-card") as card:
         _head("folder_open", "Open a folder")
-        ui.label("With robot.toml in it, such as one made by hydrostat new.").classes("start-small")
+        ui.label("A folder with robot.toml, e.g. from hydrostat new.").classes("start-small")
         ui.space()
         path = ui.input("Folder", autocomplete=suggestions("")).classes("w-full")
         path.props('outlined dense data-testid="folder"')

@@ -50,8 +50,8 @@ def test_keyframes_length_and_play(starfish: Robot) -> None:
         await desk.press("drive-play")
         assert not driver.player.playing
         await desk.press("drive-timeline", "choose", {"index": 0})
-        assert desk.one("Delete the keyframe").enabled
-        await desk.press("Delete the keyframe")
+        assert desk.one("Delete keyframe").enabled
+        await desk.press("Delete keyframe")
         assert driver.keyframes.timeline.keys == ()
 
     at_desk(starfish, act)

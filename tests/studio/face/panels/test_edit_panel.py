@@ -68,7 +68,7 @@ def test_tools_mirror_and_check(starfish: Robot) -> None:
         assert editor.mirror.axis == 0
         await desk.press("edit-mirror-off")
         assert editor.mirror is None
-        assert "Looking it over" in desk.words
+        assert "Checking" in desk.words
         editor.step(0.0)
         editor.step(2 * QUIET)
         desk.beat()
@@ -78,7 +78,7 @@ def test_tools_mirror_and_check(starfish: Robot) -> None:
         said = desk.session.document.judge.of(desk.robot, desk.session.document.work.wishes)
         assert said is not None
         assert {in_words(finding.text) for finding in said} <= set(desk.words)
-        assert ("Nothing is wrong." in desk.words) is (not said)
+        assert ("OK: 0 errors, 0 warnings." in desk.words) is (not said)
 
     at_desk(starfish, act)
 
@@ -89,8 +89,8 @@ def test_a_robot_without_cables_is_not_called_sound(starfish: Robot) -> None:
         desk.session.editor.step(0.0)
         desk.session.editor.step(2 * QUIET)
         desk.beat()
-        assert "Nothing is wrong." not in desk.words
-        assert any("there are no cables yet" in words for words in desk.words)
+        assert "OK: 0 errors, 0 warnings." not in desk.words
+        assert any("0 errors, 0 warnings, but no cables yet" in words for words in desk.words)
 
     at_desk(starfish.with_network((), ()), act)
 

@@ -51,7 +51,7 @@ def test_each_button_begins_its_work(starfish: Robot) -> None:
         desk.go(StageName.EXPORT)
         for export in Export:
             await desk.press(f"make-{export}")
-        assert [title for title, _ in desk.begun] == ["Making the kit", "Writing the report", "Drawing pictures"]
+        assert [title for title, _ in desk.begun] == ["Building the kit", "Writing the report", "Drawing pictures"]
         assert all(arguments[0] is starfish for _, arguments in desk.begun)
 
     at_desk(starfish, act)
@@ -74,7 +74,7 @@ def test_a_pose_is_shown_and_what_failed_is_told(starfish: Robot) -> None:
 def test_a_robot_without_cables_has_no_kit(starfish: Robot) -> None:
     async def act(desk: Desk) -> None:
         desk.go(StageName.EXPORT)
-        assert "Make the kit" not in desk.words
+        assert "Build kit" not in desk.words
         await desk.press("export-design")
         assert desk.session.stage is StageName.DESIGN
 

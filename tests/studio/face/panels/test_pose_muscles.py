@@ -27,14 +27,14 @@ def test_muscles_are_shown_and_cables_proposed(starfish: Robot, monkeypatch: pyt
         assert not is_shown(desk.one("pose-proposed"))
         await desk.choose("pose-propose", True)
         assert poser.proposals.on
-        assert desk.one("pose-proposed").text == "Hold a point, and drag it."
+        assert desk.one("pose-proposed").text == "Drag a point to get a proposal."
         assert not is_shown(desk.one("pose-keep"))
         robot = desk.robot
         cables = tuple(cable for cable in robot.cables if cable.winch == robot.winches[0].name)
         found = Proposal(winches=robot.winches[:1], cables=cables, error=0.0123)
         poser.proposals._take(poser.proposals._run, robot, found)
         await desk.follow()
-        assert desk.one("pose-proposed").text == f"1 winch, {plural(len(cables), 'cable')}, 12 mm off"
+        assert desk.one("pose-proposed").text == f"1 winch, {plural(len(cables), 'cable')}, error 12 mm"
         await desk.press("pose-keep")
         assert desk.robot.cables == cables
         assert not desk.one("pose-keep").enabled

@@ -11,14 +11,14 @@ def test_what_is_held_is_listed_stored_and_let_go(starfish: Robot) -> None:
     async def act(desk: Desk) -> None:
         desk.go(StageName.POSE)
         poser = desk.session.poser
-        assert "Nothing is held." in desk.words
+        assert "No targets yet. Drag a point to add one." in desk.words
         assert not desk.one("pose-store").enabled
         at = next(marker.at for marker in starfish.markers if marker.name == "top")
         desk.session.grab("a", Hit(key="marker:top", rest=at, world=at))
         desk.session.drag("a", Hit(world=(at[0] + 0.01, at[1])))
         desk.session.release("a")
         desk.beat()
-        assert "Nothing is held." not in desk.words
+        assert "No targets yet. Drag a point to add one." not in desk.words
         await desk.choose("pose-name", "hello")
         await desk.press("pose-store")
         assert desk.robot.poses["hello"].targets == {"top": poser.held["top"].target}
@@ -26,9 +26,9 @@ def test_what_is_held_is_listed_stored_and_let_go(starfish: Robot) -> None:
         assert desk.told == []
         await desk.choose("pose-name", "again")
         await desk.press("pose-store")
-        assert desk.told == ["again is stored, and is the same pose as hello"]
+        assert desk.told == ["pose again stored. It equals pose hello"]
         await desk.press("Delete again")
-        await desk.press("Let go of top")
+        await desk.press("Release top")
         assert dict(poser.held) == {}
         await desk.press("pose-show-hello")
         assert set(poser.held) == {"top"}
@@ -88,7 +88,7 @@ def test_reach_is_searched_for_the_chosen_marker(starfish: Robot) -> None:
         await desk.choose("pose-reach-marker", "left")
         await desk.press("pose-reach")
         ((title, arguments),) = desk.begun
-        assert title == "Reach of left"
+        assert title == "Workspace of left"
         assert arguments[1] == "left"
 
     at_desk(starfish, act)
