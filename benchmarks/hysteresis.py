@@ -31,16 +31,8 @@ from scipy.optimize import lsq_linear
 
 import hydrostat as hs
 from hydrostat.arrays import Vector
-from hydrostat.training import (
-    BEYOND,
-    HysteresisEnv,
-    ReachOptions,
-    TrainOptions,
-    held_out_goals,
-    interquartile,
-    judge,
-    train,
-)
+from hydrostat.training import BEYOND, HysteresisEnv, ReachOptions, TrainOptions, held_out_goals, judge, train
+from hydrostat_lab.verdict import interquartile
 
 Act = Callable[[dict[str, Vector]], np.ndarray]
 

@@ -22,7 +22,8 @@ from scipy.stats import rankdata
 
 import hydrostat as hs
 from hydrostat.learning import load_model, read_samples
-from hydrostat.plot import draw_calibration, save_png
+from hydrostat.plot import save_png
+from hydrostat_lab.learning_figures import draw_calibration
 
 
 def kinds_of(markers: np.ndarray, finer: np.ndarray | None) -> dict[str, np.ndarray]:

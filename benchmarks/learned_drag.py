@@ -23,9 +23,10 @@ from ik_problem import rests
 
 import hydrostat as hs
 from hydrostat.ik import IKOptions, Tracker
-from hydrostat.learning import LearnedModel, load_model, read_samples, targets_of
+from hydrostat.learning import LearnedModel, load_model, read_samples
 from hydrostat.simulation import Equilibrium
 from hydrostat.studio import STRIDE
+from hydrostat_lab.compare import targets_of
 
 MOST = 60
 GOOD = (1e-3, 1e-4)

@@ -23,7 +23,8 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import LearnedModel, Samples, correct_model, load_model, read_samples, targets_of
+from hydrostat.learning import LearnedModel, Samples, correct_model, load_model, read_samples
+from hydrostat_lab.compare import targets_of
 
 
 def known(model: LearnedModel, test: Samples) -> np.ndarray:

@@ -7,7 +7,7 @@
 
 Targets are the markers of samples that nothing was learned from. Each way gives contractions; the simulator takes them
 in from rest, with contact if the samples have it, and the error is the distance of each marker from its target. Ways:
-`hydrostat.learning.compare`. Columns: mean error, the same as a share of the body's size, quantiles over all markers of
+`hydrostat_lab.compare`. Columns: mean error, the same as a share of the body's size, quantiles over all markers of
 all targets, targets without an equilibrium, CPU time of learning, and for ours: time for a target, the error that the
 networks expect, their doubt, and the share of markers whose error is below twice the sum of these two. With --keep,
 rows are added to a file as they are found, and those that are there are printed, not found again.
@@ -23,7 +23,8 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import METHODS, Compared, compare, read_samples
+from hydrostat.learning import read_samples
+from hydrostat_lab.compare import METHODS, Compared, compare
 
 QUANTILES = {"median": 0.5, "p90": 0.9, "p99": 0.99, "max": 1.0}
 HEAD = f"{'samples':>7}  {'way':18}{'mean':>8}{'%':>8}" + "".join(f"{name:>8}" for name in QUANTILES) + "  lost  CPU s"

@@ -15,7 +15,8 @@ from pathlib import Path
 
 from machine import machine
 
-from hydrostat.learning import load_model, read_samples, targets_of
+from hydrostat.learning import load_model, read_samples
+from hydrostat_lab.compare import targets_of
 
 
 def microseconds(answer: Callable, asked: list, rounds: int) -> float:

@@ -18,8 +18,9 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import exact_steps, load_model, read_samples, targets_of, verify
+from hydrostat.learning import exact_steps, load_model, read_samples, verify
 from hydrostat.simulation import Equilibrium
+from hydrostat_lab.compare import targets_of
 
 ENOUGH = 1e-5
 AGAIN = "one step, rest"

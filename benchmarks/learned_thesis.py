@@ -18,7 +18,8 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import LearnedModel, Samples, load_model, read_samples, train_thesis_network
+from hydrostat.learning import LearnedModel, Samples, load_model, read_samples
+from hydrostat_lab.thesis_network import train_thesis_network
 
 
 def drawn(model: LearnedModel, like: Samples, count: int) -> Samples:

@@ -8,15 +8,11 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import InputError
-from hydrostat.learning.certify import exact_steps
-from hydrostat.learning.learn_model import learn_model
-from hydrostat.learning.learn_options import LearnOptions
-from hydrostat.learning.learned_model import LearnedModel
-from hydrostat.learning.others import OTHERS
-from hydrostat.learning.samples import Samples
-from hydrostat.learning.thesis_network import Answers, train_thesis_network
+from hydrostat.learning import LearnedModel, LearnOptions, Samples, exact_steps, learn_model
 from hydrostat.robot import Point
 from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat_lab.others import OTHERS
+from hydrostat_lab.thesis_network import Answers, train_thesis_network
 
 Distances = Float[np.ndarray, "targets markers"]
 

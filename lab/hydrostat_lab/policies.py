@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from hydrostat.errors import HydrostatError
-from hydrostat.training.experiments import SMALL
-from hydrostat.training.hindsight_ddpg import HindsightDdpg
-from hydrostat.training.trials import Begun, NetworkReach, Trials
+from hydrostat_lab.experiments import SMALL
+from hydrostat_lab.hindsight_ddpg import HindsightDdpg
+from hydrostat_lab.trials import Begun, NetworkReach, Trials
 
 try:
     import torch

@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import InputError
-from hydrostat.learning.draw import SamplingScheme, contractions, shared_numbers
-from hydrostat.learning.samples import Samples
+from hydrostat.learning import Samples, SamplingScheme, contractions, shared_numbers
 
 Goals = Float[np.ndarray, "targets coordinates"]
 Answers = Float[np.ndarray, "targets winches"]

@@ -9,13 +9,14 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from hydrostat.cli.trial_tables import shared_table  # noqa: E402
+from builders import strip_robot  # noqa: E402
+
 from hydrostat.simulation import Simulation  # noqa: E402
-from hydrostat.training import policies as room  # noqa: E402
-from hydrostat.training import shared_data  # noqa: E402
-from hydrostat.training.policies import WAYS, Budget, TriedPairs  # noqa: E402
-from hydrostat.training.trials import NetworkReach  # noqa: E402
-from tests.builders import strip_robot  # noqa: E402
+from hydrostat_lab import policies as room  # noqa: E402
+from hydrostat_lab import shared_data  # noqa: E402
+from hydrostat_lab.policies import WAYS, Budget, TriedPairs  # noqa: E402
+from hydrostat_lab.trial_tables import shared_table  # noqa: E402
+from hydrostat_lab.trials import NetworkReach  # noqa: E402
 
 
 class StraightReach(NetworkReach):

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from hydrostat.cli.trial_tables import drawn_runs, judged_claims, shared_table, spanned, trials_missing
 from hydrostat.cli.waiting import told
+from hydrostat_lab.trial_tables import drawn_runs, judged_claims, shared_table, spanned, trials_missing
 
 if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
-    from hydrostat.training import Judged
+    from hydrostat_lab.run_experiment import Judged
 
 TRIALS = (
     "figure-5.8",
@@ -68,7 +68,8 @@ def reproduce_trials(
         jobs: processes that sample where there is no model.
     """
     with trials_missing():
-        from hydrostat.training import EXPERIMENTS, run_experiment
+        from hydrostat_lab.experiments import EXPERIMENTS
+        from hydrostat_lab.run_experiment import run_experiment
     from hydrostat.plot import save_png
     from hydrostat.robot import replace_file
     from hydrostat.simulation import Simulation
@@ -114,7 +115,10 @@ def reproduce_trials(
 
 def _shared(networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials") -> None:
     """Trial and error beside others, of the pairs that it tried and of pairs drawn evenly."""
-    from hydrostat.training import Budget, NetworkReach, compare_on_shared_data, finger_pairs
+    from hydrostat_lab.policies import Budget
+    from hydrostat_lab.run_experiment import finger_pairs
+    from hydrostat_lab.shared_data import compare_on_shared_data
+    from hydrostat_lab.trials import NetworkReach
 
     budget = Budget(steps=max(2000, usual.steps // 6), epochs=usual.small)
     trials = NetworkReach(networks, groups=finger_pairs(networks))
@@ -126,20 +130,13 @@ def _policies(
     table: str, networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials"
 ) -> None:
     """Table and picture of ways to a policy of one action, over the equilibria that each has used."""
-    from hydrostat.plot import draw_costs, save_png
+    from hydrostat.plot import save_png
     from hydrostat.robot import replace_file
-    from hydrostat.training import (
-        PAIRS_ALONE,
-        WAYS,
-        Budget,
-        NetworkReach,
-        certified_distances,
-        drawn_pairs,
-        exact_distances,
-        exact_goals,
-        finger_pairs,
-        interquartile,
-    )
+    from hydrostat_lab.learning_figures import draw_costs
+    from hydrostat_lab.policies import PAIRS_ALONE, WAYS, Budget, drawn_pairs
+    from hydrostat_lab.run_experiment import certified_distances, exact_distances, exact_goals, finger_pairs
+    from hydrostat_lab.trials import NetworkReach
+    from hydrostat_lab.verdict import interquartile
 
     trials, effort = (
         NetworkReach(networks, groups=finger_pairs(networks)),
@@ -175,7 +172,7 @@ def _policies(
 
 def _used(name: str, pairs: int, known: int, usual: "_Trials") -> int:
     """Equilibria that a way would have cost in the simulator: its pairs, its own trials, or those of the networks."""
-    from hydrostat.training import PAIRS_ALONE, UNFILLED
+    from hydrostat_lab.policies import PAIRS_ALONE, UNFILLED
 
     tried = 500 * usual.small
     if name == "gradient":
@@ -207,7 +204,8 @@ def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: 
 
 def _line(judged: "Judged", width: float) -> str:
     """A run in numbers."""
-    from hydrostat.training import final, interquartile
+    from hydrostat_lab.experiments import final
+    from hydrostat_lab.verdict import interquartile
 
     ran, exact = judged.ran, judged.exact
     seeds = interquartile(10.0 * np.nanmean(exact, axis=1))

@@ -8,11 +8,11 @@ import numpy as np
 
 from hydrostat.errors import HydrostatError
 from hydrostat.simulation import Simulation
-from hydrostat.training.experiments import SMALL
-from hydrostat.training.hindsight_ddpg import HindsightDdpg
-from hydrostat.training.policies import Act, Budget, TriedPairs, cloned, drawn_pairs, nearest, ridge
-from hydrostat.training.run_experiment import exact_distances, exact_goals
-from hydrostat.training.trials import NetworkReach
+from hydrostat_lab.experiments import SMALL
+from hydrostat_lab.hindsight_ddpg import HindsightDdpg
+from hydrostat_lab.policies import Act, Budget, TriedPairs, cloned, drawn_pairs, nearest, ridge
+from hydrostat_lab.run_experiment import exact_distances, exact_goals
+from hydrostat_lab.trials import NetworkReach
 
 try:
     import torch

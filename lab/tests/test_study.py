@@ -9,12 +9,13 @@ import pytest
 from builders import strip_robot
 
 import hydrostat as hs
-from hydrostat.cli import reproduce
 from hydrostat.errors import InputError
-from hydrostat.learning import Compared, LearnOptions, Study, compare, read_samples, run_study
-from hydrostat.learning.others import kernel_ridge
-from hydrostat.learning.study import read_rows_of
+from hydrostat.learning import LearnOptions, read_samples
 from hydrostat.robot import Robot
+from hydrostat_lab import reproduce
+from hydrostat_lab.compare import Compared, compare
+from hydrostat_lab.others import kernel_ridge
+from hydrostat_lab.study import Study, read_rows_of, run_study
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -96,7 +97,7 @@ def test_the_tables_and_figures_of_the_thesis(
         ]
 
     monkeypatch.setattr(reproduce, "_robot", lambda name: replace(robot, name="cupping_hand"))
-    monkeypatch.setattr("hydrostat.learning.study.compare", found)
+    monkeypatch.setattr("hydrostat_lab.study.compare", found)
     reproduce.reproduce(list(reproduce.THINGS), tmp_path, counts="30", targets=3, jobs=1)
     assert "search                  15.000" in capsys.readouterr().out
     table = list(csv.reader((tmp_path / "table-5.1.csv").read_text().splitlines()))

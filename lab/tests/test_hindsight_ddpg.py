@@ -8,8 +8,8 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from hydrostat.errors import InputError  # noqa: E402
-from hydrostat.training.curriculum import Curriculum  # noqa: E402
-from hydrostat.training.hindsight_ddpg import (  # noqa: E402
+from hydrostat_lab.curriculum import Curriculum  # noqa: E402
+from hydrostat_lab.hindsight_ddpg import (  # noqa: E402
     DdpgOptions,
     HindsightDdpg,
     Running,
@@ -18,7 +18,7 @@ from hydrostat.training.hindsight_ddpg import (  # noqa: E402
     hindsight,
     rewards,
 )
-from hydrostat.training.trials import Trials  # noqa: E402
+from hydrostat_lab.trials import Trials  # noqa: E402
 
 
 class PointReach(Trials):

@@ -1,4 +1,4 @@
-"""Pictures of what was learned: errors over samples and time, learning curves, poses side by side, calibration."""
+"""Pictures of what was learned: errors over samples, time and equilibria, losses, poses side by side, calibration."""
 
 from collections.abc import Mapping, Sequence
 
@@ -7,18 +7,24 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
-from scipy.stats import trim_mean
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from hydrostat.arrays import Nodes
 from hydrostat.drawing import INK, MUTED, WINCHES
-from hydrostat.learning import STEP, StudyRow, way_of
-from hydrostat.plot.attachments import Attachments
-from hydrostat.plot.chart import new_chart, plain_axes
-from hydrostat.plot.robot_figures import SMALL, draw_portrait
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
-from hydrostat.plot.skin import outer_points
+from hydrostat.plot import (
+    MILLIMETRES,
+    WIDTH,
+    Attachments,
+    draw_portrait,
+    new_chart,
+    new_figure,
+    outer_points,
+    plain_axes,
+    short_number,
+)
 from hydrostat.robot import Robot
+from hydrostat_lab.compare import STEP, way_of
+from hydrostat_lab.study import StudyRow
 
 
 def draw_errors(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
@@ -66,40 +72,10 @@ def draw_losses(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
     axes.plot([], [], "--", color=MUTED, linewidth=1.0, label="dashed: what it learned from")
     axes.plot([], [], color=MUTED, linewidth=1.4, label="solid: what was held out")
     axes.set_yscale("log")
-    axes.yaxis.set_major_formatter(FuncFormatter(_short))
+    axes.yaxis.set_major_formatter(FuncFormatter(short_number))
     axes.yaxis.set_minor_formatter(FuncFormatter(_half))
     axes.tick_params(axis="y", which="minor", labelsize=8, colors=MUTED)
     axes.legend(frameon=False, fontsize=8, labelcolor=INK)
-    return figure
-
-
-def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]], *, width: float = WIDTH) -> Figure:
-    """Curves of learning over the actions taken, a pane for each kind of number, by the words at its axis.
-
-    Each is (actions, numbers), the numbers (epochs, seeds): the line is the mean over the middle half of the seeds, the
-    field what lies between the least and the largest; width in inches.
-    """
-    handles, names = [], list(dict.fromkeys(name for curves in panes.values() for name in curves))
-    columns = 5 if sum(map(len, names)) < _LETTERS else 3
-    height = 3.2 + 0.2 * -(-len(names) // columns)
-    figure = new_figure(width, height)
-    lower, tall = (height - 2.6) / height, 2.45 / height
-    for number, (words, curves) in enumerate(panes.items()):
-        axes = figure.add_axes((0.09 + 0.5 * number, lower, 0.39, tall))
-        plain_axes(axes)
-        for place, (name, (actions, numbers)) in enumerate(curves.items()):
-            colour = WINCHES[place % len(WINCHES)]
-            middle = trim_mean(numbers, 0.25, axis=1)
-            axes.plot(actions, middle, color=colour, linewidth=1.4, label=name)
-            axes.fill_between(actions, numbers.min(1), numbers.max(1), color=colour, alpha=0.15, linewidth=0)
-        most = max(float(numbers.max()) for _, numbers in curves.values())
-        axes.set_ylim(0.0, 1.05 * (most or 1.0))
-        axes.set_xlabel("actions", color=INK, fontsize=8.5)
-        axes.set_ylabel(words, color=INK, fontsize=8.5)
-        axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-        axes.xaxis.set_major_formatter(FuncFormatter(_short))
-        handles, names = axes.get_legend_handles_labels()
-    figure.legend(handles, names, loc="lower center", ncol=columns, frameon=False, fontsize=8, labelcolor=INK)
     return figure
 
 
@@ -130,7 +106,7 @@ def draw_costs(
     return figure
 
 
-def draw_side_by_side(robot: Robot, columns: Mapping[str, Sequence[Nodes]], *, width: float = SMALL) -> Figure:
+def draw_side_by_side(robot: Robot, columns: Mapping[str, Sequence[Nodes]], *, width: float = 2.7) -> Figure:
     """Poses as pictures in columns with a head each, a row for each pose [m]; width of one in inches."""
     every = [nodes for poses in columns.values() for nodes in poses]
     carried = Attachments(robot)
@@ -188,19 +164,10 @@ def _logarithmic(axes: Axes, across: str, up: str) -> None:
     axes.set_yscale("log")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
-        axis.set_major_formatter(FuncFormatter(_short))
+        axis.set_major_formatter(FuncFormatter(short_number))
         axis.set_minor_formatter(NullFormatter())
-
-
-def _short(value: float, place: object = None) -> str:
-    del place
-    return f"{value:,.0f}".replace(",", "\N{THIN SPACE}") if value >= 1 else f"{value:.3g}"
 
 
 def _half(value: float, place: object = None) -> str:
     """Numbers between powers of ten: 2 and 5 alone."""
-    return _short(value, place) if f"{value:e}"[0] in "25" else ""
-
-
-_LETTERS = 60
-"""So many letters of names stand beside one another below a picture of curves."""
+    return short_number(value, place) if f"{value:e}"[0] in "25" else ""

@@ -9,13 +9,13 @@ import pytest
 torch = pytest.importorskip("torch")
 gymnasium = pytest.importorskip("gymnasium")
 
-from hydrostat.cli import reproduce_reference as command  # noqa: E402
 from hydrostat.errors import HydrostatError  # noqa: E402
-from hydrostat.training import reference as room  # noqa: E402
-from hydrostat.training.experiments import Ran  # noqa: E402
-from hydrostat.training.hindsight_ddpg import DdpgOptions, Epochs, HindsightDdpg  # noqa: E402
-from hydrostat.training.reference import REFERENCES, none_missed_from  # noqa: E402
-from hydrostat.training.trials import GymnasiumTrials, robotics_task  # noqa: E402
+from hydrostat_lab import reference as room  # noqa: E402
+from hydrostat_lab import reproduce_reference as command  # noqa: E402
+from hydrostat_lab.experiments import Ran  # noqa: E402
+from hydrostat_lab.hindsight_ddpg import DdpgOptions, Epochs, HindsightDdpg  # noqa: E402
+from hydrostat_lab.reference import REFERENCES, none_missed_from  # noqa: E402
+from hydrostat_lab.trials import GymnasiumTrials, robotics_task  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 

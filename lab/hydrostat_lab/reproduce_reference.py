@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hydrostat.cli.trial_tables import drawn_runs, judged_claims, spanned, trials_missing
 from hydrostat.cli.waiting import told
+from hydrostat_lab.trial_tables import drawn_runs, judged_claims, spanned, trials_missing
 
 if TYPE_CHECKING:
-    from hydrostat.training import Ran
+    from hydrostat_lab.experiments import Ran
 
 REFERENCE_TABLES = ("figure-5.13", "figure-5.13-hand")
 """Experiments in environments of gymnasium-robotics."""
@@ -28,7 +28,7 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
         HydrostatError: torch, gymnasium-robotics or a fitting MuJoCo is missing.
     """
     with trials_missing():
-        from hydrostat.training import REFERENCES, run_reference
+        from hydrostat_lab.reference import REFERENCES, run_reference
     from hydrostat.plot import save_png
     from hydrostat.robot import replace_file
 
@@ -49,7 +49,9 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
 
 def _line(name: str, ran: "Ran") -> str:
     """A run in numbers."""
-    from hydrostat.training import final, interquartile, none_missed_from
+    from hydrostat_lab.experiments import final
+    from hydrostat_lab.reference import none_missed_from
+    from hydrostat_lab.verdict import interquartile
 
     success = spanned(interquartile(final(ran)), 2)
     left = spanned(interquartile(10.0 * ran.best[-1].mean(axis=1)), 1)

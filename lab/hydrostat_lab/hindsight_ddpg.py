@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.training.curriculum import Curriculum
-from hydrostat.training.trials import Trials
+from hydrostat_lab.curriculum import Curriculum
+from hydrostat_lab.trials import Trials
 
 try:
     import torch

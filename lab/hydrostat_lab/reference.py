@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
-from hydrostat.training.curriculum import MASTERED
-from hydrostat.training.experiments import Claim, Experiment, Ran, Run, final, speed
-from hydrostat.training.hindsight_ddpg import DdpgOptions, HindsightDdpg
-from hydrostat.training.trials import GymnasiumTrials, robotics_task
+from hydrostat_lab.curriculum import MASTERED
+from hydrostat_lab.experiments import Claim, Experiment, Ran, Run, final, speed
+from hydrostat_lab.hindsight_ddpg import DdpgOptions, HindsightDdpg
+from hydrostat_lab.trials import GymnasiumTrials, robotics_task
 
 
 @dataclass(frozen=True, kw_only=True)

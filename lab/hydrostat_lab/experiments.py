@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrostat.training.curriculum import MASTERED, Curriculum
-from hydrostat.training.hindsight_ddpg import DdpgOptions, Epochs
+from hydrostat_lab.curriculum import MASTERED, Curriculum
+from hydrostat_lab.hindsight_ddpg import DdpgOptions, Epochs
 
 
 @dataclass(frozen=True, kw_only=True)

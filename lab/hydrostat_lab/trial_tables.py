@@ -13,7 +13,8 @@ from hydrostat.errors import HydrostatError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from hydrostat.training import Experiment, OfPairs, Ran
+    from hydrostat_lab.experiments import Experiment, Ran
+    from hydrostat_lab.shared_data import OfPairs
 
 
 def spanned(found: object, digits: int) -> str:
@@ -33,7 +34,7 @@ def trials_missing() -> Iterator[None]:
 
 def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[str, Any]:
     """Say what the claims come to; all numbers of the runs, for a file."""
-    from hydrostat.training import interquartile, verdict
+    from hydrostat_lab.verdict import interquartile, verdict
 
     claims = list[dict[str, object]]()
     for claim in experiment.claims:
@@ -72,9 +73,11 @@ def drawn_runs(experiment: "Experiment", ran: "Mapping[str, Ran]") -> "Figure":
 
 def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: float) -> None:
     """Tell what each way leaves after so many pairs, which claims hold at the end, and draw it; size in mm."""
-    from hydrostat.plot import draw_costs, save_png
+    from hydrostat.plot import save_png
     from hydrostat.robot import replace_file
-    from hydrostat.training import ORDERS, interquartile, verdict
+    from hydrostat_lab.learning_figures import draw_costs
+    from hydrostat_lab.shared_data import ORDERS
+    from hydrostat_lab.verdict import interquartile, verdict
 
     print(f"\n{name}: trial and error (T=1, 4 x 30, shaped, goal only) compared with other methods")
     print(f"{'method':24}{'pairs':>8}{'in networks [mm]':>24}{'in the simulator [mm]':>24}{'% size':>8}{'lost':>6}")

@@ -10,7 +10,6 @@ from builders import strip_robot
 
 torch = pytest.importorskip("torch")
 
-from hydrostat.cli import reproduce_trials as command  # noqa: E402
 from hydrostat.learning import (  # noqa: E402
     LearnedModel,
     LearnOptions,
@@ -22,11 +21,12 @@ from hydrostat.learning import (  # noqa: E402
 )
 from hydrostat.robot import Robot  # noqa: E402
 from hydrostat.simulation import Simulation  # noqa: E402
-from hydrostat.training import experiments as room  # noqa: E402
-from hydrostat.training.experiments import EXPERIMENTS, Ran, error, final, least, speed  # noqa: E402
-from hydrostat.training.hindsight_ddpg import Epochs  # noqa: E402
-from hydrostat.training.run_experiment import certified_distances, exact_distances, exact_goals, finger_pairs  # noqa: E402
-from hydrostat.training.trials import NetworkReach  # noqa: E402
+from hydrostat_lab import experiments as room  # noqa: E402
+from hydrostat_lab import reproduce_trials as command  # noqa: E402
+from hydrostat_lab.experiments import EXPERIMENTS, Ran, error, final, least, speed  # noqa: E402
+from hydrostat_lab.hindsight_ddpg import Epochs  # noqa: E402
+from hydrostat_lab.run_experiment import certified_distances, exact_distances, exact_goals, finger_pairs  # noqa: E402
+from hydrostat_lab.trials import NetworkReach  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 

@@ -10,15 +10,20 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.learning.compare import METHODS, Compared, compare, way_of
-from hydrostat.learning.draw import SamplingScheme
-from hydrostat.learning.learn_options import LearnOptions
-from hydrostat.learning.sample_plan import SamplePlan, plan_samples
-from hydrostat.learning.sample_robot import Tell, sample_robot
-from hydrostat.learning.sample_shard import sample_shard
-from hydrostat.learning.samples import Samples, read_samples
+from hydrostat.learning import (
+    LearnOptions,
+    SamplePlan,
+    Samples,
+    SamplingScheme,
+    Tell,
+    plan_samples,
+    read_samples,
+    sample_robot,
+    sample_shard,
+)
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
+from hydrostat_lab.compare import METHODS, Compared, compare, way_of
 
 SEEDED = ("thesis", "values", "inverse", "search")
 """Ways that begin at random; the others are the same for each seed."""

@@ -7,8 +7,8 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from hydrostat.training.hindsight_ddpg import DdpgOptions, HindsightDdpg, rewards  # noqa: E402
-from hydrostat.training.trials import Trials  # noqa: E402
+from hydrostat_lab.hindsight_ddpg import DdpgOptions, HindsightDdpg, rewards  # noqa: E402
+from hydrostat_lab.trials import Trials  # noqa: E402
 
 STEPS = 4
 

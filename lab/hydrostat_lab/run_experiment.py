@@ -8,10 +8,10 @@ import torch
 
 from hydrostat.learning import LearnedModel, antagonists, verify
 from hydrostat.simulation import Simulation
-from hydrostat.training.experiments import Experiment, Ran
-from hydrostat.training.hindsight_ddpg import HindsightDdpg
-from hydrostat.training.policies import Act
-from hydrostat.training.trials import NetworkReach
+from hydrostat_lab.experiments import Experiment, Ran
+from hydrostat_lab.hindsight_ddpg import HindsightDdpg
+from hydrostat_lab.policies import Act
+from hydrostat_lab.trials import NetworkReach
 
 Groups = tuple[tuple[int, ...], ...]
 Tell = Callable[[str, int, int], None]

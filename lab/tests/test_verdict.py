@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import trim_mean
 
-from hydrostat.training.verdict import interquartile, verdict
+from hydrostat_lab.verdict import interquartile, verdict
 
 
 def test_interquartile_mean_leaves_the_outer_quarters_out() -> None:

@@ -7,9 +7,8 @@ from jaxtyping import Float
 from scipy.optimize import lsq_linear
 
 from hydrostat.arrays import Vector
-from hydrostat.learning.lesson import linear_map
-from hydrostat.learning.samples import Samples
-from hydrostat.learning.thesis_network import Answers, Goals
+from hydrostat.learning import Samples, linear_map
+from hydrostat_lab.thesis_network import Answers, Goals
 
 Method = Callable[[Samples, Goals], Answers]
 
