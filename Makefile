@@ -3,14 +3,17 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
-# Benchmarks that need programs which the tests do not (other simulators, PyTorch and stable-baselines3), or a robot, samples or a model.
-NEED_MORE := peers floor hysteresis walk_learned learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions learned_thesis sample_starts spool_layers
+# Benchmarks that need other simulators.
+NEED_MORE := peers floor
+# Studies that need fTetWild, PyTorch and stable-baselines3, or a robot, samples or a model.
+STUDIES_NEED_MORE := tetwild hysteresis walk_learned push_learning learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions learned_thesis sample_starts spool_layers
+STUDIES := $(filter-out lab/tests/% lab/hydrostat_lab/%,$(wildcard lab/*/*.py))
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 # Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
 test test-all quick: export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: help demo studio test test-all quick check lint lint-js fix bench pictures wheels clean
+.PHONY: help demo studio test test-all quick check lint lint-js fix bench studies pictures wheels clean
 
 help:
 	@echo "make demo      design the cables of the starfish; results in build/starfish"
@@ -20,7 +23,8 @@ help:
 	@echo "make quick     each test with its first case, without the slow ones: a minute or two"
 	@echo "make check     lint, types, import layers, tests"
 	@echo "make fix       format and repair what ruff can repair"
-	@echo "make bench     timings and studies; prints tables ($(NEED_MORE), which need more, run by hand)"
+	@echo "make bench     timings and figures of quality; prints tables ($(NEED_MORE), which need more, run by hand)"
+	@echo "make studies   studies in lab/; prints tables (those that need a model or PyTorch run by hand: lab/README.md)"
 	@echo "make pictures  draw the pictures of the README again"
 	@echo "make wheels    build a wheel for Linux into dist/"
 
@@ -62,6 +66,9 @@ fix: $(VENV)/check.installed
 bench: $(VENV)/test.installed
 	for file in $(filter-out $(NEED_MORE:%=benchmarks/%.py),$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
 
+studies: $(VENV)/lab.installed
+	for file in $(filter-out $(foreach name,$(STUDIES_NEED_MORE),%/$(name).py),$(STUDIES)); do $(BIN)/python $$file || exit 1; done
+
 pictures: $(VENV)/demo.installed
 	$(BIN)/python docs/pictures.py
 
@@ -91,6 +98,10 @@ $(VENV)/studio.installed: $(VENV)/demo.installed
 
 $(VENV)/test.installed: $(VENV)/demo.installed
 	$(INSTALL) --editable ".[test]"
+	touch $@
+
+$(VENV)/lab.installed: $(VENV)/test.installed lab/pyproject.toml
+	$(INSTALL) --editable lab
 	touch $@
 
 $(VENV)/check.installed: $(VENV)/test.installed

@@ -1,8 +1,10 @@
-"""The benchmarks that `make bench` runs. Oracle: their own arguments, as they stand in their text."""
+"""The files that `make bench` and `make studies` run. Oracle: their own arguments, as they stand in their text."""
 
 import ast
 import re
 from pathlib import Path
+
+import pytest
 
 _TOP = Path(__file__).parents[1]
 
@@ -24,10 +26,16 @@ def _need_arguments(text: str) -> bool:
     )
 
 
-def test_make_bench_runs_what_needs_no_arguments() -> None:
-    need = {file.stem for file in (_TOP / "benchmarks").glob("*.py") if _need_arguments(file.read_text())}
-    found = re.search(r"^NEED_MORE := (.*)$", (_TOP / "Makefile").read_text(), re.M)
+@pytest.mark.parametrize(
+    ("names", "folder", "known"),
+    [
+        ("NEED_MORE", "benchmarks", set()),
+        ("STUDIES_NEED_MORE", "lab/*", {"learned_ik", "sample_starts", "spool_layers"}),
+    ],
+)
+def test_make_runs_what_needs_no_arguments(names: str, folder: str, known: set[str]) -> None:
+    files = {file.stem: file.read_text() for file in _TOP.glob(f"{folder}/*.py")}
+    found = re.search(rf"^{names} := (.*)$", (_TOP / "Makefile").read_text(), re.M)
     assert found
-    left_out = set(found[1].split())
-    assert {"learned_ik", "sample_starts", "spool_layers"} <= need <= left_out
-    assert all((_TOP / "benchmarks" / f"{name}.py").is_file() for name in left_out)
+    need, left_out = {name for name, text in files.items() if _need_arguments(text)}, set(found[1].split())
+    assert known <= need <= left_out <= set(files)

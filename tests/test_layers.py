@@ -84,10 +84,22 @@ def _past_doors(path: Path, text: str) -> list[str]:
     return [module for module, parts in split if len(parts) > 2 and parts[1] in rooms]
 
 
-@pytest.mark.parametrize("folder", ["hydrostat", "tests", "benchmarks", "examples"])
+@pytest.mark.parametrize("folder", ["hydrostat", "tests", "benchmarks", "examples", "lab"])
 def test_rooms_are_entered_by_their_doors(folder: str) -> None:
     files = [path.relative_to(_TOP) for path in (_TOP / folder).rglob("*.py")]
     past = {str(path): found for path in files if (found := _past_doors(path, (_TOP / path).read_text()))}
     assert past == {}
     assert _past_doors(Path("hydrostat/ik/solve_ik.py"), "from hydrostat.geometry.mesh import Mesh")
     assert not _past_doors(Path("tests/geometry/test_mesh.py"), "from hydrostat.geometry.mesh import Mesh")
+
+
+def _of_the_laboratory(text: str) -> bool:
+    """Whether a file imports the shared code of the studies."""
+    nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Import | ast.ImportFrom)]
+    return any("hydrostat_lab" in ast.unparse(node) for node in nodes)
+
+
+def test_only_one_command_knows_the_laboratory() -> None:
+    files = [path for top in ("hydrostat", "benchmarks", "examples") for path in (_TOP / top).rglob("*.py")]
+    knows = [str(path.relative_to(_TOP)) for path in files if _of_the_laboratory(path.read_text())]
+    assert knows == ["hydrostat/cli/reproduce.py"]

@@ -30,7 +30,7 @@ MANY_PARAMETERS = {
     "hydrostat/cli/new.py:new": "a parameter is an option of the command line",
     "hydrostat/cli/pose.py:pose": "a parameter is an option of the command line",
     "hydrostat/cli/grasp.py:grasp": "a parameter is an option of the command line",
-    "hydrostat/cli/reproduce.py:reproduce": "a parameter is an option of the command line",
+    "lab/hydrostat_lab/reproduce.py:reproduce": "a parameter is an option of the command line",
     "hydrostat/cli/sample.py:sample": "a parameter is an option of the command line",
     "hydrostat/cli/train.py:train": "a parameter is an option of the command line",
     "hydrostat/cli/simulate.py:simulate": "a parameter is an option of the command line",
@@ -158,7 +158,7 @@ def energies(texts: dict[str, str]) -> set[str]:
 
 @pytest.fixture(scope="module")
 def texts() -> dict[str, str]:
-    return modules()
+    return modules() | modules("lab/hydrostat_lab")
 
 
 def test_files_are_short(texts: dict[str, str]) -> None:
@@ -206,5 +206,5 @@ def test_the_checks_can_fail() -> None:
 
 def test_files_of_tests_have_names_of_their_own() -> None:
     """Two of one name cannot be collected together."""
-    names = Counter(file.name for file in (ROOT / "tests").rglob("test_*.py"))
+    names = Counter(file.name for top in ("tests", "lab") for file in (ROOT / top).rglob("test_*.py"))
     assert [name for name, count in names.items() if count > 1] == []

@@ -20,7 +20,16 @@ LOOK_ALIKE = {
 }
 """What looks like a code and is none; screws M2, M3 and M4 look like codes that exist."""
 
-SOURCES = ("hydrostat/**/*.py", "benchmarks/*.py", "tests/**/*.py", "docs/**/*.md", "docs/*.py", "*.md")
+SOURCES = (
+    "hydrostat/**/*.py",
+    "benchmarks/*.py",
+    "lab/**/*.py",
+    "lab/**/*.md",
+    "tests/**/*.py",
+    "docs/**/*.md",
+    "docs/*.py",
+    "*.md",
+)
 COUNTS = {"R": 90, "N": 17, "E": 66, "M": 20, "F": 13}
 
 

@@ -25,7 +25,7 @@ from hydrostat.cli.mimic import mimic
 from hydrostat.cli.new import new
 from hydrostat.cli.play import play
 from hydrostat.cli.pose import pose
-from hydrostat.cli.reproduce import reproduce
+from hydrostat.cli.reproduce import PASS_ON, reproduce
 from hydrostat.cli.sample import sample
 from hydrostat.cli.scale import scale
 from hydrostat.cli.simulate import simulate
@@ -88,7 +88,7 @@ for command in (
     studio,
     materials,
 ):
-    app.command()(_interruptible(command))
+    app.command(context_settings=PASS_ON if command is reproduce else None)(_interruptible(command))
 
 
 @app.callback(invoke_without_command=True)

@@ -6,9 +6,8 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.learning.certify import exact_steps, solve_exactly, verify
-    from hydrostat.learning.compare import METHODS, STEP, Compared, compare, targets_of, way_of
     from hydrostat.learning.correct_model import correct_model
-    from hydrostat.learning.draw import SamplingScheme, antagonists
+    from hydrostat.learning.draw import SamplingScheme, antagonists, contractions, shared_numbers
     from hydrostat.learning.export import EXPORTS, check_export, export_samples
     from hydrostat.learning.learn_model import learn_model
     from hydrostat.learning.learn_options import LearnOptions
@@ -20,20 +19,15 @@ if TYPE_CHECKING:
     from hydrostat.learning.portable_policy import PortablePolicy, load_policy
     from hydrostat.learning.sample_folder import SampleFolder
     from hydrostat.learning.sample_plan import SamplePlan, physics_hash, plan_samples
-    from hydrostat.learning.sample_robot import BACKENDS, sample_robot
+    from hydrostat.learning.sample_robot import BACKENDS, Tell, sample_robot
     from hydrostat.learning.sample_shard import sample_shard
     from hydrostat.learning.samples import Samples, read_samples
-    from hydrostat.learning.study import Study, StudyRow, run_study
-    from hydrostat.learning.thesis_network import train_thesis_network
     from hydrostat.learning.train import answer, tensors_of, train_forward
 
 __all__ = [
     "BACKENDS",
     "EXPORTS",
     "LEAST",
-    "METHODS",
-    "STEP",
-    "Compared",
     "LearnOptions",
     "LearnedModel",
     "LearnedPose",
@@ -43,14 +37,13 @@ __all__ = [
     "SamplePlan",
     "Samples",
     "SamplingScheme",
-    "Study",
-    "StudyRow",
+    "Tell",
     "Tier",
     "TrainingSet",
     "answer",
     "antagonists",
     "check_export",
-    "compare",
+    "contractions",
     "correct_model",
     "exact_steps",
     "export_samples",
@@ -62,17 +55,14 @@ __all__ = [
     "physics_hash",
     "plan_samples",
     "read_samples",
-    "run_study",
     "sample_robot",
     "sample_shard",
     "save_model",
+    "shared_numbers",
     "solve_exactly",
-    "targets_of",
     "tensors_of",
     "train_forward",
-    "train_thesis_network",
     "verify",
-    "way_of",
 ]
 
 open_package(__name__)

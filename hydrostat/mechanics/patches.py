@@ -96,4 +96,4 @@ def _across_faces(elements: Elements) -> list[list[int]]:
 
 
 PATCH_SIZE = {2: 4, 3: 6}
-"""Elements in a patch, in the plane and in space: `benchmarks/locking.py` and decision 0012 compare others."""
+"""Elements in a patch, in the plane and in space: `lab/locking/locking.py` and decision 0012 compare others."""

@@ -7,9 +7,10 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
     from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
+    from hydrostat.plot.attachments import Attachments
     from hydrostat.plot.branch_figure import draw_branches
     from hydrostat.plot.calibration_page import reach, write_calibration_page
-    from hydrostat.plot.chart import plain_axes
+    from hydrostat.plot.chart import new_chart, plain_axes, short_number
     from hydrostat.plot.design_charts import draw_front, draw_growth
     from hydrostat.plot.drawn_body import DrawnBody
     from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, upright, winch_stops
@@ -18,14 +19,7 @@ if TYPE_CHECKING:
     from hydrostat.plot.grasp_figure import draw_pull, pull_frames
     from hydrostat.plot.healing_figure import draw_healing
     from hydrostat.plot.labels import shorten
-    from hydrostat.plot.learning_figures import (
-        draw_calibration,
-        draw_costs,
-        draw_curves,
-        draw_errors,
-        draw_losses,
-        draw_side_by_side,
-    )
+    from hydrostat.plot.learning_curves import draw_curves
     from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion import motion_frames, motion_svg
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
@@ -44,13 +38,14 @@ if TYPE_CHECKING:
     )
     from hydrostat.plot.scene import save_glb
     from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
-    from hydrostat.plot.skin import FlatSkin
+    from hydrostat.plot.skin import FlatSkin, outer_points
 
 __all__ = [
     "MILLIMETRES",
     "REACHED",
     "WIDTH",
     "WIDTHS",
+    "Attachments",
     "Chapter",
     "DrawnBody",
     "Film",
@@ -64,15 +59,11 @@ __all__ = [
     "cable_table",
     "draw_activation",
     "draw_branches",
-    "draw_calibration",
     "draw_candidates",
-    "draw_costs",
     "draw_curves",
-    "draw_errors",
     "draw_front",
     "draw_growth",
     "draw_healing",
-    "draw_losses",
     "draw_motion",
     "draw_network",
     "draw_portrait",
@@ -81,7 +72,6 @@ __all__ = [
     "draw_reach",
     "draw_reached",
     "draw_rest",
-    "draw_side_by_side",
     "draw_target",
     "draw_trajectory",
     "draw_trees",
@@ -93,7 +83,9 @@ __all__ = [
     "motion_frames",
     "motion_svg",
     "network_part",
+    "new_chart",
     "new_figure",
+    "outer_points",
     "page",
     "plain_axes",
     "pose_stops",
@@ -106,6 +98,7 @@ __all__ = [
     "save_mp4",
     "save_png",
     "section",
+    "short_number",
     "shorten",
     "table",
     "target_chapter",

@@ -1,4 +1,7 @@
-"""The look of charts: `new_chart` is an empty one, `plain_axes` one of several in a figure."""
+"""The look of charts: `new_chart` makes an empty one, `plain_axes` is for several in a figure.
+
+`short_number` formats the numbers at an axis.
+"""
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -32,3 +35,9 @@ def plain_axes(axes: Axes, *, size: float = 8) -> None:
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(MUTED)
     axes.tick_params(colors=MUTED, labelsize=size)
+
+
+def short_number(value: float, place: object = None) -> str:
+    """Text of a number at an axis: whole from 1 on, else three digits."""
+    del place
+    return f"{value:,.0f}".replace(",", "\N{THIN SPACE}") if value >= 1 else f"{value:.3g}"

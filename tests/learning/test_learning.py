@@ -16,12 +16,10 @@ import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.ik import IKStatus
 from hydrostat.learning import (
-    METHODS,
     LearnedModel,
     LearnOptions,
     Samples,
     Tier,
-    compare,
     correct_model,
     learn_model,
     load_model,
@@ -33,7 +31,6 @@ from hydrostat.learning import (
     verify,
 )
 from hydrostat.learning.certify import exact_steps
-from hydrostat.learning.compare import WAYS, targets_of
 from hydrostat.learning.lesson import linear_map
 from hydrostat.mechanics import Reason
 from hydrostat.robot import Robot
@@ -67,6 +64,11 @@ def model(samples: Samples) -> LearnedModel:
 @pytest.fixture(scope="module")
 def simulation(robot: Robot) -> hs.Simulation:
     return hs.Simulation(robot)
+
+
+def targets_of(samples: Samples) -> list[dict[str, tuple[float, ...]]]:
+    """Places of the one marker [m]."""
+    return [{"tip": tuple(places[0].tolist())} for places in samples.markers]
 
 
 @pytest.mark.slow
@@ -117,29 +119,6 @@ def test_answers_rolled_out_in_the_simulator(model: LearnedModel, samples: Sampl
     assert means["search"] < 0.2 * means["ridge"]
     assert means["step"] < 0.2 * means["search"]
     assert means["exact"] < 1e-6
-
-
-@pytest.mark.slow
-def test_ways_to_learn_side_by_side(samples: Samples, simulation: hs.Simulation, model: LearnedModel) -> None:
-    """Oracles: the samples themselves, whose nearest are rolled out to where they were; learning by hand."""
-    known, new = samples.first(60), samples.only(np.arange(60, 66))
-    rows = {found.method: found for found in compare(simulation, known, new, METHODS, options=OPTIONS)}
-    assert list(rows) == list(METHODS)
-    assert all(found.distances.shape == (6, 1) and found.lost == 0 for found in rows.values())
-    near = np.linalg.norm(known.markers[:, 0] - new.markers, axis=-1).min(axis=1)
-    assert rows["1-NN"].distances[:, 0] == pytest.approx(near, abs=1e-9)
-    means = {name: found.found.mean() for name, found in rows.items()}
-    assert means["1-NN"] < means["constant"]
-    assert means["1-NN, Jacobian"] < means["1-NN"]
-    assert means["search"] < min(means[name] for name in ("constant", "1-NN", "ridge", "thesis"))
-    assert all(means[way + ", step"] < means[way] for way in WAYS)
-    assert means["search, steps"] <= means["search, step"]
-    assert 0 < rows["search, step"].facts["steps"] <= 1
-    assert [name for name, found in rows.items() if found.curve is not None] == ["thesis"]
-    answer = verify(simulation, model, model.solve(targets_of(new)[0]))
-    assert rows["search"].distances[0, 0] == pytest.approx(answer.error, rel=1e-6)
-    with pytest.raises(InputError, match='unknown method "magic"'):
-        next(compare(simulation, known, new, ["magic"]))
 
 
 @pytest.mark.slow

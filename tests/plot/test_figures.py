@@ -156,12 +156,3 @@ def test_motion_begins_and_ends_at_rest() -> None:
     root = ElementTree.fromstring(plot.motion_svg(robot, frames, label=SCRIPT))
     values = [len(element.get("values", "").split(";")) for element in root.iter() if element.get("values")]
     assert set(values) == {len(frames)}
-
-
-def test_names_of_ways_are_within_the_picture_beside_the_chart() -> None:
-    drawn = plot.draw_costs({"residual on the clone": [(500, 20.0), (6000, 7.0)], "ridge": [(500, 9.0)]})
-    drawn.canvas.draw()
-    axes, whole = drawn.axes[0], drawn.bbox
-    legend, chart = axes.get_legend().get_window_extent(), axes.get_window_extent()
-    assert legend.x1 < whole.x1
-    assert legend.x0 >= chart.x1 - 1

@@ -51,7 +51,7 @@ def test_thin_triangle() -> None:
 
 @pytest.mark.parametrize(("poisson", "flat", "space"), [(0.35, 14, 12), (0.46, 35, 45), (0.499, 140, 240)])
 def test_locking(good: Robot, poisson: float, flat: int, space: int) -> None:
-    """Oracle: what `benchmarks/locking.py` measured at the next lower ratio; nothing below 0.35 or with patches."""
+    """Oracle: what `lab/locking/locking.py` measured at the next lower ratio; nothing below 0.35 or with patches."""
     for robot, percent in ((good, flat), (solid_robot(), space)):
         material = replace(robot.body.material, poisson=poisson)
         for volume in Volume:

@@ -1,0 +1,138 @@
+"""`run_experiment`: the runs of an experiment with several seeds, and what the simulator makes of the best policies."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from hydrostat.learning import LearnedModel, antagonists, verify
+from hydrostat.simulation import Simulation
+from hydrostat_lab.experiments import Experiment, Ran
+from hydrostat_lab.hindsight_ddpg import HindsightDdpg
+from hydrostat_lab.policies import Act
+from hydrostat_lab.trials import NetworkReach
+
+Groups = tuple[tuple[int, ...], ...]
+Tell = Callable[[str, int, int], None]
+Asked = tuple[torch.Tensor, torch.Tensor]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Judged:
+    """How the best policies of a run did in the simulator: distances [cm] after the last action, (seeds, goals).
+
+    NaN where an episode met no equilibrium.
+    """
+
+    name: str
+    ran: Ran
+    exact: np.ndarray
+
+
+def finger_pairs(model: LearnedModel) -> Groups:
+    """Winches that work against one another, by the slopes that a model expects at rest; the others alone."""
+    rest = np.clip(np.zeros(len(model.low)), model.low, model.high)
+    return antagonists(model.slopes(rest).T)
+
+
+def run_experiment(
+    experiment: Experiment,
+    model: LearnedModel,
+    simulation: Simulation,
+    *,
+    seeds: int,
+    epochs: Callable[[int], int],
+    goals: int,
+    tell: Tell = lambda *_: None,
+) -> Iterator[Judged]:
+    """Learn in the networks of a model, and judge the best policies of each run in the simulator.
+
+    Args:
+        experiment: what is compared.
+        model: networks of a robot.
+        simulation: of the same robot.
+        seeds: how often each run begins at random.
+        epochs: of a run, by the width of its widest layer.
+        goals: drawn evenly among actions, simulated, and asked for; nothing is learned from them.
+        tell: is told the name of a run, how many of its epochs are done, and of how many.
+    """
+    groups = finger_pairs(model)
+    for name, run in experiment.runs.items():
+        trials = NetworkReach(model, groups=groups, horizon=run.horizon, random_start=run.random_start)
+        many = epochs(max(run.options.layers))
+        learner = HindsightDdpg(trials, run.options, seeds=seeds, epochs=many)
+        done = learner.learn(tell=lambda at, of, name=name: tell(name, at, of))
+        ran = Ran(run=run, epochs=done, best=learner.test(learner.best, _TESTS))
+        asked = exact_goals(simulation, trials, goals, tell=tell)
+        exact = exact_distances(simulation, trials, learner.best, seeds, asked, tell=tell)
+        yield Judged(name=name, ran=ran, exact=exact)
+
+
+def exact_goals(simulation: Simulation, trials: NetworkReach, goals: int, *, tell: Tell = lambda *_: None) -> Asked:
+    """Where episodes begin and what they shall reach in the simulator [cm], (1, goals, size) each; NaN where none."""
+    draw = torch.Generator().manual_seed(_GOALS)
+    begun, _, _ = trials.begin(draw, (1, goals))
+    wanted = trials.contractions(2.0 * torch.rand(1, goals, trials.actions, generator=draw) - 1.0)
+    return begun, _places(simulation, wanted, "goals in the simulator", tell)
+
+
+def exact_distances(
+    simulation: Simulation, trials: NetworkReach, policy: Act, seeds: int, asked: Asked, *, tell: Tell = lambda *_: None
+) -> np.ndarray:
+    """Distances [cm] after the last action of episodes in the simulator, (seeds, goals); asked: `exact_goals`."""
+    begun, goal = (part.expand(seeds, -1, -1) for part in asked)
+    seen = begun
+    with torch.no_grad():
+        for _ in range(trials.horizon):
+            acts = policy(torch.nan_to_num(seen), torch.nan_to_num(goal))
+            seen = _places(simulation, trials.contractions(acts), "in the simulator", tell)
+    return trials.distances(seen, goal).numpy()
+
+
+def certified_distances(
+    simulation: Simulation, model: LearnedModel, asked: Asked, *, steps: int = 3, tell: Tell = lambda *_: None
+) -> np.ndarray:
+    """Distances [cm] that the same goals are left with by the networks' search and exact steps from there, (1, goals).
+
+    What inverse kinematics does with the equilibria that the networks have learned from; it moves each winch alone. No
+    more steps are taken than needed for 0.01 mm. NaN where a goal, or the answer to it, is no equilibrium.
+    """
+    names, dim = model.facts["markers"], model.facts["dim"]
+    rows, found = asked[1][0].double().numpy(), []
+    for number, row in enumerate(rows):
+        tell("certified", number, len(rows))
+        if not np.isfinite(row).all():
+            found.append(np.nan)
+            continue
+        target = dict(zip(names, map(tuple, (0.01 * row).reshape(-1, dim).tolist()), strict=True))
+        answer = verify(simulation, model, model.solve(target), steps=steps, enough=1e-5)
+        found.append(np.nan if answer.certified is None else 100.0 * answer.error)
+    return np.array(found)[None]
+
+
+def _places(simulation: Simulation, taken: torch.Tensor, stage: str, tell: Tell) -> torch.Tensor:
+    """Coordinates of the markers [cm] at contractions [m], (many, goals, winches), in the simulator; NaN where none.
+
+    The first of many begins from rest; the others, which want the same, each from the pose before: eight times faster
+    where they differ little.
+    """
+    rows = taken.double().numpy()
+    found = np.full((*rows.shape[:2], len(simulation.robot.markers), simulation.robot.body.mesh.dim), np.nan)
+    for goal in range(rows.shape[1]):
+        tell(stage, goal, rows.shape[1])
+        pose = None
+        for one in range(rows.shape[0]):
+            pose = simulation.solve(rows[one, goal], start=pose, strict=False)
+            if not pose.result.converged:
+                pose = None
+                continue
+            found[one, goal] = simulation.marker_anchors.positions(pose.nodes)
+    return torch.tensor(100.0 * found.reshape(*rows.shape[:2], -1), dtype=torch.float32)
+
+
+_TESTS = 300
+"""Goals that the best policies are tried on in the networks."""
+
+_GOALS = 31_415
+"""Seed of the goals in the simulator."""

@@ -1,0 +1,213 @@
+"""Keyframes twist a ball within the gallery's gripper and hands: how far it turns, and films.
+
+    python lab/push_and_twist/twist.py [--friction 0.56 0.8 1.04] [--step 0.02] [--films DIR] [HAND ...]
+
+After Fig 4.10 of the thesis, where three hands twist a ball, each its way. The gripper swings its four fingers round
+the ball as one opens a jar; the hands roll it between thumb and fingers, by keyframes that a random search of some
+tens of tries found at friction 0.8 and time steps of 0.05 s: what they do with other friction was not looked at. The
+ball is a free body that Coulomb friction
+takes along, in dynamics; a spring of 100 N/m keeps it about its place in place of a palm under it, as there is no
+gravity here, and nothing keeps it from turning but drag. In the end the hand is open again: what the ball has turned
+by then stays.
+"""
+
+import argparse
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from machine import machine
+
+import numpy as np  # isort: skip
+
+from scipy.spatial.transform import Rotation
+
+import hydrostat as hs
+from hydrostat.arrays import Vector
+from hydrostat.mechanics import GuideEnergy
+from hydrostat.plot import Frame, save_gif
+from hydrostat.robot import Contact, Obstacle, Robot
+from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+HOLD, VISCOSITY, DRAG, SECONDS = 100.0, 400.0, 5.0, 0.5
+"""Spring of the ball [N/m], shear viscosity of the foam [Pa s], drag [1/s], time from one keyframe to the next [s]."""
+
+
+@dataclass(frozen=True)
+class Twist:
+    """Keyframes, in parts of winches' names with what they take in [mm]; later parts win."""
+
+    at: tuple[float, float, float]  # middle of the ball [mm]
+    radius: float  # of the ball [mm]
+    keys: dict[str, dict[str, float]]
+    robot: str = ""  # if it has another name than the twist
+    length: float = 0.0  # of the straight part of an upright rod with round ends, in place of a ball [mm]
+
+    def thing(self, friction: float) -> Obstacle:
+        """What is turned."""
+        known = {"name": "ball", "radius": 1e-3 * self.radius, "mass": 0.03, "friction": friction}
+        middle, half = 1e-3 * np.array(self.at), 5e-4 * self.length * np.eye(3)[2]
+        if not self.length:
+            return Obstacle(shape="sphere", at=tuple(middle.tolist()), **known)
+        return Obstacle(
+            shape="capsule", at=tuple((middle - half).tolist()), to=tuple((middle + half).tolist()), **known
+        )
+
+    def contractions(self, robot: Robot, key: str) -> Vector:
+        """What each winch takes in at a key [m]."""
+        taken = np.zeros(len(robot.winches))
+        for part, value in self.keys[key].items():
+            taken[[part in winch.name for winch in robot.winches]] = 1e-3 * value
+        return taken
+
+
+_SWING = {
+    "swung back": {" a": 14, " b": 0},
+    "closed there": {" a": 24, " b": 10},
+    "swung round": {" a": 10, " b": 24},
+    "opened there": {" a": 0, " b": 14},
+}
+TWISTS = {
+    "caging_gripper": Twist(
+        (0, 0, 78),
+        33.5,
+        {**_SWING, "open": {}},
+    ),
+    "rod": Twist(
+        (0, 0, 88),
+        24,
+        {
+            **_SWING,
+            **{f"{word}, again": keys for word, keys in _SWING.items()},
+            "open": {},
+        },
+        robot="caging_gripper",
+        length=50,
+    ),
+    "cupping_hand": Twist(
+        (24, -43, 115),
+        15,
+        {
+            "closed": {"thumb flexor": 36, "index flexor": 25, "index extensor": 28, "middle flexor": 30},
+            "rolled": {
+                **{"thumb flexor": 18, "thumb extensor": 29, "index flexor": 30, "index extensor": 7},
+                **{"middle flexor": 23, "ring flexor": 27},
+            },
+            "let go": {
+                **{"thumb flexor": 9, "thumb extensor": 1, "index flexor": 20, "index extensor": 14},
+                **{"middle flexor": 8, "ring flexor": 23},
+            },
+            "open": {},
+        },
+    ),
+    "extended_hand": Twist(
+        (30, -53, 127),
+        15,
+        {
+            "closed": {
+                **{"thumb opponens": 5, "index flexor": 23, "index side": 14, "middle flexor": 30, "ring flexor": 17}
+            },
+            "rolled": {
+                **{"thumb flexor": 28, "thumb opponens": 4, "index flexor": 25, "middle flexor": 2, "ring flexor": 26}
+            },
+            "let go": {"index flexor": 11, "index side": 3, "middle flexor": 1, "ring flexor": 6},
+            "open": {},
+        },
+    ),
+}
+
+
+class Held:
+    """A robot and a ball that it turns, from keyframe to keyframe."""
+
+    def __init__(self, robot: Robot, twist: Twist, friction: float) -> None:
+        self.ball = twist.thing(friction)
+        self.begun, self.begin = self.ball.frame()
+        body = replace(robot.body, material=replace(robot.body.material, viscosity=VISCOSITY))
+        self.robot = replace(robot, body=body, contact=Contact(), obstacles=(self.ball,))
+        physics = BodyPhysics(self.robot)
+        self.carriage = physics.carriages[0]
+        guide = GuideEnergy(self.carriage, place=self.begun, axes=self.begin, along=HOLD * np.eye(3), turning=0.0)
+        self.simulation = Simulation(self.robot, body=physics, energies=[guide])
+        self.motion = self.simulation.motion_at_rest()
+
+    def go(self, goal: Vector, step: float) -> Motion:
+        """The motion one step [s] later."""
+        self.motion = self.simulation.step(self.motion, goal, step, options=StepOptions(scheme="euler", drag=DRAG))
+        return self.motion
+
+    @property
+    def turned(self) -> Vector:
+        """How far the ball has turned, about each axis [degree]; small enough to be a vector."""
+        return np.rad2deg(Rotation.from_matrix(_rotation(self._axes).T @ self.begin).as_rotvec())
+
+    @property
+    def place(self) -> Vector:
+        """Where the middle of the ball is [m]."""
+        assert self.motion.carried is not None
+        return self.motion.carried[0][0]
+
+    def drawn(self) -> list[Obstacle]:
+        """The ball where it is, with dots on it, which show how it turns."""
+        axes, radius = _rotation(self._axes), self.ball.radius or 0.0
+        dots = self.place + 0.94 * radius * np.concatenate([axes, -axes])[:: 1 if self.ball.to is None else 2]
+        made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots.tolist()]
+        return [self.ball.moved(self.place, axes), *made]
+
+    @property
+    def _axes(self) -> np.ndarray:
+        assert self.motion.carried is not None
+        return self.motion.carried[0][1:] / self.carriage.length
+
+
+def _rotation(axes: np.ndarray) -> np.ndarray:
+    """The rotation nearest to axes that are almost one."""
+    left, _, right = np.linalg.svd(axes)
+    return left @ right
+
+
+def run(name: str, friction: float, step: float, films: Path | None) -> None:
+    """Print a row for each keyframe of a hand, and write a film if asked."""
+    twist = TWISTS[name]
+    robot = hs.load_robot(EXAMPLES / (twist.robot or name))
+    held, frames, began = Held(robot, twist, friction), [], time.process_time()
+    goal = np.zeros(len(robot.winches))
+    count = max(1, round(SECONDS / step))
+    for key in twist.keys:
+        begin, goal = goal, twist.contractions(robot, key)
+        for number in range(1, count + 1):
+            share = number / count
+            motion = held.go(begin + share * share * (3 - 2 * share) * (goal - begin), SECONDS / count)
+            words = f"{key}: the ball has turned by {np.linalg.norm(held.turned):.0f} degrees"
+            frames.append(Frame.of(motion, words=words, things=held.drawn()))
+        x, y, z = held.turned
+        away = 1e3 * float(np.linalg.norm(held.place - held.begun))
+        print(
+            f"| {name} | {friction:g} | {key} | {x:.1f}, {y:.1f}, {z:.1f} | {np.linalg.norm(held.turned):.1f} | "
+            f"{away:.1f} | {time.process_time() - began:.0f} |",
+            flush=True,
+        )
+    if films is not None:
+        films.mkdir(parents=True, exist_ok=True)
+        stride = max(1, round(0.05 / step))
+        print(f"wrote {save_gif(robot, frames[::stride], films / f'{name}.gif', step=0.1, width=480)}", flush=True)
+
+
+def main() -> None:
+    """Print a table."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("hands", nargs="*", default=list(TWISTS))
+    parser.add_argument("--friction", type=float, nargs="+", default=[0.8])
+    parser.add_argument("--step", type=float, default=0.02, help="in time [s]")
+    parser.add_argument("--films", type=Path)
+    given = parser.parse_args()
+    print(machine())
+    print("| hand | friction | keyframe | ball turned about x, y, z, degrees | in all | moved mm | s |\n|" + 7 * "---|")
+    for name in given.hands:
+        for friction in given.friction:
+            run(name, friction, given.step, given.films)
+
+
+if __name__ == "__main__":
+    main()
