@@ -18,7 +18,7 @@ def commented_text(robot: Robot, source: str) -> str:
     head = (
         f"# {robot.name}, begun from {printable(source)}. All of it is meant to be changed.\n"
         f"# Lengths are in {robot.length_unit}; {where} is {origin}. rest.png shows them.\n"
-        "# `hydrostat check` tells what is wrong or risky, the README of hydrostat all keys.\n"
+        "# `hydrostat check` reports errors and warnings. docs/robot_toml.md of hydrostat lists all keys.\n"
     )
     notes = {
         "[body]": "# The body. A smaller element_size is finer but slower; `hydrostat materials` lists materials.",

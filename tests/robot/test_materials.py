@@ -45,7 +45,8 @@ def test_what_saved_robots_rest_on() -> None:
 def test_stress_of_rubbers_at_twice_their_length(name: str, psi: float) -> None:
     """Oracle: the 100 % modulus of the data sheet, 1 psi = 6.895 kPa; stress is force over the area at rest.
 
-    The Neo-Hookean energy of the body (ARCHITECTURE.md) at stretch 2, sideways free: slightly compressible at 0.49.
+    The Neo-Hookean energy of the body (docs/theory/mechanics.md) at stretch 2, sideways free: slightly compressible
+    at 0.49.
     """
     mu, lam = get_material(name).lame
     sideways = np.linspace(0.5, 1.0, 200_001)

@@ -1,7 +1,7 @@
 """The energy of a robot in JAX, and its minimum by SciPy: an oracle that shares no code with hydrostat.
 
-It is written afresh from the formulas of ARCHITECTURE.md, weights of cable points included. Its derivatives are
-automatic ones, dense and without a sparse pattern.
+It is written afresh from the formulas of docs/theory/mechanics.md, weights of cable points included. Its derivatives
+are automatic ones, dense and without a sparse pattern.
 """
 
 import math

@@ -1,0 +1,37 @@
+"""The page on robot.toml: its file is read, and no key is left out."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from hydrostat.robot import load_robot
+from hydrostat.robot.schema import RobotTable, allowed_keys
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "robot_toml.md").read_text(encoding="utf-8")
+
+
+def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
+    """Oracle: the numbers of its lines."""
+    first, viscous = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    (tmp_path / "starfish.svg").write_text((ROOT / "examples" / "starfish" / "starfish.svg").read_text())
+    (tmp_path / "robot.toml").write_text(first)
+    robot = load_robot(tmp_path)
+    assert robot.winches[0].travel == pytest.approx(0.06)
+    assert [cable.name for cable in robot.cables] == ["thumb"]
+    assert robot.contact is not None
+    assert robot.contact.friction == 0.4
+    assert robot.obstacles[0].friction == 0.6
+    lines = [line for line in first.splitlines() if not line.startswith("material")]
+    (tmp_path / "robot.toml").write_text("\n".join(lines).replace("[[pin]]", f"{viscous}\n[[pin]]", 1))
+    material = load_robot(tmp_path).body.material
+    assert material.viscosity == 40.0
+    assert len(material.relaxation) == 1
+
+
+def test_every_key_of_robot_toml_is_on_its_page() -> None:
+    """Oracle: the form that the reader holds a file against."""
+    assert "spool_radius" in allowed_keys("cable[0]")
+    for table in ("", *RobotTable.model_fields):
+        assert [key for key in allowed_keys(table) if not re.search(rf"\b{key}\b", PAGE)] == [], table
