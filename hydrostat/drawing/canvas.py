@@ -22,9 +22,9 @@ FONT = "Libertinus Serif"  # comes with typst, so that a sheet is the same on ev
 class CanvasFrame:
     """Scale and place of a drawing on a canvas."""
 
-    scale: float  # millimetres of paper for one of the thing
-    left: float  # on the canvas of what is at 0 [mm]
-    base: float  # on the canvas, downwards, of what is at height 0 [mm]
+    scale: float  # millimetres on paper per millimetre of the object
+    left: float  # canvas coordinate of x = 0 [mm]
+    base: float  # canvas coordinate, downwards, of height 0 [mm]
 
     @classmethod
     def fit(cls, box: Float[np.ndarray, "2 2"], room: Box) -> Self:

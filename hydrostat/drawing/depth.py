@@ -20,9 +20,9 @@ class DepthBuffer:
 
     low: Float[np.ndarray, " 2"]  # place of the middle of pixel [0, 0] as seen: to the right, up [mm]
     pixel: float  # side of a pixel [mm]
-    depth: Float[np.ndarray, "rows columns"]  # towards the eye [mm], rows upwards; -inf where nothing is
-    shown: Float[np.ndarray, "rows columns values"]  # what is known at corners, as seen here; 0 where nothing is
-    owner: Int[np.ndarray, "rows columns"]  # index of the triangle that is seen; -1 where nothing is
+    depth: Float[np.ndarray, "rows columns"]  # depth towards the eye [mm], rows upwards; -inf for empty pixels
+    shown: Float[np.ndarray, "rows columns values"]  # values interpolated from the corners; 0 for empty pixels
+    owner: Int[np.ndarray, "rows columns"]  # index of the visible triangle; -1 for empty pixels
 
     @classmethod
     def of(

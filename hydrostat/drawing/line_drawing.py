@@ -33,13 +33,13 @@ class DrawnSolid:
 class LineDrawing:
     """Lines and tones as they are seen, in true size [mm]."""
 
-    camera: Camera  # from where
+    camera: Camera  # camera of the view
     outlines: tuple[Polyline, ...]  # lines before something deeper, or before nothing: to be drawn thick
-    lines: tuple[Polyline, ...]  # what else is seen, to be drawn thin
+    lines: tuple[Polyline, ...]  # other visible lines, to be drawn thin
     tones: tuple[tuple[float, tuple[Polyline, ...]], ...]  # 0 (black) to 1, rings by the even-odd rule
-    buffer: DepthBuffer = field(repr=False)  # of depths, from which it was drawn
+    buffer: DepthBuffer = field(repr=False)  # depth buffer of the view
     solid_of: Int[np.ndarray, " triangles"] = field(repr=False)  # index of the solid of each triangle of the buffer
-    source: Int[np.ndarray, " triangles"] = field(repr=False)  # its index in that solid
+    source: Int[np.ndarray, " triangles"] = field(repr=False)  # index of the triangle in that solid
 
     @cached_property
     def box(self) -> Float[np.ndarray, "2 2"]:

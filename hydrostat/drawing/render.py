@@ -23,7 +23,7 @@ class Render:
     """An image of a body."""
 
     colours: Float[np.ndarray, "height width 4"]  # red, green, blue, cover, 0 to 1; the lowest row first
-    buffer: DepthBuffer  # how near to the eye the surface is at each pixel
+    buffer: DepthBuffer  # depth of the surface at each pixel
 
     @property
     def extent(self) -> tuple[float, float, float, float]:

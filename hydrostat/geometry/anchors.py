@@ -25,7 +25,7 @@ class Anchors:
 
     stencils: Int[np.ndarray, "points corners"]  # nodes of the element that holds each point, (points, dim + 1)
     weights: Float[np.ndarray, "points corners"]  # barycentric weights, rows sum to one
-    distances: Float[np.ndarray, " points"]  # how far each asked point was from the body [m]; 0 where it was inside
+    distances: Float[np.ndarray, " points"]  # distance of each requested point from the body [m]; 0 inside
 
     def positions(self, nodes: Nodes) -> Points:
         """Positions [m] of the anchors when the nodes are at `nodes` [m]."""

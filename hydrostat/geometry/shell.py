@@ -24,8 +24,8 @@ class Nearest:
 
     stencils: Int[np.ndarray, "points dim"]  # nodes of the facet that holds each place, (points, dim)
     shares: Float[np.ndarray, "points dim"]  # weights of these nodes, rows sum to one
-    distances: Float[np.ndarray, " points"]  # of the points [m], negative inside
-    directions: Points  # unit vectors, in which the distance grows the fastest
+    distances: Float[np.ndarray, " points"]  # distance of each point [m], negative inside
+    directions: Points  # unit vectors along which the distance grows fastest
 
 
 class Shell:

@@ -32,7 +32,7 @@ class Relaxation:
     """
 
     modulus: float  # shear modulus of the branch [Pa]
-    time: float  # after which its stress has fallen to 1/e [s]
+    time: float  # relaxation time, after which its stress has fallen to 1/e [s]
 
     def __post_init__(self) -> None:
         check_positive("modulus", self.modulus, "Pa")

@@ -32,8 +32,8 @@ class TomlBlock:
     """One table with its sub-tables, or what stands before the first."""
 
     name: str  # first part of its key; "" for what stands before the first table
-    whole: bool = True  # whether it begins with the table itself and not with a sub-table
-    free: str = ""  # what stands before it, apart: blank lines, and comments with a blank line after them
+    whole: bool = True  # True if it begins with the table itself, not with a sub-table
+    free: str = ""  # detached text before it: blank lines, and comments followed by a blank line
     lead: str = ""  # comments directly above its header
     text: str = ""  # from its header to the last line of its own
 

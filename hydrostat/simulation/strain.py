@@ -42,9 +42,9 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
 class _NodeOperators:
     """Operators of a mesh that do not depend on the pose."""
 
-    dim: int  # of the body
-    slopes: "csr_array"  # gives F of all elements, a row for each element and coordinate of rest, from the nodes
-    average: "csr_array"  # gives values of nodes from those of elements
+    dim: int  # space dimension
+    slopes: "csr_array"  # maps nodes to F of all elements, a row for each element and rest coordinate
+    average: "csr_array"  # maps values of elements to values of nodes
 
 
 @lru_cache(maxsize=2)

@@ -16,7 +16,7 @@ class Cells:
     """Points and the simplices among the cells of a file."""
 
     points: Float[np.ndarray, "points 3"]  # places in the file's own unit
-    tetrahedra: Int[np.ndarray, "tetrahedra 4"]  # indices of four points each, as declared and thus perhaps wrong
+    tetrahedra: Int[np.ndarray, "tetrahedra 4"]  # indices of four points each, as declared, not yet checked
     triangles: Int[np.ndarray, "triangles 3"]  # indices of three points each
 
 

@@ -17,8 +17,8 @@ from hydrostat.geometry.outline import Outline, Ring, fault
 class Page:
     """A place drawn at d lies at (d - origin) x scale [m] (docs/decisions/0001-coordinates.md)."""
 
-    kind: str  # what two drawings must have in common to be on one page, in words
-    origin: tuple[float, float]  # what lies at the origin of the body, in the drawing's units
+    kind: str  # property that two drawings on one page must share
+    origin: tuple[float, float]  # point of the drawing at the body's origin, in the drawing's units
     scale: tuple[float, float]  # length of one unit along x and y [m], y negative where the drawing counts it downwards
 
     def places(self, ring: Ring) -> Ring:
@@ -58,8 +58,8 @@ def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | N
 class Drawing:
     """The outline of a drawing or picture, and in words what was done to get it."""
 
-    outline: Outline  # the body [m]
-    page: Page  # what the drawing's own coordinates mean
+    outline: Outline  # outline of the body [m]
+    page: Page  # meaning of the drawing's own coordinates
     # one line for each thing that was ignored, filled or mended; empty if there was nothing
     notes: tuple[str, ...] = ()
     marks: tuple[Ring, ...] = ()  # lines that are drawn on the body [m]; closed ones end where they begin

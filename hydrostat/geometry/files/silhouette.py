@@ -28,7 +28,7 @@ class Contrast:
     faint: float  # level that the noise of the ground does not reach
     # which pixels have the colour of the ground, only darker, as in a soft shadow
     shaded: Bool[np.ndarray, "rows columns"]
-    edge: float  # share of the picture's border that stands out from the ground
+    edge: float  # share of the image border that stands out from the ground
 
 
 def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
@@ -107,9 +107,9 @@ def _shaded(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bool[np
 class ShadedPart:
     """A part of what was taken for body that has the colour of the ground, only darker, as a shadow has."""
 
-    share: float  # of the body's pixels
+    share: float  # share of the body's pixels
     place: tuple[float, float]  # a pixel in the widest of it: column and row
-    width: float  # there, in pixels
+    width: float  # width there [pixels]
 
 
 def shaded_part(seen: Contrast, level: float) -> ShadedPart | None:
@@ -146,7 +146,7 @@ class PixelPatch:
     """A connected part of a picture."""
 
     area: int  # [pixels]
-    place: tuple[float, float]  # column and row of its middle
+    place: tuple[float, float]  # column and row of its center
     extent: float  # longest side of its box [pixels]
 
 
@@ -154,12 +154,12 @@ class PixelPatch:
 class Silhouette:
     """A body in a picture."""
 
-    body: Ring  # its outer ring, columns and rows [pixels]
-    holes: tuple[Ring, ...]  # the rings of its holes
-    specks: tuple[PixelPatch, ...]  # what lies outside the body, too small to be meant
-    filled: tuple[PixelPatch, ...]  # holes that were filled
-    lines: bool  # whether it was drawn with lines only
-    cut: bool  # whether it reaches the border of the picture
+    body: Ring  # outer ring of the body, columns and rows [pixels]
+    holes: tuple[Ring, ...]  # rings of its holes
+    specks: tuple[PixelPatch, ...]  # patches outside the body, too small to be intended
+    filled: tuple[PixelPatch, ...]  # filled holes
+    lines: bool  # True if drawn with lines only
+    cut: bool  # True if the body reaches the border of the image
 
 
 def covered(mask: _Mask) -> int:

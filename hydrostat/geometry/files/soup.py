@@ -21,7 +21,7 @@ class Soup:
     """Triangles as they stand in a file."""
 
     vertices: Float[np.ndarray, "vertices 3"]  # places in the file's own unit
-    triangles: Int[np.ndarray, "triangles 3"]  # indices of three vertices each, as declared and thus perhaps wrong
+    triangles: Int[np.ndarray, "triangles 3"]  # indices of three vertices each, as declared, not yet checked
     unit: float | None = None  # metres of one coordinate, None where the file has no unit
 
 

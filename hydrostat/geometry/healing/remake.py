@@ -22,9 +22,9 @@ class Remade:
     """A body made anew."""
 
     surface: Surface  # closed, manifold, outward
-    spacing: float  # of the grid [m]
-    removed: tuple[Piece, ...]  # parts beside the body
-    done: tuple[str, ...]  # what else was done, in words
+    spacing: float  # grid spacing [m]
+    removed: tuple[Piece, ...]  # removed parts outside the body
+    done: tuple[str, ...]  # notes on other repairs
 
 
 def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolution: float) -> Remade:

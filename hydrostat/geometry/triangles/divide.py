@@ -24,8 +24,8 @@ _LEAST_BEND = 0.35
 class Spacing:
     """Wanted distance of nodes at any place, in units of the element size; 1 far from what is fine."""
 
-    places: Float[np.ndarray, "places 2"]  # where a finer spacing is known
-    values: Float[np.ndarray, " places"]  # the spacing there
+    places: Float[np.ndarray, "places 2"]  # positions with a finer spacing
+    values: Float[np.ndarray, " places"]  # spacing at these positions
 
     def __call__(self, points: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, " points"]:
         """Wanted distance of neighbours at some points."""

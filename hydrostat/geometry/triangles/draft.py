@@ -115,7 +115,7 @@ class Division:
 
     curve: Curve  # the ring
     stations: Float[np.ndarray, " nodes"]  # arc length of each node, increasing
-    fixed: Bool[np.ndarray, " nodes"]  # whether a node is a true corner, which must stay
+    fixed: Bool[np.ndarray, " nodes"]  # True for a corner node, which must stay
 
     @property
     def ends(self) -> Float[np.ndarray, " nodes"]:
