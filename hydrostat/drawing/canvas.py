@@ -85,7 +85,7 @@ class Canvas:
             self._parts.append(shape("path", d=drawn, stroke=colour or _ink(grey), stroke_width=f"{width:g}", **dashes))
 
     def fill(self, rings: Iterable[Sequence[Spot]], *, grey: float) -> None:
-        """What rings enclose, by the even-odd rule."""
+        """Fill the area enclosed by rings, by the even-odd rule."""
         drawn = path((ring for ring in rings if len(ring) > 2), digits=2, closed=True)
         if drawn:
             self._parts.append(shape("path", d=drawn, fill=_ink(grey), fill_rule="evenodd"))
@@ -146,7 +146,7 @@ class Canvas:
 
 
 def snug(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
-    """How high a thing is drawn that is as wide as may be, or as high as may be [mm]."""
+    """Height of a drawing scaled to the largest size that fits a width and a height [mm]."""
     wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
     return min(height, width * high / wide)
 

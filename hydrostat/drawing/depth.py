@@ -74,7 +74,7 @@ class DepthBuffer:
         return (self.depth, *(minimum_filter(self.depth, size=size, mode="nearest") for size in (3, 5)))
 
     def behind(self, spots: Float[np.ndarray, "points 3"], reach: int = 0) -> Float[np.ndarray, " points"]:
-        """How far points as they are seen lie before the deepest that is seen within `reach` pixels, 0 to 2 [mm]."""
+        """Depth of points in front of the deepest surface seen within `reach` pixels, 0 to 2 [mm]."""
         deepest = self._deepest[reach] if reach else self.depth
         rows, columns = self.depth.shape
         column, row = np.rint((spots[:, :2] - self.low) / self.pixel).astype(int).T

@@ -13,7 +13,7 @@ from hydrostat.drawing.creases import Facets, Segments
 from hydrostat.drawing.depth import DepthBuffer, Polyline
 
 _LAMP = np.array([-0.40, 0.75, 0.55]) / np.linalg.norm([-0.40, 0.75, 0.55])
-"""Where the light comes from as seen: from above, from the left, from behind the shoulder."""
+"""Direction of the light in the view: from above, from the left, from behind the viewer's shoulder."""
 
 _SHADES = ((0.6, 0.93), (0.05, 0.84))  # below which light a side is grey, and how bright: pale enough to write on
 _JUMP = 0.02  # a line is thick where what lies behind it is so much deeper, as a share of the picture

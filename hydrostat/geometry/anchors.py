@@ -46,7 +46,7 @@ class Anchors:
 
     @property
     def inside(self) -> Bool[np.ndarray, " points"]:
-        """Tell whether each point lay in the body (a hair outside, 1e-9 of an element, counts as inside)."""
+        """Mask of the points inside the body; a distance of 1e-9 of an element counts as inside."""
         return self.distances == 0.0
 
 
@@ -101,7 +101,7 @@ def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Fl
 
 
 def _firsts(rising: Int[np.ndarray, " pairs"]) -> Bool[np.ndarray, " pairs"]:
-    """Whether each of some rising numbers is the first of its kind."""
+    """Mask of the first occurrences in a sorted array."""
     return np.append(True, rising[1:] != rising[:-1])[: len(rising)]
 
 

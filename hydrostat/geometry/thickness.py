@@ -11,7 +11,7 @@ from hydrostat.geometry.mesh import Mesh, joined_groups
 _REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}  # (Edge of a regular simplex)^dim over its size
 
 _ASIDE = (0.011, -0.007, -0.004)
-"""How far a ray starts from the middle of its facet, as weights: from the middle, in regular meshes, rays hit edges."""
+"""Offset of a ray's start from the center of its facet, as weights: from there it hits edges in regular meshes."""
 
 _MOST_STEPS = 10_000
 

@@ -104,12 +104,12 @@ class Body:
 
     @cached_property
     def mark_anchors(self) -> tuple[Anchors, ...]:
-        """What holds each line that is drawn on the body."""
+        """Nodes and weights that hold each line drawn on the body."""
         return tuple(locate(self.mesh, line) for line in self.marks)
 
     @cached_property
     def measured_thickness(self) -> Thickness:
-        """How thick the body is, straight in from each facet of its boundary."""
+        """Thickness of the body along the inward normal of each facet of its boundary."""
         return measure_thickness(self.mesh)
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:

@@ -73,7 +73,7 @@ def _tokens(text: str) -> Iterator[tuple[int, str, int]]:
 
 
 def _headers(text: str) -> Iterator[tuple[int, str, bool]]:
-    """Find where each header's line begins, the first part of its key, and whether that is all of it."""
+    """Find the start of each header's line, the first part of its key, and whether that is the whole key."""
     fresh, line = True, 0
     for place, token, depth in _tokens(text):
         if token == "\n":

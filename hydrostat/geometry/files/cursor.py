@@ -41,14 +41,14 @@ def damaged(name: str, what: str) -> InputError:
 
 
 class Cursor:
-    """Bytes of a file that are read from the front.
+    """Reader of the bytes of a file, from the front.
 
     Attributes:
-        content: all of it.
-        name: of the file, for errors.
-        at: where the next is read.
-        text: numbers are written as text, else as bytes.
-        order: of the bytes of numbers, "<" or ">".
+        content: content of the file.
+        name: name of the file, for errors.
+        at: position of the next read.
+        text: True if numbers are written as text, False for bytes.
+        order: byte order of numbers, "<" or ">".
     """
 
     def __init__(self, content: bytes, name: str) -> None:

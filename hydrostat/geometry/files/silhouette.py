@@ -105,7 +105,7 @@ def _shaded(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bool[np
 
 @dataclass(frozen=True)
 class ShadedPart:
-    """A part of what was taken for body that has the colour of the ground, only darker, as a shadow has."""
+    """Part of the assumed body that has the color of the ground, only darker, as a shadow has."""
 
     share: float  # share of the body's pixels
     place: tuple[float, float]  # a pixel in the widest of it: column and row
@@ -113,7 +113,7 @@ class ShadedPart:
 
 
 def shaded_part(seen: Contrast, level: float) -> ShadedPart | None:
-    """What of the body may be its shadow; None where it is little, or where all of the body has such a colour."""
+    """Return the part of the body that may be its shadow; None if it is small, or if the whole body is so dark."""
     body = seen.field > level
     shaded = body & seen.shaded
     depth = np.asarray(distance_transform_edt(shaded))
@@ -223,7 +223,7 @@ def _patches(mask: _Mask) -> tuple[np.ndarray, list[PixelPatch]]:
 
 
 def _is_lines(drawn: _Mask, body: _Mask, name: str) -> bool:
-    """Tell whether a body is drawn with lines, most of its inside left as ground."""
+    """Return True if a body is drawn with lines, most of its inside left as ground."""
     rows, columns = np.nonzero(body)
     extent = max(np.ptp(rows), np.ptp(columns)) + 1.0
     box = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
@@ -277,7 +277,7 @@ def _signed(field: Field, main: _Mask, mask: _Mask) -> Field:
 
 
 def _is_stepped(field: Field, level: float, main: _Mask) -> bool:
-    """Tell whether the border of the body runs along pixels, with no half-tones to tell where within them."""
+    """Return True if the border of the body runs along pixels, without half-tones that locate it within them."""
     values = field[main & (_depth(main) < 3.0)]
     top = float(np.quantile(values, 0.9))
     return float((values < level + 0.5 * (top - level)).mean()) < 0.05

@@ -91,7 +91,7 @@ def fans(
 
 
 def _folds(quads: Float[np.ndarray, "quads 4 3"]) -> np.ndarray:
-    """Tell whether the two halves of a quad, cut from its first corner to its third, look different ways."""
+    """Return True where the two halves of a quad, cut from its first corner to its third, face different sides."""
     sides = quads[:, 1:] - quads[:, :1]
     with np.errstate(all="ignore"):
         return np.einsum("qd,qd->q", np.cross(sides[:, 0], sides[:, 1]), np.cross(sides[:, 1], sides[:, 2])) < 0.0

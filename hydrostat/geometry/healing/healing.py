@@ -43,7 +43,7 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Healing:
-    """A closed surface, and how it came to be."""
+    """Closed surface, and the repairs that produced it."""
 
     surface: Surface  # closed, manifold, turned outward, not crossing itself: one body, perhaps with cavities
     found: tuple[str, ...]  # faults found, a line each
@@ -58,7 +58,7 @@ class Healing:
 
     @property
     def places(self) -> Points:
-        """Where the parts were that are not in the surface any more [m]."""
+        """Positions of the removed parts [m]."""
         return np.array([piece.place for piece in self.removed]).reshape(-1, 3)
 
     def lines(self) -> tuple[str, ...]:
@@ -81,7 +81,7 @@ class Healing:
         )
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """All of it as arrays, to be kept in a file."""
+        """Return all fields as arrays, to be stored in a file."""
         texts = {each.name: getattr(self, each.name) for each in fields(self) if each.name != "surface"}
         texts["removed"] = [asdict(piece) for piece in self.removed]
         return {

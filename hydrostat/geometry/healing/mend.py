@@ -150,7 +150,7 @@ def _without_copies(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Bool[np.
 def one_way(
     triangles: Int[np.ndarray, "triangles 3"],
 ) -> tuple[Int[np.ndarray, "triangles 3"], Bool[np.ndarray, " triangles"]]:
-    """Triangles turned the way of most of their patch, which edges of two triangles join, and which were turned."""
+    """Orient triangles like most of their patch, joined by edges of two triangles; return the mask of those turned."""
     import igl
 
     result, patches = igl.bfs_orient(triangles)

@@ -63,7 +63,7 @@ class WindingField:
         return 0.5 - self.solid.winding(points)
 
     def settled(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
-        """Tell whether the sign is the same all within a reach [m] of points: where no triangle is, and no rim is near.
+        """Mask of the points around which the sign is constant within a reach [m]: no triangle, and no rim nearby.
 
         Away from the triangles the winding number has the gradient of the magnetic potential of a current along
         their open edges, by the law of Biot and Savart at most (length of the edges) / (4 pi distance^2).

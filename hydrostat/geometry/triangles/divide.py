@@ -135,7 +135,7 @@ def divide(outline: Outline, element_size: float) -> Draft:
 
 
 def _refuse_thin(places: Points, neck: Vector, element_size: float) -> None:
-    """Say where the body is too thin, if it is."""
+    """Raise an error that says where the body is too thin, if it is."""
     worst = int(np.argmin(neck))
     if neck[worst] < FLOOR:
         x, y = 1e3 * element_size * places[worst]
