@@ -1,4 +1,4 @@
-"""What can go wrong, said once: every error that a user can cause is a `HydrostatError`."""
+"""Exceptions: every error that a user can cause is a `HydrostatError`."""
 
 
 class HydrostatError(Exception):
@@ -21,7 +21,7 @@ class NotConvergedError(HydrostatError):
     """A solver stopped before it reached its tolerance.
 
     Attributes:
-        result: the solver's own result, with its reason and the best point found.
+        result: result of the solver, with its stop reason and the best point found.
     """
 
     def __init__(self, message: str, result: object) -> None:

@@ -1,4 +1,4 @@
-"""What callers give, checked at the door: another kind of thing is told in one line, with what is wanted."""
+"""Type checks of arguments at the public interface; an error says in one line what is wanted."""
 
 import os
 from pathlib import Path

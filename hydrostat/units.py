@@ -15,10 +15,10 @@ class Dimension:
     """A physical dimension that a user may write as text.
 
     Attributes:
-        name: as it stands in error messages.
-        si: the unit used inside hydrostat.
-        unit: the unit that hydrostat writes to files.
-        example: shown to a user whose text was refused.
+        name: name used in error messages.
+        si: SI unit used inside hydrostat.
+        unit: unit that hydrostat writes to files.
+        example: example shown to a user whose text was refused.
     """
 
     name: str
@@ -57,7 +57,7 @@ COMMON = {
     }.items()
     for unit, factor in factors.items()
 }
-"""How many SI units the units are that stand in most files; with any other, pint is loaded, which takes 0.35 s."""
+"""Factors from the most common units to SI units; any other unit loads pint, which takes 0.35 s."""
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([^\W\d_].*?)?\s*", re.DOTALL)
 _SYMBOL = r"[^\W\d_]+(?:\s*(?:\^|\*\*)\s*-?\d|[²³])?"

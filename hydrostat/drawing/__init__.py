@@ -1,4 +1,4 @@
-"""How shapes become pictures: cameras, depths, lines, shades and colours, for figures and for pages on paper."""
+"""Rendering of shapes: cameras, depths, lines, shades and colors, for figures and printed pages."""
 
 from typing import TYPE_CHECKING
 

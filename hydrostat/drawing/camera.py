@@ -20,7 +20,7 @@ class Camera:
     """An eye far away; what is up stands upright in every picture, unless seen from above."""
 
     axes: Float[np.ndarray, "3 3"]  # unit vectors to the right, up and towards the eye, (3, 3), one row each
-    up: Float[np.ndarray, " 3"] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))  # where the sky is
+    up: Float[np.ndarray, " 3"] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))  # upward direction
 
     @classmethod
     def towards(cls, eye: Float[np.ndarray, " 3"], *, up: Float[np.ndarray, " 3"] | None = None) -> Self:

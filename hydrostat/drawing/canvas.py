@@ -22,9 +22,9 @@ FONT = "Libertinus Serif"  # comes with typst, so that a sheet is the same on ev
 class CanvasFrame:
     """Scale and place of a drawing on a canvas."""
 
-    scale: float  # millimetres of paper for one of the thing
-    left: float  # on the canvas of what is at 0 [mm]
-    base: float  # on the canvas, downwards, of what is at height 0 [mm]
+    scale: float  # millimetres on paper per millimetre of the object
+    left: float  # canvas coordinate of x = 0 [mm]
+    base: float  # canvas coordinate, downwards, of height 0 [mm]
 
     @classmethod
     def fit(cls, box: Float[np.ndarray, "2 2"], room: Box) -> Self:
@@ -85,7 +85,7 @@ class Canvas:
             self._parts.append(shape("path", d=drawn, stroke=colour or _ink(grey), stroke_width=f"{width:g}", **dashes))
 
     def fill(self, rings: Iterable[Sequence[Spot]], *, grey: float) -> None:
-        """What rings enclose, by the even-odd rule."""
+        """Fill the area enclosed by rings, by the even-odd rule."""
         drawn = path((ring for ring in rings if len(ring) > 2), digits=2, closed=True)
         if drawn:
             self._parts.append(shape("path", d=drawn, fill=_ink(grey), fill_rule="evenodd"))
@@ -146,7 +146,7 @@ class Canvas:
 
 
 def snug(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
-    """How high a thing is drawn that is as wide as may be, or as high as may be [mm]."""
+    """Height of a drawing scaled to the largest size that fits a width and a height [mm]."""
     wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
     return min(height, width * high / wide)
 

@@ -18,10 +18,10 @@ class Facets:
 
     vertices: Float[np.ndarray, "vertices 3"]  # [mm], none twice
     triangles: Int[np.ndarray, "triangles 3"]  # seen from outside they turn counter-clockwise; none without area
-    normals: Float[np.ndarray, "triangles 3"]  # of the triangles, unit vectors
+    normals: Float[np.ndarray, "triangles 3"]  # unit normals of the triangles
     corners: Float[np.ndarray, "triangles 3 3"]  # unit normals at the corners of each triangle, (triangles, 3, 3)
     sharpest: float  # cosine of the angle between two normals from which an edge is sharp
-    source: Int[np.ndarray, " triangles"]  # which triangles of the mesh they are
+    source: Int[np.ndarray, " triangles"]  # indices of these triangles in the mesh
 
     @classmethod
     def of(

@@ -20,9 +20,9 @@ class DepthBuffer:
 
     low: Float[np.ndarray, " 2"]  # place of the middle of pixel [0, 0] as seen: to the right, up [mm]
     pixel: float  # side of a pixel [mm]
-    depth: Float[np.ndarray, "rows columns"]  # towards the eye [mm], rows upwards; -inf where nothing is
-    shown: Float[np.ndarray, "rows columns values"]  # what is known at corners, as seen here; 0 where nothing is
-    owner: Int[np.ndarray, "rows columns"]  # index of the triangle that is seen; -1 where nothing is
+    depth: Float[np.ndarray, "rows columns"]  # depth towards the eye [mm], rows upwards; -inf for empty pixels
+    shown: Float[np.ndarray, "rows columns values"]  # values interpolated from the corners; 0 for empty pixels
+    owner: Int[np.ndarray, "rows columns"]  # index of the visible triangle; -1 for empty pixels
 
     @classmethod
     def of(
@@ -74,7 +74,7 @@ class DepthBuffer:
         return (self.depth, *(minimum_filter(self.depth, size=size, mode="nearest") for size in (3, 5)))
 
     def behind(self, spots: Float[np.ndarray, "points 3"], reach: int = 0) -> Float[np.ndarray, " points"]:
-        """How far points as they are seen lie before the deepest that is seen within `reach` pixels, 0 to 2 [mm]."""
+        """Depth of points in front of the deepest surface seen within `reach` pixels, 0 to 2 [mm]."""
         deepest = self._deepest[reach] if reach else self.depth
         rows, columns = self.depth.shape
         column, row = np.rint((spots[:, :2] - self.low) / self.pixel).astype(int).T

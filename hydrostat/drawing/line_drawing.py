@@ -13,7 +13,7 @@ from hydrostat.drawing.creases import Facets, Segments
 from hydrostat.drawing.depth import DepthBuffer, Polyline
 
 _LAMP = np.array([-0.40, 0.75, 0.55]) / np.linalg.norm([-0.40, 0.75, 0.55])
-"""Where the light comes from as seen: from above, from the left, from behind the shoulder."""
+"""Direction of the light in the view: from above, from the left, from behind the viewer's shoulder."""
 
 _SHADES = ((0.6, 0.93), (0.05, 0.84))  # below which light a side is grey, and how bright: pale enough to write on
 _JUMP = 0.02  # a line is thick where what lies behind it is so much deeper, as a share of the picture
@@ -33,13 +33,13 @@ class DrawnSolid:
 class LineDrawing:
     """Lines and tones as they are seen, in true size [mm]."""
 
-    camera: Camera  # from where
+    camera: Camera  # camera of the view
     outlines: tuple[Polyline, ...]  # lines before something deeper, or before nothing: to be drawn thick
-    lines: tuple[Polyline, ...]  # what else is seen, to be drawn thin
+    lines: tuple[Polyline, ...]  # other visible lines, to be drawn thin
     tones: tuple[tuple[float, tuple[Polyline, ...]], ...]  # 0 (black) to 1, rings by the even-odd rule
-    buffer: DepthBuffer = field(repr=False)  # of depths, from which it was drawn
+    buffer: DepthBuffer = field(repr=False)  # depth buffer of the view
     solid_of: Int[np.ndarray, " triangles"] = field(repr=False)  # index of the solid of each triangle of the buffer
-    source: Int[np.ndarray, " triangles"] = field(repr=False)  # its index in that solid
+    source: Int[np.ndarray, " triangles"] = field(repr=False)  # index of the triangle in that solid
 
     @cached_property
     def box(self) -> Float[np.ndarray, "2 2"]:

@@ -32,11 +32,11 @@ TENSION = ("#efa35c", "#e56a4f", "#c33c6a", "#842681", "#40156b", "#150b37")
 
 @runtime_checkable
 class Named(Protocol):
-    """What has a name: a winch."""
+    """Object with a name, such as a winch."""
 
     @property
     def name(self) -> str:
-        """How it is called."""
+        """Name of the object."""
         ...
 
 

@@ -23,7 +23,7 @@ class Render:
     """An image of a body."""
 
     colours: Float[np.ndarray, "height width 4"]  # red, green, blue, cover, 0 to 1; the lowest row first
-    buffer: DepthBuffer  # how near to the eye the surface is at each pixel
+    buffer: DepthBuffer  # depth of the surface at each pixel
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
@@ -34,7 +34,7 @@ class Render:
         return float(left), float(right), float(low), float(high)
 
     def covers(self, spots: Spots) -> Vector:
-        """How far points, as the camera sees them [mm], lie behind the surface [mm]; 0 in front of it or beside it."""
+        """Depth of points, as the camera sees them [mm], behind the surface [mm]; 0 in front of it or next to it."""
         return np.maximum(-self.buffer.behind(spots), 0.0)
 
     def rings(self) -> list[Polyline]:
@@ -79,7 +79,7 @@ def render(
 
 
 def silhouette(spots: Spots, facets: Int[np.ndarray, "facets 3"], *, pixel: float) -> Render:
-    """What `render` gives, sooner: cover and depth are right, colours are not."""
+    """Render cover and depth as `render` does, faster; colors are not valid."""
     samples, _ = _samples(spots[facets], np.empty((*facets.shape, 0)), pixel)
     rows, columns = (count // FINER for count in samples.depth.shape)
     cover = np.isfinite(samples.depth).reshape(rows, FINER, columns, FINER).mean(axis=(1, 3))

@@ -25,7 +25,7 @@ class Anchors:
 
     stencils: Int[np.ndarray, "points corners"]  # nodes of the element that holds each point, (points, dim + 1)
     weights: Float[np.ndarray, "points corners"]  # barycentric weights, rows sum to one
-    distances: Float[np.ndarray, " points"]  # how far each asked point was from the body [m]; 0 where it was inside
+    distances: Float[np.ndarray, " points"]  # distance of each requested point from the body [m]; 0 inside
 
     def positions(self, nodes: Nodes) -> Points:
         """Positions [m] of the anchors when the nodes are at `nodes` [m]."""
@@ -46,7 +46,7 @@ class Anchors:
 
     @property
     def inside(self) -> Bool[np.ndarray, " points"]:
-        """Tell whether each point lay in the body (a hair outside, 1e-9 of an element, counts as inside)."""
+        """Mask of the points inside the body; a distance of 1e-9 of an element counts as inside."""
         return self.distances == 0.0
 
 
@@ -101,7 +101,7 @@ def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Fl
 
 
 def _firsts(rising: Int[np.ndarray, " pairs"]) -> Bool[np.ndarray, " pairs"]:
-    """Whether each of some rising numbers is the first of its kind."""
+    """Mask of the first occurrences in a sorted array."""
     return np.append(True, rising[1:] != rising[:-1])[: len(rising)]
 
 

@@ -22,14 +22,14 @@ class Pairs(NamedTuple):
 
     Attributes:
         stencils: nodes of each pair, (pairs, 3) in the plane, (pairs, 4) in space; a lone node comes first.
-        edges: whether both features are edges, (pairs,).
+        edges: True where both features are edges, (pairs,).
     """
 
     stencils: Stencils
     edges: np.ndarray
 
     def only(self, kept: np.ndarray) -> "Pairs":
-        """Those for which `kept` is true."""
+        """Return the pairs for which `kept` is true."""
         return Pairs(self.stencils[kept], self.edges[kept])
 
 
@@ -40,9 +40,10 @@ class BoundaryTree:
 
     Attributes:
         facets: nodes of each facet, (facets, dim).
-        points: nodes that belong to each facet, (facets, dim); -1 where there are fewer.
-        edges: in space, both ends of the edges that belong to each facet, (facets, 6); -1 where there are fewer.
-        children: of each box, those of a leaf being -1 and its facet, (boxes, 2); children come after their parents.
+        points: nodes that belong to each facet, (facets, dim), padded with -1.
+        edges: in space, both ends of the edges that belong to each facet, (facets, 6), padded with -1.
+        children: children of each box, (boxes, 2); those of a leaf are -1 and its facet. Children come after their
+            parents.
     """
 
     def __init__(self, mesh: Mesh) -> None:
@@ -74,7 +75,7 @@ class BoundaryTree:
         return self._filled(lambda *pairs: native.sweep_boundary(*known, nodes, move, rest, kept, reach, *pairs))
 
     def _filled(self, fill: Callable[[np.ndarray, np.ndarray], tuple[float, int]]) -> tuple[float, Pairs]:
-        """What a loop tells, and the pairs that it fills in; again with more room where that was too little."""
+        """Run a loop that fills in pairs, again with a larger buffer if needed; return its value and the pairs."""
         room = 64 + 8 * len(self.facets)
         while True:
             stencils, edges = np.empty((room, self.facets.shape[1] + 1), np.int64), np.empty(room, np.bool_)

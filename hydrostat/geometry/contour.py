@@ -101,13 +101,13 @@ class _Grid:
         return values
 
     def inside(self, field: Field, numbers: Int[np.ndarray, " some"]) -> Bool[np.ndarray, " some"]:
-        """Tell whether some of its points are inside."""
+        """Return True if some of its points are inside."""
         chunks = [numbers[start : start + _CHUNK] for start in range(0, len(numbers), _CHUNK)]
         return np.concatenate([self.clip(field, self.at(chunk)) < 0.0 for chunk in chunks] or [np.zeros(0, dtype=bool)])
 
 
 def _inside_by_blocks(field: Field, settled: Settled, grid: _Grid) -> Bool[np.ndarray, " points"]:
-    """Tell whether each grid point is inside, one by one only in blocks that are not settled by their middle."""
+    """Mask of the grid points inside, evaluated one by one only in blocks that their center does not decide."""
     corners = np.stack(np.meshgrid(*(np.arange(0, side, _BLOCK) for side in grid.shape), indexing="ij"), axis=-1)
     corners = corners.reshape(-1, 3)
     last = np.minimum(corners + _BLOCK, grid.shape) - 1

@@ -14,11 +14,11 @@ Pairs = Int[np.ndarray, "crossings 2"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Crossings:
-    """Places at which the boundary of a body cuts itself.
+    """Self-intersections of the boundary of a body.
 
     Attributes:
-        places: [m].
-        facets: the two facets of `Mesh.boundary` that meet at each; in space the edge that pierces is of the first.
+        places: positions of the intersections [m].
+        facets: pairs of intersecting facets of `Mesh.boundary`; in space the piercing edge is of the first facet.
     """
 
     places: Float[np.ndarray, "crossings dim"]
@@ -82,7 +82,7 @@ def _solid(mesh: Mesh, nodes: Nodes) -> Crossings:
 def _pierced(
     ends: Float[np.ndarray, "pairs 2 3"], corners: Float[np.ndarray, "pairs 3 3"]
 ) -> tuple[Bool[np.ndarray, " pairs"], Float[np.ndarray, "pairs 3"]]:
-    """Whether each segment cuts its triangle, and where (Moeller and Trumbore 1997)."""
+    """Mask of the segments that cut their triangles, and the intersection points (Moeller and Trumbore 1997)."""
     along = ends[:, 1] - ends[:, 0]
     one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     normal = np.cross(along, two)
@@ -103,5 +103,5 @@ _PARALLEL = 1e-9  # of the volume of three edges: what spans less lies in one pl
 
 
 def _share(one: Int[np.ndarray, "pairs _"], other: Int[np.ndarray, "pairs _"]) -> Bool[np.ndarray, " pairs"]:
-    """Whether two facets have a node in common."""
+    """Mask of the pairs of facets that have a node in common."""
     return (one[:, :, None] == other[:, None, :]).any(axis=(1, 2))

@@ -15,8 +15,9 @@ class Distances(NamedTuple):
     """Distance of points from a shape.
 
     Attributes:
-        values: [m], (points,); negative inside, where they may be too small but never change sign.
-        normals: dd/dx, away from the shape, (points, dim).
+        values: signed distances [m], (points,); negative inside, where the magnitude may be too small but the sign is
+            right.
+        normals: gradients dd/dx, away from the shape, (points, dim).
         curvatures: d2d/dx2 [1/m], (points, dim, dim).
     """
 
@@ -27,11 +28,11 @@ class Distances(NamedTuple):
 
 @dataclass(frozen=True)
 class DistanceField:
-    """Distances of points [m], (points, dim), from one shape; it can be sent to other processes.
+    """Signed distance of points [m], (points, dim), from one shape; can be sent to other processes.
 
     Attributes:
-        whole: distances with their derivatives.
-        lean: distances alone, where they cost less so.
+        whole: function that returns distances with their derivatives.
+        lean: function that returns distances alone, if that is cheaper.
     """
 
     whole: Callable[[Points], Distances]

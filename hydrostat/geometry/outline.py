@@ -35,7 +35,7 @@ class Outline:
 
     @cached_property
     def polygon(self) -> Polygon:
-        """The same shape for shapely [m]."""
+        """Same shape as a shapely polygon [m]."""
         return Polygon(self.exterior, self.holes)
 
     @property

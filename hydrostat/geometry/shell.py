@@ -24,8 +24,8 @@ class Nearest:
 
     stencils: Int[np.ndarray, "points dim"]  # nodes of the facet that holds each place, (points, dim)
     shares: Float[np.ndarray, "points dim"]  # weights of these nodes, rows sum to one
-    distances: Float[np.ndarray, " points"]  # of the points [m], negative inside
-    directions: Points  # unit vectors, in which the distance grows the fastest
+    distances: Float[np.ndarray, " points"]  # distance of each point [m], negative inside
+    directions: Points  # unit vectors along which the distance grows fastest
 
 
 class Shell:
@@ -40,15 +40,15 @@ class Shell:
         self.nodes, self.facets = nodes, np.ascontiguousarray(facets)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is sent to other processes: not the tree, which is made again there."""
+        """Return the state that is sent to other processes: without the tree, which is rebuilt there."""
         return {"nodes": self.nodes, "facets": self.facets}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """As `__init__`."""
+        """Restore the state from another process."""
         self.__dict__.update(state)
 
     def moved(self, nodes: Nodes) -> "Shell":
-        """The same facets between the nodes where these are now [m]."""
+        """Return the same facets at other node positions [m]."""
         shell = Shell(nodes, self.facets)
         shell.edges = self.edges
         return shell
@@ -64,7 +64,7 @@ class Shell:
 
     @property
     def closed(self) -> bool:
-        """Tell whether every side of a facet is one of exactly one other, which runs through it the other way."""
+        """True if every side of a facet belongs to exactly one other facet, of the opposite direction."""
         if self.facets.shape[1] == 2:
             there, back = self.facets.T
         else:

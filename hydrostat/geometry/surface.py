@@ -105,7 +105,7 @@ class Solid:
         return self._winding_tree.winding_number(np.ascontiguousarray(points))
 
     def inside(self, points: Points) -> Bool[np.ndarray, " points"]:
-        """Tell whether points lie inside."""
+        """Return True for points inside."""
         return self.winding(points) > 0.5
 
     def distances(self, points: Points) -> Vector:

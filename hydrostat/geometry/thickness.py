@@ -11,7 +11,7 @@ from hydrostat.geometry.mesh import Mesh, joined_groups
 _REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}  # (Edge of a regular simplex)^dim over its size
 
 _ASIDE = (0.011, -0.007, -0.004)
-"""How far a ray starts from the middle of its facet, as weights: from the middle, in regular meshes, rays hit edges."""
+"""Offset of a ray's start from the center of its facet, as weights: from there it hits edges in regular meshes."""
 
 _MOST_STEPS = 10_000
 
@@ -24,8 +24,8 @@ _SLENDER = 1.5  # a part is a limb if it is this many times as long as thick
 class Thickness:
     """Thickness of the body inside of each facet of the boundary."""
 
-    chords: Float[np.ndarray, " facets"]  # how far it is from the facet, straight in, to where the body ends [m]
-    middles: Float[np.ndarray, "facets dim"]  # half way there [m]
+    chords: Float[np.ndarray, " facets"]  # thickness along the inward normal of the facet [m]
+    middles: Float[np.ndarray, "facets dim"]  # middle of the chord [m]
     # length of the mesh's edges about the facet [m]: of a regular element of the same size
     spacing: Float[np.ndarray, " facets"]
     areas: Float[np.ndarray, " facets"]  # area of the facet [m^2], its length in the plane [m]
@@ -126,10 +126,10 @@ def _neighbours(mesh: Mesh) -> Int[np.ndarray, "elements corners"]:
 class ThinPart:
     """A part of the body that is thin and goes on for longer than it is thick."""
 
-    thickness: float  # that three quarters of it do not reach [m]: a point or a notch is no limb
-    across: float  # elements there
-    place: Float[np.ndarray, " dim"]  # the middle of the body there [m]
-    length: float  # of the part [m]
+    thickness: float  # thickness that three quarters of the part do not reach [m]: a point or a notch is no limb
+    across: float  # number of elements across
+    place: Float[np.ndarray, " dim"]  # middle of the body there [m]
+    length: float  # length of the part [m]
 
 
 def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:

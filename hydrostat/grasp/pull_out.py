@@ -25,15 +25,15 @@ Tell = Callable[[str, int, int], None]
 
 @dataclass(frozen=True, kw_only=True)
 class PullOptions:
-    """How a thing is pulled.
+    """Options of a pull-out test.
 
     Attributes:
-        direction: of the pull, of any length.
-        step: how far the hand that pulls goes at a time [m].
-        travel: the most that it goes [m]; None: the size of the thing and a half.
-        along: stiffness of what pulls [N/m].
-        across: stiffness that holds the thing across the pull [N/m], and against turning, there at its rim: as stiff as
-            what pulls, the thing goes straight; much softer, it finds its own way.
+        direction: direction of the pull, of any length.
+        step: displacement of the pulling hand in each step [m].
+        travel: maximum displacement of the hand [m]; None: 1.5 times the size of the object.
+        along: stiffness of the pull along its direction [N/m].
+        across: stiffness that holds the object across the pull [N/m], and, at its rim, against rotation: as stiff as
+            the pull, the object moves straight; if much softer, it finds its own path.
 
     Raises:
         InputError: no direction, or a number that is not above 0.
@@ -60,17 +60,17 @@ class PullOptions:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PullOut:
-    """A thing pulled out of a grasp, step by step; the first row is the grasp before the pull.
+    """Result of a pull-out test, step by step; the first row is the grasp before the pull.
 
     Attributes:
-        robot: with the thing as its last obstacle.
-        pulled: how far the hand that pulls has gone [m], (rows,).
-        moved: how far the thing has gone along the pull [m], (rows,).
-        forces: along the pull, that it takes to hold the thing there [N], (rows,).
-        contact: force of the robot on the thing [N], (rows, dim).
-        poses: of the robot, with the thing.
-        released: whether nothing touched the thing at the end.
-        reason: why the pull ended, in words.
+        robot: robot with the object as its last obstacle.
+        pulled: displacement of the pulling hand [m], (rows,).
+        moved: displacement of the object along the pull [m], (rows,).
+        forces: force along the pull that holds the object there [N], (rows,).
+        contact: force of the robot on the object [N], (rows, dim).
+        poses: equilibria of the robot with the object.
+        released: True if nothing touched the object at the end.
+        reason: reason why the pull ended.
     """
 
     robot: Robot
@@ -178,7 +178,7 @@ def pull_out(
 
 
 def _settled(simulation: Simulation, contractions: Contractions, pose: Equilibrium) -> Equilibrium | None:
-    """Where the robot comes to rest when it is let go as it is, in time; None if it does not.
+    """Return the equilibrium that a released robot reaches in time; None if it does not.
 
     Masses tell what a balance of forces alone leaves open: which way a thing slips that could slip either way.
     """

@@ -12,17 +12,17 @@ from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import Contractions
 
 FRICTIONS, MODULI, ASIDE = (0.3, 0.8), (0.7, 1.3), 5e-3
-"""What is tried: coefficients of friction, factors of Young's modulus, how far the thing lies beside its place [m]."""
+"""Variations that are tried: friction coefficients, factors of Young's modulus, offset of the object [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PullCase:
-    """One pull with one thing changed.
+    """Pull-out test with one varied parameter.
 
     Attributes:
-        name: what is other than usual, in words.
-        pull: what came out; None if that could not be simulated.
-        trouble: why not, in words.
+        name: description of the variation.
+        pull: result; None if the simulation failed.
+        trouble: reason of the failure.
     """
 
     name: str

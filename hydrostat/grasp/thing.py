@@ -12,7 +12,7 @@ from hydrostat.robot import Obstacle, Robot, closed_mesh
 from hydrostat.units import LENGTH, parse_quantity
 
 FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,40mm,60mm", "mug.stl")
-"""How things are written: a diameter, a diameter and a length along the last axis, the sides, or a surface in mm."""
+"""Forms of an object: a diameter, a diameter and a length along the last axis, the sides, or a surface file in mm."""
 
 
 def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
@@ -61,7 +61,7 @@ def _from_file(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
 
 
 def moved_thing(thing: Obstacle, place: Vector) -> Obstacle:
-    """The same thing with its middle at a place [m]."""
+    """Return the same object with its center at a position [m]."""
     shift = np.asarray(place) - thing.frame()[0]
     ends = (None if end is None else tuple((np.array(end) + shift).tolist()) for end in (thing.at, thing.to))
     at, to = ends

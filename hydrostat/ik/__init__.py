@@ -1,4 +1,4 @@
-"""Which contractions reach a pose."""
+"""Inverse kinematics: contractions that reach a target pose."""
 
 from typing import TYPE_CHECKING
 

@@ -26,19 +26,19 @@ class IKStatus(StrEnum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class IKResult:
-    """The best pose that the winches can make.
+    """Result of inverse kinematics: the best pose found within the limits.
 
     Attributes:
-        target: what was asked for; None if only objectives were.
-        pose: the equilibrium found; its `contractions` are the answer.
-        errors: what is left of each goal, such as the distance of a marker from its target [m].
-        status: why the search ended.
-        iterations: Gauss-Newton steps taken.
-        solves: equilibria approached.
-        optimality: how much the length of the residual would still fall for each metre that one channel moves, as far
-            as it may [m/m]; near 0 at an optimum, but not where a pose is reached.
-        active_limits: limits that keep it from coming nearer.
-        friction_hysteresis: distance of each marker from where it ends when the same contractions are reached from a
+        target: requested marker targets; None if only objectives were given.
+        pose: equilibrium found; its `contractions` are the answer.
+        errors: remaining error of each goal, such as the distance of a marker from its target [m].
+        status: reason why the search ended.
+        iterations: number of Gauss-Newton steps taken.
+        solves: number of equilibria solved for.
+        optimality: largest admissible decrease of the residual norm per metre of one channel's contraction [m/m]; near
+            0 at an optimum, but not where a pose is reached.
+        active_limits: limits that keep the pose from coming closer to the target.
+        friction_hysteresis: distance of each marker from its position when the same contractions are reached from a
             tenth above [m]; empty without friction, in answers of a `Tracker`, and where that path cannot be followed.
     """
 
@@ -53,11 +53,11 @@ class IKResult:
     friction_hysteresis: Mapping[str, float] = field(default_factory=dict)
 
     def without_factors(self) -> "IKResult":
-        """The same with a pose that keeps no factorised Hessian, to be kept with many others."""
+        """Return the same result without the factorised Hessian of its pose, to keep many results in memory."""
         return replace(self, pose=self.pose.without_factors())
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         goal = "objectives" if self.target is None else repr(self.target.name)
         return f"<IKResult for {goal}: rms error {1e3 * self.rms_error:.3g} mm; {self.status}; {self.pose!r}>"
 

@@ -17,14 +17,14 @@ from hydrostat.simulation import Simulation, contraction_values
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What the winches may do, beside their travel and release.
+    """Limits of the winches, in addition to travel and release.
 
     Attributes:
-        contraction: least and largest contraction of a winch [m], in place of -release and travel.
-        rate: fastest change of a contraction [m/s], of every winch or by name; counted from the start.
-        interval: the time that a change from the start may take [s]; needed with a rate.
-        tension: largest tension of a cable [N], of every winch's cables or by the winch's name.
-        equal: groups of winches that have one contraction.
+        contraction: minimum and maximum contraction of a winch [m], instead of -release and travel.
+        rate: maximum rate of change of a contraction [m/s], for every winch or by name; counted from the start.
+        interval: time available for the change from the start [s]; required with a rate.
+        tension: maximum cable tension [N], for every winch's cables or by the winch's name.
+        equal: groups of winches that share one contraction.
     """
 
     contraction: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -40,12 +40,12 @@ class Bounds:
 
     low: Vector  # least contraction of each channel [m]
     high: Vector  # largest contraction of each channel [m]
-    span: Vector  # from the one to the other, whatever the rate allows [m]; steps are measured by it
-    tension: Vector  # the most that each cable bears [N]; infinite without a limit
-    reach: Vector  # how far each channel may be from where it starts [m]; infinite without a limit
-    channels: np.ndarray  # which channel each winch follows
+    span: Vector  # full range, whatever the rate allows [m]; the unit of steps
+    tension: Vector  # maximum tension of each cable [N]; infinite without a limit
+    reach: Vector  # maximum change of each channel from the start [m]; infinite without a limit
+    channels: np.ndarray  # channel of each winch
     spread: Float[np.ndarray, "winches channels"]  # 1 where a winch follows a channel
-    cables: np.ndarray  # which channel each cable follows
+    cables: np.ndarray  # channel of each cable
 
     def channel(self, contractions: Vector) -> Vector:
         """Contractions of the channels, from those of the winches: the mean of a group, within the limits."""
@@ -53,7 +53,7 @@ class Bounds:
         return np.clip(means, self.low, self.high)
 
     def near(self, values: Vector) -> "Bounds":
-        """What can be reached from contractions of the channels [m] in time."""
+        """Return the bounds within reach of these channel contractions [m] in the given time."""
         low, high = np.maximum(self.low, values - self.reach), np.minimum(self.high, values + self.reach)
         return replace(self, low=low, high=high)
 

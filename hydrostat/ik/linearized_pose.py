@@ -17,19 +17,19 @@ from hydrostat.robot import Point
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LinearizedPose:
-    """What changes of the contractions do about a pose, to first order; small enough to be sent to another process.
+    """First-order model of the poses around an equilibrium, small enough to be sent to another process.
 
     It answers in half a millisecond, knows slack and taut cables, and keeps within limits and the radius that the
     tracker trusts. Its answer is no solved pose: the next update of the tracker begins at the old one, and mends it.
 
     Attributes:
-        model: linear, at the pose.
-        targets: of the markers that it was made for [m]; they are the first rows of its residual.
-        worth: residual that a tension of each cable is worth at weight 1 [m/N].
-        size: of the body [m].
-        effort: largest weight, as in `IKOptions`.
-        radius: largest step, as a share of each range.
-        spread: 1 where a winch follows a channel.
+        model: linear model at the pose.
+        targets: marker targets that the model was made for [m]; they are the first rows of its residual.
+        worth: residual that the tension of each cable is worth at weight 1 [m/N].
+        size: size of the body [m].
+        effort: maximum weight of the effort, as in `IKOptions`.
+        radius: maximum step, as a share of each range.
+        spread: matrix from channels to winches: 1 where a winch follows a channel.
     """
 
     model: LinearModel

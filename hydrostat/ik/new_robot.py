@@ -30,16 +30,16 @@ CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
 @dataclass(frozen=True, kw_only=True)
 class NewRobotWish:
-    """What a new robot should be like, lengths in metres; None where nothing is asked."""
+    """Requested properties of a new robot, lengths in metres; None for no request."""
 
-    name: str | None = None  # of the robot; that of its file if nothing is asked
+    name: str | None = None  # name of the robot; None: that of its file
     size: float | None = None  # longest side of the bounding box
     element_size: float | None = None  # length of a mesh edge
-    nodes: int | None = None  # about so many, instead of an element size
-    thickness: float | None = None  # of a flat body
-    inflate: float | None = None  # blow a drawing up to a body in space so thick
-    material: str | None = None  # a name of the table
-    inner: Inner | str | None = None  # whether shapes in a drawn body are holes, or drawn on it
+    nodes: int | None = None  # approximate number of nodes, instead of an element size
+    thickness: float | None = None  # thickness of a flat body
+    inflate: float | None = None  # inflate a drawing to a 3D body of this thickness
+    material: str | None = None  # name in the material table
+    inner: Inner | str | None = None  # shapes in a drawn body: holes, or lines drawn on it
 
     def __post_init__(self) -> None:
         for key in ("size", "element_size", "thickness", "inflate"):
@@ -65,8 +65,8 @@ class BegunRobot:
     """A new robot, and what there is to tell of how it was made."""
 
     robot: Robot
-    notes: tuple[str, ...] = ()  # what was found and done, in words
-    sketch: SurfaceSketch | None = None  # how its surface was healed; None if it came from none
+    notes: tuple[str, ...] = ()  # notes on repairs and choices
+    sketch: SurfaceSketch | None = None  # healing of its surface; None without a surface
 
 
 class _Wished(TypedDict, total=False):

@@ -16,16 +16,16 @@ from hydrostat.simulation import Simulation, without_contact_friction
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FoundReach:
-    """What one marker can be brought to.
+    """Workspace of one marker.
 
     Attributes:
-        marker: its name.
-        places: where it is in the poses that were solved [m].
-        cells: corners of a convex part of what it reaches, around each of these [m], (poses, corners, dim).
-        directions: its own directions, the widest first, a unit vector each.
-        extents: how far it gets along each [m].
-        size: area [m^2] of a flat body, volume [m^3] in space, of all parts together; 0 where it only goes to and fro
-            along a line.
+        marker: name of the marker.
+        places: marker positions in the solved poses [m].
+        cells: corners of a convex part of the workspace around each of these positions [m], (poses, corners, dim).
+        directions: principal directions of the workspace, the widest first, a unit vector each.
+        extents: extent of the workspace along each direction [m].
+        size: area [m^2] of a flat body, volume [m^3] in space, of the union of all parts; 0 if the marker moves along a
+            line only.
     """
 
     marker: str
@@ -53,7 +53,7 @@ def _direction_text(way: Vector) -> str:
 def find_reach(
     simulation: Simulation, *, tension: float | None = None, count: int = 64, threads: int = 2
 ) -> tuple[FoundReach, ...]:
-    """What each marker can be brought to within travel and release of the winches.
+    """Compute the workspace of each marker within travel and release of the winches.
 
     Poses are solved at contractions spread evenly over what all winches can do, each from rest, so straight along the
     loading path where cables rub. Each stands for a share of the contractions; exact slopes tell, to first order, what
@@ -63,9 +63,9 @@ def find_reach(
 
     Args:
         simulation: the robot's physics.
-        tension: the most that a cable may bear [N]; no limit if left out.
-        count: poses that are solved, about.
-        threads: that solve at the same time.
+        tension: maximum cable tension [N]; None for no limit.
+        count: approximate number of solved poses.
+        threads: number of threads.
 
     Raises:
         InputError: a robot without markers or winches, no number of poses, or other physics that remember the way.

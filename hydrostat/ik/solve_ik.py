@@ -115,7 +115,7 @@ def solve_ik(
 
 
 def _followed(simulation: Simulation, found: IKResult, start: Equilibrium | None) -> IKResult:
-    """What was found without friction on obstacles, as the way to its contractions ends with it."""
+    """Solve an answer that was found without obstacle friction again, with friction along its loading path."""
     pose = simulation.solve(found.pose.contractions, start=start, strict=False)
     if pose.result.reason is Reason.TIME_LIMIT:
         found = replace(found, reason=IKStatus.TIME_LIMIT)
@@ -130,7 +130,7 @@ def _followed(simulation: Simulation, found: IKResult, start: Equilibrium | None
 
 
 def _band(simulation: Simulation, pose: Equilibrium) -> Mapping[str, float]:
-    """What friction leaves open; empty where the way there and back breaks off."""
+    """Return the friction hysteresis of the markers; empty if the path there and back cannot be followed."""
     try:
         return friction_hysteresis(simulation, pose)
     except NotConvergedError:
@@ -232,7 +232,7 @@ def _contractions(search: InverseSearch, state: InverseState, number: int, draw:
 
 
 def _concerned(search: InverseSearch, state: InverseState) -> np.ndarray:
-    """Which channels act mostly on what is missed."""
+    """Return the mask of the channels that act mostly on the missed targets."""
     slopes = search.problem.jacobian(state) ** 2
     missed = state.residual**2 / max(float(np.max(state.residual**2, initial=0.0)), np.finfo(float).tiny)
     share = (missed @ slopes) / np.maximum(slopes.sum(axis=0), np.finfo(float).tiny)

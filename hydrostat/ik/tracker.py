@@ -24,7 +24,7 @@ from hydrostat.simulation import Equilibrium, Simulation
 
 @runtime_checkable
 class ModelAnswer(Protocol):
-    """What a model answers: contractions [m] in the order of the winches, and how far they miss."""
+    """Answer of a model: contractions [m] in the order of the winches, and their error."""
 
     @property
     def contractions(self) -> Vector:
@@ -38,13 +38,13 @@ class ModelAnswer(Protocol):
 
     @property
     def uncertainty(self) -> float:
-        """How far that may be off [m]."""
+        """Uncertainty of the error [m]."""
         ...
 
 
 @runtime_checkable
 class PoseModel(Protocol):
-    """What knows contractions for targets without a simulation, such as `hydrostat.learning.LearnedModel`."""
+    """Model that predicts contractions for targets without a simulation, such as `hydrostat.learning.LearnedModel`."""
 
     def check(self, robot: Robot) -> None:
         """Check that it is a model of this robot (InputError: it is another's)."""
@@ -68,7 +68,7 @@ class Tracker:
             reached = tracker.update({"tip": (0.1, 0.02)}, seconds=1 / 30)
 
     Attributes:
-        pose: where the robot is.
+        pose: current pose of the robot.
     """
 
     def __init__(
@@ -145,12 +145,12 @@ class Tracker:
         return reached
 
     def linearize(self, *, seconds: float) -> LinearizedPose:
-        """What contractions do about the pose of the last update, to first order.
+        """Return the first-order model of the contractions around the pose of the last update.
 
         It answers targets that have just moved at once, while the next update is still to be done.
 
         Args:
-            seconds: what a limit on the rate allows in so much time.
+            seconds: time over which rate limits apply [s].
 
         Raises:
             InputError: there was no update with targets yet.
@@ -169,11 +169,11 @@ class Tracker:
         )
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         return f"<Tracker at {self.pose!r}>"
 
     def _foretold(self, search: InverseSearch, state: InverseState, target: PoseTarget | None) -> InverseState | None:
-        """Where the model leads; None if it was asked for this before, or that is not better."""
+        """Return the state that the model predicts; None if it was asked for this before, or that is not better."""
         if self._model is None or target is None or target.targets == self._asked:
             return None
         self._asked = dict(target.targets)

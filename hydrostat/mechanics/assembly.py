@@ -22,10 +22,11 @@ class Assembly:
     """Value, gradient and Hessian of a list of energies, with degrees of freedom node by node.
 
     Attributes:
-        energies: the terms of the sum.
+        energies: terms of the sum.
         pattern: sparsity of the Hessian.
-        control_count: how many controls they read.
-        token: what factors of its Hessian are known by; that of the assembly that it was made from, if it was.
+        control_count: number of controls that the energies read.
+        token: identity of the Hessian, under which its factors are kept; shared with the assembly that this one was
+            made from.
     """
 
     def __init__(
@@ -102,7 +103,7 @@ class Assembly:
 
     @property
     def has_history(self) -> bool:
-        """Whether some energy depends on the loading path."""
+        """True if any energy depends on the loading path."""
         return any(energy.has_history for energy in self.energies)
 
     @property
@@ -124,11 +125,11 @@ class Assembly:
 
     @property
     def history(self) -> Vector:
-        """What all energies remember of the loading path."""
+        """History variables of all energies, concatenated in the order of the energies."""
         return np.concatenate([np.zeros(0), *(energy.history for energy in self.energies)])
 
     def part_of(self, history: Vector, energy: Energy) -> Vector:
-        """What one of the energies remembers, of what all remember."""
+        """Return the part of the concatenated history that belongs to one of the energies."""
         number = self.energies.index(energy)
         begin = sum(len(other.history) for other in self.energies[:number])
         return history[begin : begin + len(energy.history)]
@@ -257,7 +258,7 @@ class Assembly:
 
     @property
     def projects_first(self) -> bool:
-        """Whether terms are felt whose negative part is taken out before that of the others."""
+        """True if active terms ask for their Hessian to be projected before that of the other energies."""
         return any(energy.projects_first and len(energy.stencils) for energy in self.energies)
 
     @cached_property

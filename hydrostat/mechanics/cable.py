@@ -17,9 +17,9 @@ class CableSegments:
 
     Attributes:
         stencils: nodes of each segment, (terms, corners).
-        weights: signed: those of its end less those of its start, (terms, corners).
-        offsets: what points fixed in the world add to each span [m], (terms, dim).
-        cables: which cable a segment belongs to, rising, (terms,).
+        weights: signed weights of the nodes: those of the segment's end minus those of its start, (terms, corners).
+        offsets: contribution of points fixed in the world to each span [m], (terms, dim).
+        cables: index of the cable that a segment belongs to, in rising order, (terms,).
     """
 
     stencils: Stencils
@@ -78,7 +78,7 @@ class CableEnergy(Energy):
         return lengths
 
     def taken(self, controls: Vector) -> Vector:
-        """What each cable takes in [m]."""
+        """Return the contraction of each cable, that is the length taken in [m]."""
         return self.ratios * controls[self.winches]
 
     def elongations(self, nodes: Nodes, controls: Vector) -> Vector:

@@ -29,14 +29,14 @@ class LockedTensions(NamedTuple):
     """Tensions of the spans, and how they change while points at the capstan's limit slip on and the others stick.
 
     Attributes:
-        tensions: T of each span [N].
+        tensions: tension T of each span [N].
         springs: dT/ds of each span alone [N/m].
-        stretches: own elongation of each span after all slips [m].
+        stretches: elongation of each span itself after all slips [m].
         by_elongation: dT / d elongations [N/m].
-        by_limit: dT / d limits of friction.
+        by_limit: dT / d friction limits.
         limits_by_tension: d limits / dT at fixed angles.
         limits_by_angle: d limits / d angles [N/rad].
-        limits_by_friction: d limits / d coefficients mu [N].
+        limits_by_friction: d limits / d friction coefficients mu [N].
     """
 
     tensions: Vector
@@ -59,9 +59,9 @@ class FrictionCableEnergy(Energy):
     the past are its history; `with_advanced_history` returns the energy of the next step.
 
     Attributes:
-        slips: what has passed the point before each span [m], positive towards the winch.
-        friction: coefficient mu at the point before each span.
-        law: of the spans, with the limits of friction.
+        slips: cable length that has passed the point before each span [m], positive towards the winch.
+        friction: friction coefficient mu at the point before each span.
+        law: tension law of the spans, with the limits of friction.
     """
 
     has_history = True
@@ -160,7 +160,7 @@ class FrictionCableEnergy(Energy):
         return self._pull(nodes, self._by_control(self.law.tangents(self.elongations(nodes, controls))))
 
     def angles(self, nodes: Nodes) -> Vector:
-        """How far the cable turns at the point before each span, at both ends of a sheath together [rad]."""
+        """Turning angle of the cable at the point before each span, both ends of a sheath added up [rad]."""
         return np.bincount(self._turns.points, self._turns.angles(nodes), len(self.slips))
 
     def capstan_limits(self, nodes: Nodes, controls: Vector) -> Vector:
@@ -188,7 +188,7 @@ class FrictionCableEnergy(Energy):
         return self._with(limits, self.slips)
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
-        """How far the limits of friction are from those of the capstan law [N]."""
+        """Largest difference between the friction limits in use and those of the capstan law [N]."""
         return float(np.abs(self.capstan_limits(nodes, controls) - self.law.limits).max(initial=0.0))
 
     def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
@@ -321,7 +321,7 @@ class FrictionCableEnergy(Energy):
 
     @property
     def turns(self) -> ViaPointTurns:
-        """Where the cables turn."""
+        """Via points at which the cables turn."""
         return self._turns
 
     def turn_gradients(self, nodes: Nodes) -> Float[np.ndarray, "dofs spans"]:

@@ -23,14 +23,14 @@ class CapstanChains:
     Stone 1992). The springs' curve and the angles follow by Newton's method on such problems (Josephy).
 
     Attributes:
-        law: of the spans; its limits do not count.
-        friction: coefficient mu at the point before each span; 0 for the first span of a cable.
-        tensions: at the equilibrium [N].
-        elongations: there, if nothing slips [m].
-        angles: by which cable turns at these points [rad].
+        law: tension law of the spans; its friction limits are not used.
+        friction: friction coefficient mu at the point before each span; 0 for the first span of a cable.
+        tensions: tensions at the equilibrium [N].
+        elongations: elongations at the equilibrium if nothing slips [m].
+        angles: turning angle of the cable at the point before each span [rad].
         compliance: - d elongations / d T, positive semidefinite if `stable` [m/N].
         turning: - d angles / d T [rad/N].
-        stable: whether the body is without its cables; else only a solution near these tensions counts.
+        stable: True if the body is stable without its cables. If False, only a solution near these tensions counts.
     """
 
     law: ChainLaw

@@ -21,8 +21,8 @@ class ChainLaw(TensionLaw):
     the minimum of a convex function, the tensions are the gradient of a convex function of the elongations.
 
     Attributes:
-        starts: first span of each cable, and at the end how many there are.
-        limits: largest force of friction at the point before each span [N]; 0 for the first span of a cable.
+        starts: first span of each cable, followed by the number of spans.
+        limits: largest friction force at the point before each span [N]; 0 for the first span of a cable.
     """
 
     starts: Int[np.ndarray, " ends"]

@@ -15,14 +15,14 @@ from hydrostat.mechanics.energy import Blocks, ContactForces, Energy, HessianBlo
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactSurface:
-    """What all states of the contact of one body with itself share.
+    """Data shared by all states of the self-contact of one body.
 
     Attributes:
-        tree: of its boundary.
-        rest: where its nodes are at rest [m].
-        distance: at which parts begin to feel one another [m].
-        stiffness: pressure at half that distance [Pa].
-        areas: of the boundary around each node [m^2], (nodes,).
+        tree: bounding-volume tree of the boundary.
+        rest: rest positions of the nodes [m].
+        distance: distance at which the contact potential becomes active [m].
+        stiffness: contact pressure at half that distance [Pa].
+        areas: boundary area of each node [m^2], (nodes,).
     """
 
     tree: BoundaryTree
@@ -33,7 +33,7 @@ class ContactSurface:
 
     @property
     def soft(self) -> float:
-        """What makes the nearest points of parallel edges certain [m^2]."""
+        """Regularization that makes the nearest points of parallel edges unique [m^2]."""
         return (_SOFT * self.distance) ** 2
 
     def squared(self, nodes: Nodes, pairs: Pairs) -> Vector:
@@ -55,12 +55,12 @@ class ContactSurface:
 
 
 class CandidatePairs(NamedTuple):
-    """All pairs that can be felt while each node stays in a box of its own.
+    """All pairs that can become active while each node stays in a box of its own.
 
     Attributes:
-        low: lowest corner of the box of each node [m].
-        high: highest corner [m].
-        pairs: what can be felt there, and more.
+        low: lowest corner of each node's box [m].
+        high: highest corner of each node's box [m].
+        pairs: superset of the pairs that can become active in these boxes.
     """
 
     low: Nodes
@@ -68,7 +68,7 @@ class CandidatePairs(NamedTuple):
     pairs: Pairs
 
     def serves(self, nodes: Nodes) -> bool:
-        """Whether all nodes are in their boxes."""
+        """True if all nodes are inside their boxes."""
         return bool((self.low <= nodes).all() and (nodes <= self.high).all())
 
 
@@ -171,7 +171,7 @@ class ContactEnergy(Energy):
         return isinstance(other, ContactEnergy) and other.skin is self.skin
 
     def contact_forces(self, nodes: Nodes) -> ContactForces:
-        """Where the body touches itself: half-way between both sides, with the normal force on the first of them."""
+        """Return the places of self-contact, half-way between both sides, with the normal force on the first side."""
         here = self.with_active_terms(nodes)
         blocks = -here.gradient(nodes, np.zeros(0))
         felt = np.flatnonzero(blocks.any(axis=(1, 2)))
@@ -195,7 +195,7 @@ class ContactEnergy(Energy):
         return CandidatePairs(nodes - margin, nodes + margin, pairs)
 
     def _felt(self, nodes: Nodes) -> int:
-        """How many of its pairs are felt."""
+        """Number of active pairs, that is pairs within the contact distance."""
         return int((self.skin.squared(nodes, self.pairs) < self._begins).sum()) if len(self.stencils) else 0
 
 

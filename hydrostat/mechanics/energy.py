@@ -36,7 +36,7 @@ class Law(Protocol):
 
 
 class Compliance(NamedTuple):
-    """How a body without the springs of a coupling, K, gives way to them.
+    """Compliance of the body without coupling springs, K, to the directions of these springs.
 
     Attributes:
         moves: K^-1 G [m/N].
@@ -48,7 +48,7 @@ class Compliance(NamedTuple):
 
 
 Response = Callable[[LowRankBasis], LowRankBasis]
-"""How all degrees of freedom move under forces on them, a column for each case [m]."""
+"""Displacement of all degrees of freedom under forces on them, a column for each load case [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,8 +58,8 @@ class LowRankStiffness:
     Attributes:
         columns: G = ds/dx.
         weights: D [N/m], positive semidefinite.
-        elongations: s [m]; None if only G and D are told.
-        law: forces of the springs, with D = diag(dT/ds); Newton then knows that a spring can go slack within a step.
+        elongations: s [m]; None if only G and D are given.
+        law: force law of the springs, with D = diag(dT/ds); Newton then allows for springs that go slack within a step.
     """
 
     columns: LowRankBasis
@@ -69,11 +69,11 @@ class LowRankStiffness:
 
 
 class ScatterMap(NamedTuple):
-    """Where the Hessian blocks of one energy are added.
+    """Map from the Hessian blocks of one energy to the values of the sparse matrix.
 
     Attributes:
-        slots: first place of the block of each pair of corners of each term, (terms, corners, corners).
-        strides: distance of two columns of each node, (nodes,).
+        slots: index of the first value of the block of each pair of corners of each term, (terms, corners, corners).
+        strides: distance between two columns of each node in the values, (nodes,).
         data: values of the sparse matrix, column by column, both triangles.
     """
 
@@ -83,12 +83,12 @@ class ScatterMap(NamedTuple):
 
 
 class ContactForces(NamedTuple):
-    """Where a body is pushed by what it touches.
+    """Contact points of a body and the forces there.
 
     Attributes:
-        places: [m].
-        forces: on the body [N]; where it touches itself on one of both sides, the other feels the opposite.
-        stencils: nodes of the body at each place, (places, corners).
+        places: positions of the contact points [m].
+        forces: forces on the body [N]. For self-contact: on the first side; the other has the opposite force.
+        stencils: nodes of the body at each contact point, (places, corners).
     """
 
     places: Points
@@ -108,14 +108,15 @@ class Energy(ABC):
         stencils: nodes of each term, (terms, corners).
         controls: index of the control of each term, (terms,); None for an energy without controls.
         supports: index of the support that holds each term, (terms,); None for an energy that nothing outside holds.
-        convex: whether every Hessian block is positive semidefinite wherever the energy is defined.
-        quadratic: whether the Hessian is the same for all nodes and controls; then it is added up once.
-        projects_first: whether its Hessian is projected first, and whole, where the sum is indefinite.
-        has_history: whether it depends on the loading path, as friction does; then a solve follows the path by
-            `history_residual`, `with_corrected_history`
-            and `with_advanced_history`, and `history` is kept with the pose.
+        convex: True if every Hessian block is positive semidefinite wherever the energy is defined.
+        quadratic: True if the Hessian is the same for all nodes and controls; then it is assembled once.
+        projects_first: True if its whole Hessian is projected first where the sum is indefinite.
+        has_history: True if the energy depends on the loading path, as with friction. A solve then follows the path by
+            `history_residual`, `with_corrected_history` and `with_advanced_history`, and `history` is kept with the
+            pose.
         patience: number of corrections in a row without progress after which a solve with history stops.
-        stiffest: its stiffest spring to a place [N/m]: what rounds positions makes forces of.
+        stiffest: stiffness of its stiffest spring to a fixed place [N/m], which scales rounding errors of positions to
+            forces.
     """
 
     stencils: Stencils
@@ -189,11 +190,11 @@ class Energy(ABC):
         return self
 
     def continues(self, other: "Energy") -> bool:
-        """Whether another one is the same but for the terms that count, so that it may stand in its place and go on."""
+        """Return True if another energy differs only in its active terms, so it can replace this one in a solve."""
         return False
 
     def contact_forces(self, nodes: Nodes) -> ContactForces | None:
-        """Where what it stands for touches the body at `nodes`; None for what touches nothing, whatever the nodes."""
+        """Return contact points and forces on the body at `nodes`; None for an energy that models no contact."""
         return None
 
     def with_load(self, share: float) -> "Energy":
@@ -214,7 +215,7 @@ class Energy(ABC):
 
     @property
     def history(self) -> Vector:
-        """What it remembers of the loading path, as numbers; empty for most."""
+        """History variables as a flat vector; empty for energies without history."""
         return np.zeros(0)
 
     def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> Self:
@@ -247,10 +248,10 @@ class ElementGroups(NamedTuple):
     """Elements eight at a time, the last group filled up with elements of no volume.
 
     Attributes:
-        stencils: nodes, (groups, corners, 8).
-        gradients: of the shape functions [1/m], (groups, corners, dim, 8).
-        volumes: [m^3], (groups, 8).
-        terms: how many elements there are.
+        stencils: nodes of each element, (groups, corners, 8).
+        gradients: gradients of the shape functions [1/m], (groups, corners, dim, 8).
+        volumes: element volumes [m^3], (groups, 8).
+        terms: number of elements.
     """
 
     stencils: np.ndarray

@@ -36,13 +36,13 @@ LEAF = 64
 """Parts of so many nodes are ordered by minimum degree."""
 
 SHARES = np.array([0.4, 0.5, 0.6])
-"""Where nested dissection tries to cut: parts of the nodes on one side."""
+"""Fractions of the nodes on one side at which nested dissection tries to cut."""
 
 DISTANCES = 3
-"""How many distances in the graph serve as coordinates, beside the points if there are any."""
+"""Number of graph distances that serve as coordinates, in addition to the points if there are any."""
 
 ORDERING = 12e-6
-"""What it takes to find an order [s], for each node."""
+"""Modelled time to find an elimination order [s], per node."""
 
 FACTORISATIONS = 200
 """So many factorisations of one pattern are counted on."""
@@ -50,7 +50,7 @@ FACTORISATIONS = 200
 
 @runtime_checkable
 class Factors(Protocol):
-    """What a back end makes of one matrix."""
+    """Contract of the factors that a back end computes for one matrix."""
 
     negative: int
     singular: bool
@@ -73,13 +73,13 @@ class Factors(Protocol):
 
 
 class Analysis:
-    """What the factorisations of all matrices with one pattern have in common.
+    """Symbolic analysis shared by the factorisations of all matrices with one sparsity pattern.
 
     Threads may share it.
 
     Attributes:
-        backend: which one factorises, "supernodal" or "superlu".
-        tree: supernodes of the order of elimination; only of the supernodal one.
+        backend: name of the back end that factorises, "supernodal" or "superlu".
+        tree: supernodal elimination tree; only with the supernodal back end.
         found: modelled time [s] of a factorisation of the pattern for which this order was found.
     """
 
@@ -135,18 +135,18 @@ class Factorisation:
 
     Attributes:
         negative: number of negative pivots, which is the number of negative eigenvalues.
-        singular: whether a pivot was 0, too small or not finite; then `solve` must not be called.
+        singular: True if a pivot was 0, too small or not finite; then `solve` must not be called.
     """
 
     def __init__(self, factors: Factors) -> None:
-        """What a back end made of a matrix."""
+        """Wrap the factors that a back end computed for a matrix."""
         self._factors = factors
         self.negative = self._factors.negative
         self.singular = self._factors.singular
 
     @property
     def definite(self) -> bool:
-        """Whether the matrix is positive definite."""
+        """True if the matrix is positive definite."""
         return not self.singular and self.negative == 0
 
     def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
@@ -175,7 +175,7 @@ class SuperLUFactors:
     """LU without row exchanges of a symmetric matrix.
 
     Attributes:
-        singular: whether it broke down, a row exchange included.
+        singular: True if the factorisation broke down or exchanged rows.
         negative: number of negative pivots.
     """
 

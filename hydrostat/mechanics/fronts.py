@@ -21,29 +21,29 @@ BLOCK = 8
 """Most columns that are eliminated together, before a product applies them to the rest."""
 
 WHOLE, LOWER, UPPER = range(3)
-"""What of A^-1 is applied: all of it, L^-1, or L^-T S."""
+"""Part of A^-1 that is applied: all of it, L^-1, or L^-T S."""
 
 COLUMNS, BELOW, FIRST, PANEL, STARTS, CHILD, SIBLING, STACK, OFFSET, RUNS, ENTRIES = range(11)
 """Columns of `Fronts.table`."""
 
 
 class Fronts(NamedTuple):
-    """Where everything goes, counted in degrees of freedom. A row of a table for each front.
+    """Memory layout of all fronts, counted in degrees of freedom. The table has a row for each front.
 
     Attributes:
         table: a row for every supernode and one more, (supernodes + 1, 11):
             COLUMNS, BELOW: size of a front, own columns and rows below them;
             FIRST: first own column;
-            PANEL: where its part of L begins;
-            STARTS: where its rows begin in `rows`;
+            PANEL: start of its part of L;
+            STARTS: start of its rows in `rows`;
             CHILD, SIBLING: first child, next child of the same parent; -1 if there is none;
-            STACK: which of two stacks takes what it hands up;
-            OFFSET: where on the stack;
-            RUNS, ENTRIES: where its runs and its entries of A begin.
+            STACK: number of the stack, of two, that takes its contribution to the parent;
+            OFFSET: start of this contribution on the stack;
+            RUNS, ENTRIES: start of its runs and of its entries of A.
         rows: indices of the rows below every front, one front after the other.
-        runs: rows below that lie together in the parent's front too: their number here, there, how many, (runs, 3).
+        runs: rows below that are contiguous in the parent's front too: first row here, first there, count, (runs, 3).
         entries: place of each entry in the data of A and in the front's panel, (entries, 2).
-        diagonal: places of the diagonal in the data of A; -1 where it has none, (dofs,).
+        diagonal: places of the diagonal in the data of A; -1 for a missing entry, (dofs,).
     """
 
     table: np.ndarray

@@ -15,7 +15,7 @@ class InertiaEnergy(Energy):
     """
 
     def __init__(self, targets: Nodes, weights: Float[np.ndarray, " nodes"]) -> None:
-        """Where each node flies if no force acts [m], and what holds it there [N/m]."""
+        """Take the position that each node reaches without forces [m], and the stiffness that pulls it there [N/m]."""
         count, dim = targets.shape
         self.stencils = np.arange(count)[:, None]
         self.targets, self.weights = targets, weights

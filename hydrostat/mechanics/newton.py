@@ -48,7 +48,7 @@ def minimise(
 
 
 class _Iterate(NamedTuple):
-    """Where Newton is, with the energies that count there."""
+    """Current point of the iteration, with the energies that are active there."""
 
     assembly: Assembly
     nodes: Nodes
@@ -58,7 +58,7 @@ class _Iterate(NamedTuple):
 
 
 class _Trial(NamedTuple):
-    """Where a step leads, and which share of it was admissible."""
+    """End point of a step, and the admissible share of the step."""
 
     assembly: Assembly
     nodes: Nodes
@@ -71,14 +71,14 @@ class _EnergyDescent:
     """One minimisation; `run` is the loop, each method one part of it.
 
     Attributes:
-        share: of what is negative in the Hessian that the last step took out.
-        whole: whether the step has to be taken whole or not at all.
+        share: share of the negative part of the Hessian that the last step removed.
+        whole: True if the step must be taken whole or not at all.
         left: residual as a share of the largest applied force.
-        fast: whether the last step brought the residual down by much.
-        saddles: how many have been left.
-        last: the Hessian of the last step, if nothing was taken out of it.
-        sharp: whether that step began near enough to the end for `last` to stand for the Hessian there.
-        error: about how far the last place was from equilibrium [m].
+        fast: True if the last step reduced the residual strongly.
+        saddles: number of saddles left so far.
+        last: Hessian of the last step, if nothing was removed from it.
+        sharp: True if that step began close enough to the end that `last` serves as the Hessian there.
+        error: estimated distance of the last iterate from equilibrium [m].
     """
 
     def __init__(
@@ -141,7 +141,7 @@ class _EnergyDescent:
         return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), least_volume)
 
     def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> _Trial:
-        """Where a step leads, as far as all energies admit it; of infinite energy where it crushes an element."""
+        """Take a step as far as all energies admit it; the energy is infinite if the step crushes an element."""
         nodes = self.bend(place.nodes, step) if bent else place.nodes + step.reshape(place.nodes.shape)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
@@ -189,7 +189,7 @@ class _EnergyDescent:
             self.damping = self.damping / _EASES if self.damping > _FREE * curvature else 0.0
 
     def _within_accuracy(self, place: _Iterate, step: Vector) -> bool:
-        """Whether a step with the very Hessian of a place tells that it lies as near to equilibrium as was asked."""
+        """Return True if a step with the unmodified Hessian shows that the iterate is within the requested accuracy."""
         if self.options.accuracy is None or not self.left < _LINEAR:
             return False
         self.error = _MARGIN * float(np.sqrt((step.reshape(place.nodes.shape) ** 2).sum(axis=1).max()))
@@ -197,7 +197,7 @@ class _EnergyDescent:
         return self.error <= self.options.accuracy
 
     def _reuse(self, place: _Iterate, known: Stiffness | None) -> Stiffness | None:
-        """What is known of the Hessian, with the springs as they are now; None if that is not definite."""
+        """Return a known factorisation with the current springs; None if the result is not positive definite."""
         if known is None or known.singular or known.token is not self.assembly.token:
             return None
         springs = place.assembly.coupling(place.nodes, self.controls)
@@ -257,7 +257,7 @@ class _EnergyDescent:
         return None
 
     def bend(self, nodes: Nodes, step: Vector) -> Nodes:
-        """Where a step leads, along arcs if that is known."""
+        """Return the end point of a step, along arcs if a warp is given."""
         straight = step.reshape(nodes.shape)
         return nodes + straight if self.warp is None else self.warp(nodes, straight)
 
@@ -381,7 +381,7 @@ _FAST = 0.1
 """After a step that leaves less than this share of the residual the full Hessian is tried at once."""
 
 _SHIFTS = tuple(np.logspace(-10, 1, 12))
-"""What is added to the diagonal of the projected Hessian, if even that is singular: fractions of its largest entry."""
+"""Shifts of the diagonal if even the projected Hessian is singular: fractions of its largest entry."""
 
 _SHARP = 1e-4
 """Only an equilibrium at least as sharp as this share of the largest applied force is told from a saddle."""
@@ -390,4 +390,4 @@ _SADDLES = 3
 """So many saddles are left in one solve."""
 
 _LEAPS = tuple(sign * leap for leap in (0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, 1e-5) for sign in (1.0, -1.0))
-"""How far to go from a saddle: fractions of the size of the body; the lowest place is taken."""
+"""Lengths of trial steps away from a saddle: fractions of the size of the body; the one of least energy is taken."""

@@ -1,4 +1,4 @@
-"""What Newton is told: how far and how long it goes, what rounding hides; and the reasons why it ends."""
+"""Options, rounding-error bounds and stop reasons of the Newton solver."""
 
 # Of the thesis (docs/thesis.md): M4
 
@@ -21,16 +21,16 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class NewtonOptions:
-    """How far and how long Newton goes.
+    """Convergence options for the Newton solver.
 
     Attributes:
-        tolerance: largest nodal force left over, as a fraction of the largest applied force.
-        iterations: most iterations.
-        halvings: most halvings of one step.
-        whole: whether to give up at once, at no cost, where the first step cannot be taken whole.
-        deadline: when it stops at the latest [s], as `time.monotonic` counts.
-        accuracy: about how far a node may be from equilibrium [m], by the step that would come next; it stops there
-            even with more force left over than the tolerance allows. None: the tolerance alone counts.
+        tolerance: largest residual nodal force, as a fraction of the largest applied force.
+        iterations: maximum number of iterations.
+        halvings: maximum number of halvings of one step.
+        whole: give up immediately, at no cost, if the first step cannot be taken whole.
+        deadline: latest time at which the solver stops [s], on the clock of `time.monotonic`.
+        accuracy: approximate distance of a node from equilibrium [m], estimated from the next step. The solver stops
+            there even if the residual force exceeds the tolerance. None: only the tolerance counts.
     """
 
     tolerance: float = 1e-10
@@ -43,11 +43,11 @@ class NewtonOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class RoundOff:
-    """What is lost in the rounding errors of a body whose modulus x volume is some energy.
+    """Rounding errors of force and energy for a body with a given modulus x volume.
 
     Attributes:
-        force: [N].
-        energy: [J].
+        force: rounding error of a nodal force [N].
+        energy: rounding error of the energy [J].
     """
 
     force: float

@@ -9,21 +9,21 @@ from hydrostat.mechanics.stiffness import Stiffness
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NewtonResult:
-    """Where Newton stopped.
+    """Result of the Newton solver.
 
     Attributes:
-        nodes: the best positions found [m]; every element has J > 0.
-        reason: why it stopped.
-        residual: largest component of a nodal force [N].
-        allowed: residual [N] at which it counts as converged.
+        nodes: best node positions found [m]; every element has J > 0.
+        reason: reason for stopping.
+        residual: largest component of a residual nodal force [N].
+        allowed: residual [N] below which the result counts as converged.
         energy: total energy [J].
-        iterations: steps taken.
-        stable: whether the full Hessian there is positive definite: a minimum, no saddle.
-        buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
-        stiffness: the Hessian there, factorised, or where the last step began, if that was with less than 1e-5 of the
-            applied force left over, or within the accuracy.
-        error: about how far a node is from equilibrium [m], where an accuracy was asked for, infinite where it was not
-            reached; 0 where none was asked for.
+        iterations: number of steps taken.
+        stable: True if the full Hessian at `nodes` is positive definite: a minimum, not a saddle.
+        buckled: True if the solver left a saddle on the way: the body could also have moved elsewhere.
+        stiffness: factorised Hessian at `nodes`, or where the last step began, if the residual there was below 1e-5 of
+            the applied force or the iterate was within the accuracy.
+        error: approximate distance of a node from equilibrium [m] if an accuracy was requested, infinite if it was not
+            reached; 0 if none was requested.
     """
 
     nodes: Nodes
@@ -39,5 +39,5 @@ class NewtonResult:
 
     @property
     def converged(self) -> bool:
-        """Whether the residual is as small as allowed."""
+        """True if the residual is at most the allowed one."""
         return self.reason is Reason.CONVERGED

@@ -75,7 +75,7 @@ class ObstacleEnergy(Energy):
         self._seen: tuple[Nodes, Points, Vector] | None = None
 
     def places(self, nodes: Nodes) -> Points:
-        """Where the samples are, in the frame of the obstacle [m]."""
+        """Positions of the samples in the frame of the obstacle [m]."""
         points = self._points(nodes)
         if self.carriage is None:
             return points
@@ -119,7 +119,7 @@ class ObstacleEnergy(Energy):
         return ContactForces(self._points(nodes)[some], -forces[felt], self._corners[some])
 
     def _points(self, nodes: Nodes) -> Points:
-        """Where the samples are [m]."""
+        """Positions of the samples [m]."""
         points = np.empty((len(self._corners), nodes.shape[1]))
         native.sample_places(nodes, self._corners, self.shares, points)
         return points
@@ -196,7 +196,7 @@ class ObstacleEnergy(Energy):
         return np.zeros(0) if self.grip is None else self.grip.anchors.ravel()
 
     def begun(self, nodes: Nodes) -> "ObstacleEnergy":
-        """The same with friction, as it is at rest."""
+        """Return this energy with friction springs in their rest state."""
         return (
             self._gripping(ObstacleFriction.at_rest(*self._friction, self.places(nodes))) if self.has_history else self
         )
@@ -286,7 +286,7 @@ class ObstacleEnergy(Energy):
         return largest * lengths_of(way) + np.linalg.norm(end - begin, 2) * reach
 
     def _on_the_way(self, nodes: Nodes, move: Nodes, some: np.ndarray, shares: Vector) -> Points:
-        """Where some samples are in the frame after a share each of a straight move [m]."""
+        """Positions of some samples in the obstacle's frame, each after its own share of a straight move [m]."""
         corners = self._corners[some]
         moved = nodes[corners] + shares[:, None, None] * move[corners]
         points = np.einsum("tc,tcd->td", self.shares[some], moved)

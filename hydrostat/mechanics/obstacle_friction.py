@@ -19,14 +19,14 @@ class ObstacleFriction:
     `with_corrected_history` updates limits and normals for the shape found; `slipped` moves the anchors.
 
     Attributes:
-        friction: Coulomb's coefficient mu.
-        springs: stiffness of each sample [N/m].
-        anchors: where each sample sticks [m].
-        normals: of the surface at each sample.
-        limits: the largest force along the surface, mu x normal force [N].
-        trail: limits tried before and what each asked for, the last ones.
-        share: of the way to what is asked that a correction goes; less where corrections do not bring it nearer.
-        missed: force [N] by which the last correction was off.
+        friction: Coulomb friction coefficient mu.
+        springs: tangential stiffness of each sample [N/m].
+        anchors: position at which each sample sticks [m].
+        normals: surface normal at each sample.
+        limits: largest tangential force, mu x normal force [N].
+        trail: recent limits, each with the limits that the shape found with them asks for.
+        share: relaxation factor of a correction; smaller where corrections do not reduce the error.
+        missed: error of the last correction [N].
     """
 
     friction: float
@@ -40,7 +40,7 @@ class ObstacleFriction:
 
     @classmethod
     def at_rest(cls, friction: float, springs: Vector, places: Points) -> "ObstacleFriction":
-        """Nothing pushes yet: anchors are where the samples are [m]."""
+        """Return the friction state without normal forces: each sample is anchored at its position [m]."""
         return cls(
             friction=friction,
             springs=springs,
@@ -58,7 +58,7 @@ class ObstacleFriction:
         )
 
     def ways(self, places: Points) -> tuple[Points, Vector]:
-        """How far each sample is from its anchor along the surface [m], and the length of it."""
+        """Tangential displacement of each sample from its anchor [m], and its length [m]."""
         spans = places - self.anchors
         spans = spans - (spans * self.normals).sum(axis=1)[:, None] * self.normals
         return spans, np.linalg.norm(spans, axis=1)
@@ -88,16 +88,16 @@ class ObstacleFriction:
         return secants[:, None, None] * across - along
 
     def asked(self, pushes: Vector, normals: Points) -> "ObstacleFriction":
-        """The same with the limits and normals that these normal forces [N] ask for."""
+        """Return this state with the limits and normals that belong to these normal forces [N]."""
         return replace(self, limits=self.friction * pushes, normals=normals, trail=(), share=1.0, missed=np.inf)
 
     def with_corrected_history(self, pushes: Vector, normals: Points) -> "ObstacleFriction":
-        """Limits nearer to what a shape asks for that was found with these (Anderson's acceleration)."""
+        """Return this state with limits corrected towards those of the shape found with it (relaxed fixed point)."""
         wanted = self.friction * pushes
         return replace(self, limits=self.limits + self.share * (wanted - self.limits), normals=normals)
 
     def slipping(self, places: Points) -> Bool[np.ndarray, " samples"]:
-        """Which samples are at their limit."""
+        """Mask of the samples that are at their friction limit."""
         return (self.limits > 0) & (self.springs * self.ways(places)[1] >= (1.0 - _HAIR) * self.limits)
 
     def directions(self, places: Points) -> Points:
@@ -112,13 +112,13 @@ class ObstacleFriction:
         slips: Int[np.ndarray, " slipping"],
         moves: Float[np.ndarray, "slipping slipping"],
     ) -> "ObstacleFriction":
-        """Limits and normals that are asked for, those of the slipping samples by a step of Newton's method.
+        """Return this state with corrected limits and normals; slipping samples take a step of Newton's method.
 
         Args:
             pushes: normal forces at these limits [N].
-            normals: of the surface.
-            slips: the samples that slip.
-            moves: how what is asked of these changes with their limits.
+            normals: surface normals at the samples.
+            slips: indices of the slipping samples.
+            moves: derivative of the requested limits of these samples by their current limits.
         """
         wanted = self.friction * pushes
         limits = self.limits + self.share * (wanted - self.limits)
@@ -127,12 +127,12 @@ class ObstacleFriction:
         return replace(self, limits=limits, normals=normals, trail=())
 
     def judged(self, missed: float) -> "ObstacleFriction":
-        """The same after a correction that is off by so much [N]: with more care if that is no less than before."""
+        """Return this state with its relaxation factor adapted to the error of a correction [N]."""
         share = max(0.5 * self.share, _LEAST) if missed > _FALLS * self.missed else min(2.0 * self.share, 1.0)
         return replace(self, share=share, missed=missed)
 
     def slipped(self, places: Points) -> "ObstacleFriction":
-        """The same with anchors that were dragged along to where the springs pull no harder than the limits."""
+        """Return this state with anchors dragged to where the springs pull no harder than the limits."""
         spans, lengths = self.ways(places)
         held = np.where(self.limits > 0, self._secants(lengths) / self.springs, 0.0)
         return replace(self, anchors=places - held[:, None] * spans, trail=())

@@ -19,7 +19,7 @@ Graph = tuple[np.ndarray, np.ndarray]
 
 
 def block_graph(indptr: np.ndarray, indices: np.ndarray, dim: int) -> Graph:
-    """Which nodes share an entry of a matrix with `dim` degrees of freedom a node."""
+    """Graph of the nodes that share an entry of a matrix with `dim` degrees of freedom per node."""
     count = (len(indptr) - 1) // dim
     starts, neighbours = np.zeros(count + 1, np.int64), np.empty(len(indices), np.int64)
     native.block_graph(indptr, indices, dim, starts, neighbours, np.full(count, -1))

@@ -78,7 +78,7 @@ class _Growth:
         self.nodes[patch] |= self.corners[element]
 
     def _free(self, element: int) -> int:
-        """How many neighbours of an element are in no patch yet: one with few would be left over."""
+        """Number of neighbors of an element that are in no patch yet: an element with few could be left over."""
         return sum(self.patch[other] < 0 for other in self.neighbours[element])
 
 

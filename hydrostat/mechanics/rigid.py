@@ -14,16 +14,16 @@ Matrix = Float[np.ndarray, "dim dim"]
 
 
 class RigidBodyDofs(NamedTuple):
-    """Where the unknowns of a rigid thing that moves are: its place, then its axes times a length (affine body).
+    """Unknowns of a moving rigid body: its position, then its axes times a length (affine body).
 
     A point at u in the frame of the thing is at place + sum of u_k x axis_k. Axes are unknowns of their own, which
     `RigidEnergy` keeps a rotation; so everything is a polynomial of the unknowns, and their inertia is constant
     (Lan et al. 2022).
 
     Attributes:
-        row: of its place among the unknowns; the dim rows that follow are its axes.
-        length: times which the axes are unknowns [m].
-        dim: of space.
+        row: row of the position among the unknowns; the next dim rows are the axes.
+        length: factor of the axes in the unknowns [m].
+        dim: space dimension.
     """
 
     row: int
@@ -32,11 +32,11 @@ class RigidBodyDofs(NamedTuple):
 
     @property
     def rows(self) -> np.ndarray:
-        """All of its rows."""
+        """Indices of all rows of this body among the unknowns."""
         return np.arange(self.row, self.row + 1 + self.dim)
 
     def place(self, unknowns: Nodes) -> Vector:
-        """Where the origin of its frame is [m]."""
+        """Position of the origin of its frame [m]."""
         return unknowns[self.row]
 
     def axes(self, unknowns: Nodes) -> Matrix:
@@ -106,7 +106,7 @@ class GuideEnergy(Energy):
         self.stiffest = float(np.abs(self.stiffness).max())
 
     def moved(self, place: Vector, axes: Matrix) -> "GuideEnergy":
-        """The same springs to another place [m] and other axes."""
+        """Return the same springs to another position [m] and other axes."""
         other = copy(self)
         other.targets = self.carriage.unknowns(place, axes)
         return other
@@ -139,7 +139,7 @@ class CarriedWarp:
         self._body, self._count, self._carriages = body, count, carriages
 
     def __call__(self, nodes: Nodes, step: Nodes) -> Nodes:
-        """Where the unknowns go [m]."""
+        """Return the unknowns after a step [m]."""
         there = nodes + step
         there[: self._count] = self._body(
             np.ascontiguousarray(nodes[: self._count]), np.ascontiguousarray(step[: self._count])

@@ -18,13 +18,13 @@ Ways = Float[np.ndarray, "some dim"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SelfContactSurface:
-    """What all states of a clasp share.
+    """Boundary data shared by all states of self-contact friction.
 
     Attributes:
         own: nodes of the boundary.
-        facets: of the boundary, (facets, dim).
-        around: facets of each node, filled up with -1, (nodes, most).
-        distance: at which parts feel one another [m].
+        facets: facets of the boundary, (facets, dim).
+        around: facets of each node, padded with -1, (nodes, most).
+        distance: distance at which parts come into contact [m].
     """
 
     own: Whole
@@ -34,7 +34,7 @@ class SelfContactSurface:
 
     @classmethod
     def of(cls, mesh: Mesh, distance: float) -> "SelfContactSurface":
-        """The skin of a body whose parts feel one another at a distance [m]."""
+        """Return the boundary data of a body whose parts come into contact at a distance [m]."""
         facets = np.asarray(mesh.boundary, dtype=np.int64)
         owners, numbers = facets.ravel(), np.repeat(np.arange(len(facets)), facets.shape[1])
         order = np.argsort(owners, kind="stable")
@@ -68,18 +68,18 @@ class SelfContactSurface:
 
 
 class FacetPoints(NamedTuple):
-    """FacetPoints of facets, one for each node of a boundary.
+    """Points of facets, one for each node of a boundary.
 
     Attributes:
-        facets: number of the facet; -1 where there is no point.
-        weights: of the point at the corners of the facet; it may lie beyond its edges.
+        facets: index of the facet; -1 if there is no point.
+        weights: barycentric weights of the point at the corners of the facet; the point may lie beyond its edges.
     """
 
     facets: Int[np.ndarray, " own"]
     weights: Float[np.ndarray, "own dim"]
 
     def changed(self, some: Bool[np.ndarray, " own"], others: "FacetPoints") -> "FacetPoints":
-        """The same, some replaced."""
+        """Return these points with some of them replaced."""
         return FacetPoints(
             np.where(some, others.facets, self.facets), np.where(some[:, None], others.weights, self.weights)
         )
@@ -94,12 +94,13 @@ class SelfContactFriction:
     the part opposite; `seated` brings it where it belongs.
 
     Attributes:
-        skin: what all states share.
-        anchors: what each node of the boundary sticks to.
-        beside: what each that is pushed is beside: the anchor, or where that will be dragged to.
-        offsets: from the anchor to what is beside [m].
-        grip: springs of all nodes of the boundary.
-        before: nodes where this increment of the loading path began [m].
+        skin: boundary data shared by all states.
+        anchors: point that each boundary node sticks to.
+        beside: point of the opposite facet for each pressed node: its anchor, or the point to which the anchor will be
+            dragged.
+        offsets: displacement from the anchor to the point in `beside` [m].
+        grip: friction springs of all boundary nodes.
+        before: node positions at the start of this increment of the loading path [m].
     """
 
     skin: SelfContactSurface
@@ -111,7 +112,7 @@ class SelfContactFriction:
 
     @classmethod
     def at_rest(cls, skin: SelfContactSurface, rest: Nodes, friction: float, springs: Vector) -> "SelfContactFriction":
-        """Nothing pushes yet.
+        """Return the friction state without normal forces.
 
         Args:
             skin: of the body.
@@ -126,7 +127,7 @@ class SelfContactFriction:
 
     @cached_property
     def held(self) -> Whole:
-        """Nodes that are beside something, by their numbers among those of the boundary."""
+        """Nodes that have a point of an opposite facet, as indices among the boundary nodes."""
         return np.flatnonzero(self.beside.facets >= 0)
 
     @cached_property
@@ -157,11 +158,11 @@ class SelfContactFriction:
         return total
 
     def with_grip(self, grip: ObstacleFriction) -> "SelfContactFriction":
-        """The same with other springs."""
+        """Return this state with other springs."""
         return replace(self, grip=grip)
 
     def seated(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> "SelfContactFriction":
-        """The same at a shape, where springs pull at what the nodes are beside there.
+        """Return this state with its springs attached to the facets opposite the nodes at a given shape.
 
         A node that was not pushed before sticks to the point that was beside it where the increment began, or now if
         that is far from the facet.
@@ -184,7 +185,7 @@ class SelfContactFriction:
         return replace(self, anchors=anchors, beside=beside, offsets=offsets)
 
     def slipped(self, nodes: Nodes) -> "SelfContactFriction":
-        """What follows a shape: anchors were dragged along; nodes that nothing pushes stick to nothing.
+        """Return the state after a shape: anchors are dragged along, and nodes without normal force have no anchor.
 
         Args:
             nodes: the shape [m], at which this is seated.
@@ -197,7 +198,7 @@ class SelfContactFriction:
         return FacetPoints(np.full(len(self.offsets), -1), np.zeros_like(self.offsets))
 
     def _positions(self, nodes: Nodes, points: FacetPoints) -> Ways:
-        """Where points are [m]; anywhere where there is none."""
+        """Positions of points [m]; arbitrary for nodes without a point."""
         return np.einsum("tc,tcd->td", points.weights, nodes[self.skin.facets[points.facets]])
 
     def _anchored(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> FacetPoints:

@@ -109,7 +109,7 @@ class SelfFrictionEnergy(Energy):
         return other
 
     def _asked(self, nodes: Nodes) -> "SelfFrictionEnergy":
-        """The same with the limits that a shape asks for."""
+        """Return this energy with the limits that belong to a shape."""
         pushes, normals = self._pushes(nodes)
         clasp = self.clasp.seated(nodes, self._felt(nodes), pushes, normals)
         return self._with(self.contact, clasp.with_grip(clasp.grip.asked(pushes, normals)))

@@ -20,7 +20,7 @@ class SparsityPattern:
     All that follows from it is made when it is first asked for, once, and never changes: patterns are shared.
 
     Attributes:
-        stencils: of each energy.
+        stencils: stencils of each energy.
         shape: (nodes, dim).
         rest: rest positions of the nodes [m].
     """
@@ -63,7 +63,7 @@ class SparsityPattern:
 
     @cached_property
     def analysis(self) -> Analysis:
-        """What the factorisations of all matrices of this pattern have in common."""
+        """Symbolic analysis shared by the factorisations of all matrices of this pattern."""
         like = None if self._base is None else self._base.analysis
         if like is not None and self._base is not None and len(self.entries) == len(self._base.entries):
             return like
@@ -72,7 +72,7 @@ class SparsityPattern:
 
     @cached_property
     def indptr(self) -> np.ndarray:
-        """Where each column begins, (dofs + 1,), as in `csc_array`."""
+        """Start of each column, (dofs + 1,), as in `csc_array`."""
         return np.concatenate([[0], np.cumsum(np.repeat(self.strides, self.shape[1]))]).astype(np.int32)
 
     @cached_property

@@ -19,15 +19,15 @@ class Stiffness:
     Haynsworth's inertia formula H has as many negative eigenvalues as K less those of I + R^T M R.
 
     Attributes:
-        definite: whether H is positive definite.
-        singular: whether K or H cannot be solved with.
-        factors: of K.
-        coupling: springs as they were when it was made.
+        definite: True if H is positive definite.
+        singular: True if K or H cannot be solved with.
+        factors: factors of K.
+        coupling: coupling springs as given at construction.
         columns: G.
         weights: D.
-        token: what the assembly is known by that it is the Hessian of; factors serve no other one.
+        token: identity of the assembly whose Hessian this is; the factors serve no other assembly.
         compliance: M [m/N].
-        source: the `Assembly` that it is the Hessian of, if known; it goes to no other process.
+        source: the `Assembly` whose Hessian this is, if known; not sent to other processes.
     """
 
     def __init__(
@@ -42,11 +42,11 @@ class Stiffness:
         self._weigh(coupling.weights)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is sent to another process."""
+        """Return the state that is sent to another process, without `source`."""
         return self.__dict__ | {"source": None}
 
     def with_coupling(self, coupling: LowRankStiffness) -> "Stiffness":
-        """The same with the springs as they are now; where their law is known, with the G that it has."""
+        """Return this stiffness with other springs; if their law is known, G stays as it is."""
         if coupling.law is None or coupling.weights.shape != self.weights.shape:
             return Stiffness(self.factors, coupling, token=self.token, source=self.source)
         other = self.with_weights(coupling.weights)
@@ -54,7 +54,7 @@ class Stiffness:
         return other
 
     def with_weights(self, weights: RankMatrix) -> "Stiffness":
-        """The same with another D, for next to nothing."""
+        """Return this stiffness with another D, at almost no cost."""
         other = copy(self)
         other._weigh(weights)
         return other
@@ -85,26 +85,26 @@ class Stiffness:
         return self.factors.expand(self._reduced) if self.columns.size else self.columns
 
     def compliance_to(self, columns: LowRankBasis) -> Compliance:
-        """How the body without the springs gives way to forces along some columns."""
+        """Compliance of the body without the springs to forces along some columns."""
         reduced = self.factors.reduce(columns)
         return Compliance(self.factors.expand(reduced), self.factors.inner(reduced, reduced))
 
     @property
     def body_definite(self) -> bool:
-        """Whether K alone is positive definite."""
+        """True if K alone is positive definite."""
         return self.factors.definite
 
     def response(self, weights: RankMatrix) -> LowRankBasis:
-        """How x moves when each column's spring is taken in by 1 m, were D these weights: -H^-1 G D."""
+        """Displacement of x when each column's spring contracts by 1 m, if D were these weights: -H^-1 G D."""
         inner = np.eye(len(weights)) + weights @ self.compliance
         return -self.moves @ np.linalg.solve(inner, weights)
 
     def move(self, forces: Float[np.ndarray, " dofs"], coupling: LowRankStiffness) -> Float[np.ndarray, " dofs"] | None:
-        """How x moves under forces [N] and springs that may go slack or taut on the way; None if that is not found.
+        """Displacement of x under forces [N] and springs that can become slack or taut; None if no solution is found.
 
         Args:
-            forces: on the body, those of the springs left out.
-            coupling: the springs, with their law and their elongations as they are.
+            forces: forces on the body without those of the springs [N].
+            coupling: the springs, with their law and their current elongations.
         """
         assert coupling.law is not None
         free = self.factors.reduce(forces)

@@ -128,7 +128,7 @@ class SupernodalFactors:
     """L and S of one matrix.
 
     Attributes:
-        singular: whether a pivot was too small.
+        singular: True if a pivot was too small.
         negative: number of negative pivots.
     """
 

@@ -1,4 +1,4 @@
-"""What a factorisation will look like, from the pattern alone: elimination tree, supernodes, fronts.
+"""Symbolic factorisation, from the sparsity pattern alone: elimination tree, supernodes, fronts.
 
 The elimination tree (Liu 1990) says which column first needs which: the parent of a node is the first of its neighbours
 to be eliminated after it, fill-in counted. Nodes in a chain whose columns have the same rows are a supernode,
@@ -28,11 +28,11 @@ class EliminationTree(NamedTuple):
 
     Attributes:
         order: nodes in the order of their elimination.
-        first: place of the first node of each supernode, and the number of nodes, (supernodes + 1,).
-        parent: of each supernode; -1 at a root.
-        starts: where the rows of each supernode begin, (supernodes + 1,).
-        rows: places of the nodes below each supernode, in rising order.
-        seconds: modelled time of a factorisation.
+        first: position of the first node of each supernode, followed by the number of nodes, (supernodes + 1,).
+        parent: parent of each supernode; -1 for a root.
+        starts: start of the rows of each supernode, (supernodes + 1,).
+        rows: positions of the nodes below each supernode, in rising order.
+        seconds: modelled time of a factorisation [s].
     """
 
     order: np.ndarray

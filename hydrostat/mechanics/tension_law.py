@@ -18,8 +18,8 @@ class TensionLaw:
     All is a row per cable.
 
     Attributes:
-        stiffness: k [N/m], the thesis's 2K.
-        smoothing: eps [m].
+        stiffness: stiffness k [N/m] (2K in Chang 2018).
+        smoothing: smoothing length eps [m].
     """
 
     stiffness: Vector

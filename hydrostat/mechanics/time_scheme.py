@@ -15,7 +15,7 @@ class TimeScheme:
 
     Attributes:
         table: rows a_i0 ... a_ii.
-        order: of convergence with the step.
+        order: order of convergence in the step length.
     """
 
     table: tuple[tuple[float, ...], ...]

@@ -14,9 +14,9 @@ class ViaPointTurns:
 
     Attributes:
         stencils: nodes of the segments before, then of those after, (2, corners of cables, nodes of a segment).
-        weights: signed, of those nodes.
-        offsets: what points fixed in the world add to the segments [m].
-        points: at which point of friction a corner is; a sheath is one point with two corners, its ends.
+        weights: signed weights of those nodes.
+        offsets: contribution of points fixed in the world to the segments [m].
+        points: index of the friction point that a corner belongs to; a sheath is one point with two corners, its ends.
     """
 
     stencils: Int[np.ndarray, "2 turns corners"]
@@ -25,7 +25,7 @@ class ViaPointTurns:
     points: Int[np.ndarray, " turns"]
 
     def angles(self, nodes: Nodes) -> Float[np.ndarray, " turns"]:
-        """How far a cable turns at each corner [rad], 0 to pi."""
+        """Turning angle of the cable at each corner [rad], 0 to pi."""
         before, after = self._directions(nodes)[0]
         return 2 * np.arctan2(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1))
 

@@ -81,11 +81,11 @@ class MaxwellBranches:
         return len(self.times)
 
     def settled(self, nodes: Nodes) -> Metrics:
-        """All branches relaxed with the body at `nodes`."""
+        """Return the metrics of fully relaxed branches with the body at `nodes`."""
         return np.repeat(self._inverse(nodes)[None], len(self), axis=0)
 
     def stored(self, metrics: Metrics, nodes: Nodes) -> float:
-        """What the springs hold [J]."""
+        """Elastic energy stored in the springs of all branches [J]."""
         total = 0.0
         gradients = self._body.deformation_gradients(nodes) if self.times.any() else np.zeros(0)
         for metric, viscosity, time in zip(metrics, self.viscosities, self.times, strict=True):

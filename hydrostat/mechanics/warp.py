@@ -11,7 +11,7 @@ from hydrostat.mechanics.energy import Stencils, element_groups
 from hydrostat.mechanics.factorisation import Analysis
 
 Bend = Callable[[Nodes, Nodes], Nodes]
-"""Where unknowns go when they make a step [m]."""
+"""Map from the unknowns and a step to the unknowns after the step [m]."""
 
 
 class Warp:
@@ -47,7 +47,7 @@ class Warp:
         self._groups = element_groups(stencils, shape_gradients, volumes)
 
     def __call__(self, nodes: Nodes, step: Nodes) -> Nodes:
-        """Where the nodes go if each element follows its own spin and stretch [m]."""
+        """Return the nodes after a step in which each element follows its own spin and stretch [m]."""
         right = np.zeros_like(nodes)
         native.turn(nodes, step, *self._groups, right)
         return nodes + (step + self._factors.solve(right))

@@ -1,4 +1,4 @@
-"""What a robot is: frozen records, checked when made, and the robot.toml they live in."""
+"""Robot model: frozen records, checked when created, and the robot.toml that stores them."""
 
 from typing import TYPE_CHECKING
 

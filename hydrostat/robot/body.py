@@ -46,17 +46,17 @@ class Body:
     Raises InputError: a thickness that is missing or too much, a length out of its range, or an unknown name.
     """
 
-    source: Source  # what the file holds
-    file: str  # its name in the robot's folder
-    content: bytes = field(repr=False)  # its bytes, so that a robot can be saved anywhere
-    material: Material  # what it is made of
+    source: Source  # kind of content of the file
+    file: str  # name of the file in the robot's folder
+    content: bytes = field(repr=False)  # bytes of the file, so that a robot can be saved anywhere
+    material: Material  # material of the body
     size: float | None = None  # longest side of the bounding box [m]; None: as the file says
     element_size: float | None = None  # length of a mesh edge [m]; None for a ready mesh
-    thickness: float | None = None  # of a flat body [m]; None in space
-    volume: Volume = Volume.ELEMENT  # how its change of volume is measured
-    inner: Inner = Inner.HOLES  # what shapes within the outer line of a drawing are
+    thickness: float | None = None  # thickness of a flat body [m]; None in space
+    volume: Volume = Volume.ELEMENT  # measure of volume change
+    inner: Inner = Inner.HOLES  # meaning of shapes within the outer line of a drawing
     mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
-    outline: Outline | None = field(default=None, compare=False, repr=False)  # of a flat body that was drawn
+    outline: Outline | None = field(default=None, compare=False, repr=False)  # outline of a flat drawn body
     marks: tuple[Float[np.ndarray, "_ 2"], ...] = field(
         default=(), compare=False, repr=False
     )  # lines drawn on a flat body [m]
@@ -104,12 +104,12 @@ class Body:
 
     @cached_property
     def mark_anchors(self) -> tuple[Anchors, ...]:
-        """What holds each line that is drawn on the body."""
+        """Nodes and weights that hold each line drawn on the body."""
         return tuple(locate(self.mesh, line) for line in self.marks)
 
     @cached_property
     def measured_thickness(self) -> Thickness:
-        """How thick the body is, straight in from each facet of its boundary."""
+        """Thickness of the body along the inward normal of each facet of its boundary."""
         return measure_thickness(self.mesh)
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:

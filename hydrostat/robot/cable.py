@@ -26,19 +26,19 @@ LARGEST_FRICTION = 2.0  # no coefficient of friction is larger: one half turn wo
 
 @dataclass(frozen=True, kw_only=True)
 class Cable:
-    """A cable (tendon); without friction it has one tension along its run.
+    """Cable (tendon); without friction its tension is constant along its length.
 
     Attributes:
         winch: name of the winch that pulls it.
         points: via points in the rest pose [m]; the first at the winch, the last the stopper.
-        stiffness: of the whole cable when taut [N/m] (k = 2K of the thesis).
-        smoothing: half the elongation over which it becomes taut [m] (its eps).
-        slack: how much the winch takes in before it begins to be taut [m].
+        stiffness: stiffness of the whole cable when taut [N/m] (2K in Chang 2018).
+        smoothing: half the elongation over which the cable becomes taut [m] (eps in Chang 2018).
+        slack: contraction at which the cable starts to become taut [m].
         sheathed: pairs (i, j) of point indices between which it runs in a sheath of fixed length.
-        friction: coefficient mu at the via points: where it bends by an angle, its tension differs between the two
-            sides by at most a factor exp(mu * angle) (capstan).
-        spool_radius: of its own step on the shaft of its winch [m]; None: that of the winch. It takes in as much more
-            than the winch's contraction as this radius is larger.
+        friction: friction coefficient mu at the via points: where the cable bends by an angle, its tension differs
+            between the two sides by at most a factor exp(mu * angle) (capstan).
+        spool_radius: radius of the cable's own step on the shaft of its winch [m]; None: that of the winch. The cable's
+            contraction is that of the winch times the ratio of both radii.
         name: unique in the robot; a `Robot` gives one to a cable that has none.
 
     Raises:
@@ -109,7 +109,7 @@ class Cable:
 
 
 def name_cables(cables: Iterable[Cable]) -> tuple[Cable, ...]:
-    """The same cables, each with a name: its own, or its winch's and which of its cables it is, such as "left 2".
+    """Return the same cables, each with a name: its own, or its winch's name and its number there, such as "left 2".
 
     A name that is taken is not given: counting goes on from there.
     """

@@ -1,4 +1,4 @@
-"""What the records check of numbers, points and names; each complaint begins with its field, which the reader seeks."""
+"""Checks of numbers, points and names in records; each message begins with the field, which the reader looks up."""
 
 import math
 import unicodedata
@@ -68,6 +68,6 @@ def check_name(name: str) -> str:
 
 
 def _is_word(letter: str) -> bool:
-    """Letters, the marks that many scripts write with them, and digits."""
+    """Return True for a letter, a combining mark, as in many scripts, or a digit."""
     category = unicodedata.category(letter)
     return category[0] in "LM" or category == "Nd"

@@ -18,9 +18,9 @@ class ClosedMesh:
     """A closed surface in space and the file that it came from.
 
     Attributes:
-        file: its name.
-        content: of the file.
-        surface: as read; things with equal files are equal.
+        file: name of the file.
+        content: bytes of the file.
+        surface: surface as read; objects with equal files are equal.
     """
 
     file: str
@@ -29,11 +29,11 @@ class ClosedMesh:
 
     @cached_property
     def shell(self) -> Shell:
-        """The surface, asked how far away points are."""
+        """Surface for distance queries."""
         return Shell(self.surface.vertices, self.surface.triangles)
 
     def moved(self, turn: Points, shift: Vector) -> "ClosedMesh":
-        """The same thing with every point x at turn x + shift [m]."""
+        """Return the same object with every point x at turn x + shift [m]."""
         surface = Surface(self.surface.vertices @ turn.T + shift, self.surface.triangles)
         return replace(self, surface=surface)
 

@@ -26,11 +26,11 @@ DISTANCE = 0.005
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """A body that feels itself, and obstacles, before they touch.
+    """Self-contact and obstacle contact by a barrier potential.
 
     Attributes:
-        distance: at which parts begin to push one another off [m]; None: 1/200 of the size of the body.
-        friction: Coulomb's coefficient between parts of the body, and between it and obstacles that state none.
+        distance: distance at which contact forces start [m]; None: 1/200 of the size of the body.
+        friction: Coulomb friction coefficient between parts of the body, and between it and obstacles that state none.
 
     Raises:
         InputError: a distance or a friction that cannot be.
@@ -53,7 +53,7 @@ def check_friction(friction: float) -> None:
 
 
 class ObstacleShape(StrEnum):
-    """What an obstacle is."""
+    """Shape of an obstacle."""
 
     PLANE = "plane"  # all behind `at`, against `normal`
     SPHERE = "sphere"  # about `at`; a disc in the plane
@@ -65,20 +65,21 @@ class ObstacleShape(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Obstacle:
-    """A rigid thing beside the body: it stands still, moves freely if it has a mass, or in time along a path.
+    """Rigid object next to the body: static, free to move if it has a mass, or moving along a path in time.
 
     Attributes:
-        name: of it.
-        shape: what it is.
-        at: a point of the plane, the middle of a sphere, one end of a capsule or cylinder, one corner of a box [m].
-        to: the other end or corner [m]; only where there is one.
-        radius: of a sphere, capsule or cylinder [m].
-        normal: out of a plane, of any length.
-        friction: Coulomb's coefficient; None: that of the contact of the body.
+        name: name of the obstacle.
+        shape: shape of the obstacle.
+        at: point of a plane, center of a sphere, one end of a capsule or cylinder, one corner of a box [m].
+        to: other end or corner [m]; only for shapes that have one.
+        radius: radius of a sphere, capsule or cylinder [m].
+        normal: outward normal of a plane, of any length.
+        friction: Coulomb friction coefficient; None: that of the body's contact.
         mesh: closed surface, moved by `at`.
-        mass: of a thing that moves as it is pushed and pulled [kg], spread evenly; None: it stands still.
-        path: keyframes, instants [s] and where `at` is then [m]; it begins where it stands, goes evenly from one to the
-            next without turning, and stays at the last. Only dynamics knows time; else it stands still.
+        mass: mass of an object that moves under forces [kg], evenly distributed; None: it is static.
+        path: keyframes: times [s] and the position of `at` then [m]. The motion starts at `at`, is linear between
+            keyframes without rotation, and ends at the last one. Only dynamics uses it; in statics the obstacle is
+            static.
 
     Raises:
         InputError: a key that is missing or does not belong to the shape, or a wrong value.
@@ -157,13 +158,13 @@ class Obstacle:
         return _FIELDS[ObstacleShape(self.shape)](self)
 
     def shift(self, instant: float) -> Vector:
-        """How far along its path it has come by an instant of a motion [m]."""
+        """Displacement along its path at an instant of a motion [m]."""
         times = [0.0, *(time for time, _ in self.path)]
         places = np.array([self.at, *(place for _, place in self.path)])
         return np.array([np.interp(instant, times, column) for column in places.T]) - self.at
 
     def frame(self) -> tuple[Vector, Points]:
-        """Where its middle is [m], and its axes, a row for each: the first along it, if it is long."""
+        """Center [m] and axes, a row for each; the first is the longitudinal axis of a long obstacle."""
         at, dim = np.array(self.at), len(self.at)
         if self.mesh is not None:
             _, middle, products = self.mesh.masses()
@@ -179,7 +180,7 @@ class Obstacle:
         return at + 0.5 * span, axes
 
     def centred(self) -> "Obstacle":
-        """The same thing as it is in its own frame."""
+        """Return the same obstacle in its own frame."""
         place, axes = self.frame()
         at, to = (
             None if end is None else tuple((axes @ (np.array(end) - place)).tolist()) for end in (self.at, self.to)
@@ -190,7 +191,7 @@ class Obstacle:
         return replace(self, at=at or (), to=to)
 
     def moved(self, place: Vector, axes: Points) -> "Obstacle":
-        """The same thing with its middle at a place [m], turned to these axes; a box stays along those of the world."""
+        """Return the same obstacle with its center at a position [m] and these axes; a box stays axis-aligned."""
         middle, before = self.frame()
         turn = np.eye(len(self.at)) if self.shape is ObstacleShape.BOX else axes.T @ before
         if self.mesh is not None:
@@ -249,7 +250,7 @@ def _round_moments(sphere: Obstacle) -> Vector:
 
 
 def _rod_moments(rod: Obstacle) -> Vector:
-    """Of a cylinder, or of a capsule: its straight part and its two round ends."""
+    """Second moments per mass of a cylinder or a capsule: its straight part and its two round ends [m^2]."""
     dim, r, h = len(rod.at), rod.radius or 0.0, float(np.linalg.norm(np.subtract(rod.to or (), rod.at)))
     straight = np.array([h**2 / 12, *([r**2 / 3] if dim == 2 else [r**2 / 4] * 2)])
     if rod.shape is ObstacleShape.CYLINDER:

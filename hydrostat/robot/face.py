@@ -4,7 +4,7 @@ from enum import StrEnum
 
 
 class Face(StrEnum):
-    """Where the cables of a flat robot run once it is filled."""
+    """Side of a flat robot on which its cables run once it is stuffed."""
 
     FRONT = "front"  # sewn on the panel that is looked at
     BACK = "back"  # on the other one
@@ -23,7 +23,7 @@ class Face(StrEnum):
 
     @property
     def flat(self) -> bool:
-        """Whether cables there keep a body in its plane, but for fractions of a millimetre (decision 0029)."""
+        """True if cables there keep a body in its plane, up to fractions of a millimetre (decision 0029)."""
         return self in (Face.PAIRS, Face.MIDDLE)
 
 

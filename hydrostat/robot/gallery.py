@@ -7,11 +7,11 @@ from typing import TypeGuard
 from hydrostat.errors import InputError
 
 GALLERY = "gallery:"
-"""What stands before the name of a gallery robot, in place of a folder."""
+"""Prefix of the name of a gallery robot, instead of a folder."""
 
 
 def is_of_gallery(source: object) -> TypeGuard[str]:
-    """Whether a source names a robot of the gallery, such as "gallery:starfish"."""
+    """Return True if a source names a robot of the gallery, such as "gallery:starfish"."""
     return isinstance(source, str) and source.startswith(GALLERY)
 
 

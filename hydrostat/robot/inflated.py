@@ -99,7 +99,7 @@ def _raised(place: Point) -> Point:
 
 
 def _pin(pin: Pin, thickness: float) -> Pin:
-    """All of the body over what a pin holds in the plane."""
+    """Box in space that holds all of the body above and below a pin in the plane."""
     if pin.box is not None:
         low, high = np.min(pin.box, axis=0), np.max(pin.box, axis=0)
     else:

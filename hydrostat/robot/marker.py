@@ -9,11 +9,11 @@ from hydrostat.robot.checks import Point, check_point
 
 @dataclass(frozen=True, kw_only=True)
 class Marker:
-    """A named point stuck to the body.
+    """Named point that is tracked on the body.
 
     Attributes:
-        name: unique in the robot.
-        at: place in the rest pose [m].
+        name: name, unique in the robot.
+        at: position in the rest pose [m].
     """
 
     name: str
@@ -27,11 +27,11 @@ class Marker:
 
 @dataclass(frozen=True, kw_only=True)
 class PoseTarget:
-    """Targets for some markers.
+    """Target positions for some markers.
 
     Attributes:
-        name: unique in the robot.
-        targets: place for each named marker [m].
+        name: name, unique in the robot.
+        targets: target position of each named marker [m].
     """
 
     name: str

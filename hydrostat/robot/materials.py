@@ -32,7 +32,7 @@ class Relaxation:
     """
 
     modulus: float  # shear modulus of the branch [Pa]
-    time: float  # after which its stress has fallen to 1/e [s]
+    time: float  # relaxation time, after which its stress has fallen to 1/e [s]
 
     def __post_init__(self) -> None:
         check_positive("modulus", self.modulus, "Pa")
@@ -47,14 +47,14 @@ class Material:
         young: Young's modulus [Pa].
         poisson: Poisson's ratio.
         density: mass density [kg/m^3].
-        viscosity: shear viscosity of a dashpot beside the elastic material (Kelvin-Voigt) [Pa s].
-        relaxation: Maxwell branches beside the elastic material, together a Prony series.
-        largest_stretch: longest length over rest length for which the numbers are believed; None: unknown.
-        largest_squeeze: share of its length by which it can be squeezed before the numbers are of no use, for a foam
-            because its walls touch; None: unknown.
-        name: name in the table, empty for a material given by its numbers.
-        source: where the numbers come from.
-        note: what they do not say, and who disagrees.
+        viscosity: shear viscosity of a dashpot parallel to the elastic material (Kelvin-Voigt) [Pa s].
+        relaxation: Maxwell branches parallel to the elastic material, together a Prony series.
+        largest_stretch: maximum stretch (length / rest length) for which the values are valid; None: unknown.
+        largest_squeeze: maximum compression, as a share of the length, for which the values are valid, for a foam until
+            its walls touch; None: unknown.
+        name: name in the material table; empty for a material given by its values.
+        source: source of the values.
+        note: limits of the values, and sources that disagree.
 
     Raises:
         InputError: a number out of its range.
@@ -93,7 +93,7 @@ class Material:
 
     @property
     def elastic(self) -> Self:
-        """The same material without its viscosity and relaxation: what it settles to."""
+        """Return the same material without viscosity and relaxation: its long-term behavior."""
         return replace(self, viscosity=0.0, relaxation=())
 
     @property

@@ -32,8 +32,8 @@ class TomlBlock:
     """One table with its sub-tables, or what stands before the first."""
 
     name: str  # first part of its key; "" for what stands before the first table
-    whole: bool = True  # whether it begins with the table itself and not with a sub-table
-    free: str = ""  # what stands before it, apart: blank lines, and comments with a blank line after them
+    whole: bool = True  # True if it begins with the table itself, not with a sub-table
+    free: str = ""  # detached text before it: blank lines, and comments followed by a blank line
     lead: str = ""  # comments directly above its header
     text: str = ""  # from its header to the last line of its own
 
@@ -73,7 +73,7 @@ def _tokens(text: str) -> Iterator[tuple[int, str, int]]:
 
 
 def _headers(text: str) -> Iterator[tuple[int, str, bool]]:
-    """Find where each header's line begins, the first part of its key, and whether that is all of it."""
+    """Find the start of each header's line, the first part of its key, and whether that is the whole key."""
     fresh, line = True, 0
     for place, token, depth in _tokens(text):
         if token == "\n":

@@ -18,10 +18,10 @@ class Pin:
     """Boundary condition: holds every node within `radius` of `at`, or in a box; if none, the point itself.
 
     Attributes:
-        at: middle of the pin [m]; None with `box`.
-        radius: reach [m].
+        at: center of the pin [m]; None with `box`.
+        radius: radius within which nodes are held [m].
         box: two opposite corners [m].
-        stiffness: of the whole pin [N/m], shared equally by all that it holds.
+        stiffness: stiffness of the whole pin [N/m], shared equally by all nodes that it holds.
     """
 
     at: Point | None = None
@@ -54,7 +54,7 @@ class Pin:
         return anchors
 
     def holds(self, mesh: Mesh) -> np.ndarray:
-        """Tell which nodes lie in the pin, (nodes,) booleans."""
+        """Mask of the nodes inside the pin, (nodes,)."""
         if self.box is not None:
             low, high = np.min(self.box, axis=0), np.max(self.box, axis=0)
             return ((mesh.nodes >= low) & (mesh.nodes <= high)).all(axis=1)

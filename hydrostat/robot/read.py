@@ -45,10 +45,10 @@ def load_robot(path: str | Path) -> Robot:
 
 
 class RobotReader(TablesFile):
-    """Turns the text of a robot.toml into records.
+    """Converter from the text of a robot.toml to records.
 
     Attributes:
-        unit: of its coordinates.
+        unit: length unit of the coordinates.
     """
 
     def __init__(self, file: Path, text: str) -> None:

@@ -34,21 +34,22 @@ LARGEST_STEP = 4.0
 
 @dataclass(frozen=True, kw_only=True)
 class Robot:
-    """A body with what holds it, pulls it and is tracked on it.
+    """Soft robot: body, pins, winches, cables, markers and target poses.
 
     Attributes:
-        name: of the robot.
-        body: the soft part.
-        pins: where it is held; together they must leave it no rigid motion. None: it lies on the ground, an obstacle.
-        winches: in the order of every array of contractions.
-        cables: in the order of every array of tensions; those without a name get one.
+        name: name of the robot.
+        body: soft body.
+        pins: boundary conditions; together they must exclude rigid motion. None: the robot lies on the ground, an
+            obstacle.
+        winches: winches in the order of every array of contractions.
+        cables: cables in the order of every array of tensions; a cable without a name gets one.
         markers: tracked points.
-        poses: by name.
-        length_unit: of the coordinates in its file.
+        poses: target poses by name.
+        length_unit: length unit of the coordinates in its file.
         gravity: acceleration along each axis of the body [m/s^2], or a word such as "-y"; None: weightless.
-        face: on which face of a flat body its cables run, or a word such as "pairs"; None: not said.
-        contact: how the body feels itself and obstacles; None: it passes through itself.
-        obstacles: rigid things beside the body.
+        face: side of a flat body on which its cables run, or a word such as "pairs"; None: unspecified.
+        contact: self-contact and obstacle contact; None: disabled, so the body passes through itself.
+        obstacles: rigid objects next to the body.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -138,11 +139,11 @@ class Robot:
         )
 
     def with_network(self, winches: Iterable[Winch], cables: Iterable[Cable]) -> Self:
-        """The same robot with other winches and cables."""
+        """Return the same robot with other winches and cables."""
         return replace(self, winches=tuple(winches), cables=tuple(cables))
 
     def with_material(self, material: Material | str | None = None, **changed: float) -> Self:
-        """The same robot of another material, its mesh kept.
+        """Return the same robot of another material, its mesh kept.
 
         Args:
             material: a `Material`, or the name of one in the table; that of the robot if left out.
@@ -163,7 +164,7 @@ class Robot:
         return replace(self, body=replace(self.body, material=known))
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         mesh = self.body.mesh
         parts = [plural(len(self.winches), "winch"), plural(len(self.cables), "cable")]
         return (
@@ -264,7 +265,7 @@ class Robot:
             )
 
     def _carries(self, obstacle: Obstacle) -> bool:
-        """Whether an obstacle is ground, on which the robot stays by its weight."""
+        """Return True if an obstacle is ground on which the robot's weight rests."""
         ground = self.gravity is not None and obstacle.shape is ObstacleShape.PLANE
         return ground and float(np.dot(obstacle.normal or (), self.gravity or ())) < 0
 

@@ -31,7 +31,7 @@ def side_name(cable: Cable, side: str) -> str:
 
 
 def face_words(robot: Robot) -> str:
-    """Where the cables of a flat robot run, such as "on the front"; empty for one in space or without cables."""
+    """Describe the side of a flat robot's cables, such as "on the front"; empty in space or without cables."""
     if robot.body.mesh.dim != 2 or not robot.cables:
         return ""
     return _UNSAID if robot.face is None else robot.face.words

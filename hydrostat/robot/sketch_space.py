@@ -29,9 +29,9 @@ SHORTEST, LONGEST = 0.002, 20.0  # bodies are as long [m]; what is not was proba
 class SurfaceSketch:
     """A robot from a surface, and how that was healed."""
 
-    robot: Robot  # its body's file is the one that came if that was clean, else the healed surface as PLY
-    before: Surface  # the surface as it came
-    healing: Healing  # of it
+    robot: Robot  # robot whose body file is the input if that was clean, else the healed surface as PLY
+    before: Surface  # surface before healing
+    healing: Healing  # report of the healing
 
 
 def sketch_surface(
@@ -196,8 +196,8 @@ def _hold(mesh: Mesh) -> Pin:
 class _Limb:
     """The longest way through a body from where it is held."""
 
-    away: Vector  # of each node from there, along edges, as a share of the longest way
-    path: Int[np.ndarray, " path"]  # nodes on the longest way, from its end
+    away: Vector  # distance of each node from there along edges, as a share of the longest one
+    path: Int[np.ndarray, " path"]  # nodes on the longest path, from its end
 
     def part(self, mesh: Mesh, share: float) -> Bool[np.ndarray, " elements"]:
         """The elements across the limb at a share of its length: those that hang together with the way there."""

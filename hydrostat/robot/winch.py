@@ -20,14 +20,14 @@ class Mount(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Winch:
-    """All cables of a winch share its contraction, on the spool of the winch or on steps of their own.
+    """Winch whose cables share its contraction, on its spool or on steps of their own.
 
     Attributes:
-        name: unique in the robot.
-        at: place in the rest pose [m].
-        spool_radius: at which contraction, travel and release are measured [m].
-        travel: the most cable it can take in [m].
-        release: the most cable it can let out beyond the rest length [m].
+        name: name, unique in the robot.
+        at: position in the rest pose [m].
+        spool_radius: spool radius at which contraction, travel and release are measured [m].
+        travel: maximum contraction [m].
+        release: maximum cable length let out beyond the rest length [m].
         mount: `Mount.WORLD` (or its text) fixes `at` in space: there its cables begin.
 
     Raises:

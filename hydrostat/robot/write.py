@@ -83,7 +83,7 @@ def robot_hash(robot: Robot) -> str:
 
 
 def _files(robot: Robot) -> dict[str, bytes]:
-    """What lies beside robot.toml: the file of the body, then those of obstacles."""
+    """Return the files next to robot.toml: the file of the body, then those of obstacles."""
     files = {robot.body.file: robot.body.content}
     return files | {each.mesh.file: each.mesh.content for each in robot.obstacles if each.mesh is not None}
 

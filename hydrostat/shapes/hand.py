@@ -83,8 +83,8 @@ class HandPosture:
     # how far each knuckle lies towards the palm from that of the middle finger [m]
     arch: tuple[float, float, float, float]
     thumb: tuple[float, float, float]  # direction of the metacarpal of the thumb
-    thumb_pad: tuple[float, float, float]  # about the direction that the pad of the thumb faces
-    thumb_bends: tuple[float, float]  # of its two outer joints towards its pad [degrees]
+    thumb_pad: tuple[float, float, float]  # approximate direction that the pad of the thumb faces
+    thumb_bends: tuple[float, float]  # bend of its two outer joints towards its pad [degrees]
 
 
 CUPPING = HandPosture(

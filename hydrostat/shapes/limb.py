@@ -22,9 +22,9 @@ class Limb:
     spine: Float[np.ndarray, "stations 3"]  # stations from the root to the tip [m], (stations, 3)
     # unit vector across the limb at each station; back = direction of the spine x side
     sides: Float[np.ndarray, "stations 3"]
-    breadths: Vector  # from the spine to the side [m], (stations,)
-    backs: Vector  # from the spine to the back [m]
-    bellies: Vector  # from the spine to the belly, the side to which the limb bends [m]
+    breadths: Vector  # distance from the spine to the side [m], (stations,)
+    backs: Vector  # distance from the spine to the back [m]
+    bellies: Vector  # distance from the spine to the belly, the side to which the limb bends [m]
     caps: tuple[float, float]  # length of the rounded ends at root and tip [m]
     joints: Float[np.ndarray, "joints 3"]  # landmarks along the limb from root to tip [m], (joints, 3)
 
@@ -177,9 +177,9 @@ def _smooth(corners: Float[np.ndarray, "joints 3"], bend: float) -> Float[np.nda
 class Shape:
     """A body in space."""
 
-    field: Field  # about how far points are outside [m], negative inside
+    field: Field  # approximate signed distance of points [m], negative inside
     box: Float[np.ndarray, "2 3"]  # lowest and highest coordinates that hold the whole body [m]
-    limbs: Mapping[str, Limb]  # by name; their landmarks are the joints
+    limbs: Mapping[str, Limb]  # limbs by name; their landmarks are the joints
 
     def surface(self, spacing: float) -> Surface:
         """The closed surface, drawn on a grid [m]; details smaller than the spacing are lost.

@@ -40,19 +40,19 @@ class BodyPhysics:
     Statics has no time, so obstacles with a path stand still there; physics in time have them among the unknowns.
 
     Attributes:
-        elastic: the body's resistance to being deformed; to a change of volume too, unless patches measure that.
-        pins: what holds it, a support for each pin.
-        assembly: all of its energies together; they read no control.
-        material: of the body.
-        thickness: of a flat body [m]; None in space.
-        masses: of the nodes [kg], (nodes,): each element shares its own evenly among its corners.
-        inertias: the masses that the unknowns have in motion [kg], (rows,).
-        carriages: where the unknowns of obstacles that move are, by their number among the obstacles.
-        guides: energies of what keeps obstacles on their paths, by their numbers, and the obstacle.
-        own_contact: energy of the contact of the body with itself, by its number among all energies of a simulation;
-            None if it does not feel itself.
-        obstacles: energies of the obstacles, by their numbers.
-        begin: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the obstacles that move.
+        elastic: elastic energy of the body; includes the resistance to volume change, unless patches measure that.
+        pins: energy of the pins, one support for each pin.
+        assembly: sum of all energies of the body; they read no control.
+        material: material of the body.
+        thickness: thickness of a flat body [m]; None in space.
+        masses: lumped mass of each node [kg], (nodes,): each element shares its mass evenly among its corners.
+        inertias: mass of each unknown in motion [kg], (rows,).
+        carriages: rows of the unknowns of moving obstacles, by index of the obstacle.
+        guides: index of each energy that keeps an obstacle on its path, with the obstacle.
+        own_contact: index of the self-contact energy among all energies of a simulation; None if self-contact is
+            disabled.
+        obstacles: indices of the energies of the obstacles.
+        begin: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the moving obstacles.
     """
 
     def __init__(self, robot: Robot, *, in_time: bool = False) -> None:
@@ -98,11 +98,11 @@ class BodyPhysics:
 
     @property
     def node_count(self) -> int | None:
-        """How many of the unknowns are nodes of the body; None if all are."""
+        """Number of unknowns that are nodes of the body; None if all are."""
         return len(self._given[0].mesh.nodes) if self.carriages else None
 
     def fits(self, robot: Robot) -> bool:
-        """Tell whether this is the physics of the body of a robot: the same body, equal pins, gravity, contact."""
+        """Return True if this is the physics of a robot's body: same body, equal pins, gravity and contact."""
         body, *others = self._given
         return robot.body is body and [robot.pins, robot.gravity, robot.contact, robot.obstacles] == others
 
@@ -148,7 +148,7 @@ class BodyPhysics:
             )
 
     def _met(self, robot: Robot, obstacle: Obstacle, carriage: RigidBodyDofs | None) -> list[Energy]:
-        """What keeps the body from passing through an obstacle; and the obstacle rigid, or on its path, if it moves."""
+        """Return the contact energy of an obstacle and the energy that keeps a moving one rigid or on its path."""
         field = (obstacle if carriage is None or obstacle.path else obstacle.centred()).field()
         friction = robot.friction_of(obstacle)
         met = ObstacleEnergy(robot.body.mesh, field, **_felt(robot), friction=friction, carriage=carriage)
@@ -185,7 +185,7 @@ class BodyPhysics:
         return self.assembly.with_active_terms(self.rest_unknowns).stiffness(self.rest_unknowns, np.zeros(0)).factors
 
     def round_off(self, stiffest: float = 0.0) -> RoundOff:
-        """What the rounding errors of the body's own forces hide, and those of springs up to `stiffest` [N/m]."""
+        """Rounding errors of the body's own forces, and of springs up to `stiffest` [N/m]."""
         scale, reach, springs, size = self._scales
         force = 1e-14 * scale / size * (reach / size) + 2e-16 * max(springs, stiffest) * reach
         return RoundOff(force=force, energy=1e-15 * scale)
@@ -204,7 +204,7 @@ class BodyPhysics:
 
 
 def _felt(robot: Robot) -> dict[str, Any]:
-    """How what touches the body is felt."""
+    """Return the contact parameters of the body's surface."""
     body = robot.body
     return {"distance": robot.contact_distance, "young": body.material.young, "thickness": body.thickness}
 

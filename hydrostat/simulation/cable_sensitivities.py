@@ -15,11 +15,12 @@ class RigSlopes:
     """Sensitivities of some numbers: a row for each coordinate of each marker asked for, then one for each tension.
 
     Attributes:
-        contractions: by the contraction of each winch [m/m, N/m].
-        slack: by the slack of each cable [m/m, N/m].
-        ratios: by the spool ratio of each cable [m, N].
-        points: by the rest place of each point of each cable, cable after cable; as for `Sensitivity.routes`.
-        fields: the adjoint field of each row, H^-1 of its slope by the nodes, (rows, nodes, dim).
+        contractions: derivatives by the contraction of each winch [m/m, N/m].
+        slack: derivatives by the slack of each cable [m/m, N/m].
+        ratios: derivatives by the spool ratio of each cable [m, N].
+        points: derivatives by the rest position of each point of each cable, cable after cable, as in
+            `Sensitivity.routes`.
+        fields: adjoint field of each row: H^-1 times its gradient by the nodes, (rows, nodes, dim).
     """
 
     contractions: Float[np.ndarray, "rows winches"]

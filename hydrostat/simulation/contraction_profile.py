@@ -26,9 +26,9 @@ class ContractionProfile:
     Before the first time and after the last the contractions stand still.
 
     Attributes:
-        times: rising [s].
-        values: contractions at these times [m], a row a time, in winch order.
-        gentle: 3 s^2 - 2 s^3 in place of a line.
+        times: times in rising order [s].
+        values: contractions at these times [m], a row for each time, in winch order.
+        gentle: interpolate by 3 s^2 - 2 s^3 instead of linearly.
 
     Raises:
         InputError: times that do not rise, numbers that are not finite, or rows that are not one for each time.
@@ -89,9 +89,9 @@ class ProfileTable:
     The studio, `hydrostat trajectory`, `hydrostat play` and `hydrostat simulate --play` write and read this table.
 
     Attributes:
-        name: of its file.
-        profile: what it says, along lines from row to row.
-        lines: of the file, in which its rows stand.
+        name: name of the file.
+        profile: contractions in the file, linear from row to row.
+        lines: line number of each row in the file.
     """
 
     name: str
@@ -103,9 +103,9 @@ class ProfileTable:
         """Read the bytes of a file.
 
         Args:
-            content: of the file.
-            robot: whose winches it names; those that it does not name take in nothing.
-            name: of the file, for messages.
+            content: bytes of the file.
+            robot: robot whose winches the file names; winches that it omits do not contract.
+            name: name of the file, for messages.
 
         Raises:
             InputError: it is no such table; the text names the line, the column, and what is allowed.

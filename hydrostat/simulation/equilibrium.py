@@ -24,19 +24,19 @@ Contractions = Mapping[str, float] | Sequence[float] | Vector
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Equilibrium:
-    """An equilibrium.
+    """Static equilibrium of a robot at given contractions.
 
     Attributes:
-        contractions: cable taken in by each winch [m], in winch order.
+        contractions: contraction of each winch [m], in winch order.
         nodes: positions of the nodes [m].
         markers: position of each marker [m].
-        tensions: of each cable [N], in cable order.
+        tensions: tension of each cable [N], in cable order.
         energy: total energy [J].
-        result: how the solver ended: reason, residual [N], iterations, stability; and the factorised Hessian there.
-        history: what the physics remember of the way there: how much cable has slipped over each point with friction
-            until now, where obstacles with friction hold the skin [m]; empty without friction.
-        robot: whose pose it is.
-        carried: unknowns of obstacles that move [m]: place and axes of each; empty if none does.
+        result: solver result: stop reason, residual [N], iterations, stability and the factorised Hessian.
+        history: history variables of the physics: cable slip at each point with friction so far and the anchors of the
+            skin on obstacles with friction [m]; empty without friction.
+        robot: robot that is in this pose.
+        carried: unknowns of moving obstacles [m]: position and axes of each; empty if no obstacle moves.
     """
 
     contractions: Vector
@@ -51,9 +51,9 @@ class Equilibrium:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is to be minded of it, in words: winches beyond travel or release, a body that passes through itself.
+        """Warnings as texts: winches beyond travel or release, self-intersection of the body.
 
-        Also that it is no equilibrium, or a saddle, or buckled on the way there; empty where all is well.
+        Also a missing equilibrium, a saddle, or buckling on the way there. Empty if there is nothing to report.
         """
         told = []
         if not self.result.converged:
@@ -84,7 +84,7 @@ class Equilibrium:
         return draw_record("pose", self.robot, self, **options)
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         taken = [
             f"{winch.name} {1e3 * value:.4g} mm"
             for winch, value in zip(self.robot.winches, self.contractions, strict=True)
@@ -105,7 +105,7 @@ class Equilibrium:
 
     @property
     def is_unmodified(self) -> bool:
-        """Whether its nodes are the very ones that the solver found."""
+        """True if its nodes are the array that the solver returned, not a copy."""
         return self.result.nodes is (self.nodes if self.carried is None else self.nodes.base)
 
     def without_factors(self) -> "Equilibrium":
@@ -124,7 +124,7 @@ def beyond_travel(robot: Robot, contractions: Vector) -> list[str]:
 
 
 _HAIR = 1e-9
-"""What rounding may add to a contraction [m]."""
+"""Tolerance for rounding errors of a contraction [m]."""
 
 
 def largest_distance(one: Nodes, other: Nodes) -> float:

@@ -12,14 +12,14 @@ from hydrostat.simulation.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True)
 class FilledMotion:
-    """How far the markers of a filled robot are from those of its flat model, each the largest over all poses [m]."""
+    """Marker distances between a stuffed robot and its flat model, each the largest over all poses [m]."""
 
-    face: Face  # where its cables run
-    moved: float  # how far a marker goes in the flat model
-    out: float  # how far one comes out of the plane
-    aside: float  # how far one is from the flat model, as seen from the front
-    tension: float  # of a cable [N]
-    nodes: int  # of the mesh in space
+    face: Face  # side on which its cables run
+    moved: float  # marker displacement in the flat model [m]
+    out: float  # marker distance from the plane [m]
+    aside: float  # marker distance from the flat model within the plane [m]
+    tension: float  # largest cable tension [N]
+    nodes: int  # number of nodes of the 3D mesh
 
     def __str__(self) -> str:
         """Such as "0.4 mm out of plane, 10 mm in-plane deviation (flat model moves 57 mm)"."""
@@ -31,7 +31,7 @@ class FilledMotion:
 
 
 def quickly_filled(robot: Robot, poses: int) -> bool:
-    """Tell whether `filled_motion` of so many poses takes some seconds: of a flat body that was drawn, not too fine."""
+    """Return True if `filled_motion` of so many poses takes only seconds: a flat drawn body, not too fine."""
     body = robot.body
     if body.outline is None or body.thickness is None or not robot.cables or not poses:
         return False

@@ -13,12 +13,12 @@ from hydrostat.simulation.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactPatch:
-    """A patch of the body's skin that touches an obstacle, or two of its patches that touch each other.
+    """Patch of the body's surface that touches an obstacle, or pair of patches that touch each other.
 
     Attributes:
-        place: middle of the patch, weighted by force [m].
-        force: on the body there [N]; where the body touches itself on one of both sides, the other feels its opposite.
-        obstacle: name of what it touches; None: the body itself.
+        place: center of the patch, weighted by force [m].
+        force: force on the body there [N]. For self-contact: on one of both sides; the other has the opposite force.
+        obstacle: name of the touched obstacle; None for self-contact.
     """
 
     place: Vector
@@ -27,7 +27,7 @@ class ContactPatch:
 
     @property
     def strength(self) -> float:
-        """How hard it presses [N]."""
+        """Magnitude of the contact force [N]."""
         return float(np.linalg.norm(self.force))
 
 
@@ -57,7 +57,7 @@ def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPat
 
 
 def touch_words(found: Sequence[ContactPatch]) -> str:
-    """What touches what and how hard, in one sentence; empty where nothing touches."""
+    """Describe all contacts and their forces in one sentence; empty if nothing touches."""
     parts = []
     for name in dict.fromkeys(touch.obstacle for touch in found):
         own = [touch for touch in found if touch.obstacle == name]

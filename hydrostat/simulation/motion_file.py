@@ -20,15 +20,15 @@ from hydrostat.simulation.time.motion import Motion
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionTable:
-    """What is to be seen of a motion, a row an instant.
+    """Observable quantities of a motion, a row for each instant.
 
     Attributes:
-        times: [s].
-        contractions: of the winches [m].
-        markers: their positions [m].
-        tensions: of the cables [N].
-        energies: kinetic and potential [J].
-        things: where the middle of each obstacle that moves is [m], by name.
+        times: times [s].
+        contractions: contractions of the winches [m].
+        markers: marker positions [m].
+        tensions: cable tensions [N].
+        energies: kinetic and potential energy [J].
+        things: center of each moving obstacle [m], by name.
     """
 
     times: Vector

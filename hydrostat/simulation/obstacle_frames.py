@@ -1,4 +1,4 @@
-"""What meets a robot: forces on obstacles, and guides that move them."""
+"""Forces on obstacles, and guides that move them."""
 
 from collections.abc import Sequence
 from copy import copy
@@ -25,13 +25,7 @@ def obstacle_forces(simulation: "Simulation", pose: Equilibrium) -> Float[np.nda
 
 
 def with_replaced(simulation: "Simulation", old: Energy, new: Energy) -> "Simulation":
-    """The same physics with one of the energies given to it in another state, such as a guide that has moved.
-
-    Args:
-        simulation: made with `energies=[old, ...]`.
-        old: one of them.
-        new: what takes its place, on the same stencils.
-    """
+    """Return the same physics with one of its energies replaced by another state, such as a moved guide."""
     other = copy(simulation)
     for name in ("rest", "rest_stiffness", "path", "dynamics"):
         other.__dict__.pop(name, None)

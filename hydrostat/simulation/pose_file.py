@@ -16,9 +16,9 @@ from hydrostat.simulation.simulation import Simulation
 
 
 def pose_facts(robot: Robot, pose: Equilibrium) -> dict[str, Any]:
-    """What pose.json holds: SI units, contractions by winch, tensions in the order of the named cables.
+    """Return the contents of pose.json: SI units, contractions by winch, tensions in the order of the named cables.
 
-    Of each obstacle that moves it holds the place of its middle and its axes.
+    Each moving obstacle has its center and its axes.
     """
     things = {
         name: {"place": place.tolist(), "axes": axes.tolist()}

@@ -23,14 +23,15 @@ class RoutePoints:
     the nearest place of it, which moves only along the facet, the edge or not at all where it is a corner.
 
     Attributes:
-        places: in the rest shape, as asked for [m].
-        rests: where they are in it: at their places, but for those outside the body [m].
-        mesh: of the body.
-        anchors: what holds them.
-        world: which of them are fixed in space.
+        places: requested positions in the rest shape [m].
+        rests: positions in the rest shape at which they are held [m]: the requested ones, projected onto the body if
+            outside.
+        mesh: mesh of the body.
+        anchors: nodes and weights that hold the points.
+        world: mask of the points fixed in space.
         starts: first point of each bare segment, in the order of the terms of a `CableEnergy`.
-        cables: which cable each bare segment belongs to.
-        counts: how many points each cable has.
+        cables: index of the cable that each bare segment belongs to.
+        counts: number of points of each cable.
     """
 
     places: Points
@@ -51,7 +52,7 @@ class RoutePoints:
 
     @cached_property
     def projections(self) -> Float[np.ndarray, "points dim dim"]:
-        """How the place that holds a point moves with it: the identity inside the body.
+        """Derivative of the position that holds a point by the point: the identity inside the body.
 
         Outside it is the projection onto the plane or line of the corners that carry a weight.
         """
@@ -78,7 +79,7 @@ class RoutePoints:
         )
 
     def positions(self, nodes: Nodes) -> Points:
-        """Where the points are when the nodes are at `nodes` [m]."""
+        """Positions of the points [m] for given node positions [m]."""
         return np.where(self.world[:, None], self.places, self.anchors.positions(nodes))
 
     def values(self, field: Float[np.ndarray, "*rows nodes dim"]) -> Float[np.ndarray, "*rows points dim"]:

@@ -33,7 +33,7 @@ from hydrostat.simulation.time.motion import Motion
 
 
 class Simulation:
-    """Quasi-static equilibrium of a tendon-driven robot: where it rests when its winches take in cable.
+    """Quasi-static equilibrium of a tendon-driven robot at given contractions of its winches.
 
     Immutable, thread-safe and picklable: the factorized Hessian of a pose travels with the pose.
 
@@ -165,7 +165,7 @@ class Simulation:
         return solve_rows(self.robot, goals, row, jacobians=jacobians, nodes=nodes, threads=threads, cost=cost)
 
     def diagnose(self, pose: Equilibrium) -> tuple[str, ...]:
-        """Tell what kept a solve from an equilibrium: the cable that pulls hardest, an element next to flat."""
+        """Explain a solve without an equilibrium: the cable with the highest tension, an almost flat element."""
         forces = self.forces(pose.unknowns, pose.contractions).reshape(self.assembly.shape)[: len(pose.nodes)]
         return diagnose_failure(self.robot, self.cables, pose.nodes, pose.contractions, forces)
 
@@ -234,11 +234,11 @@ class Simulation:
     def response(
         self, pose: Equilibrium, forces: Float[np.ndarray, "dofs columns"]
     ) -> Float[np.ndarray, "dofs columns"]:
-        """How the nodes move under small forces at an equilibrium [m]: H u = f, by the full Hessian.
+        """Displacement of the nodes under small forces at an equilibrium [m]: H u = f, by the full Hessian.
 
         Args:
             pose: an equilibrium.
-            forces: on every degree of freedom [N], a column for each case.
+            forces: force on every degree of freedom [N], a column for each load case.
 
         Raises:
             InputError: physics that remember the way, such as cables with friction.
@@ -325,7 +325,7 @@ class Simulation:
 
     @cached_property
     def marker_anchors(self) -> Anchors:
-        """What holds the markers."""
+        """Nodes and weights that hold the markers."""
         mesh = self.robot.body.mesh
         return locate(mesh, np.array([marker.at for marker in self.robot.markers]).reshape(-1, mesh.dim))
 
@@ -367,7 +367,7 @@ class Simulation:
         return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
 
     def with_deadline(self, deadline: float) -> "Simulation":
-        """The same physics, all solves of which stop at a time of `time.monotonic` [s]; itself if that is infinite."""
+        """Return the same physics whose solves stop at a time of `time.monotonic` [s]; itself if that is infinite."""
         if np.isinf(deadline):
             return self
         other = copy(self)

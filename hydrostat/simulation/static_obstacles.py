@@ -7,7 +7,7 @@ from hydrostat.robot import Robot
 
 
 def without_contact_friction(robot: Robot) -> Robot:
-    """The same robot without friction of contact; itself where there is none."""
+    """Return the same robot without contact friction; itself if there is none."""
     rubs = robot.contact is not None and robot.contact.friction > 0
     if not rubs and not any(map(robot.friction_of, robot.obstacles)):
         return robot
@@ -33,5 +33,5 @@ def require_static_obstacles(robot: Robot, what: str) -> None:
 
 
 def rests_at_first(robot: Robot) -> bool:
-    """Tell whether statics can say where a robot is at first: pins hold it, and no obstacle is free to move."""
+    """Return True if statics determines the initial state: pins hold the robot, and no obstacle is free to move."""
     return bool(robot.pins) and all(obstacle.mass is None for obstacle in robot.obstacles)

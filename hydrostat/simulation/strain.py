@@ -40,11 +40,11 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
 
 @dataclass(frozen=True, eq=False)
 class _NodeOperators:
-    """What of a mesh does not change."""
+    """Operators of a mesh that do not depend on the pose."""
 
-    dim: int  # of the body
-    slopes: "csr_array"  # gives F of all elements, a row for each element and coordinate of rest, from the nodes
-    average: "csr_array"  # gives values of nodes from those of elements
+    dim: int  # space dimension
+    slopes: "csr_array"  # maps nodes to F of all elements, a row for each element and rest coordinate
+    average: "csr_array"  # maps values of elements to values of nodes
 
 
 @lru_cache(maxsize=2)
@@ -72,7 +72,7 @@ class _Stretch:
     Attributes:
         mean: a third of the trace of C.
         deviation: |dev C|^2, which is |dev B|^2 too.
-        volume: J.
+        volume: volume ratio J.
     """
 
     def __init__(self, grid: _NodeOperators, nodes: Nodes) -> None:

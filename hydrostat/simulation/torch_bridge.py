@@ -25,13 +25,13 @@ except ImportError:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TorchPose:
-    """An equilibrium whose float64 tensors know their derivatives; the same as in a `Equilibrium`.
+    """Equilibrium as float64 tensors that carry their derivatives; fields as in `Equilibrium`.
 
     Attributes:
-        nodes: positions of the nodes [m], (nodes, dim).
+        nodes: node positions [m], (nodes, dim).
         markers: position of each marker [m].
-        tensions: of each cable [N].
-        solved: the same without derivatives, to warm-start the next solve with.
+        tensions: tension of each cable [N].
+        solved: the same equilibrium without derivatives, to warm-start the next solve.
     """
 
     nodes: Tensor

@@ -16,7 +16,7 @@ class Cells:
     """Points and the simplices among the cells of a file."""
 
     points: Float[np.ndarray, "points 3"]  # places in the file's own unit
-    tetrahedra: Int[np.ndarray, "tetrahedra 4"]  # indices of four points each, as declared and thus perhaps wrong
+    tetrahedra: Int[np.ndarray, "tetrahedra 4"]  # indices of four points each, as declared, not yet checked
     triangles: Int[np.ndarray, "triangles 3"]  # indices of three points each
 
 
@@ -41,14 +41,14 @@ def damaged(name: str, what: str) -> InputError:
 
 
 class Cursor:
-    """Bytes of a file that are read from the front.
+    """Reader of the bytes of a file, from the front.
 
     Attributes:
-        content: all of it.
-        name: of the file, for errors.
-        at: where the next is read.
-        text: numbers are written as text, else as bytes.
-        order: of the bytes of numbers, "<" or ">".
+        content: content of the file.
+        name: name of the file, for errors.
+        at: position of the next read.
+        text: True if numbers are written as text, False for bytes.
+        order: byte order of numbers, "<" or ">".
     """
 
     def __init__(self, content: bytes, name: str) -> None:

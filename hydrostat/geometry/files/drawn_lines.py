@@ -21,7 +21,7 @@ from hydrostat.units import plural
 
 
 class Inner(StrEnum):
-    """What the shapes and open lines within the outer line of a drawing are."""
+    """Meaning of the shapes and open lines within the outer line of a drawing."""
 
     HOLES = "holes"  # closed shapes are holes through the body, open lines nothing
     DRAWN = "drawn"  # all of them are drawn on the body, such as eyes and a mouth

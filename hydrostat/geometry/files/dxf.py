@@ -123,7 +123,7 @@ class _ModelSpace:
     ignored: Counter[str] = field(default_factory=Counter)
 
     def lines(self) -> Iterator[tuple[Ring, bool]]:
-        """Every visible line as points in the drawing's units, and whether it closes itself."""
+        """Yield every visible line as points in the drawing's units, and whether it is closed."""
         from ezdxf.lldxf.const import DXFError
 
         try:
@@ -165,7 +165,7 @@ class _ModelSpace:
             raise OutlineError(f"{self.name}: blocks nested deeper than {_MOST_DEPTH}: explode the blocks")
 
     def _hidden(self, entity: Any) -> bool:
-        """Tell whether an entity or its layer is switched off."""
+        """Return True if an entity or its layer is switched off."""
         layers = self.document.layers
         layer = entity.dxf.get("layer", "0")
         off = layer in layers and (layers.get(layer).is_off() or layers.get(layer).is_frozen())
@@ -214,7 +214,7 @@ def _spline(entity: Any) -> Ring:
 
 
 def _closed(entity: Any, points: Ring) -> bool:
-    """Tell whether an entity returns to where it begins, by what it says of itself or by its points."""
+    """Return True if an entity is closed, by its own flag or by its points."""
     if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") and entity.is_closed:
         return True
     extent = float(np.ptp(points, axis=0).max())

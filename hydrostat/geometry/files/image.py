@@ -140,7 +140,7 @@ def _shade_told(found: ShadedPart, page: Page) -> str:
 
 
 def _body_level(seen: Contrast) -> tuple[float, bool]:
-    """The contrast at which the body begins, and whether a shadow lies below it."""
+    """Contrast at which the body begins, and True if a shadow lies below it."""
     faint, strong = covered(seen.field > seen.faint), covered(seen.field > seen.strong)
     if faint < 1.1 * strong or strong == 0:
         return seen.strong, False

@@ -13,7 +13,7 @@ _CORNERS = {
     18: 15, 19: 13, 20: 9, 21: 10, 22: 12, 23: 15, 24: 15, 25: 21, 26: 4, 27: 5, 28: 6, 29: 20, 30: 35, 31: 56,
     92: 64, 93: 125,
 }  # fmt: skip
-"""How many nodes an element of each of Gmsh's kinds has."""
+"""Number of nodes of each Gmsh element type."""
 
 _MOST_BLOCKS = 20_000
 _MOST_OLD_BLOCKS = 1_000_000
@@ -55,7 +55,7 @@ def _indices(found: list[np.ndarray], count: int, tags: np.ndarray, order: np.nd
 
 
 def _head(cursor: Cursor) -> bool:
-    """Find how the rest is written; whether it is version 2."""
+    """Read the format of the rest of the file, and whether it is version 2."""
     cursor.seek_after(b"$MeshFormat")
     cursor.line(blank=True)
     words = (cursor.line() or b"").split()
@@ -113,7 +113,7 @@ def _old_elements(cursor: Cursor) -> _Found:
 
 
 def _old_rows(cursor: Cursor, count: int) -> _Found:
-    """The same from text: number, kind, how many tags, tags, nodes; a row for each element."""
+    """Read the elements from text: number, kind, number of tags, tags, nodes; a row for each element."""
     numbers = cursor.all_numbers(max(cursor.content.find(b"$EndElements", cursor.at), cursor.at), "i8")
     look, at, end = numbers.data, 0, len(numbers)
     places: dict[int, array] = {_TETRAHEDRON: array("q"), _TRIANGLE: array("q")}

@@ -44,7 +44,7 @@ def _index(word: bytes, vertices: int) -> int:
 
 
 OFF_HEAD = re.compile(rb"\s*(?:ST)?C?N?OFF\b")
-"""How such files begin: with or without texture, colours and normals, of which nothing is used."""
+"""Header of OFF files: with or without texture, colors and normals, none of which is used."""
 
 
 _Rows = Iterator[tuple[int, list[bytes]]]

@@ -65,7 +65,7 @@ def read_ply(content: bytes, name: str) -> Soup:
 
 _MOST = 3 * MOST_TRIANGLES
 _Values = dict[str, tuple[np.ndarray, np.ndarray]]
-"""Of each property the numbers of all rows, one after the other, and how many each row has."""
+"""Values of each property: the numbers of all rows, concatenated, and the number of values in each row."""
 
 
 def _head(content: bytes, name: str) -> tuple[str, list[_Element], int]:

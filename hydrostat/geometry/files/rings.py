@@ -17,8 +17,8 @@ from hydrostat.geometry.outline import Outline, Ring, fault
 class Page:
     """A place drawn at d lies at (d - origin) x scale [m] (docs/decisions/0001-coordinates.md)."""
 
-    kind: str  # what two drawings must have in common to be on one page, in words
-    origin: tuple[float, float]  # what lies at the origin of the body, in the drawing's units
+    kind: str  # property that two drawings on one page must share
+    origin: tuple[float, float]  # point of the drawing at the body's origin, in the drawing's units
     scale: tuple[float, float]  # length of one unit along x and y [m], y negative where the drawing counts it downwards
 
     def places(self, ring: Ring) -> Ring:
@@ -58,15 +58,15 @@ def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | N
 class Drawing:
     """The outline of a drawing or picture, and in words what was done to get it."""
 
-    outline: Outline  # the body [m]
-    page: Page  # what the drawing's own coordinates mean
+    outline: Outline  # outline of the body [m]
+    page: Page  # meaning of the drawing's own coordinates
     # one line for each thing that was ignored, filled or mended; empty if there was nothing
     notes: tuple[str, ...] = ()
     marks: tuple[Ring, ...] = ()  # lines that are drawn on the body [m]; closed ones end where they begin
 
 
 DRAWN_HINT = '--inner drawn, or inner = "drawn" in [body]'
-"""What to say where closed shapes are no holes."""
+"""Hint for errors about closed shapes that are no holes."""
 
 MOST_POINTS = 100_000  # a drawing with more points, counting what it repeats, is refused
 MOST_SHAPES = 200  # a drawing may have this many closed shapes: the body and its holes
@@ -102,7 +102,7 @@ def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ri
 
 
 def checked_lines(lines: Iterable[tuple[Ring, bool]], name: str) -> Iterator[tuple[Ring, bool]]:
-    """The lines as they come, until there are too many points or one is not finite, which is an OutlineError."""
+    """Yield the lines unchanged; too many points or one that is not finite raise an OutlineError."""
     count = 0
     for line, closed in lines:
         count += len(line)
@@ -196,7 +196,7 @@ _Ends = Int[np.ndarray, "lines 2"]
 
 
 def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
-    """Join open lines of finite points at their ends, whichever way each runs; tells of each if it is closed.
+    """Join open lines of finite points at their ends, whichever way each runs; return each with True if it is closed.
 
     Ends that are a millionth of the drawing apart are one; a free end and the free end nearest to it are one when they
     are a thousandth apart or less. A line drawn twice counts once. Lines with a free end that lead nowhere stay open.
@@ -290,7 +290,7 @@ def _lines_at(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> dict[int, list[int]
 
 
 def _walks(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> list[list[tuple[int, bool]]]:
-    """Ways through places where two of the chosen lines meet, each as lines and whether they are walked forward."""
+    """Paths through points where two of the chosen lines meet, each as lines with True if walked forward."""
     at = _lines_at(ends, chosen)
     used: set[int] = set()
     walks = []

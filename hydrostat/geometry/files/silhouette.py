@@ -28,7 +28,7 @@ class Contrast:
     faint: float  # level that the noise of the ground does not reach
     # which pixels have the colour of the ground, only darker, as in a soft shadow
     shaded: Bool[np.ndarray, "rows columns"]
-    edge: float  # share of the picture's border that stands out from the ground
+    edge: float  # share of the image border that stands out from the ground
 
 
 def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
@@ -105,15 +105,15 @@ def _shaded(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bool[np
 
 @dataclass(frozen=True)
 class ShadedPart:
-    """A part of what was taken for body that has the colour of the ground, only darker, as a shadow has."""
+    """Part of the assumed body that has the color of the ground, only darker, as a shadow has."""
 
-    share: float  # of the body's pixels
+    share: float  # share of the body's pixels
     place: tuple[float, float]  # a pixel in the widest of it: column and row
-    width: float  # there, in pixels
+    width: float  # width there [pixels]
 
 
 def shaded_part(seen: Contrast, level: float) -> ShadedPart | None:
-    """What of the body may be its shadow; None where it is little, or where all of the body has such a colour."""
+    """Return the part of the body that may be its shadow; None if it is small, or if the whole body is so dark."""
     body = seen.field > level
     shaded = body & seen.shaded
     depth = np.asarray(distance_transform_edt(shaded))
@@ -146,7 +146,7 @@ class PixelPatch:
     """A connected part of a picture."""
 
     area: int  # [pixels]
-    place: tuple[float, float]  # column and row of its middle
+    place: tuple[float, float]  # column and row of its center
     extent: float  # longest side of its box [pixels]
 
 
@@ -154,12 +154,12 @@ class PixelPatch:
 class Silhouette:
     """A body in a picture."""
 
-    body: Ring  # its outer ring, columns and rows [pixels]
-    holes: tuple[Ring, ...]  # the rings of its holes
-    specks: tuple[PixelPatch, ...]  # what lies outside the body, too small to be meant
-    filled: tuple[PixelPatch, ...]  # holes that were filled
-    lines: bool  # whether it was drawn with lines only
-    cut: bool  # whether it reaches the border of the picture
+    body: Ring  # outer ring of the body, columns and rows [pixels]
+    holes: tuple[Ring, ...]  # rings of its holes
+    specks: tuple[PixelPatch, ...]  # patches outside the body, too small to be intended
+    filled: tuple[PixelPatch, ...]  # filled holes
+    lines: bool  # True if drawn with lines only
+    cut: bool  # True if the body reaches the border of the image
 
 
 def covered(mask: _Mask) -> int:
@@ -223,7 +223,7 @@ def _patches(mask: _Mask) -> tuple[np.ndarray, list[PixelPatch]]:
 
 
 def _is_lines(drawn: _Mask, body: _Mask, name: str) -> bool:
-    """Tell whether a body is drawn with lines, most of its inside left as ground."""
+    """Return True if a body is drawn with lines, most of its inside left as ground."""
     rows, columns = np.nonzero(body)
     extent = max(np.ptp(rows), np.ptp(columns)) + 1.0
     box = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
@@ -277,7 +277,7 @@ def _signed(field: Field, main: _Mask, mask: _Mask) -> Field:
 
 
 def _is_stepped(field: Field, level: float, main: _Mask) -> bool:
-    """Tell whether the border of the body runs along pixels, with no half-tones to tell where within them."""
+    """Return True if the border of the body runs along pixels, without half-tones that locate it within them."""
     values = field[main & (_depth(main) < 3.0)]
     top = float(np.quantile(values, 0.9))
     return float((values < level + 0.5 * (top - level)).mean()) < 0.05

@@ -21,7 +21,7 @@ class Soup:
     """Triangles as they stand in a file."""
 
     vertices: Float[np.ndarray, "vertices 3"]  # places in the file's own unit
-    triangles: Int[np.ndarray, "triangles 3"]  # indices of three vertices each, as declared and thus perhaps wrong
+    triangles: Int[np.ndarray, "triangles 3"]  # indices of three vertices each, as declared, not yet checked
     unit: float | None = None  # metres of one coordinate, None where the file has no unit
 
 
@@ -91,7 +91,7 @@ def fans(
 
 
 def _folds(quads: Float[np.ndarray, "quads 4 3"]) -> np.ndarray:
-    """Tell whether the two halves of a quad, cut from its first corner to its third, look different ways."""
+    """Return True where the two halves of a quad, cut from its first corner to its third, face different sides."""
     sides = quads[:, 1:] - quads[:, :1]
     with np.errstate(all="ignore"):
         return np.einsum("qd,qd->q", np.cross(sides[:, 0], sides[:, 1]), np.cross(sides[:, 1], sides[:, 2])) < 0.0

@@ -23,13 +23,13 @@ def read_stl(content: bytes, name: str) -> Soup:
 
 
 def is_stl_text(content: bytes) -> bool:
-    """Tell whether an STL file is text; some binary ones begin with the word "solid" too."""
+    """Return True if an STL file is text; some binary files begin with the word "solid" too."""
     head = content[:2000].lstrip().lower()
     return head.startswith(b"solid") and not fits_binary_stl(content) and b"\0" not in head
 
 
 def fits_binary_stl(content: bytes) -> bool:
-    """Tell whether the count in the head fits the size of the file."""
+    """Return True if the count in the header fits the size of the file."""
     count = int.from_bytes(content[_HEADER - 4 : _HEADER], "little")
     return len(content) > _HEADER and len(content) == _HEADER + _RECORD.itemsize * count
 

@@ -237,7 +237,7 @@ def _kind_of_page(document: _SvgDocument) -> str:
 
 
 def _subpaths(document: _SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
-    """Every visible subpath of a drawing as points in its own units, and whether it closes itself."""
+    """Yield every visible subpath of a drawing as points in its own units, and whether it is closed."""
     from svgelements import SVG, Path, Shape
 
     try:

@@ -81,7 +81,7 @@ def _candidates(surface: Surface) -> Iterator[Int[np.ndarray, "pairs 2"]]:
 
 
 def _apart_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
-    """Tell whether triangles without a common corner cross."""
+    """Mask of the pairs of triangles without a common corner that cross."""
     cross = np.zeros(len(one), dtype=bool)
     one_heights, two_heights = _heights(one, two), _heights(two, one)
     maybe = np.flatnonzero(_straddles(one_heights, near) & _straddles(two_heights, near))
@@ -94,7 +94,7 @@ def _apart_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, 
 
 
 def _corner_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
-    """Tell whether triangles with a common first corner cross: the far side of one through the other."""
+    """Mask of the pairs of triangles with a common first corner that cross: the far side of one through the other."""
     cross = np.zeros(len(one), dtype=bool)
     for corners, others in ((one, two), (two, one)):
         heights = _heights(corners, others)[:, 1:]
@@ -104,7 +104,7 @@ def _corner_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray,
 
 
 def _side_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
-    """Tell whether triangles with a common side, opposite their first corners, are folded flat on each other."""
+    """Mask of triangle pairs with a common side, opposite their first corners, that are folded flat on each other."""
     side = one[:, 2] - one[:, 1]
     heights = [np.cross(side, corners[:, 0] - one[:, 1]) for corners in (one, two)]
     with np.errstate(all="ignore"):
@@ -123,14 +123,14 @@ def _heights(corners: _Corners, others: _Corners) -> Float[np.ndarray, "pairs 3"
 
 
 def _straddles(heights: Float[np.ndarray, "pairs some"], near: float) -> Bool[np.ndarray, " pairs"]:
-    """Tell whether some corners are above and some below."""
+    """Mask of the triangles with corners both above and below."""
     return (heights.max(axis=1, initial=-np.inf) > near) & (heights.min(axis=1, initial=np.inf) < -near)
 
 
 def _runs_through(
     ends: Float[np.ndarray, "pairs 2 3"], heights: Float[np.ndarray, "pairs 2"], corners: _Corners, near: float
 ) -> Bool[np.ndarray, " pairs"]:
-    """Tell whether the way between two ends, at their heights above a triangle's plane, runs through the triangle."""
+    """Mask of the segments, with ends at these heights above a triangle's plane, that run through the triangle."""
     way = ends[:, 1] - ends[:, 0]
     ring = corners - ends[:, :1]
     turns = [np.einsum("pd,pd->p", way, np.cross(ring[:, k], ring[:, (k + 1) % 3])) for k in range(3)]

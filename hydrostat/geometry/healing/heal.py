@@ -125,7 +125,7 @@ def _small_holes(surface: Surface, holes: Holes, resolution: float) -> Bool[np.n
 
 
 def _is_closed(surface: Surface) -> bool:
-    """Tell whether every edge has two triangles that run along it in opposite ways, every vertex one fan of them."""
+    """Return True if every edge has two triangles of opposite direction, and every vertex one fan of triangles."""
     import igl
 
     sides = sides_of(surface.triangles)

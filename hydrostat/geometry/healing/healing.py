@@ -43,22 +43,22 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Healing:
-    """A closed surface, and how it came to be."""
+    """Closed surface, and the repairs that produced it."""
 
     surface: Surface  # closed, manifold, turned outward, not crossing itself: one body, perhaps with cavities
-    found: tuple[str, ...]  # what was found, a line each
-    done: tuple[str, ...]  # what was done, a line each
-    removed: tuple[Piece, ...]  # parts that are not in the surface any more
-    # of the parts that are kept, once turned [m^3]; overlaps count twice, holes as if closed by fans
+    found: tuple[str, ...]  # faults found, a line each
+    done: tuple[str, ...]  # repairs, a line each
+    removed: tuple[Piece, ...]  # removed parts
+    # volume of the kept parts, once turned [m^3]; overlaps count twice, holes as if closed by fans
     volume_before: float
-    volume_after: float  # of the body [m^3]
-    largest_distance: float  # between input and result [m], where both are there: not over closed holes, nor inside
+    volume_after: float  # volume of the body [m^3]
+    largest_distance: float  # largest distance from input to result [m], without closed holes and the inside
     patched: float  # share of the result's area that lies over holes of the input
-    clean: bool  # nothing was to be done, but for vertices in the same place
+    clean: bool  # True if only vertices in the same place had to be merged
 
     @property
     def places(self) -> Points:
-        """Where the parts were that are not in the surface any more [m]."""
+        """Positions of the removed parts [m]."""
         return np.array([piece.place for piece in self.removed]).reshape(-1, 3)
 
     def lines(self) -> tuple[str, ...]:
@@ -81,7 +81,7 @@ class Healing:
         )
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """All of it as arrays, to be kept in a file."""
+        """Return all fields as arrays, to be stored in a file."""
         texts = {each.name: getattr(self, each.name) for each in fields(self) if each.name != "surface"}
         texts["removed"] = [asdict(piece) for piece in self.removed]
         return {

@@ -73,11 +73,11 @@ NEAR = 1e-6  # vertices nearer to each other than this part of the surface's siz
 class Welded:
     """A surface whose triangles have vertices in common, and none of which stands there twice."""
 
-    surface: Surface  # what is left, its vertices in the order of the input
-    merged: int  # how many vertices were the same as another
-    flat: int  # how many triangles had two corners in one place, and are left out
-    repeated: int  # how many stood there before, and are left out
-    walls: int  # how many lay back to back with another between two rooms, and are left out with it
+    surface: Surface  # resulting surface, its vertices in the order of the input
+    merged: int  # number of merged duplicate vertices
+    flat: int  # number of removed triangles with two corners in one place
+    repeated: int  # number of removed duplicate triangles
+    walls: int  # number of removed triangles that lay back to back between two cavities
 
 
 def weld(surface: Surface) -> Welded:
@@ -150,7 +150,7 @@ def _without_copies(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Bool[np.
 def one_way(
     triangles: Int[np.ndarray, "triangles 3"],
 ) -> tuple[Int[np.ndarray, "triangles 3"], Bool[np.ndarray, " triangles"]]:
-    """Triangles turned the way of most of their patch, which edges of two triangles join, and which were turned."""
+    """Orient triangles like most of their patch, joined by edges of two triangles; return the mask of those turned."""
     import igl
 
     result, patches = igl.bfs_orient(triangles)
@@ -166,8 +166,8 @@ class Holes:
     """Groups of open edges that hang together."""
 
     edges: Int[np.ndarray, "edges 2"]  # open edges, each the way its triangle runs along it
-    label: Int[np.ndarray, " edges"]  # number of the hole of each edge
-    length: Float[np.ndarray, " holes"]  # way around each hole [m]
+    label: Int[np.ndarray, " edges"]  # index of the hole of each edge
+    length: Float[np.ndarray, " holes"]  # perimeter of each hole [m]
     simple: Bool[np.ndarray, " holes"]  # holes whose edges are a ring that runs one way
 
     def __len__(self) -> int:

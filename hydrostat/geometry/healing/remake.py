@@ -22,9 +22,9 @@ class Remade:
     """A body made anew."""
 
     surface: Surface  # closed, manifold, outward
-    spacing: float  # of the grid [m]
-    removed: tuple[Piece, ...]  # parts beside the body
-    done: tuple[str, ...]  # what else was done, in words
+    spacing: float  # grid spacing [m]
+    removed: tuple[Piece, ...]  # removed parts outside the body
+    done: tuple[str, ...]  # notes on other repairs
 
 
 def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolution: float) -> Remade:
@@ -63,7 +63,7 @@ class WindingField:
         return 0.5 - self.solid.winding(points)
 
     def settled(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
-        """Tell whether the sign is the same all within a reach [m] of points: where no triangle is, and no rim is near.
+        """Mask of the points around which the sign is constant within a reach [m]: no triangle, and no rim nearby.
 
         Away from the triangles the winding number has the gradient of the magnetic potential of a current along
         their open edges, by the law of Biot and Savart at most (length of the edges) / (4 pi distance^2).

@@ -37,7 +37,7 @@ class Shells:
     roles: tuple[Role, ...]  # what each is to the body
 
     def of_role(self, *roles: Role) -> Bool[np.ndarray, " parts"]:
-        """Choose the parts that have one of some roles: (parts,) of bool."""
+        """Mask of the parts that have one of some roles, (parts,)."""
         return np.array([role in roles for role in self.roles])
 
 

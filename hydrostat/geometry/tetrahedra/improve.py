@@ -21,10 +21,10 @@ _FACING = 0.3
 class ImproveStage:
     """Rounds of improvement under the same weights."""
 
-    rounds: int  # times that the outer faces look for their place on the surface
-    sweeps: int  # times in each that every node moves
-    power: float  # of the shape of a tetrahedron; the higher, the more the worst count
-    pull: float  # of the surface, against shape, for a distance of one element size
+    rounds: int  # number of projections of the outer faces onto the surface
+    sweeps: int  # number of moves of every node in each round
+    power: float  # exponent of the shape measure; the higher, the more the worst elements count
+    pull: float  # weight of the surface distance relative to shape, at one element size
 
 
 def improve(mesh: Mesh, solid: Solid, *, element_size: float, stages: tuple[ImproveStage, ...]) -> Mesh:

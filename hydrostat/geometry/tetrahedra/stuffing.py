@@ -23,7 +23,7 @@ def signed_volumes(nodes: Nodes, elements: Elements) -> Float[np.ndarray, " elem
 
 
 def turned_outward(nodes: Nodes, elements: Elements) -> Elements:
-    """The same tetrahedra, two corners exchanged where one was inside out."""
+    """Return the same tetrahedra, two corners exchanged where one was inside out."""
     return np.where((signed_volumes(nodes, elements) < 0)[:, None], elements[:, [1, 0, 2, 3]], elements)
 
 

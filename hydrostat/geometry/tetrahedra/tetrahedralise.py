@@ -63,7 +63,7 @@ _CRUMB = 0.01  # parts that break off with this share of the volume are no crumb
 _WHOLE = 0.7  # if a lattice takes less of the volume, then finer elements in some places do not help
 
 _ADVICE = 0.7
-"""What is advised is at most as much of a size that was too large: taken again and again it comes to one that does."""
+"""Largest advised size, as a share of one that was too large; repeated advice then ends at a size that works."""
 
 _FINER = 4  # rounds of finer elements where the boundary is not close
 _BISECTIONS = 2  # of the longest edges, in each round; three halve the elements

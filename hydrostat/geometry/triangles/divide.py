@@ -24,8 +24,8 @@ _LEAST_BEND = 0.35
 class Spacing:
     """Wanted distance of nodes at any place, in units of the element size; 1 far from what is fine."""
 
-    places: Float[np.ndarray, "places 2"]  # where a finer spacing is known
-    values: Float[np.ndarray, " places"]  # the spacing there
+    places: Float[np.ndarray, "places 2"]  # positions with a finer spacing
+    values: Float[np.ndarray, " places"]  # spacing at these positions
 
     def __call__(self, points: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, " points"]:
         """Wanted distance of neighbours at some points."""
@@ -135,7 +135,7 @@ def divide(outline: Outline, element_size: float) -> Draft:
 
 
 def _refuse_thin(places: Points, neck: Vector, element_size: float) -> None:
-    """Say where the body is too thin, if it is."""
+    """Raise an error that says where the body is too thin, if it is."""
     worst = int(np.argmin(neck))
     if neck[worst] < FLOOR:
         x, y = 1e3 * element_size * places[worst]

@@ -104,7 +104,7 @@ def _fill(points: Points, start: int, end: int, chain: list[int]) -> list[tuple[
 
 
 def _in_circle(triangle: Points, point: np.ndarray) -> bool:
-    """Tell whether a point lies inside the circle of a positively oriented triangle."""
+    """Return True if a point lies inside the circumcircle of a positively oriented triangle."""
     spans = triangle - point
     return bool(np.linalg.det(np.column_stack([spans, np.einsum("ij,ij->i", spans, spans)])) > 0.0)
 
@@ -115,7 +115,7 @@ class Division:
 
     curve: Curve  # the ring
     stations: Float[np.ndarray, " nodes"]  # arc length of each node, increasing
-    fixed: Bool[np.ndarray, " nodes"]  # whether a node is a true corner, which must stay
+    fixed: Bool[np.ndarray, " nodes"]  # True for a corner node, which must stay
 
     @property
     def ends(self) -> Float[np.ndarray, " nodes"]:

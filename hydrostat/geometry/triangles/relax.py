@@ -51,7 +51,7 @@ def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Dra
 
 
 def sound(draft: Draft) -> bool:
-    """Tell whether nodes on the rings are in order and all sides are there, near to the outline."""
+    """Return True if nodes on the rings are in order and all sides exist, near the outline."""
     parts = draft.divisions
     ordered = all(bool((part.ends > part.stations).all()) for part in parts)
     near = max(float(part.sagitta().max()) for part in parts) < STRAY

@@ -1,1 +1,1 @@
-"""What is wished for of a pose: each objective in a file of its own."""
+"""Objectives of inverse kinematics, each in a file of its own."""

@@ -22,11 +22,11 @@ from hydrostat.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True)
 class CenterOfMassTarget(Objective):
-    """The body's centre of mass where it should be, as for balance.
+    """Target for the body's center of mass, for example for balance.
 
     Attributes:
-        target: where [m].
-        weight: how much a metre away from it counts beside a metre of a marker's error.
+        target: target position [m].
+        weight: weight of this error relative to a marker's error.
     """
 
     target: Point

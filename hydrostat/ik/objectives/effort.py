@@ -22,7 +22,7 @@ from hydrostat.simulation import Simulation
 
 
 class EffortKind(StrEnum):
-    """What is kept small."""
+    """Quantity that an effort objective keeps small."""
 
     CONTRACTION = "contraction"
     TENSION = "tension"
@@ -34,10 +34,10 @@ class Effort(Objective):
     """Squared contractions, tensions or slack lengths, against co-contraction and loose cables.
 
     Attributes:
-        of: what is kept small.
+        of: quantity that is kept small.
         weight: error, as a fraction of the body's size, that `scale` is worth.
-        scale: contraction or slack [m], or tension [N]; if left out, what each winch or cable takes in at full travel,
-            or 10 N.
+        scale: contraction or slack [m], or tension [N]; None: the contraction of each winch or cable at full travel, or
+            10 N.
     """
 
     of: EffortKind | str = EffortKind.CONTRACTION
@@ -61,7 +61,7 @@ class Effort(Objective):
 
 
 def keeps_taut(objective: Objective) -> bool:
-    """Whether a wish is that cables be not slack."""
+    """Return True if an objective penalizes slack cables."""
     return isinstance(objective, Effort) and objective.of == EffortKind.SLACK
 
 

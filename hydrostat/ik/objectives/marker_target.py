@@ -31,12 +31,12 @@ AXES = "xyz"
 
 @dataclass(frozen=True, kw_only=True)
 class MarkerTarget(Objective):
-    """Markers where they should be: weight x (position - target) of each, along the axes that are not free.
+    """Targets for markers: weight x (position - target) of each, along the axes that are not free.
 
     Attributes:
-        targets: where each marker should go [m].
-        weights: how much a marker counts, 1 if left out.
-        free: axes along which a marker may be anywhere, such as {"tip": "x"} or {"tip": "xz"}.
+        targets: target position of each marker [m].
+        weights: weight of each marker; 1 by default.
+        free: axes along which a marker is unconstrained, such as {"tip": "x"} or {"tip": "xz"}.
     """
 
     targets: Mapping[str, Point]
@@ -99,18 +99,18 @@ class MarkerResidual(Residual):
         self._counts = weights > 0
 
     def residual(self, posture: EquilibriumState) -> Rows:
-        """How far each point is from its goal, along each axis that counts [m]."""
+        """Scaled distance of each point from its target, along each constrained axis [m]."""
         return (self._scales * self._offsets(posture)).ravel()
 
     def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
-        """How the points move with the contractions."""
+        """Jacobian of the residual by the contractions."""
         moved: Float[np.ndarray, "markers dim winches"] = np.einsum(
             "pc,pcdw->pdw", self.anchors.weights, moves.nodes[self.anchors.stencils]
         )
         return (self._scales[:, :, None] * moved).reshape(self._scales.size, -1)
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
-        """How far each marker is from its target along the axes that count [m]; one of weight 0 is no goal."""
+        """Distance of each marker from its target along the constrained axes [m]; markers of weight 0 are left out."""
         distances = np.linalg.norm(self.held * self._offsets(posture), axis=1)
         found = zip(self.names, distances.tolist(), self._counts, strict=True)
         return {name: distance for name, distance, counts in found if counts}

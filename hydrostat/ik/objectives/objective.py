@@ -20,14 +20,14 @@ Slopes = Float[np.ndarray, "rows winches"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EquilibriumState:
-    """What an objective may look at: a robot at rest under given contractions.
+    """State that objectives depend on: a robot at equilibrium under given contractions.
 
     Attributes:
-        nodes: positions [m].
-        contractions: of each winch [m].
-        elongations: how much longer each cable is than it should be [m]; negative when slack.
-        tensions: of each cable [N]; at its winch where cables rub.
-        history: what the physics remember of the way there, as in a `Equilibrium`.
+        nodes: node positions [m].
+        contractions: contraction of each winch [m].
+        elongations: elongation of each cable beyond its free length [m]; negative when slack.
+        tensions: tension of each cable [N]; at its winch for cables with friction.
+        history: history variables of the physics, as in an `Equilibrium`.
     """
 
     nodes: Nodes
@@ -39,7 +39,7 @@ class EquilibriumState:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StateJacobian:
-    """How a posture changes with the contractions, to first order.
+    """First-order change of the state with the contractions.
 
     Attributes:
         nodes: d nodes / d contractions.
@@ -60,14 +60,14 @@ class Residual(ABC):
 
     @abstractmethod
     def residual(self, posture: EquilibriumState) -> Rows:
-        """What should become zero [m], (rows,); as many rows in every posture."""
+        """Residual that the search drives to zero [m], (rows,); its number of rows is the same in every state."""
 
     @abstractmethod
     def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
         """D residual / d contractions, (rows, winches)."""
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
-        """What is left to reach, by name [m]. Empty for a term that only weighs one pose against another, as effort."""
+        """Remaining error of each goal, by name [m]. Empty for a term without a goal, such as effort."""
         return {}
 
 
@@ -92,14 +92,14 @@ def checked_objectives(given: object) -> tuple[Objective, ...]:
 
 
 def state_at(simulation: Simulation, pose: Equilibrium) -> EquilibriumState:
-    """What an objective may look at in a pose."""
+    """Return the state of a pose that objectives depend on."""
     return posture_of(simulation, pose.nodes, pose.contractions, pose.history)
 
 
 def posture_of(
     simulation: Simulation, nodes: Nodes, contractions: Vector, history: Vector | None = None
 ) -> EquilibriumState:
-    """The same of nodes at some contractions [m], after a way that left `history`."""
+    """Return the state of nodes at given contractions [m], after a loading path with this `history`."""
     elongations = simulation.cables.elongations(nodes, contractions)
     if simulation.friction is None or history is None:
         tensions = simulation.cables.law.tension(elongations)
@@ -144,7 +144,7 @@ def rubbing_moves(
     stiffness: Stiffness,
     taut: Int[np.ndarray, " some"] | None = None,
 ) -> StateJacobian:
-    """The same of cables that rub: the capstan's law holds, points at their limit slip on, the others stick.
+    """Return the state Jacobian for cables with friction: points at the capstan limit slip on, the others stick.
 
     Slack cables among `taut` count as if they had just become taut.
     """
@@ -161,7 +161,7 @@ def rubbing_moves(
 
 
 def numbers(given: object) -> Float[np.ndarray, "..."] | None:
-    """What is given as real numbers; None if it is anything else, such as text with a unit."""
+    """Convert a value to real numbers; None if it is anything else, such as text with a unit."""
     try:
         found = np.asarray(given)
     except (TypeError, ValueError):

@@ -15,12 +15,12 @@ from hydrostat.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True)
 class PointTarget(Objective):
-    """Points of the material where they should be, as where a hand takes hold of a body.
+    """Targets for material points, for example where a hand holds a body.
 
     Attributes:
-        points: where each point is in the rest shape [m]; one beside the body stands for the nearest on it.
-        targets: where each should go [m], by the same names.
-        weight: how much a metre away from a target counts beside a metre of a marker's error.
+        points: position of each point in the rest shape [m]; a point outside the body stands for the nearest one on it.
+        targets: target position of each point [m], by the same names.
+        weight: weight of these errors relative to a marker's error.
     """
 
     points: Mapping[str, Point]

@@ -23,7 +23,7 @@ from hydrostat.simulation import Equilibrium, Simulation
 
 
 class ClosenessKind(StrEnum):
-    """What should stay as it was."""
+    """Quantity that a pose regularizer keeps near its previous value."""
 
     NODES = "nodes"
     MARKERS = "markers"
@@ -32,13 +32,13 @@ class ClosenessKind(StrEnum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PoseRegularizer(Objective):
-    """A pose like a previous one, so that a motion stays smooth.
+    """Penalty on the distance from a reference pose, for smooth motion.
 
     Attributes:
-        pose: the previous one.
-        of: what should stay: the whole body (root of the mean square over its nodes), markers, or the contractions.
-        weight: how much a metre away from it counts beside a metre of a marker's error.
-        markers: names of the markers that should stay; all if left out.
+        pose: reference pose.
+        of: quantity to keep: the whole body (root mean square over its nodes), markers, or the contractions.
+        weight: weight of this distance relative to a marker's error.
+        markers: names of the markers to keep; None for all.
     """
 
     pose: Equilibrium

@@ -48,12 +48,11 @@ class ShapeTarget(Objective):
     may hold the body in a wrong pose; markers beside it, or shapes on the way there, lead it.
 
     Attributes:
-        outline: for a flat body [m], in the coordinates of the robot: `load_target_outline` reads one from a drawing.
-        surface: for a body in space, closed [m], in the coordinates of the robot: drawn in those of its file, and read
-            with the same unit.
-        weight: how much a metre of the root of the mean square counts beside a metre of a marker's error.
-        samples: how many places of the shape are looked at; if left out, as many as there are nodes on the boundary,
-            and 200 at least.
+        outline: target shape for a flat body [m], in robot coordinates: `load_target_outline` reads one from a drawing.
+        surface: closed target surface for a body in space [m], in robot coordinates: drawn in those of its file and
+            read with the same unit.
+        weight: weight of the root mean square distance relative to a marker's error.
+        samples: number of sample points on the shape; None: the number of boundary nodes, at least 200.
     """
 
     outline: Outline | None = field(default=None, repr=False)
@@ -114,7 +113,7 @@ class _Shape(Residual):
     """A shape goal on one robot: signed distances, positive outside, each times the root of its share."""
 
     def __init__(self, name: str, target: Shell, places: Points, mesh: Mesh, weight: float) -> None:
-        """What the error is called, the shape, places spread over it, the body, how much a metre counts."""
+        """Take the name of the error, the shape, sample points on it, the body, and the weight."""
         self.name, self.target, self.places = name, target, places
         self._body, self._rim = Shell(mesh.nodes, mesh.boundary), mesh.boundary_nodes
         self._roots = np.sqrt(np.concatenate([_shares(mesh), np.full(len(places), 1 / len(places))]) / 2)

@@ -29,7 +29,7 @@ class Curvature:
         return self._matrix if self._trusted else None
 
     def doubt(self) -> bool:
-        """Whether it had been used; it will not be for the next step."""
+        """Distrust the matrix for the next step; return True if it had been used."""
         used, self._trusted = self._trusted and self._matrix is not None, False
         return used
 
@@ -149,7 +149,7 @@ class _TrustRegionDescent:
         return step
 
     def _reconsider(self) -> bool:
-        """After a step that failed: whether there is more to try than a shorter one."""
+        """Return True if, after a failed step, there is more to try than a shorter one."""
         if not self.state.sharp and self._sharpen():
             return True  # what a state that does not rest yet promised may have been too good
         return self.curvature.doubt()
@@ -168,7 +168,7 @@ class _TrustRegionDescent:
         return self.state.error <= self.problem.reached and self.state.excess <= EXCESS
 
     def _sharpen(self) -> bool:
-        """Whether the state rests, now."""
+        """Solve the state to equilibrium; return True if that succeeds."""
         sharp = self.search.refine_equilibrium(self.state)
         if sharp is None:
             return False

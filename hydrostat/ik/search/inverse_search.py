@@ -39,7 +39,7 @@ class InverseSearch:
         self._remembers, self._turns = problem.simulation.assembly.has_history, False
 
     def told(self, state: InverseState) -> None:
-        """Say how the search goes, if somebody listens: that there is a step more, and what a state leaves."""
+        """Report the progress of the search to its listener: one more step, and the errors of a state."""
         self.steps += 1
         if self.patience.tell is not None:
             errors = list(state.errors.values())
@@ -82,7 +82,7 @@ class InverseSearch:
         return self.problem.state(values, pose.result, pose.history)
 
     def _reached_at_once(self, near: NewtonResult, values: Vector) -> InverseState | None:
-        """The same from nodes close by, by a single increment while that does as well as many."""
+        """Solve from nodes close by in a single increment while that does as well as many."""
         if self._turns:
             return self._travelled(values)
         path, contractions = self.problem.simulation.path, self.problem.bounds.spread @ values
@@ -141,7 +141,7 @@ class InverseSearch:
         return self.problem.idle(self.problem.state(state.values, state.result, history))
 
     def refine_equilibrium(self, state: InverseState) -> InverseState | None:
-        """The same contractions at equilibrium."""
+        """Return the equilibrium at the same contractions."""
         if state.sharp:
             return state
         self.solves += 1
@@ -175,7 +175,7 @@ class InverseSearch:
         return found if found is not None and kept else state
 
     def _result(self, pose: Equilibrium) -> NewtonResult:
-        """What this simulation makes of a pose: another one may have found it."""
+        """Return the solver result of a pose in this simulation; another one may have found it."""
         stiffness = self.problem.simulation.stiffness(pose)
         residual = float(np.abs(self.problem.simulation.forces(pose.nodes, pose.contractions)).max())
         return replace(pose.result, stiffness=stiffness, residual=residual, stable=stiffness.definite)
@@ -201,7 +201,7 @@ _HARDLY = 1e-3  # a channel whose tautest cable pulls less than this share of th
 
 
 def _sound(result: NewtonResult) -> bool:
-    """Whether it is a stable equilibrium."""
+    """Return True if a result is a stable equilibrium."""
     return result.converged and result.stable
 
 
@@ -222,20 +222,20 @@ EXCESS = 1e-6  # a tension may exceed its limit by this share
 class StepRules:
     """When a trust-region step is taken."""
 
-    mends: float  # a step that mends a tension must bring what exceeds its limit down to this share
-    far: float  # share of a tension's limit by which a step may lead beyond it, for the next one to mend
+    mends: float  # a step that reduces a tension must reduce its excess to this share
+    far: float  # share by which a step may exceed a tension limit, for the next one to correct
 
 
 class StepTried(NamedTuple):
-    """Where a step led."""
+    """Outcome of a trial step."""
 
-    trial: InverseState | None  # the state there; None where no equilibrium was found
-    ratio: float  # what it gained, as a share of what it promised; minus infinity where nothing is known
-    accepted: bool  # whether it is better than before by the rules
+    trial: InverseState | None  # state after the step; None without an equilibrium
+    ratio: float  # actual decrease / predicted decrease; minus infinity if unknown
+    accepted: bool  # True if the rules accept it as an improvement
 
 
 def ends(problem: InverseProblem, state: InverseState, step: ModelStep, objective: float, radius: float) -> bool:
-    """Tell whether a step promises too little to be tried: within its limits the state is optimal to first order.
+    """Return True if the predicted decrease is too small to try: within its limits the state is optimal to first order.
 
     What a model promises is concave in its radius, so a smaller radius must not end the search sooner; `objective` is
     that of the state times the progress below which it is not worth a step.
@@ -268,20 +268,20 @@ def try_step(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Descent:
-    """Where a descent ended."""
+    """Result of one descent."""
 
-    state: InverseState  # an equilibrium, the best within the limits
-    reason: IKStatus  # why
-    iterations: int  # steps tried
-    weight: float  # of the effort at the end
+    state: InverseState  # best equilibrium within the limits
+    reason: IKStatus  # reason why the descent ended
+    iterations: int  # number of steps tried
+    weight: float  # weight of the effort at the end
 
     @property
     def allowed(self) -> bool:
-        """Whether all tensions are within their limits."""
+        """True if all tensions are within their limits."""
         return self.state.excess <= EXCESS
 
     def after(self, iterations: int) -> "Descent":
-        """The same, counted with what was tried before."""
+        """Return the same result with the steps of an earlier descent counted in."""
         return replace(self, iterations=iterations)
 
 

@@ -15,16 +15,16 @@ from hydrostat.simulation import Simulation
 
 @dataclass(frozen=True, eq=False)
 class Channels:
-    """Where the contractions of a model begin."""
+    """Slack state of the channels where a linear model begins."""
 
-    gaps: Vector  # what a slack channel takes in, without any effect, before its first cable is taut [m]
-    beyond: Vector  # what a channel whose tension falls to 0 to first order lets out further, to be slack indeed [m]
-    first: np.ndarray  # that cable, by channel; where it pulls already, the one that the most letting out leaves taut
-    active: np.ndarray  # whether it has a cable that can become taut within the limits
+    gaps: Vector  # contraction of a slack channel, without effect, until its first cable is taut [m]
+    beyond: Vector  # further release of a channel until it is slack, after its tension is 0 to first order [m]
+    first: np.ndarray  # that cable, by channel; for a taut channel, the cable that stays taut longest
+    active: np.ndarray  # True for a channel with a cable that can become taut within the limits
 
 
 def channels(cables: CableEnergy, posture: EquilibriumState, values: Vector, bounds: Bounds) -> Channels:
-    """How far each channel is from pulling, or from not pulling, at contractions `values` of the channels [m]."""
+    """Compute the distance of each channel from becoming taut or slack, at channel contractions `values` [m]."""
     count = len(values)
     first = np.zeros(count, dtype=np.int64)
     gaps, beyond = np.full(count, np.inf), np.zeros(count)
@@ -121,7 +121,7 @@ class LinearModel:
         return full, 0.5 * float(aim @ aim - after @ after)
 
     def aimed(self, residual: Float[np.ndarray, " rows"]) -> "LinearModel":
-        """The same model of another residual there: one of other goals."""
+        """Return the same model with another residual, that of other goals."""
         other = copy(self)
         other.residual = residual
         return other
@@ -131,7 +131,7 @@ class LinearModel:
         return self.matrix.T @ (self.residual if residual is None else residual)
 
     def alike(self, other: "LinearModel") -> bool:
-        """Whether the same cables are taut."""
+        """Return True if the same cables are taut in both models."""
         return bool(((self.places.gaps > 0) == (other.places.gaps > 0)).all())
 
     def slope(self, effort: Vector) -> float:

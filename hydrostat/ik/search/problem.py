@@ -27,18 +27,18 @@ from hydrostat.simulation import Simulation, require_static_obstacles
 
 @dataclass(frozen=True, kw_only=True)
 class IKOptions:
-    """How inverse kinematics searches.
+    """Options for the inverse-kinematics solver.
 
     Attributes:
         effort: marker error, as a fraction of the body's size, that the tension at full travel of a winch is worth: a
-            small regulariser against cables that pull in vain. It falls with the error, so it hides no target.
+            small regularizer against co-contraction. It falls with the error, so it hides no target.
         tolerance: error, as a fraction of the body's size, at which a goal counts as reached.
-        progress: the search ends where the linearised problem promises to lower the objective by less than this
-            fraction.
-        iterations: most steps from one beginning.
+        progress: minimum relative decrease of the objective that the linearised problem must predict; below it the
+            search ends.
+        iterations: maximum number of steps from one start.
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
-        min_tension: where the goals leave a choice, take the contractions that pull least, whatever the start.
-        restarts: how often to begin elsewhere while a goal is not reached; none where time matters more.
+        min_tension: where the goals leave a choice, take the contractions with the least tension, whatever the start.
+        restarts: maximum number of restarts while a goal is not reached; 0 to save time.
         hold_free_markers: keep markers without a target where they are. This changes nothing if the target is in reach.
             Otherwise they move a distance d from rest only if that gains about d^2 over four times the body's size.
     """
@@ -66,19 +66,19 @@ class IKOptions:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class InverseState:
-    """Where a search is."""
+    """State of a search."""
 
     values: Vector  # contraction of each channel [m]
     result: NewtonResult  # nodes near equilibrium, and the Hessian there
-    posture: EquilibriumState  # where these nodes come to rest, to first order where they do not rest yet
-    residual: Rows  # of all terms there [m]
-    errors: Mapping[str, float]  # what is left of each goal [m]
-    excess: float  # by how much the largest tension exceeds its limit, as a share of it
-    sharp: bool  # whether the nodes rest
+    posture: EquilibriumState  # equilibrium state of these nodes, to first order if they are not at rest yet
+    residual: Rows  # residual of all terms [m]
+    errors: Mapping[str, float]  # remaining error of each goal [m]
+    excess: float  # excess of the largest tension over its limit, as a share of the limit
+    sharp: bool  # True if the nodes are at equilibrium
 
     @property
     def history(self) -> Vector:
-        """What the physics remember of the way there."""
+        """History variables of the physics."""
         return self.posture.history
 
     @property
@@ -88,7 +88,7 @@ class InverseState:
 
 
 class ModelStep(NamedTuple):
-    """Where a step leads, by how much it should lower the objective [m^2], and the model that says so."""
+    """Step of the linear model: its end point, its predicted decrease of the objective [m^2], and the model."""
 
     values: Vector
     promise: float
@@ -136,7 +136,7 @@ class InverseProblem:
         self._ready = ready
 
     def with_term(self, term: Residual) -> "InverseProblem":
-        """The same with one term more."""
+        """Return the same problem with one more term."""
         return InverseProblem(self.simulation, [*self.terms, term], self.bounds, self.options, ready=self._ready)
 
     def state(
@@ -193,13 +193,13 @@ class InverseProblem:
         return self.state(values, state.result, history, whole=False)
 
     def step(self, state: InverseState, weight: float, radius: float, curvature: np.ndarray | None = None) -> ModelStep:
-        """Where to go from a state: contractions of the channels [m], and what that promises."""
+        """Compute the next step from a state: contractions of the channels [m] and the predicted decrease."""
         model = self.linear(state)
         step, promise = model.best(weight * self.worth, radius, curvature)
         return ModelStep(model.applied(step), promise, model)
 
     def linear(self, state: InverseState) -> LinearModel:
-        """What contractions do near a state, to first order."""
+        """Return the linear model of a state: the first-order effect of the contractions."""
         assert state.result.stiffness is not None
         places = channels(self.simulation.cables, state.posture, state.values, self.bounds)
         moves = stack_jacobians(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
@@ -215,7 +215,7 @@ class InverseProblem:
         return self.linear(state).slope(weight * self.worth)
 
     def redundant(self, state: InverseState) -> bool:
-        """Whether some change of the contractions moves nothing that counts."""
+        """Return True if some change of the contractions has no effect on the residual."""
         model = self.linear(state)
         moves = (model.matrix * model.range)[:, model.active]
         if not moves.size:
@@ -249,7 +249,7 @@ class InverseProblem:
         return self._rows(posture, still)
 
     def _resting(self, result: NewtonResult, contractions: Vector) -> Nodes:
-        """Where the nodes would come to rest, were the forces linear."""
+        """Return the equilibrium of the nodes if the forces were linear."""
         if result.stiffness is None or result.stiffness.singular:
             return result.nodes
         gradient = self.simulation.forces(result.nodes, contractions)
@@ -269,7 +269,7 @@ _LEAST_WEIGHT = 1e-8  # of the effort; enough to keep the linearised problem wel
 
 
 def _full_tension(simulation: Simulation) -> float:
-    """What the hardest cable would pull at the full travel of its winch, were the body linear [N]."""
+    """Largest cable tension at full travel of its winch if the body were linear [N]."""
     robot, cables = simulation.robot, simulation.cables
     travel = cables.taken(np.array([winch.travel for winch in robot.winches]))
     rest = simulation.rest

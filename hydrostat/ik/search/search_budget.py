@@ -16,7 +16,7 @@ Tell = Callable[[int, float], None]
 class SearchBudget:
     """Deadline of a search, and the callback for its progress; an exception of `tell` ends the search."""
 
-    deadline: float = inf  # on the clock of `time.monotonic` [s]
+    deadline: float = inf  # deadline on the clock of `time.monotonic` [s]
     tell: Tell | None = None
 
     @classmethod
@@ -32,5 +32,5 @@ class SearchBudget:
 
     @property
     def over(self) -> bool:
-        """Whether the time is up."""
+        """True if the time is up."""
         return time.monotonic() >= self.deadline

@@ -22,13 +22,13 @@ from hydrostat.simulation import Equilibrium, Simulation
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Keyframe:
-    """A pose in time.
+    """Target of a trajectory at an instant.
 
     Attributes:
-        target: where markers should be [m]; or a solved pose, whose contractions are taken as they are, such as
-            `simulation.rest` or one that was taught.
-        time: when, counted from the start [s]; as soon as the limits allow if left out.
-        name: for reports; that of the pose if left out.
+        target: target positions of markers [m]; or a solved pose, whose contractions are taken as they are, such as
+            `simulation.rest` or a taught pose.
+        time: time from the start [s]; None: as soon as the limits allow.
+        name: name for reports; None: that of the pose.
     """
 
     target: Targets | Equilibrium
@@ -37,7 +37,7 @@ class Keyframe:
 
     @property
     def pose(self) -> PoseTarget | None:
-        """Where markers should be; None for a solved pose."""
+        """Target positions of the markers; None for a solved pose."""
         return None if isinstance(self.target, Equilibrium) else as_pose(self.target)
 
 
@@ -49,11 +49,11 @@ Key = Keyframe | Targets | Equilibrium | tuple[float | None, Targets | Equilibri
 class Found:
     """A keyframe with its contractions."""
 
-    keyframe: Keyframe  # what was asked for
-    pose: Equilibrium  # what was found
-    reached: IKResult | None  # how it was found; None for a pose that was given
-    free_error: float | None  # rms error that a search from rest finds on another branch, where that is better [m]
-    knots: tuple[Equilibrium, ...]  # poses on the way there that are to be passed; the last one is `pose`
+    keyframe: Keyframe  # requested keyframe
+    pose: Equilibrium  # pose found
+    reached: IKResult | None  # answer of inverse kinematics; None for a given pose
+    free_error: float | None  # rms error of a search from rest on another branch, if that is smaller [m]
+    knots: tuple[Equilibrium, ...]  # intermediate poses on the way there; the last one is `pose`
 
 
 def as_keyframes(given: Sequence[Key]) -> list[Keyframe]:
@@ -105,13 +105,13 @@ def _as_keyframe(number: int, given: Key) -> Keyframe:
 class KeySearch:
     """Inverse kinematics from one keyframe to the next."""
 
-    simulation: Simulation  # the robot's physics
-    limits: Limits  # what the winches may do
-    objectives: tuple[Objective, ...]  # what is wished for beside the targets
-    options: IKOptions  # of a search from rest; one from a keyframe does not restart
-    compare: bool  # look whether a search from rest does better
-    jump: float  # distance of a node from where it is predicted that is a snap [m]
-    knots: int  # poses on a way along which markers go straight; 0 for other ways
+    simulation: Simulation  # physics of the robot
+    limits: Limits  # limits of the winches
+    objectives: tuple[Objective, ...]  # objectives in addition to the targets
+    options: IKOptions  # options of a search from rest; one from a keyframe does not restart
+    compare: bool  # also try a search from rest
+    jump: float  # distance of a node from its predicted position that counts as a snap-through [m]
+    knots: int  # number of poses on a path along which markers move straight; 0 for other paths
 
     def find(self, keyframe: Keyframe, before: Equilibrium) -> Found:
         """The pose of a keyframe, on the branch before (InputError, NotConvergedError: as for `solve_ik`)."""
@@ -125,7 +125,7 @@ class KeySearch:
         return Found(keyframe=keyframe, pose=reached.pose, reached=reached, free_error=free_error, knots=knots)
 
     def _best(self, target: PoseTarget, before: Equilibrium) -> tuple[IKResult, float | None]:
-        """What is found from the pose before; and a lesser error that only a search from rest comes to, if any."""
+        """Return the pose found from the pose before, and the smaller error of a search from rest, if any."""
         reached = self._solve(target, before, self.options)
         if not self.compare or reached.status is IKStatus.REACHED:
             return reached, None

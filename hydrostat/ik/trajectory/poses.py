@@ -13,10 +13,10 @@ Tell = Callable[[str, int, int], None]  # is told the stage, how much of it is d
 
 @dataclass(frozen=True, kw_only=True)
 class BranchJump:
-    """Where a robot jumps from one branch of equilibria to another."""
+    """Jump of a robot from one branch of equilibria to another (snap-through)."""
 
-    time: float  # [s]
-    distance: float  # how far a node is from where the branch would have led it [m]
+    time: float  # time of the jump [s]
+    distance: float  # distance of a node from its position on the continued branch [m]
 
 
 def follow(
@@ -83,7 +83,7 @@ def _go(
 
 
 def _predicted(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Nodes:
-    """Where the nodes go to first order."""
+    """Node positions predicted to first order."""
     try:
         return pose.nodes + simulation.jacobian(pose) @ (goal - pose.contractions)
     except NotConvergedError:

@@ -22,15 +22,15 @@ from hydrostat.simulation import Equilibrium, Simulation
 
 @dataclass(frozen=True, kw_only=True)
 class TrajectoryOptions:
-    """How carefully a trajectory is made.
+    """Sampling and accuracy options of a trajectory.
 
     Attributes:
-        rate: samples in a second, at least.
-        knots: steps of a straight path from one keyframe to the next.
-        compare: look from rest too where a keyframe is not reached from the one before.
-        jump: distance of a node from where it is predicted, as a share of the body's size, that is a snap if it stays
-            however small the step is.
-        inverse: how keyframes are searched for.
+        rate: minimum number of samples per second.
+        knots: number of steps of a straight path from one keyframe to the next.
+        compare: also search from rest if a keyframe is not reached from the one before.
+        jump: distance of a node from its predicted position, as a share of the body's size, that counts as a
+            snap-through if it stays however small the step is.
+        inverse: options of the search for each keyframe.
     """
 
     rate: float = 50.0

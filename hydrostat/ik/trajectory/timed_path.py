@@ -28,9 +28,9 @@ class TimedPath:
     between 0 and 2 D, at rest at both ends the polynomial of least jerk (Flash 1985), and a line where p = q = D.
     """
 
-    times: Vector  # of the keys, rising from 0 [s]
-    keys: Keys  # contractions there [m]
-    begins: Peaks  # speeds at the beginning of each leg [m/s]
+    times: Vector  # times of the keyframes, rising from 0 [s]
+    keys: Keys  # contractions at these times [m]
+    begins: Peaks  # speeds at the start of each leg [m/s]
     ends: Peaks  # speeds at the end of each leg [m/s]
 
     @classmethod
@@ -52,7 +52,7 @@ class TimedPath:
 
     @property
     def seconds(self) -> float:
-        """How long it takes [s]."""
+        """Duration [s]."""
         return float(self.times[-1])
 
     def at(self, times: Vector) -> tuple[Samples, Samples, Samples]:
@@ -129,8 +129,8 @@ ByWinch = float | Mapping[str, float]  # one number for all winches, or numbers 
 class MotionLimits:
     """The most that each winch may do."""
 
-    speed: Vector  # of its contraction [m/s]; infinite without a limit
-    acceleration: Vector  # of its contraction [m/s^2]; infinite without a limit
+    speed: Vector  # maximum speed of each contraction [m/s]; infinite without a limit
+    acceleration: Vector  # maximum acceleration of each contraction [m/s^2]; infinite without a limit
 
     @classmethod
     def of(cls, robot: Robot, speed: ByWinch | None, acceleration: ByWinch | None) -> Self:
@@ -141,7 +141,7 @@ class MotionLimits:
         )
 
     def share(self, speeds: Peaks, accelerations: Peaks) -> Vector:
-        """What each leg uses of the limits: it would keep to them if it took so many times as long."""
+        """Share of the limits that each leg uses: it keeps to them if its duration is multiplied by this factor."""
         used = np.maximum(speeds / self.speed, np.sqrt(accelerations / self.acceleration))
         return used.max(axis=1, initial=0.0)
 
@@ -197,8 +197,8 @@ class StraightCourse:
     and s = 10 u^3 - 15 u^4 + 6 u^5 with u = (t - t_0) / T. So da/dt = c' s' and d2a/dt2 = c'' s'^2 + c' s''.
     """
 
-    times: Vector  # of the keyframes, from 0 [s]
-    legs: tuple[TimedPath, ...]  # course of each leg, of length 1
+    times: Vector  # times of the keyframes, from 0 [s]
+    legs: tuple[TimedPath, ...]  # path of each leg, of length 1
 
     @classmethod
     def earliest(cls, knots: Sequence[Keys], lengths: Vector, pace: MotionLimits, *, least: float) -> Self:
@@ -212,7 +212,7 @@ class StraightCourse:
 
     @property
     def seconds(self) -> float:
-        """How long it takes [s]."""
+        """Duration [s]."""
         return float(self.times[-1])
 
     def at(self, times: Vector) -> tuple[Samples, Samples, Samples]:

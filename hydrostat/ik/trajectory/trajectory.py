@@ -18,7 +18,7 @@ from hydrostat.units import plural
 
 
 class PathKind(StrEnum):
-    """What goes on a simple way from one keyframe to the next."""
+    """Quantity that follows a simple path from one keyframe to the next."""
 
     SMOOTH = "smooth"
     LINEAR = "linear"
@@ -27,20 +27,20 @@ class PathKind(StrEnum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class KeyPose:
-    """What became of a keyframe."""
+    """Result of a keyframe."""
 
-    name: str  # of its pose
-    time: float  # when it is reached [s]
-    index: int  # of its sample
-    target: PoseTarget | None  # where markers should be; None where a pose was given as such
-    found: IKResult | None  # what inverse kinematics found from the keyframe before; None where a pose was given
-    pose: Equilibrium = field(repr=False)  # what the robot is in when the trajectory is there
+    name: str  # name of its pose
+    time: float  # time when it is reached [s]
+    index: int  # index of its sample
+    target: PoseTarget | None  # target positions of markers; None for a given pose
+    found: IKResult | None  # answer of inverse kinematics from the keyframe before; None for a given pose
+    pose: Equilibrium = field(repr=False)  # pose of the robot when the trajectory is there
     errors: Mapping[str, float]  # distance of each marker from its target in that pose [m]
     path_deviation: (
         float  # largest distance of a marker from the straight line from the keyframe before to this one [m]
     )
-    free_error: float | None  # rms error that a search from rest finds on another branch, where that is better [m]
-    same: bool  # whether the way leads to the pose that inverse kinematics found
+    free_error: float | None  # rms error of a search from rest on another branch, if that is smaller [m]
+    same: bool  # True if the path leads to the pose that inverse kinematics found
 
     @property
     def rms_error(self) -> float:
@@ -66,7 +66,7 @@ class KeyPose:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trajectory:
-    """Contractions in time, and the equilibrium at each sample.
+    """Contractions over time, and the equilibrium at each sample.
 
     Attributes:
         path: what goes on a simple way from one keyframe to the next.
@@ -101,18 +101,18 @@ class Trajectory:
     tension: Vector = field(repr=False)
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         parts = f"{plural(len(self.poses), 'pose')}, {plural(len(self.branch_jumps), 'snap')}"
         return f"<Trajectory of {self.times[-1]:.3g} s, {self.path}: {parts}>"
 
     @property
     def seconds(self) -> float:
-        """How long it takes [s]."""
+        """Duration [s]."""
         return float(self.times[-1])
 
     @property
     def markers(self) -> dict[str, Float[np.ndarray, "samples dim"]]:
-        """Where each marker is at each sample [m]."""
+        """Position of each marker at each sample [m]."""
         return {name: np.array([pose.markers[name] for pose in self.poses]) for name in self.poses[0].markers}
 
     @property
@@ -159,7 +159,7 @@ class Trajectory:
         return lines
 
     def _place(self, sample: int) -> str:
-        """Where in the trajectory a sample is."""
+        """Describe the position of a sample in the trajectory."""
         if sample == 0:
             return "at the start"
         key = next(key for key in self.keyframes if key.index >= sample)

@@ -1,4 +1,4 @@
-"""What may disappoint about a robot that is free of errors, found without simulating anything."""
+"""Risks of a robot that has no errors, found without a simulation."""
 
 from hydrostat.robot.risks.body_risks import body_risks
 from hydrostat.robot.risks.network_risks import cable_risks, winch_risks
@@ -9,6 +9,6 @@ __all__ = ["find_risks"]
 
 
 def find_risks(robot: Robot) -> list[str]:
-    """Tell in one line for each kind of risk and part what may disappoint; none if all is well."""
+    """Find risks without a simulation: one line for each kind of risk and part; empty if there are none."""
     kinds = (body_risks, pin_risks, winch_risks, cable_risks, marker_risks, pose_risks)
     return [line for kind in kinds for line in kind(robot)]

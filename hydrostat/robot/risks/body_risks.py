@@ -32,7 +32,7 @@ LOCKING = {
     2: {0.35: 0.14, 0.4: 0.20, 0.43: 0.27, 0.45: 0.35, 0.47: 0.54, 0.49: 1.4},
     3: {0.35: 0.12, 0.4: 0.20, 0.43: 0.31, 0.45: 0.45, 0.47: 0.77, 0.49: 2.4},
 }
-"""What it adds with 4 elements across a limb, a fraction, in the plane and in space (`lab/locking/locking.py`)."""
+"""Relative bending stiffness added by locking with 4 elements across a limb, in 2D and 3D (`lab/locking/locking.py`)."""
 
 LEAST_ACROSS = {2: 2.0, 3: 3.0}
 """A limb with fewer elements across bends much too stiffly, in the plane and in space (docs/decisions/0012)."""
@@ -44,7 +44,7 @@ GOOD_ACROSS = 4
 """Elements across a limb that are enough: 14 % too stiff in the plane, 5 to 27 % in space, by the mesh's pattern."""
 
 TOO_STIFF = {2: {2: "50 % or more"}, 3: {2: "20 to 100 % or more", 3: "10 to 100 %"}}
-"""How much too stiff a limb is in bending with fewer elements across than this, by the pattern of the mesh."""
+"""Excess bending stiffness of a limb with fewer elements across than the key, depending on the mesh pattern."""
 
 
 def body_risks(robot: Robot) -> Iterator[str]:

@@ -13,9 +13,9 @@ from hydrostat.robot.materials import Material
 class Risk:
     """One part with a risk."""
 
-    part: str  # its name, such as "cable[0]"
+    part: str  # name of the part, such as "cable[0]"
     severity: float  # larger is worse
-    text: str  # what is the matter
+    text: str  # description of the risk
 
 
 def told_together(found: Iterable[Risk]) -> Iterator[str]:

@@ -14,8 +14,8 @@ class Tangent:
     """Direction of a branch, of length 1 in the measure of `Bordered`.
 
     Attributes:
-        move: of the nodes [m], (nodes x dim,).
-        rate: of the share of the way.
+        move: displacement of the nodes [m], (nodes x dim,).
+        rate: change of the share of the way.
     """
 
     move: Vector
@@ -27,14 +27,15 @@ class PathPoint:
     """An equilibrium on a branch.
 
     Attributes:
-        nodes: positions [m].
-        share: of the way.
-        stiffness: the Hessian there, factorised.
+        nodes: node positions [m].
+        share: share of the way from the first contractions to the goal.
+        stiffness: factorised Hessian.
         tangent: direction of the branch.
         residual: largest component of a nodal force [N].
         allowed: residual [N] at which it counts as converged.
-        distance: largest way of a node from where it was sought, as a share of the body's size, or of the share.
-        iterations: of Newton.
+        distance: largest distance of a node from its predicted position, as a share of the body's size, or the error of
+            the share.
+        iterations: number of Newton iterations.
     """
 
     nodes: Nodes
@@ -47,7 +48,7 @@ class PathPoint:
     iterations: int
 
     def turned(self) -> "PathPoint":
-        """The same place in the other direction."""
+        """Return the same point with the branch direction reversed."""
         return replace(self, tangent=Tangent(-self.tangent.move, -self.tangent.rate))
 
 
@@ -76,7 +77,7 @@ class Bordered:
         return self._begin + share * self._way
 
     def bend(self, nodes: Nodes, step: Vector) -> Nodes:
-        """Where a step leads, along arcs."""
+        """Return the nodes after a step along arcs."""
         return self._simulation.body.warp(nodes, step.reshape(nodes.shape))
 
     def dot(self, one: Tangent, other: Tangent) -> float:

@@ -25,7 +25,7 @@ class BranchReason(StrEnum):
 
 
 class CriticalKind(StrEnum):
-    """What happens where the Hessian is singular."""
+    """Kind of critical point, where the Hessian is singular."""
 
     FOLD = "fold"
     BIFURCATION = "bifurcation"
@@ -36,8 +36,8 @@ class BranchPoint:
     """An equilibrium on a branch.
 
     Attributes:
-        share: of the way from the first contractions to the goal, 0 to 1.
-        pose: the equilibrium; `pose.result.stable` tells a minimum of the energy from a saddle.
+        share: share of the way from the first contractions to the goal, 0 to 1.
+        pose: equilibrium; `pose.result.stable` distinguishes an energy minimum from a saddle.
     """
 
     share: float
@@ -45,18 +45,18 @@ class BranchPoint:
 
     @property
     def stable(self) -> bool:
-        """Whether the full Hessian is positive definite."""
+        """True if the full Hessian is positive definite."""
         return self.pose.result.stable
 
 
 @dataclass(frozen=True, kw_only=True)
 class CriticalPoint:
-    """Where the Hessian on a branch is singular.
+    """Point of a branch at which the Hessian is singular.
 
     Attributes:
-        kind: a fold, where the contractions turn back, or a bifurcation, where other branches meet this one.
-        share: of the way from the first contractions to the goal.
-        index: of this place in the points of the branch.
+        kind: a fold, where the contractions reverse, or a bifurcation, where other branches meet this one.
+        share: share of the way from the first contractions to the goal.
+        index: index of this point in the points of the branch.
     """
 
     kind: CriticalKind
@@ -69,11 +69,11 @@ class Branch:
     """Equilibria along a straight line of contractions.
 
     Attributes:
-        begin: contractions where it begins [m].
-        goal: contractions it was followed to [m].
-        points: its equilibria, in order along the branch.
-        critical: its folds and bifurcations, in the same order.
-        reason: why it ends.
+        begin: contractions at the start [m].
+        goal: contractions at the intended end [m].
+        points: equilibria in order along the branch.
+        critical: folds and bifurcations in the same order.
+        reason: reason why the branch ends.
     """
 
     begin: Vector
@@ -83,12 +83,12 @@ class Branch:
     reason: BranchReason
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         return f"<Branch of {plural(len(self.points), 'pose')}: {self.reason}>"
 
     @property
     def arrived(self) -> bool:
-        """Whether it leads to the goal."""
+        """True if the branch reaches the goal."""
         return self.reason is BranchReason.ARRIVED
 
     @property
@@ -102,7 +102,7 @@ class Branch:
         return tuple(point.share for point in self.critical if point.kind is CriticalKind.FOLD)
 
     def runs(self) -> list[tuple[slice, bool]]:
-        """Its parts from one critical point to the next, these included, and whether each is stable."""
+        """Parts from one critical point to the next, these included, with the stability of each part."""
         cuts = sorted({0, *(point.index for point in self.critical), len(self.points) - 1})
         parts = [slice(first, last + 1) for first, last in pairwise(cuts)]
         return [(part, self._stable(part)) for part in parts]

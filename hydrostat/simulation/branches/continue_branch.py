@@ -17,7 +17,7 @@ from hydrostat.simulation.static_obstacles import require_static_obstacles
 
 @dataclass(frozen=True, kw_only=True)
 class BranchOptions:
-    """How carefully a branch is followed.
+    """Step and accuracy options of branch continuation.
 
     A step is measured along the branch: by the share of the way, and by the root mean square displacement of the nodes
     as a share of the body's size.
@@ -26,13 +26,14 @@ class BranchOptions:
 
     Attributes:
         first_step: length of the first step.
-        largest_step: no step is longer.
-        smallest_step: a shorter one is not tried.
-        steps: most steps.
-        distance: largest way of a node from the predicted place to the equilibrium, as a share of the body's size and
-            of the step: 0.1 in a step of 0.02 lets no jump of more than 0.2 % of the body pass.
-        iterations: of Newton in a step; where the branch is near and no other is, a few are enough.
-        turn: least cosine of the angle between the directions of the branch before and after a step.
+        largest_step: maximum step length.
+        smallest_step: minimum step length; a shorter step is not tried.
+        steps: maximum number of steps.
+        distance: largest distance of a node from its predicted position to the equilibrium, as a share of the body's
+            size and of the step: 0.1 in a step of 0.02 lets no jump of more than 0.2 % of the body pass.
+        iterations: maximum number of Newton iterations in a step; a few suffice near the branch, and no other branch is
+            near.
+        turn: minimum cosine of the angle between the directions of the branch before and after a step.
 
     Raises:
         InputError: a length, a count or a distance that is not above 0, or a turn that is no cosine below 1.
@@ -194,7 +195,7 @@ class _Follower:
         return None
 
     def _find_fold(self, place: PathPoint, trial: PathPoint, step: float) -> PathPoint:
-        """Where d share / d length is 0, by Brent's method."""
+        """Return the point where d share / d length is 0, by Brent's method."""
         from scipy.optimize import brentq  # Imported here: not every command needs it.
 
         known = {0.0: place, step: trial}
@@ -207,7 +208,7 @@ class _Follower:
         return min(known.values(), key=lambda found: abs(found.tangent.rate))
 
     def _find_change(self, place: PathPoint, trial: PathPoint, step: float) -> PathPoint:
-        """Where the Hessian ceases or begins to be definite, by bisection."""
+        """Return the point where the definiteness of the Hessian changes, by bisection."""
         low, high, there = 0.0, step, trial
         while high - low > _SHARP * step:
             middle = 0.5 * (low + high)
@@ -267,7 +268,7 @@ _SAME = 1e-5
 """A start this near to an equilibrium, as a share of the body's size, is one."""
 
 _FLAT = 0.1
-"""Where the share grows so much slower than at the next place is a fold: it goes with the square of the length."""
+"""Ratio of the rates of the share at two points below which the first is a fold: the share is quadratic there."""
 
 _SHARP = 1e-7
 """Critical points are found to this share of a step."""

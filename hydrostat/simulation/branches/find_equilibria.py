@@ -20,11 +20,11 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FoundPose:
-    """An equilibrium, and the ways that led to it.
+    """Equilibrium, and the loading paths that lead to it.
 
     Attributes:
-        pose: a minimum of the energy; its markers are where they then are.
-        ways: in words, one for each start that ended there.
+        pose: minimum of the energy; its marker positions are those of the equilibrium.
+        ways: description of each loading path that ends there, one for each start.
     """
 
     pose: Equilibrium
@@ -33,16 +33,16 @@ class FoundPose:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Multistability:
-    """Where a robot comes to rest at the same contractions after different ways there.
+    """Equilibria of a robot at the same contractions after different loading paths.
 
     Attributes:
-        contractions: of all the poses [m].
-        poses: those that differ, that of least energy first.
-        lost: ways on which no equilibrium was found, or none that is stable, in words.
+        contractions: contractions of all the poses [m].
+        poses: distinct equilibria, least energy first.
+        lost: description of each loading path without an equilibrium or without a stable one.
         spread: largest distance of each marker between two of the poses [m].
         node_spread: largest distance of any node between two of the poses [m].
-        near: poses whose nodes are all within this distance are one [m].
-        friction: whether cables rub, so that the way matters by nature.
+        near: largest node distance at which two poses count as one [m].
+        friction: True if cables have friction, so that the pose depends on the loading path anyway.
     """
 
     contractions: Vector
@@ -54,17 +54,17 @@ class Multistability:
     friction: bool
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         return f"<Multistability: {plural(len(self.poses), 'pose')} after {plural(self.starts, 'start')}>"
 
     @property
     def unique(self) -> bool:
-        """Whether all starts led to one pose: the contractions alone decide."""
+        """True if all starts lead to one pose, so the contractions alone determine it."""
         return len(self.poses) == 1
 
     @property
     def starts(self) -> int:
-        """How many starts led to a pose."""
+        """Number of starts that lead to a pose."""
         return sum(len(found.ways) for found in self.poses)
 
     @property

@@ -18,11 +18,11 @@ class Approach:
     """Loading path that brings a robot to its contractions.
 
     Attributes:
-        name: in words.
-        stops: contractions on the way [m], the goal last.
-        at_once: go to the first stop by one solve from rest, rather than in small steps.
-        push: force on each node [N] that pushes the robot aside at the goal, before it is let go; None for no push.
-        reach: how far the push moves it, as a share of the body's size.
+        name: description of the path.
+        stops: contractions along the path [m], the goal last.
+        at_once: go to the first stop by one solve from rest instead of small steps.
+        push: force on each node [N] that displaces the robot at the goal before it is released; None for no push.
+        reach: displacement caused by the push, as a share of the body's size.
     """
 
     name: str
@@ -132,7 +132,7 @@ def _in_steps(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Equili
 
 
 def _let_go(simulation: Simulation, pose: Equilibrium, push: Nodes, reach: float) -> Equilibrium:
-    """Where a pose comes to rest after a push at fixed contractions."""
+    """Return the equilibrium of a pose after a push at fixed contractions."""
     stiffness = simulation.stiffness(pose)
     if not pose.result.converged or stiffness.singular:
         return pose

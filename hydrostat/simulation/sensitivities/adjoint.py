@@ -20,20 +20,20 @@ Response = Callable[[Float[np.ndarray, "dofs columns"]], Float[np.ndarray, "dofs
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sensitivity:
-    """Sensitivities: slopes of a number L of a pose, in units of L for each unit of what changes.
+    """Sensitivities: derivatives of a scalar L of a pose, in units of L per unit of the parameter.
 
     Attributes:
-        contractions: of each winch [1/m].
-        slack: of each cable [1/m].
-        routes: by the rest position of each point, of each cable [1/m]; both its place in the body and the rest
-            lengths beside it change. The first point of a cable of a winch in the world moves in space.
-        cable_stiffness: of each cable [m/N].
-        friction: by the coefficient mu of each cable that has some; 0 for the others.
-        pin_stiffness: of each pin [m/N].
-        young: Young's modulus [1/Pa].
-        poisson: Poisson's ratio [-].
-        density: by way of the weight; 0 without gravity [m^3/kg].
-        thickness: of a flat body [1/m]; None in space.
+        contractions: derivative by each winch's contraction [1/m].
+        slack: derivative by each cable's slack [1/m].
+        routes: derivative by the rest position of each point of each cable [1/m], which changes its position in the
+            body and the rest lengths next to it. The first point of a cable of a winch in the world moves in space.
+        cable_stiffness: derivative by each cable's stiffness [m/N].
+        friction: derivative by the friction coefficient mu of each cable; 0 for cables without friction.
+        pin_stiffness: derivative by each pin's stiffness [m/N].
+        young: derivative by Young's modulus [1/Pa].
+        poisson: derivative by Poisson's ratio [-].
+        density: derivative by the density, through the weight [m^3/kg]; 0 without gravity.
+        thickness: derivative by the thickness of a flat body [1/m]; None in space.
     """
 
     contractions: Vector

@@ -16,16 +16,16 @@ from hydrostat.simulation.sensitivities.adjoint import Sensitivity, by_body, by_
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FrictionSensitivities:
-    """Sensitivities of some numbers, a row for each.
+    """Sensitivities of several scalars with cable friction, a row for each scalar.
 
     Attributes:
-        fields: the adjoint field of each, which the forces of the body do work along, (rows, nodes, dim).
-        contractions: by the contraction of each winch [1/m].
-        slack: by the slack of each cable [1/m].
-        ratios: by the spool ratio of each cable.
-        points: by the rest place of each point of each cable, cable after cable [1/m].
-        stiffness: by the stiffness of each cable [m/N].
-        friction: by the coefficient mu of each cable; 0 for one without friction.
+        fields: adjoint field of each scalar, the displacement on which the body forces do work, (rows, nodes, dim).
+        contractions: derivatives by the contraction of each winch [1/m].
+        slack: derivatives by the slack of each cable [1/m].
+        ratios: derivatives by the spool ratio of each cable.
+        points: derivatives by the rest position of each point of each cable, cable after cable [1/m].
+        stiffness: derivatives by the stiffness of each cable [m/N].
+        friction: derivatives by the friction coefficient mu of each cable; 0 for one without friction.
     """
 
     fields: Float[np.ndarray, "rows nodes dim"]
@@ -99,7 +99,7 @@ def friction_sensitivities(
 def friction_adjoint(
     body: BodyPhysics, points: RoutePoints, pose: Equilibrium, slopes: FrictionSensitivities
 ) -> Sensitivity:
-    """The same of one number, with the slopes by the body."""
+    """Return the sensitivities of one scalar with cable friction, including those to body parameters."""
     young, poisson, density, thickness, pins = by_body(body, pose, slopes.fields[0])
     return Sensitivity(
         contractions=slopes.contractions[0],

@@ -17,7 +17,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation.equilibrium import Equilibrium
 
 Slopes = Float[np.ndarray, "markers dim winches"]
-"""How markers move with contractions."""
+"""Jacobian of the marker positions by the contractions."""
 
 
 _LOOK = 0.1
@@ -28,16 +28,16 @@ LONG_ENOUGH = 2e-4
 
 
 class PoseRow(NamedTuple):
-    """One equilibrium among many.
+    """One equilibrium of a batch.
 
     Attributes:
-        markers: positions of the markers [m]; None where no equilibrium was found, as in all below.
-        tensions: of each cable [N].
-        jacobian: slopes of the markers with the contractions; None if not asked for, or where there is none.
-        nodes: positions of the nodes [m]; None if not asked for.
-        stable: whether it is a minimum of energy.
-        reason: why the solver ended; None where an error ended it.
-        trouble: what went wrong, in words; empty if nothing did.
+        markers: marker positions [m]; None without an equilibrium, as for all fields below.
+        tensions: tension of each cable [N].
+        jacobian: Jacobian of the markers by the contractions; None if not requested or undefined.
+        nodes: node positions [m]; None if not requested.
+        stable: True if it is an energy minimum.
+        reason: stop reason of the solver; None after an error.
+        trouble: error text; empty without an error.
     """
 
     markers: Points | None = None
@@ -51,18 +51,18 @@ class PoseRow(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BatchResult:
-    """Equilibria at many contractions, a row for each; NaN stands where a number could not be found.
+    """Equilibria at many contractions, a row for each; NaN marks a missing value.
 
     Attributes:
-        contractions: cable taken in [m], (poses, winches).
-        markers: positions of the markers [m], (poses, markers, dim), in the robot's order.
-        tensions: of each cable [N], (poses, cables).
-        jacobians: exact slopes of the markers with the contractions, (poses, markers, dim, winches); None if not
-            asked for.
-        nodes: positions of the nodes [m], (poses, nodes, dim); None if not asked for.
-        reasons: why the solver ended each time; None where an error ended it.
-        stable: whether each is a minimum of energy, and no saddle, (poses,).
-        errors: what went wrong, in words; empty where nothing did.
+        contractions: contractions [m], (poses, winches).
+        markers: marker positions [m], (poses, markers, dim), in the robot's order.
+        tensions: tension of each cable [N], (poses, cables).
+        jacobians: exact Jacobians of the markers by the contractions, (poses, markers, dim, winches); None if not
+            requested.
+        nodes: node positions [m], (poses, nodes, dim); None if not requested.
+        reasons: stop reason of each solve; None after an error.
+        stable: True where the equilibrium is an energy minimum, not a saddle, (poses,).
+        errors: error text of each solve; empty without an error.
     """
 
     contractions: Float[np.ndarray, "poses winches"]
@@ -76,14 +76,14 @@ class BatchResult:
 
     @property
     def converged(self) -> Bool[np.ndarray, " poses"]:
-        """Which of them are equilibria."""
+        """Mask of the rows that are equilibria."""
         return np.array([reason is Reason.CONVERGED for reason in self.reasons], dtype=bool)
 
     def __len__(self) -> int:
         return len(self.reasons)
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         return f"<BatchResult: {self.converged.sum()} of {len(self)} converged; markers {self.markers.shape}>"
 
 

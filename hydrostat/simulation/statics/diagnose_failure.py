@@ -13,7 +13,7 @@ from hydrostat.robot import Robot
 def diagnose_failure(
     robot: Robot, cables: CableEnergy, nodes: Nodes, contractions: Vector, forces: Points
 ) -> tuple[str, ...]:
-    """Tell which cable pulls hardest, which element is next to flat, else where the most force is left over.
+    """Explain a failed solve: the cable with the highest tension, an almost flat element or the largest residual.
 
     Args:
         robot: whose solve ended early.

@@ -49,11 +49,11 @@ class LoadingPath:
         self._increment = _INCREMENT * np.array(lengths)
 
     def with_timeout(self, seconds: float | None) -> "LoadingPath":
-        """The same that stops after so many seconds, counted from now; itself if that is None."""
+        """Return the same path with a timeout counted from now [s]; itself if that is None."""
         return self if seconds is None else self._by(self._solver.with_timeout(seconds))
 
     def until(self, deadline: float) -> "LoadingPath":
-        """The same that stops at a time of `time.monotonic` [s]."""
+        """Return the same path with a deadline on the clock of `time.monotonic` [s]."""
         return self._by(self._solver.with_deadline(deadline))
 
     def _by(self, solver: StaticSolver) -> "LoadingPath":
@@ -82,15 +82,7 @@ class LoadingPath:
         return replace(state.result, iterations=iterations), state.assembly.history
 
     def at_once(self, goal: Vector, start: Equilibrium | None, near: NewtonResult) -> tuple[NewtonResult, Vector]:
-        """The same way in a single increment, found from a state that is near its end.
-
-        It ends where `solve` does as long as cable slips one way only; else it is close.
-
-        Args:
-            goal: contractions [m].
-            start: where the way begins; at rest if left out.
-            near: nodes near the end, and the Hessian there.
-        """
+        """Return the same path in a single increment, solved from a state near its end."""
         assembly = self._rest.assembly if start is None else self.with_history(start)
         assembly = assembly.with_active_terms(near.nodes)
         for _ in range(_GUESSES):  # balance there: a better guess than none of what friction holds

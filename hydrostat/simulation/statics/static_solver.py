@@ -15,10 +15,10 @@ class StaticSolver:
     """Newton's method on given physics.
 
     Attributes:
-        assembly: the sum of energies.
-        options: how far Newton goes.
-        round_off: what rounding hides of forces and energies.
-        warp: bends steps along arcs.
+        assembly: sum of energies.
+        options: convergence options of Newton's method.
+        round_off: rounding errors of forces and energies.
+        warp: map that bends steps along arcs.
     """
 
     assembly: Assembly
@@ -66,11 +66,7 @@ class StaticSolver:
         )
 
     def with_timeout(self, seconds: float | None) -> "StaticSolver":
-        """The same that stops after so many seconds, counted from now; itself if that is None.
-
-        Raises:
-            InputError: a limit that is not above 0.
-        """
+        """Return the same solver with a timeout counted from now [s]; itself if that is None."""
         if seconds is None:
             return self
         if isinstance(seconds, bool) or not isinstance(seconds, int | float | np.number) or not seconds > 0:
@@ -78,11 +74,11 @@ class StaticSolver:
         return self.with_deadline(time.monotonic() + seconds)
 
     def with_deadline(self, deadline: float) -> "StaticSolver":
-        """The same that stops at a time of `time.monotonic` [s], or earlier if it did so before."""
+        """Return the same solver with a deadline on the clock of `time.monotonic` [s], unless its own is earlier."""
         return replace(self, options=replace(self.options, deadline=min(deadline, self.options.deadline)))
 
     def with_accuracy(self, accuracy: float | None, size: float = np.inf) -> "StaticSolver":
-        """The same that stops where nodes of a body so large are so near to equilibrium [m]; itself if that is None.
+        """Return the same solver with a node accuracy [m] for a body of a given size [m]; itself if None.
 
         Raises:
             InputError: an accuracy that is not above 0, or so rough that it is hardly in metres.
@@ -183,7 +179,7 @@ class StaticSolver:
 
 
 def _needs_fallback(result: NewtonResult) -> bool:
-    """Tell whether another way should be tried."""
+    """Return True if another solution method should be tried."""
     return result.reason not in (Reason.CONVERGED, Reason.TIME_LIMIT)
 
 
@@ -197,7 +193,7 @@ _FIRST_STEP = 0.5
 """Share of a command that is tried first."""
 
 _LOOSE = 0.1
-"""What may be left over on the way, as a share of the largest applied force."""
+"""Residual allowed for intermediate states, as a share of the largest applied force."""
 
 _SMALLEST_WHOLE = 0.05
 """Larger load steps are taken whole or not at all; smaller ones may begin with a step of Newton that is cut short."""

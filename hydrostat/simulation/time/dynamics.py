@@ -30,17 +30,17 @@ from hydrostat.simulation.statics.history_equilibrium import find_history_equili
 from hydrostat.simulation.time.motion import Motion
 
 PinShifts = Mapping[int, Vector]
-"""How far pins have been moved from where they were at rest [m], by their number; the others stay where they are."""
+"""Displacement of pins from their rest positions [m], by pin index; other pins stay where they are."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class StepOptions:
-    """How a step in time is made.
+    """Options for time integration.
 
     Attributes:
-        scheme: a name in `SCHEMES`.
-        drag: force against the motion, per mass and velocity [1/s]; 0 for none.
-        halvings: so often is a step cut in two if its minimisation fails.
+        scheme: name of a scheme in `SCHEMES`.
+        drag: drag force per mass and velocity [1/s]; 0 for none.
+        halvings: maximum number of times a step is halved if its minimisation fails.
 
     Raises:
         InputError: an unknown scheme, a negative drag, or a negative number of halvings.
@@ -61,7 +61,7 @@ class StepOptions:
 
 @dataclass(frozen=True, eq=False)
 class _MotionState:
-    """What changes in time, or its rate of change."""
+    """Time-dependent state, or its rate of change."""
 
     nodes: Nodes
     velocities: Nodes
@@ -248,7 +248,7 @@ class Dynamics:
         return find_history_equilibrium(assembly, (start, None), controls, relax, noise.force)
 
     def _noise(self, step: float) -> RoundOff:
-        """What rounding hides in a step, inertia and viscous forces included."""
+        """Rounding errors in a step, including inertia and viscous forces."""
         body = self.robot.body
         scale = 0.0
         if len(self.memory):
@@ -277,7 +277,7 @@ class Dynamics:
         accelerations: Nodes,
         result: NewtonResult | None,
     ) -> Motion:
-        """All of an instant; `held` are contractions, shifts of the pins and the history."""
+        """Return the full record of an instant; `held` are contractions, pin shifts and history."""
         (contractions, shifts, history), nodes = held, state.nodes
         places = self._markers.positions(nodes)
         statics = self._remembering(history, nodes, contractions, shifts, time)

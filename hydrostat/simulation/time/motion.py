@@ -13,25 +13,27 @@ from hydrostat.simulation.equilibrium import Equilibrium
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Motion:
-    """All that the next step depends on, and what is to be seen at this instant.
+    """State of a motion at one instant: everything that the next step depends on, and the observable quantities.
 
     Attributes:
-        robot: that moves.
-        time: since the beginning [s].
-        contractions: cable taken in by each winch [m], in winch order.
-        pin_shifts: how far each pin has been moved [m], in pin order.
-        nodes: positions of the nodes [m].
-        velocities: of the nodes [m/s].
-        accelerations: of the nodes [m/s^2].
-        metrics: of the viscous branches in each element; none for an elastic body.
+        robot: moving robot.
+        time: time since the start [s].
+        contractions: contraction of each winch [m], in winch order.
+        pin_shifts: displacement of each pin [m], in pin order.
+        nodes: node positions [m].
+        velocities: node velocities [m/s].
+        accelerations: node accelerations [m/s^2].
+        metrics: metrics of the viscous branches in each element; none for an elastic body.
         markers: position of each marker [m].
-        tensions: of each cable [N], in cable order.
-        kinetic: energy of the motion [J].
-        potential: energy of body, cables, pins, weight and branches [J].
-        history: what the physics remember of the way: how much cable has slipped over each point with friction [m];
-            empty without.
-        carried: unknowns of obstacles that move [m], their velocities [m/s] and accelerations [m/s^2]; None if none do.
-        result: how the last minimisation of the step ended; its energy is that of the step, its iterations are of all.
+        tensions: tension of each cable [N], in cable order.
+        kinetic: kinetic energy [J].
+        potential: potential energy of body, cables, pins, weight and branches [J].
+        history: history variables of the physics: cable slip at each point with friction so far [m]; empty without
+            friction.
+        carried: unknowns of moving obstacles [m], their velocities [m/s] and accelerations [m/s^2]; None if no obstacle
+            moves.
+        result: result of the last minimisation of the step; its energy is that of the step, its iterations are those of
+            all.
     """
 
     robot: Robot
@@ -51,7 +53,7 @@ class Motion:
     carried: tuple[Points, Points, Points] | None = None
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a one-line summary."""
         fastest = 1e3 * float(np.linalg.norm(self.velocities, axis=1).max(initial=0.0))
         return f"<Motion of {self.robot.name!r} at {self.time:.4g} s: no node is faster than {fastest:.2g} mm/s>"
 
@@ -62,7 +64,7 @@ class Motion:
 
     @property
     def pose(self) -> Equilibrium:
-        """What is to be seen of it, as a pose; no equilibrium, and its result is that of the last step.
+        """Observable quantities as a pose; not an equilibrium, and its result is that of the last step.
 
         Raises:
             ValueError: the motion has not made a step yet.
