@@ -69,15 +69,14 @@ def learn(
         with one_interrupt("stopping: saving the best model so far ..."):
             model = correct_model(known, samples, tell=told())
             save_model(model, out)
-        print(f"expected marker error {1e3 * model.facts['error']:.3f} mm ({len(samples)} samples)")
+        print(f"expected marker error {1e3 * model.card.error:.3f} mm ({len(samples)} samples)")
         _end(model, out)
         return
     with one_interrupt("stopping: saving the best model so far ..."):
         model = learn_model(samples, options=options, tell=told())
         save_model(model, out)
-    facts = model.facts
-    moved, error = 1e3 * facts["displacement"], 1e3 * facts["error"]
-    inverse = facts["inverse_error"]
+    moved, error = 1e3 * model.card.displacement, 1e3 * model.card.error
+    inverse = model.card.inverse_error
     words = "" if inverse is None else f", inverse error {1e3 * inverse:.3f} mm"
     print(f"expected marker error {error:.3f} mm{words} (mean motion {moved:.1f} mm, {len(samples)} samples)")
     _end(model, out)
@@ -86,7 +85,7 @@ def learn(
 def _end(model: "LearnedModel", out: Path) -> None:
     """Say what was written, and whether it was stopped early; then the command ends with 130."""
     print(f"Wrote {out}")
-    if model.facts["stopped"]:
+    if model.card.stopped:
         lacks = "" if model.inverse else ", without an inverse network"
         print(f"interrupted: best model so far{lacks}")
         raise typer.Exit(130)

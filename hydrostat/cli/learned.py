@@ -19,7 +19,7 @@ def read_model(path: Path, robot: "Robot") -> "tuple[LearnedModel, Robot]":
     from hydrostat.robot import Contact
 
     model = load_model(path)
-    silent = model.facts["contact"] and robot.contact is None
+    silent = model.card.contact and robot.contact is None
     robot = replace(robot, contact=Contact()) if silent else robot
     model.check(robot)
     if silent:

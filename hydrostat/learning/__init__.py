@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.learning.learned_model import LearnedModel
     from hydrostat.learning.learned_pose import LearnedPose, Tier
     from hydrostat.learning.lesson import LEAST, TrainingSet, lesson_of, linear_map
+    from hydrostat.learning.model_card import ModelCard
     from hydrostat.learning.model_file import load_model, save_model
     from hydrostat.learning.perceptrons import Perceptrons
     from hydrostat.learning.portable_policy import PortablePolicy, load_policy
@@ -31,6 +32,7 @@ __all__ = [
     "LearnOptions",
     "LearnedModel",
     "LearnedPose",
+    "ModelCard",
     "Perceptrons",
     "PortablePolicy",
     "SampleFolder",

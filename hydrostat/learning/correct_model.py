@@ -34,29 +34,28 @@ def correct_model(
     """
     from hydrostat.learning.train import train_forward
 
+    kept = kept_facts(samples)
     for name in ("winches", "markers", "cables", "dim", "contact"):
-        if list(np.atleast_1d(samples.facts[name])) != list(np.atleast_1d(model.facts[name])):
+        if kept[name] != getattr(model.card, name):
             raise InputError(f"the samples are of a robot with other {name} than the model's")
     if not all(np.allclose(one, other) for one, other in zip(samples.limits, (model.low, model.high), strict=True)):
         raise InputError("the samples are of a robot whose winches have another travel than the model's")
     options = replace(options or LearnOptions(steps=_STEPS, rate=_RATE), members=len(model.forward))
     began, lesson = time.process_time(), lesson_of(samples, model)
-    trained = train_forward(lesson, model.facts["dim"], options, tell or silent, start=model.forward)
+    trained = train_forward(lesson, model.card.dim, options, tell or silent, start=model.forward)
     if not np.isfinite(trained.error):
         if trained.stopped:
             raise KeyboardInterrupt
         raise InputError("the networks learned nothing: try a smaller rate")
-    facts = (
-        dict(model.facts)
-        | kept_facts(samples)
-        | {
-            "corrected": len(samples),
-            "error": float(lesson.unit[0]) * trained.error,
-            "stopped": trained.stopped,
-            "seconds": model.facts["seconds"] + time.process_time() - began,
-        }
+    card = replace(
+        model.card,
+        **kept,
+        corrected=len(samples),
+        error=float(lesson.unit[0]) * trained.error,
+        stopped=trained.stopped,
+        seconds=model.card.seconds + time.process_time() - began,
     )
-    return replace(model, facts=facts, forward=trained.networks)
+    return replace(model, card=card, forward=trained.networks)
 
 
 _STEPS, _RATE = 6000, 6e-3

@@ -1,54 +1,70 @@
-"""Contact as files of samples and models tell it: whether a body feels itself, from how far, with what friction."""
+"""`KnownContact`: the self-contact of a body, as files of samples and models record it."""
 
 from collections.abc import Mapping
 from math import isclose
-from typing import Any
+from typing import Any, NamedTuple
 
 from hydrostat.errors import InputError
 from hydrostat.robot import DISTANCE, Robot
 
-ContactFacts = dict[str, bool | float | None]
-"""contact, contact_distance [m] and contact_friction; None where there is no contact."""
+
+class KnownContact(NamedTuple):
+    """Self-contact of a body. Files hold each value under the name of its field.
+
+    Attributes:
+        contact: self-contact is on.
+        contact_distance: distance at which it begins [m]; None without contact.
+        contact_friction: its Coulomb coefficient; None without contact.
+    """
+
+    contact: bool
+    contact_distance: float | None = None
+    contact_friction: float | None = None
 
 
-def contact_facts(robot: Robot) -> ContactFacts:
-    """What a file tells of the contact of a robot."""
+def contact_facts(robot: Robot) -> KnownContact:
+    """Return the contact of a robot."""
     if robot.contact is None:
-        return _facts(None)
-    return _facts((robot.contact_distance, robot.contact.friction))
+        return KnownContact(contact=False)
+    return KnownContact(True, robot.contact_distance, robot.contact.friction)
 
 
-def contact_in_model(facts: Mapping[str, Any]) -> ContactFacts:
-    """The same as a file tells it; one that does not, being earlier, was made with the usual distance, no friction."""
+def contact_in_model(facts: Mapping[str, Any]) -> KnownContact:
+    """Return the contact in the facts of a file.
+
+    Files of earlier versions lack the numbers: they were made with the usual distance, and without friction.
+    """
     if not facts["contact"]:
-        return _facts(None)
+        return KnownContact(contact=False)
     distance, friction = facts.get("contact_distance"), facts.get("contact_friction")
     usual = DISTANCE * facts["size"] if distance is None else distance
-    return _facts((usual, 0.0 if friction is None else friction))
+    return KnownContact(True, usual, 0.0 if friction is None else friction)
 
 
-def check_contact(told: ContactFacts, robot: Robot) -> None:
+def check_contact(known: KnownContact, robot: Robot) -> None:
     """Check that a model knows the contact of a robot (InputError: it knows another, or only one of them has any)."""
     mine = contact_facts(robot)
-    if told["contact"] != mine["contact"]:
-        have, lack = ("the model", "the robot") if told["contact"] else ("the robot", "the model")
+    if known.contact != mine.contact:
+        have, lack = ("the model", "the robot") if known.contact else ("the robot", "the model")
         raise InputError(f"{have} knows contact and {lack} does not: give both or none [contact]")
-    if told["contact"] and not all(isclose(told[name] or 0.0, mine[name] or 0.0, rel_tol=_SAME) for name in _NUMBERS):
+    if known.contact and not all(
+        isclose(*pair, rel_tol=_SAME) for pair in zip(_numbers(known), _numbers(mine), strict=True)
+    ):
         raise InputError(
-            f"the model knows {_words(told)}, the robot has {_words(mine)}: give [contact] the same, or sample and "
+            f"the model knows {_words(known)}, the robot has {_words(mine)}: give [contact] the same, or sample and "
             f"learn again"
         )
 
 
-def _facts(numbers: tuple[float, float] | None) -> ContactFacts:
-    return {"contact": numbers is not None, **dict(zip(_NUMBERS, numbers or (None, None), strict=True))}
+def _numbers(known: KnownContact) -> tuple[float, float]:
+    """Return distance [m] and friction, 0 where there is none."""
+    return known.contact_distance or 0.0, known.contact_friction or 0.0
 
 
-def _words(facts: ContactFacts) -> str:
-    distance, friction = (facts[name] or 0.0 for name in _NUMBERS)
+def _words(known: KnownContact) -> str:
+    distance, friction = _numbers(known)
     return f"contact from {1e3 * distance:.4g} mm with friction {friction:g}"
 
 
-_NUMBERS = ("contact_distance", "contact_friction")
 _SAME = 1e-6
 """A relative difference below this is rounding, as between meshes of two machines."""

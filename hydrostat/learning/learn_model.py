@@ -13,6 +13,7 @@ from hydrostat.learning.known_contact import contact_in_model
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel, paired
 from hydrostat.learning.lesson import lesson_of
+from hydrostat.learning.model_card import ModelCard
 from hydrostat.learning.sample_robot import Tell
 from hydrostat.learning.samples import Samples
 
@@ -21,7 +22,7 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
     """Train forward networks on values and slopes of samples, then an inverse network through them. Needs PyTorch.
 
     Ctrl-C ends it early: the model is then the best so far, without an inverse network if that was not begun, and says
-    so in `facts["stopped"]`.
+    so in `card.stopped`.
 
     Args:
         samples: of one robot.
@@ -46,19 +47,20 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
         raise InputError("the networks learned nothing: try a smaller rate")
     inverse = None if forward.stopped else train_inverse(lesson, dim, forward.networks, options, told, pairs)
     some = np.linspace(0, len(samples) - 1, min(len(samples), KNOWN)).astype(int)
-    facts = kept | {
-        "version": version("hydrostat"),
-        "samples": len(samples),
-        "lost": samples.lost,
-        "error": length * forward.error,
-        "inverse_error": None if inverse is None or not np.isfinite(inverse.error) else length * inverse.error,
-        "displacement": float(_moved(samples.markers).mean()),
-        "stopped": forward.stopped or (inverse is not None and inverse.stopped),
-        "options": asdict(options),
-        "seconds": time.process_time() - began,
-    }
+    card = ModelCard(
+        **kept,
+        version=version("hydrostat"),
+        samples=len(samples),
+        lost=samples.lost,
+        error=length * forward.error,
+        inverse_error=None if inverse is None or not np.isfinite(inverse.error) else length * inverse.error,
+        displacement=float(_moved(samples.markers).mean()),
+        stopped=forward.stopped or (inverse is not None and inverse.stopped),
+        options=asdict(options),
+        seconds=time.process_time() - began,
+    )
     return LearnedModel(
-        facts=facts,
+        card=card,
         low=lesson.low,
         high=lesson.high,
         middle=lesson.middle,
@@ -71,9 +73,15 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
 
 
 def kept_facts(samples: Samples) -> dict[str, Any]:
-    """What a model tells of the robot that it was learned of."""
-    pairs = samples.facts["pairs"] if list(samples.facts["draws"]) == [SamplingScheme.ANTAGONIST] else []
-    return {**{name: samples.facts[name] for name in _KEPT}, "pairs": pairs, **contact_in_model(samples.facts)}
+    """Return the fields of a `ModelCard` that describe the robot and how it was sampled."""
+    known = samples.facts
+    pairs = known["pairs"] if list(known["draws"]) == [SamplingScheme.ANTAGONIST] else ()
+    return {
+        **{name: known[name] for name in ("robot", "physics", "dim", "node_count", "size")},
+        **{name: tuple(known[name]) for name in ("draws", "winches", "markers", "cables")},
+        "pairs": tuple(tuple(group) for group in pairs),
+        **contact_in_model(known)._asdict(),
+    }
 
 
 def silent(stage: str, done: int, total: int) -> None:
@@ -88,6 +96,3 @@ def _moved(markers: np.ndarray) -> np.ndarray:
 
 KNOWN = 2000
 """So many samples a model keeps, to begin a search from."""
-
-_KEPT = ("robot", "physics", "draws", "winches", "markers", "cables", "dim", "node_count", "size")
-"""Facts of the samples that a model tells, beside their contact."""

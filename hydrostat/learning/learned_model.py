@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import dist, hypot
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -12,8 +11,9 @@ from jaxtyping import Float
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik import Targets, named_targets
-from hydrostat.learning.known_contact import check_contact, contact_in_model
+from hydrostat.learning.known_contact import check_contact
 from hydrostat.learning.learned_pose import LearnedPose, Tier
+from hydrostat.learning.model_card import ModelCard
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.learning.sample_plan import physics_hash
 from hydrostat.robot import PoseTarget, Robot
@@ -27,7 +27,7 @@ class LearnedModel:
     expected (markers, then tensions) is counted from its mean in a unit for each.
 
     Attributes:
-        facts: which robot it is, what was learned from, how, and with what success.
+        card: the robot, the samples, the training and its accuracy.
         low: least contraction of each winch [m].
         high: largest [m].
         middle: mean of what is expected: of the coordinates of the markers [m], then of the tensions [N].
@@ -38,7 +38,7 @@ class LearnedModel:
         reached: where the markers were then [m], a row each.
     """
 
-    facts: Mapping[str, Any]
+    card: ModelCard
     low: Vector
     high: Vector
     middle: Vector
@@ -50,8 +50,8 @@ class LearnedModel:
 
     def __repr__(self) -> str:
         """What it is, in one line."""
-        known = f"{len(self.facts['winches'])} winches, {len(self.facts['markers'])} markers"
-        return f"<LearnedModel of {self.facts['robot']!r}: {known}, {1e3 * self.facts['error']:.3g} mm on average>"
+        known = f"{len(self.card.winches)} winches, {len(self.card.markers)} markers"
+        return f"<LearnedModel of {self.card.robot!r}: {known}, {1e3 * self.card.error:.3g} mm on average>"
 
     def check(self, robot: Robot) -> None:
         """Check that this was learned of a robot.
@@ -59,12 +59,12 @@ class LearnedModel:
         Raises:
             InputError: it was learned of another, or with another contact.
         """
-        if self.facts["physics"] != physics_hash(robot):
+        if self.card.physics != physics_hash(robot):
             raise InputError(
-                f"the model was learned of another robot than {robot.name!r} ({self.facts['robot']!r}, or what it was "
+                f"the model was learned of another robot than {robot.name!r} ({self.card.robot!r}, or what it was "
                 f"before it was changed): sample and learn again"
             )
-        check_contact(contact_in_model(self.facts), robot)
+        check_contact(self.card.known_contact, robot)
 
     def predict(self, contractions: Vector) -> tuple[Vector, Vector]:
         """What is expected at contractions [m]: coordinates of the markers [m], then tensions [N]; and their spread."""
@@ -73,7 +73,7 @@ class LearnedModel:
     def slopes(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
         """How the networks expect the markers to go when winches take in cable."""
         _, slopes = self.forward.slopes(self._scaled(self._winches(contractions)))
-        return (self.unit[:, None] * slopes / self._half)[: self._coordinates]
+        return (self.unit[:, None] * slopes / self._half)[: self.card.coordinates]
 
     def predict_inverse(self, markers: Vector) -> Vector:
         """Contractions [m] by the inverse network alone, for coordinates of all markers [m] in their order.
@@ -81,7 +81,7 @@ class LearnedModel:
         Raises:
             InputError: there is no inverse network, or another number of coordinates.
         """
-        given, count = np.asarray(markers, dtype=float).ravel(), self._coordinates
+        given, count = np.asarray(markers, dtype=float).ravel(), self.card.coordinates
         if given.shape != (count,) or not np.isfinite(given).all():
             raise InputError(f"markers must be {count} finite coordinates [m]")
         return self._inverted(given)
@@ -110,7 +110,7 @@ class LearnedModel:
     def evaluate(self, target: PoseTarget, contractions: Vector, tier: Tier) -> LearnedPose:
         """An answer, with what the networks say of it."""
         expected, spread = self._expected(contractions)
-        names, dim, count = self.facts["markers"], self.facts["dim"], self._coordinates
+        names, dim, count = self.card.markers, self.card.dim, self.card.coordinates
         places = expected[:count].reshape(-1, dim)
         found, doubted, goals = places.tolist(), spread[:count].reshape(-1, dim).tolist(), target.targets
         asked = [(row, name) for name, row in self._rows.items() if name in goals]
@@ -118,9 +118,9 @@ class LearnedModel:
             target=target,
             tier=tier,
             contractions=contractions,
-            commands=dict(zip(self.facts["winches"], contractions.tolist(), strict=True)),
+            commands=dict(zip(self.card.winches, contractions.tolist(), strict=True)),
             markers=dict(zip(names, places, strict=True)),
-            tensions=dict(zip(self.facts["cables"], np.maximum(expected[count:], 0.0).tolist(), strict=True)),
+            tensions=dict(zip(self.card.cables, np.maximum(expected[count:], 0.0).tolist(), strict=True)),
             errors={name: dist(found[row], goals[name]) for row, name in asked},
             spread={name: hypot(*doubted[row]) for row, name in asked},
         )
@@ -128,7 +128,7 @@ class LearnedModel:
     def _inverted(self, markers: Vector) -> Vector:
         if self.inverse is None:
             raise InputError("the model has no inverse network: its learning was stopped before")
-        count = self._coordinates
+        count = self.card.coordinates
         raw, _ = self.inverse.agreed((markers - self.middle[:count]) / self.unit[:count])
         return self._held(self._contractions(_BEYOND * np.tanh(raw)))
 
@@ -138,12 +138,12 @@ class LearnedModel:
 
     def _search(self, goal: Vector, asked: np.ndarray) -> Vector:
         """The best of descents from the inverse network's answer and, if need be, from samples."""
-        count = self._coordinates
+        count = self.card.coordinates
         weights = np.zeros(len(self.unit))
         weights[:count] = asked * self.unit[:count]  # what is left is then in metres
         wanted = np.zeros(len(self.unit))
         wanted[:count] = (goal - self.middle[:count]) / self.unit[:count]
-        enough = asked.sum() / self.facts["dim"] * (_USUAL * self.facts["error"]) ** 2
+        enough = asked.sum() / self.card.dim * (_USUAL * self.card.error) ** 2
         starts = [] if self.inverse is None else [self._inverted(goal)]
         best, least = np.zeros(len(self.low)), np.inf
         for start in [*starts, *self._nearest(goal, asked, _STARTS)[0]]:
@@ -192,7 +192,7 @@ class LearnedModel:
 
     def _goal(self, target: PoseTarget) -> tuple[Vector, np.ndarray]:
         """Coordinates of all markers [m], NaN where nothing is asked for, and which of them are asked for."""
-        rows, dim, targets = self._rows, self.facts["dim"], target.targets
+        rows, dim, targets = self._rows, self.card.dim, target.targets
         for name, point in targets.items():
             if name not in rows:
                 raise InputError(f'unknown marker "{name}" of the model. Available: {", ".join(rows)}.')
@@ -217,12 +217,12 @@ class LearnedModel:
     @cached_property
     def _rows(self) -> Mapping[str, int]:
         """Which of the markers is called so."""
-        return {name: row for row, name in enumerate(self.facts["markers"])}
+        return {name: row for row, name in enumerate(self.card.markers)}
 
     @cached_property
     def _pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """Winches of which samples had only one take in, as two rows of places."""
-        return paired(self.facts.get("pairs", ()), self.facts["winches"])
+        return paired(self.card.pairs, self.card.winches)
 
     @cached_property
     def _half(self) -> Vector:
@@ -232,10 +232,6 @@ class LearnedModel:
     @cached_property
     def _centre(self) -> Vector:
         return self.low + self._half
-
-    @cached_property
-    def _coordinates(self) -> int:
-        return len(self.facts["markers"]) * self.facts["dim"]
 
 
 def paired(pairs: Sequence[Sequence[str]], winches: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:

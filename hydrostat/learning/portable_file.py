@@ -33,14 +33,12 @@ class PortableFile:
         word: what it holds, in a word.
         writer: the command that writes it.
         kinds: type and number of axes of each array that it may hold.
-        needs: facts that it must have, and of which kinds.
     """
 
     magic: bytes
     word: str
     writer: str
     kinds: Mapping[str, tuple[str, int]]
-    needs: Mapping[str, Any]
 
     def write(self, path: Path, facts: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> Path:
         """Write a file whole, or not at all; arrays are kept as their kinds say (InputError: it cannot be written)."""
@@ -75,9 +73,7 @@ class PortableFile:
         if hashlib.sha256(body).digest() != checksum:
             raise InputError(f"{path}: is damaged; get it again, or make it again by {self.writer}")
         try:
-            facts, arrays = self._parts(body)
-            self._check(facts)
-            return made(facts, arrays)
+            return made(*self._parts(body))
         except (ValueError, TypeError, KeyError, RecursionError, OverflowError) as error:
             raise InputError(f"{path}: is no sound {self.word}: {error}") from None
 
@@ -108,12 +104,18 @@ class PortableFile:
             raise ValueError("there is more in it than its header says")
         return dict(header["facts"]), arrays
 
-    def _check(self, facts: Mapping[str, Any]) -> None:
-        """ValueError: a fact that is needed is missing or of another kind."""
-        for name, kind in self.needs.items():
-            if not isinstance(facts.get(name), kind) or (kind is not bool and isinstance(facts[name], bool)):
-                raise ValueError(f"it does not say its {name}")
 
+def check_fact(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
+    """Check the value of a key in JSON (ValueError: it is missing or of another kind)."""
+    if value is None:
+        raise ValueError(f'"{name}" is missing')
+    if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool)):
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        raise ValueError(f'"{name}" is {value!r:.60}, not {" or ".join(_WORDS[one] for one in kinds)}')
+
+
+_WORDS = {str: "text", bool: "true or false", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
+"""Name of each kind of value in JSON."""
 
 _DIGEST = hashlib.sha256().digest_size
 

@@ -11,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning.perceptrons import Perceptrons
-from hydrostat.learning.portable_file import PortableFile
+from hydrostat.learning.portable_file import PortableFile, check_fact
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,6 +61,8 @@ def load_policy(path: Path) -> PortablePolicy:
 
 def _policy(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> PortablePolicy:
     """The policy of its parts (ValueError: they do not fit one another)."""
+    for name, kind in _FACTS.items():
+        check_fact(name, facts.get(name), kind)
     sees, actions = facts["sees"], facts["actions"]
     sound = all(isinstance(name, str) and type(count) is int and count > 0 for name, count in sees)
     if not (sees and sound and actions > 0 and isfinite(facts["error"])):
@@ -69,10 +71,19 @@ def _policy(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> PortablePol
     return PortablePolicy(facts=facts, network=Perceptrons.of(arrays, "actor", inputs, actions))
 
 
+_FACTS: Mapping[str, Any] = {
+    "task": str,
+    "robot": str,
+    "physics": str,
+    "sees": list,
+    "actions": int,
+    "error": (int, float),
+}
+"""Facts of a policy, and their kinds."""
+
 _FILE = PortableFile(
     magic=b"HSPOLICY",
     word="policy",
     writer="hydrostat train",
     kinds={"actor.sizes": ("<i8", 1), "actor.numbers": ("<f4", 2)},
-    needs={"task": str, "robot": str, "physics": str, "sees": list, "actions": int, "error": (int, float)},
 )

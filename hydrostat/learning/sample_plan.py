@@ -97,7 +97,7 @@ class SamplePlan:
         return {
             "robot": robot.name,
             "physics": physics_hash(robot),
-            **contact_facts(robot),
+            **contact_facts(robot)._asdict(),
             "count": self.count,
             "seed": self.seed,
             "draws": [str(draw) for draw in self.draws],

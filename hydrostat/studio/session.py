@@ -136,7 +136,7 @@ class Session:
             return
         try:
             model = load_model(given or beside[0])
-            if silent := model.facts["contact"] and document.robot.contact is None:
+            if silent := model.card.contact and document.robot.contact is None:
                 model.check(replace(document.robot, contact=Contact()))
                 self.editor.set_contact(True)
             model.check(document.robot)

@@ -57,8 +57,8 @@ def portable_policy(trained: Any, env: ReachEnv, model: LearnedModel) -> Learned
     scale = model.unit[:count] / env.unit  # the networks count markers from their mean, in units of their own
     bias = bias + goals @ ((model.middle[:count] - rest) / env.unit)
     layers[0] = (goals * scale, bias)
-    facts = {**model.facts, "inverse_error": None, "policy": type(trained).__name__, "pairs": []}  # each winch alone
-    return replace(model, facts=facts, inverse=Perceptrons.of_layers(layers))
+    card = replace(model.card, inverse_error=None, policy=type(trained).__name__, pairs=())  # each winch alone
+    return replace(model, card=card, inverse=Perceptrons.of_layers(layers))
 
 
 def _layers(actor: Any) -> list[tuple[np.ndarray, np.ndarray]]:

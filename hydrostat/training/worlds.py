@@ -71,7 +71,7 @@ class LearnedWorld(World):
 
     def __init__(self, model: LearnedModel) -> None:
         """Networks of a robot."""
-        self._model, self._count = model, len(model.facts["markers"]) * model.facts["dim"]
+        self._model, self._count = model, model.card.coordinates
 
     def back(self) -> None:
         """Go back to rest, which networks do not remember."""

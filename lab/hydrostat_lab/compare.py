@@ -108,10 +108,10 @@ def _learned(train: Samples, test: Samples, asked: set[str], options: LearnOptio
         yield told("thesis", network.answers(goals), time.process_time() - began, curve=network.curve)
     if "values" in asked:
         model = learn_model(train, options=replace(options, slopes=0.0))
-        yield told("values", _searched(model, test)[0], model.facts["seconds"])
+        yield told("values", _searched(model, test)[0], model.card.seconds)
     if asked & set(OURS):
         model = learn_model(train, options=options)
-        seconds = model.facts["seconds"]
+        seconds = model.card.seconds
         if "inverse" in asked and model.inverse is not None:
             model.predict_inverse(goals[0])
             began = time.process_time()

@@ -90,7 +90,7 @@ def reproduce_trials(
             continue
         experiment = EXPERIMENTS[name]
         print(f"\n{name}: {experiment.title}")
-        print(f"{robot.name}, {width:.0f} mm; networks of {networks.facts['samples']} equilibria; {count} seeds:")
+        print(f"{robot.name}, {width:.0f} mm; networks of {networks.card.samples} equilibria; {count} seeds:")
         print(f"interquartile means and their 95 % intervals\n{_WORDS}")
         done: list[Judged] = []
         for judged in run_experiment(
@@ -143,7 +143,7 @@ def _policies(
         Budget(steps=usual.steps, epochs=usual.small, tell=told()),
     )
     every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
-    known = int(networks.facts["samples"])
+    known = networks.card.samples
     print(f"\n{table}: policy methods with one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator")
     print(f"{'method':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>24}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
     rows: list[dict[str, object]] = []

@@ -98,7 +98,7 @@ def certified_distances(
     What inverse kinematics does with the equilibria that the networks have learned from; it moves each winch alone. No
     more steps are taken than needed for 0.01 mm. NaN where a goal, or the answer to it, is no equilibrium.
     """
-    names, dim = model.facts["markers"], model.facts["dim"]
+    names, dim = model.card.markers, model.card.dim
     rows, found = asked[1][0].double().numpy(), []
     for number, row in enumerate(rows):
         tell("certified", number, len(rows))

@@ -77,7 +77,7 @@ class NetworkReach(Trials):
             random_start: whether episodes begin in a pose at random.
         """
         self.horizon, self._random = horizon, random_start
-        self._dim, self._count = model.facts["dim"], len(model.facts["markers"]) * model.facts["dim"]
+        self._dim, self._count = model.card.dim, model.card.coordinates
         self.states = self.goals = self._count
         self._low, self._high = (torch.tensor(part, dtype=torch.float32) for part in (model.low, model.high))
         self._groups = [tuple(group) for group in groups] or [(one,) for one in range(len(model.low))]

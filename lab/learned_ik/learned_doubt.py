@@ -48,13 +48,13 @@ def main() -> None:
     given = parser.parse_args()
     model, test = load_model(given.model), read_samples(given.test).first(given.targets)
     robot = hs.load_robot(given.robot)
-    if model.facts["contact"] and robot.contact is None:
+    if model.card.contact and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())
     model.check(robot)
     simulation, names = hs.Simulation(robot), test.facts["markers"]
     finer = None if given.finer is None else read_samples(given.finer).markers
     print(machine())
-    print(f"{robot.name}, {model.facts['samples']} samples; errors in mm")
+    print(f"{robot.name}, {model.card.samples} samples; errors in mm")
     print(f"{'targets':14}{'count':>6}{'found':>9}{'expected':>10}{'doubt':>8}{'rank':>7}{'within':>8}{'lost':>6}")
     curves: dict[str, tuple[np.ndarray, np.ndarray]] = {}
     for kind, markers in kinds_of(test.markers, finer).items():

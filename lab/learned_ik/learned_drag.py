@@ -116,13 +116,11 @@ def main() -> None:
     given = parser.parse_args()
     model, test = load_model(given.model), read_samples(given.test).first(given.targets)
     robot = hs.load_robot(given.robot)
-    if model.facts["contact"] and robot.contact is None:
+    if model.card.contact and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())
     simulation, ways = hs.Simulation(robot), targets_of(test)
     print(machine())
-    print(
-        f"{robot.name}, {model.facts['samples']} samples, {len(ways)} targets, {given.seconds:g} s a line; mm, CPU ms"
-    )
+    print(f"{robot.name}, {model.card.samples} samples, {len(ways)} targets, {given.seconds:g} s a line; mm, CPU ms")
     print(
         f"{'':22}{'first':>8}{'ms':>6}{'to 1':>8}{'lost':>5}{'to 0.1':>8}{'lost':>5}{'drag':>8}{'95 %':>8}{'ms':>6}",
         end="",

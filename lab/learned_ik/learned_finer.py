@@ -72,11 +72,11 @@ def main() -> None:
     parser.add_argument("--orders", type=int, default=8)
     given = parser.parse_args()
     robot, model = hs.load_robot(given.robot), load_model(given.model)
-    if model.facts["contact"] and robot.contact is None:
+    if model.card.contact and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())
     train, test, size = read_samples(given.train), read_samples(given.test), robot.body.mesh.size
     print(machine())
-    coarse = f"networks of {model.facts['samples']} samples of a coarse mesh"
+    coarse = f"networks of {model.card.samples} samples of a coarse mesh"
     print(f"{robot.name}, {len(robot.body.mesh.nodes)} nodes; {coarse}")
     print(f"{'corrected by':>12}{'known':>9}{'%':>8}{'median':>9}{'max':>9}{'CPU s':>8}   of {len(test)} samples")
     models, counts = {0: model}, [int(count) for count in given.counts.split(",")]

@@ -41,7 +41,7 @@ def main() -> None:
     targets, markers = targets_of(test), list(test.markers.reshape(len(test), -1))
     print(machine())
     words = f"{len(model.forward)} networks; {len(test)} targets, {given.rounds} rounds"
-    print(f"{model.facts['robot']}, {words}; CPU us a target")
+    print(f"{model.card.robot}, {words}; CPU us a target")
     for name, answer, asked in (
         ("inverse network alone", model.predict_inverse, markers),
         ("with predicted error and doubt", lambda target: model.solve(target, search=False), targets),

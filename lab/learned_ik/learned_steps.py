@@ -36,11 +36,11 @@ def main() -> None:
     given = parser.parse_args()
     model, test = load_model(given.model), read_samples(given.test).first(given.targets)
     robot = hs.load_robot(given.robot)
-    if model.facts["contact"] and robot.contact is None:
+    if model.card.contact and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())
     simulation, targets = hs.Simulation(robot), targets_of(test)
     print(machine())
-    print(f"{robot.name}, {model.facts['samples']} samples, {len(test)} targets; errors in mm")
+    print(f"{robot.name}, {model.card.samples} samples, {len(test)} targets; errors in mm")
     print(f"{'':18}{'mean':>8}{'median':>8}{'p90':>8}{'p99':>8}{'max':>8}{'lost':>6}{'ms':>7}{'steps':>7}")
     ways = {"from rest": (0, 0.0), "one step": (1, 0.0), "up to three": (3, ENOUGH)}
     errors: dict[str, list[list[float]]] = {name: [] for name in ways}

@@ -61,7 +61,7 @@ def main() -> None:
     for source, some in [*ways, *(("networks", drawn(model, train, count)) for count in counts)]:
         errors, seconds = left(simulation, some, test)
         quantiles = "".join(f"{np.quantile(errors, share):8.3f}" for share in (0.5, 0.9, 0.99, 1.0))
-        share = 0.1 * errors.mean() / model.facts["size"]
+        share = 0.1 * errors.mean() / model.card.size
         print(f"{len(some):8} {source:12}{errors.mean():8.3f}{share:8.3f}{quantiles}{seconds:8.0f}", flush=True)
 
 

@@ -282,7 +282,7 @@ def main() -> None:
         if given.way not in (None, number):
             continue
         model = load_model(given.model) if number == 2 and given.model else None
-        body = replace(robot, contact=Contact()) if model and model.facts["contact"] else robot
+        body = replace(robot, contact=Contact()) if model and model.card.contact else robot
         simulation = hs.Simulation(body)
         known = learned(robot, simulation, tips=number > 0)
         rest = np.zeros(len(robot.winches))

@@ -1,8 +1,9 @@
 """`plain`: a learned model that has learned nothing, for what needs no training."""
 
 import numpy as np
+from model_cards import model_card
 
-from hydrostat.learning import LearnedModel, plan_samples
+from hydrostat.learning import LearnedModel
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.robot import Robot
 
@@ -15,9 +16,8 @@ def plain(robot: Robot) -> LearnedModel:
         numbers = draw.normal(size=(2, Perceptrons.count(np.array(sizes)))).astype(np.float32)
         return Perceptrons(sizes=np.array(sizes), numbers=numbers.astype(float))
 
-    plan = plan_samples(robot, 20)
     return LearnedModel(
-        facts=plan.facts() | {"error": 1e-3},
+        card=model_card(robot),
         low=np.zeros(2),
         high=np.array([winch.travel for winch in robot.winches]),
         middle=np.zeros(4),

@@ -12,7 +12,7 @@ from plain_model import plain
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.learning import Tier, load_model, plan_samples, read_samples, sample_robot, save_model, verify
+from hydrostat.learning import ModelCard, Tier, load_model, plan_samples, read_samples, sample_robot, save_model, verify
 from hydrostat.learning.draw import SamplingScheme, contractions, shared_numbers
 from hydrostat.learning.learn_model import kept_facts
 from hydrostat.learning.perceptrons import Perceptrons
@@ -58,7 +58,7 @@ def test_an_answer_is_of_steps_only_where_one_was_taken(robot: Robot, simulation
 def test_a_file_gives_the_model_back(robot: Robot, tmp_path: Path) -> None:
     model = plain(robot)
     again = load_model(save_model(model, tmp_path / "strip.model"))
-    assert again.facts == json.loads(json.dumps(model.facts))
+    assert again.card == model.card
     target = {"tip": (0.1, 0.02)}
     assert again.solve(target).commands == model.solve(target).commands
     assert again.solve(target, search=False).errors == model.solve(target, search=False).errors
@@ -67,10 +67,10 @@ def test_a_file_gives_the_model_back(robot: Robot, tmp_path: Path) -> None:
 def test_what_networks_say_of_an_answer(robot: Robot) -> None:
     """Oracle: plain NumPy, to 1e-6 as networks run in single precision; all markers asked for, and then one of two."""
     first = plain(robot)
-    facts = {**first.facts, "markers": ["tip", "knee"], "cables": []}
+    card = replace(first.card, markers=("tip", "knee"), cables=())
     known = np.array([[0.1, 0.2, 0.3, 0.4], [0.4, 0.3, 0.2, 0.1], [0.0, 0.1, 0.0, 0.2]])
     networks = replace(first.inverse, sizes=np.array([4, 2, 2]), numbers=np.linspace(-1, 1, 24)[None])  # type: ignore[type-var]
-    model = replace(first, facts=facts, inverse=networks, known=known[:, :2] * first.high, reached=known)
+    model = replace(first, card=card, inverse=networks, known=known[:, :2] * first.high, reached=known)
 
     def answers(one: Perceptrons, point: np.ndarray) -> np.ndarray:
         (a, b, c), found = one.sizes.tolist(), []
@@ -102,10 +102,10 @@ def test_answers_hold_what_samples_held(robot: Robot, tmp_path: Path) -> None:
     networks expect.
     """
     free = plain(robot)
-    kept = save_model(replace(free, facts={**free.facts, "pairs": [[w.name for w in robot.winches]]}), tmp_path / "a")
-    held = load_model(kept)
+    pairs = (tuple(winch.name for winch in robot.winches),)
+    held = load_model(save_model(replace(free, card=replace(free.card, pairs=pairs)), tmp_path / "a"))
     with pytest.raises(InputError, match="pairs are none of its winches"):
-        load_model(save_model(replace(free, facts={**free.facts, "pairs": [["W1", "nobody"]]}), tmp_path / "b"))
+        load_model(save_model(replace(free, card=replace(free.card, pairs=(("W1", "nobody"),))), tmp_path / "b"))
     rows = np.random.default_rng(4).uniform(0, 1, (20, 2)) * held.high
     again = contractions(
         SamplingScheme.ANTAGONIST, shared_numbers(rows, held.high, [(0, 1)]), held.low, held.high, [(0, 1)]
@@ -147,14 +147,16 @@ def test_a_model_of_another_contact_is_refused(robot: Robot, tmp_path: Path) -> 
         plain(other).check(other)
     with pytest.raises(InputError, match="the model knows contact and the robot does not"):
         model.check(robot)
-    bare = {name: fact for name, fact in model.facts.items() if name not in ("contact_distance", "contact_friction")}
-    earlier = replace(model, facts=bare)
+    facts = model.card.as_json()
+    bare = {name: fact for name, fact in facts.items() if name not in ("contact_distance", "contact_friction")}
+    earlier = replace(model, card=ModelCard.from_json(bare))
     earlier.check(felt)
     with pytest.raises(InputError, match="the robot has contact from 10 mm"):
         earlier.check(replace(robot, contact=hs.Contact(distance=0.01)))
     for wrong in ("far", float("inf"), []):
-        file = save_model(replace(model, facts=bare | {"contact_distance": wrong}), tmp_path / "wrong.model")
-        with pytest.raises(InputError, match=r"wrong\.model"):
+        card = replace(model.card, contact_distance=wrong)  # type: ignore[arg-type]
+        file = save_model(replace(model, card=card), tmp_path / "wrong.model")
+        with pytest.raises(InputError, match=r"wrong\.model.*contact_distance"):
             load_model(file)
 
 

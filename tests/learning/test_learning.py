@@ -80,7 +80,7 @@ def test_networks_expect_what_the_simulator_finds(model: LearnedModel, samples: 
     linear = linear_map(known.contractions, known.markers.reshape(60, -1))
     ridge = np.hstack([new.contractions, np.ones((20, 1))]) @ linear
     assert missed < 0.2 * np.linalg.norm(ridge - new.markers[:, 0], axis=1).mean()
-    assert missed < 3 * model.facts["error"]
+    assert missed < 3 * model.card.error
     slopes = np.array([model.slopes(row) for row in new.contractions])
     assert np.linalg.norm(slopes - new.jacobians[:, 0]) < 0.3 * np.linalg.norm(new.jacobians)  # cables go slack
 
@@ -138,14 +138,14 @@ def test_a_few_samples_of_a_finer_mesh_correct_a_model(
         for one in (model, better)
     ]
     assert missed[1] < 0.5 * missed[0]
-    assert better.facts["corrected"] == 8
-    assert load_model(save_model(better, tmp_path / "finer.model")).facts["physics"] == better.facts["physics"]
+    assert better.card.corrected == 8
+    assert load_model(save_model(better, tmp_path / "finer.model")).card.physics == better.card.physics
     with pytest.raises(InputError, match="there are 3 samples; learning takes 5"):
         correct_model(model, known.first(3))
     monkeypatch.setattr("hydrostat.learning.train.sobolev_loss", _interrupted)
     with pytest.raises(KeyboardInterrupt):  # nothing is there to keep, and no rate is to blame
         correct_model(model, known)
-    other = replace(known, facts={**known.facts, "markers": ["elsewhere"]})
+    other = replace(known, card=replace(known.card, markers=("elsewhere",)))
     with pytest.raises(InputError, match="other markers"):
         correct_model(model, other)
 
@@ -214,7 +214,7 @@ def test_ctrl_c_keeps_the_best_so_far_or_nothing(samples: Samples, stage: str, a
 
     options = replace(OPTIONS, steps=300 if after else 1)
     stopped = learn_model(samples, options=options, tell=tell)
-    assert stopped.facts["stopped"]
+    assert stopped.card.stopped
     assert (stopped.inverse is None) == (stage == "forward")
     found = stopped.solve(targets_of(samples)[0])
     assert np.isfinite(found.contractions).all()
@@ -264,9 +264,9 @@ def test_the_commands(
 
     learn(folder, tmp_path / "strip.model", count=60, members=1, steps=100)
     assert "Wrote" in capsys.readouterr().out
-    assert load_model(tmp_path / "strip.model").facts["samples"] == 60
+    assert load_model(tmp_path / "strip.model").card.samples == 60
     part = learn_model(read_samples(folder).first(60), options=replace(OPTIONS, steps=1, inverse_steps=1))
-    early = replace(part, facts={**part.facts, "stopped": True})
+    early = replace(part, card=replace(part.card, stopped=True))
     monkeypatch.setattr("hydrostat.learning.correct_model", lambda *_, **__: early)
     with pytest.raises(typer.Exit) as ended:
         learn(folder, tmp_path / "early.model", start=tmp_path / "strip.model")

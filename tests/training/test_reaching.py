@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders import gallery_robot
+from model_cards import model_card
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.simulation import Simulation
@@ -297,20 +298,14 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
 def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Goals, tmp_path: Path) -> None:
     name = "sb3_contrib" if method == "TQC" else "stable_baselines3"
     library = pytest.importorskip(name, reason=f"{name} is not installed")
-    from hydrostat.learning import LearnedModel, Perceptrons, load_policy, physics_hash
+    from hydrostat.learning import LearnedModel, Perceptrons, load_policy
 
     env, random = straight(), np.random.default_rng(5)
     count = len(env.seen)
     trained = getattr(library, method)("MultiInputPolicy", env, seed=3, device="cpu", policy_kwargs=silu())
     nothing = Perceptrons(sizes=np.array([3, count]), numbers=np.zeros((1, 3 * count * 2 + count)))
     model = LearnedModel(
-        facts={
-            "physics": physics_hash(env.robot),
-            "contact": False,
-            "markers": [m.name for m in env.robot.markers],
-            "winches": [w.name for w in env.robot.winches],
-            "pairs": [[w.name for w in env.robot.winches[:2]]],  # which the policy does not know
-        },
+        card=model_card(env.robot, pairs=[[w.name for w in env.robot.winches[:2]]]),  # which the policy does not know
         low=np.array([-winch.release for winch in env.robot.winches]),
         high=np.array([winch.travel for winch in env.robot.winches]),
         middle=env.rest[env.seen] + 0.01 * random.normal(size=count),
@@ -320,7 +315,6 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Go
         known=np.zeros((1, 3)),
         reached=np.zeros((1, count)),
     )
-    object.__setattr__(model, "facts", {**model.facts, "dim": 2})
     alone = portable_policy(trained, env, model)
     policy = load_policy(policy_of(trained, env, task="reach", error=0.01).save(tmp_path / "actor.policy"))
     for goal in goals[:5]:

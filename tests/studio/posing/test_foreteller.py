@@ -7,9 +7,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from model_cards import model_card
 
 from hydrostat.errors import InputError
-from hydrostat.learning import LearnedModel, Perceptrons, plan_samples, save_model
+from hydrostat.learning import LearnedModel, Perceptrons, save_model
 from hydrostat.robot import Point, Robot, load_robot, save_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
@@ -127,7 +128,7 @@ def untrained(robot: Robot) -> LearnedModel:
         return Perceptrons(sizes=np.array(sizes), numbers=np.zeros((2, Perceptrons.count(np.array(sizes)))))
 
     return LearnedModel(
-        facts=plan_samples(robot, 20).facts() | {"error": 1e-3},
+        card=model_card(robot),
         low=np.zeros(winches),
         high=np.array([winch.travel for winch in robot.winches]),
         middle=np.zeros(markers + cables),
