@@ -1,16 +1,16 @@
-"""`Work`: all that can be undone; what of it follows when the robot is changed."""
+"""`Work`: robot, keyframes and wishes; changes of the robot carried over to the others."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from hydrostat.control import Timeline
+from hydrostat.project.wishes import Wishes
 from hydrostat.robot import Robot
-from hydrostat.studio.records.wishes import Wishes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Work:
-    """What a person works on; each change makes a new one."""
+    """State that a person works on; each change makes a new one."""
 
     robot: Robot  # body, pins, winches, cables, markers, poses
     timeline: Timeline = field(default_factory=Timeline)  # keyframes

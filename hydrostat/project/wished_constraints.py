@@ -1,12 +1,12 @@
-"""`wished_constraints`: what a person's wishes say of what can be built."""
+"""`wished_constraints`: the constraints in a person's wishes."""
 
 from hydrostat.design import Constraints
+from hydrostat.project.wishes import Paint, Wishes
 from hydrostat.robot import Robot
-from hydrostat.studio.records.wishes import Paint, Wishes
 
 
 def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
-    """What can be built as wished, but for parts to keep that are gone (InputError: limits that cannot be)."""
+    """Constraints as wished, without parts to keep that are gone (InputError: impossible limits)."""
     zones = {paint: tuple(zone for other, zone in wishes.zones if other is paint) for paint in Paint}
     names = {winch.name for winch in robot.winches}
     return Constraints(

@@ -1,1 +1,0 @@
-"""What the studio keeps of one robot beside the robot itself: plain frozen records."""
