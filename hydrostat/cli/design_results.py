@@ -41,9 +41,9 @@ def write_kit(network: "Network", folder: Path) -> "Kit":
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:
-    """The tension that a design kept [N], from the score.json beside its folder, or from the studio's file in it.
+    """The tension that a design kept [N], from the score.json beside its folder, or from studio.json in it.
 
-    None for a robot of which neither is. Raises InputError: the studio's file is there, and cannot be read.
+    None for a robot of which neither is. Raises InputError: studio.json is there, and cannot be read.
     """
     from hydrostat.robot import robot_hash
 
@@ -59,14 +59,15 @@ def designed_tension(robot: "Robot", folder: Path) -> float | None:
 
 
 def _wished_tension(robot: "Robot", folder: Path) -> float | None:
-    """The limit that the studio kept a robot's poses to [N]; None where no studio saved it (InputError: a bad file)."""
+    """Tension limit of the project file [N]; None where there is no such file (InputError: it cannot be read)."""
+    from hydrostat.project import PROJECT_FILE, read_project_file, wished_constraints
+
     home = folder.parent if folder.suffix == ".toml" else folder
-    if not (home / "studio.json").is_file():
+    if not (home / PROJECT_FILE).is_file():
         return None
-    from hydrostat.studio import read_studio_file, wished_constraints
 
     try:
-        return wished_constraints(robot, read_studio_file(home).wishes).tension_limit
+        return wished_constraints(robot, read_project_file(home).wishes).tension_limit
     except InputError as error:
         raise InputError(f"{error}. Fix the file, or set the limit with --tension") from None
 

@@ -24,6 +24,7 @@ def scale(
 
     Example: hydrostat scale my_starfish 1.5
     """
+    from hydrostat.project import PROJECT_FILE
     from hydrostat.robot import merged_text, read_text, save_robot, scaled_robot
 
     if out is not None and out.exists() and (not out.is_dir() or any(out.iterdir())):
@@ -39,6 +40,6 @@ def scale(
     text = merged_text(read_text(home / "robot.toml"), made)
     path = save_robot(made, out or home, text=text)
     size = f"{1e3 * loaded.body.mesh.size:.0f} mm to {1e3 * made.body.mesh.size:.0f} mm"
-    if out is None and (home / "studio.json").exists():
-        print("note: keyframes and limits in studio.json are not scaled. Set them again in the studio")
+    if out is None and (home / PROJECT_FILE).exists():
+        print(f"note: keyframes and limits in {PROJECT_FILE} are not scaled. Set them again in the studio")
     print(f"Scaled {path}: {size}. Next: hydrostat check {out or home}")

@@ -17,13 +17,9 @@ if TYPE_CHECKING:
     from hydrostat.studio.posing.poser import Poser
     from hydrostat.studio.posing.poses import held_of
     from hydrostat.studio.posing.propose_work import ProposalInput, sketched
-    from hydrostat.studio.records.wished_constraints import wished_constraints
-    from hydrostat.studio.records.wishes import Wishes
-    from hydrostat.studio.records.work import Work
     from hydrostat.studio.session import Session
     from hydrostat.studio.stage import Hit
     from hydrostat.studio.starting.shelf import state_folder
-    from hydrostat.studio.work_folder import read_studio_file, save_work
 
 __all__ = [
     "STRIDE",
@@ -39,15 +35,10 @@ __all__ = [
     "ProposalInput",
     "Rooms",
     "Session",
-    "Wishes",
-    "Work",
     "held_of",
-    "read_studio_file",
-    "save_work",
     "serve",
     "sketched",
     "state_folder",
-    "wished_constraints",
     "wished_request",
 ]
 

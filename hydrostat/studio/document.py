@@ -7,14 +7,12 @@ from threading import RLock
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
+from hydrostat.project import Wishes, Work, folder_stamp
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Slots
 from hydrostat.studio.judge import Judge
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
-from hydrostat.studio.work_folder import folder_stamp
 
 MOST_STEPS = 500  # so many changes can be undone; older ones are forgotten
 KEPT = 2  # so many states before, and after, keep the physics that were made for them

@@ -6,11 +6,10 @@ from dataclasses import dataclass, replace
 from hydrostat.design import Diagnostic, Severity, places_in, review_robot
 from hydrostat.errors import HydrostatError
 from hydrostat.fabrication import Demand, KitOptions, find_refusals
+from hydrostat.project import Wishes, wished_constraints
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Slots
-from hydrostat.studio.records.wished_constraints import wished_constraints
-from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.skins import SewnSkin, Skins
 
 QUIET = 0.2  # a robot is judged when it is shown unchanged for so long [s]

@@ -11,6 +11,7 @@ from typing import Any
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import load_model
+from hydrostat.project import open_note, save_work
 from hydrostat.robot import Contact, in_words
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
@@ -28,7 +29,6 @@ from hydrostat.studio.starting.starter import Starter
 from hydrostat.studio.view.colouring import Colouring, Scale, node_values, scale
 from hydrostat.studio.view.picture import Show, Shown
 from hydrostat.studio.view.things import rest_shape
-from hydrostat.studio.work_folder import open_note, save_work
 
 MOST_NOTES = 50  # so many notes are kept
 

@@ -15,6 +15,7 @@ from statistics import median
 from machine import machine
 
 import numpy as np  # isort: skip
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import BodyPhysics
 from hydrostat.studio import (
@@ -27,8 +28,6 @@ from hydrostat.studio import (
     MuscleMover,
     Poser,
     ProposalInput,
-    Wishes,
-    Work,
     held_of,
     sketched,
 )

@@ -11,8 +11,8 @@ from plush import near_the_edge
 
 from hydrostat.cli.design_results import designed_tension
 from hydrostat.errors import InputError
+from hydrostat.project import Wishes, Work, save_work
 from hydrostat.robot import load_robot, robot_hash, save_robot
-from hydrostat.studio import Wishes, Work, save_work
 
 Run = Callable[..., tuple[int, str, str]]
 

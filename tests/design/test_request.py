@@ -13,8 +13,9 @@ from hydrostat.design.constraints import RANGES, Range
 from hydrostat.design.request import COUNTS, ROUTE_RANGES
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
+from hydrostat.project import Wishes
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.studio import Wishes, wished_request
+from hydrostat.studio import wished_request
 
 UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
 

@@ -3,10 +3,10 @@
 import pytest
 from builders import gallery_robot
 
+from hydrostat.project import Work
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
-from hydrostat.studio.records.work import Work
 
 
 @pytest.fixture(scope="session")

@@ -7,11 +7,10 @@ import pytest
 
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import MOST_STEPS, Document
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
 
 
 def named(robot: Robot, name: str) -> Robot:

@@ -8,9 +8,9 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.errors import InputError
+from hydrostat.project import Work
 from hydrostat.robot import load_robot
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.colouring import Colouring

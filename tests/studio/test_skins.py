@@ -11,10 +11,10 @@ from hydrostat.cli.check import print_sewing
 from hydrostat.design import Severity
 from hydrostat.fabrication import KitOptions, find_sewing
 from hydrostat.geometry import Mesh
+from hydrostat.project import Work
 from hydrostat.robot import MATERIALS, Pin, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.judge import QUIET
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
 

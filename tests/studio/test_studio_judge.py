@@ -8,12 +8,10 @@ from builders import gallery_robot
 
 from hydrostat.design import Severity, review_robot
 from hydrostat.fabrication import KitOptions, find_demand
+from hydrostat.project import Wishes, Work, wished_constraints
 from hydrostat.robot import Mount, Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.judge import QUIET, Judge
-from hydrostat.studio.records.wished_constraints import wished_constraints
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.view.finding_things import BRIEF, TONES, finding_things

@@ -11,6 +11,7 @@ import numpy as np
 from hydrostat.design import DesignRequest, RouteOptions, assign_cable_sides, sewing_minutes
 from hydrostat.drawing import INK, pose_colours
 from hydrostat.errors import InputError
+from hydrostat.project import Paint, Wishes, after_design
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.cards_file import cards_content, read_cards
@@ -28,10 +29,8 @@ from hydrostat.studio.designing.run import (
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.figures import told_error
-from hydrostat.studio.records.wishes import Paint, Wishes
-from hydrostat.studio.records.work import after_design
 from hydrostat.studio.stage import Hit, Stage
+from hydrostat.studio.told_error import told_error
 from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things, target_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
+from hydrostat.project import Paint, moved_zone
 from hydrostat.robot import Point
 from hydrostat.studio.document import Document
-from hydrostat.studio.records.wishes import Paint, moved_zone
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing
 

@@ -6,9 +6,8 @@ import numpy as np
 
 from hydrostat.design import AUTO, DesignMethod, DesignRequest, RouteOptions
 from hydrostat.errors import InputError
+from hydrostat.project import Wishes, wished_constraints
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.studio.records.wished_constraints import wished_constraints
-from hydrostat.studio.records.wishes import Wishes
 
 
 def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> DesignRequest:

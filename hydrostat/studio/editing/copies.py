@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.project import fresh_name
 from hydrostat.robot import Pin, Point, Robot
 from hydrostat.studio.editing.part import Kind, Mirror, find_part, place_of
 from hydrostat.studio.editing.place import move
-from hydrostat.studio.records.work import fresh_name
 
 SHARES = (0.05, 0.1, 0.2)  # copies lie so far beside what they are of, in sizes of the body, the first that fits
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
+from hydrostat.project import followed
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -21,7 +22,6 @@ from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move,
 from hydrostat.studio.editing.ruler import Ruler
 from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Tool
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.work import followed
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things

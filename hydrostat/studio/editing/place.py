@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.project import fresh_name
 from hydrostat.robot import Cable, Marker, Pin, Point, PoseTarget, Robot, Winch
 from hydrostat.studio.editing.part import Kind, Part, find_part, place_of
-from hydrostat.studio.records.work import fresh_name
 
 PIN_SHARE = 0.06  # radius of a robot's first pin as a share of the body
 

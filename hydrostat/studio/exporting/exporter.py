@@ -10,6 +10,7 @@ from typing import Any
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import KitOptions
 from hydrostat.ik import IKOptions, IKResult, solve_ik
+from hydrostat.project import save_work, wished_constraints
 from hydrostat.robot import Face, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -17,12 +18,10 @@ from hydrostat.studio.exporting.download import Download, archive, file_name
 from hydrostat.studio.exporting.kit_work import KitMade, make_kit
 from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.wished_constraints import wished_constraints
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
-from hydrostat.studio.work_folder import save_work
 
 _ONCE = IKOptions(restarts=0)  # a pose is shown as soon as it is found
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from nicegui import ui
 
+from hydrostat.project import doubts
 from hydrostat.studio.face.page import WindowPage
-from hydrostat.studio.work_folder import doubts
 
 
 class SaveDialog:

@@ -5,6 +5,7 @@ from multiprocessing import get_context
 from threading import Condition, Thread
 
 from hydrostat.errors import InputError
+from hydrostat.project import after_design
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -12,7 +13,6 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.posing.propose_work import Proposal, ProposalInput, propose_work
-from hydrostat.studio.records.work import after_design
 
 LOST = "the proposal process crashed. Switch proposals off and on again"
 

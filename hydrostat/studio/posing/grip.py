@@ -3,8 +3,8 @@
 import numpy as np
 
 from hydrostat.geometry import locate
+from hydrostat.project import fresh_name
 from hydrostat.studio.posing.held import HeldPoint, PoseState
-from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.stage import Hit
 
 NEAR = 0.02  # a plain point so near to one that is held is that one, in sizes of the body

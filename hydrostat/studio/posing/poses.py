@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from hydrostat.errors import InputError
+from hydrostat.project import Wishes
 from hydrostat.robot import Marker, PoseTarget, Robot, check_name
 from hydrostat.studio.posing.held import HeldPoint
-from hydrostat.studio.records.wishes import Wishes
 
 SAME = 1e-4  # poses whose targets are nearer to each other are the same [m]
 

@@ -18,11 +18,11 @@ from hydrostat.design import (
 )
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import IKOptions, solve_ik
+from hydrostat.project import Wishes
 from hydrostat.robot import Cable, Robot, Winch
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.posing.held import Anchored, HeldPoint
 from hydrostat.studio.posing.poses import with_pose
-from hydrostat.studio.records.wishes import Wishes
 
 POLITE = 10  # the process steps back by so much, so that what a person drags comes first
 POSE = "held"  # name of the pose that is held, in that process alone

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from hydrostat.project import Work
 from hydrostat.studio.document import Document
 from hydrostat.studio.posing.held import HeldPoint
-from hydrostat.studio.records.work import Work
 
 MOST_STEPS = 200  # so many drags can be undone
 

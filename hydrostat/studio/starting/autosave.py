@@ -18,9 +18,8 @@ from typing import IO
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import read_stranger
+from hydrostat.project import Work, open_work, save_work, text_of
 from hydrostat.studio.document import Document
-from hydrostat.studio.records.work import Work
-from hydrostat.studio.work_folder import open_work, save_work, text_of
 
 LOCK = "lock"
 DESIGNS, LARGEST = "designs.json", 20_000_000  # networks that were found; the file may have this many bytes

@@ -8,9 +8,8 @@ import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import read_drawing
+from hydrostat.project import Work, followed, moved_zone
 from hydrostat.robot import Body, Cable, Mount, Pin, Point, PoseTarget, Robot, outline_body
-from hydrostat.studio.records.wishes import moved_zone
-from hydrostat.studio.records.work import Work, followed
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fitted, loops_svg, outline_of, read_loops
 from hydrostat.studio.starting.photo import Backdrop
 from hydrostat.units import plural

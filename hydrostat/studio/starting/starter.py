@@ -7,11 +7,11 @@ from threading import RLock
 from typing import Any
 
 from hydrostat.errors import InputError
+from hydrostat.project import Work, open_work, text_of
 from hydrostat.robot import GALLERY, gallery_folder, get_material, is_of_gallery, load_robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.starting.autosave import Autosave
@@ -23,7 +23,6 @@ from hydrostat.studio.starting.sketch import Sketch, make_sketch
 from hydrostat.studio.starting.unpack import unpacked
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
-from hydrostat.studio.work_folder import open_work, text_of
 
 TITLE = "Meshing"
 

@@ -9,9 +9,8 @@ from tempfile import TemporaryDirectory
 from zipfile import BadZipFile, ZipFile, ZipInfo
 
 from hydrostat.errors import InputError
+from hydrostat.project import Work, open_note, open_work, text_of
 from hydrostat.robot import FILE
-from hydrostat.studio.records.work import Work
-from hydrostat.studio.work_folder import open_note, open_work, text_of
 from hydrostat.units import quote
 
 MOST_FILES = 200  # in an archive

@@ -13,6 +13,7 @@ from hydrostat.design import RouteOptions, design_cables
 from hydrostat.drawing import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell, Topic
@@ -21,8 +22,6 @@ from hydrostat.studio.designing.ease import DURATION
 from hydrostat.studio.designing.run import error_at_rest
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.view.things import Dot, Look, Strand

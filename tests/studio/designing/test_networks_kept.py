@@ -10,14 +10,13 @@ import pytest
 from hydrostat.design import Alternative
 from hydrostat.errors import InputError
 from hydrostat.ik import IKOptions, solve_ik
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import Robot, save_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.designing import cards_file
 from hydrostat.studio.designing.cards_file import cards_content, read_cards
 from hydrostat.studio.designing.design_work import DesignsFound, solution
 from hydrostat.studio.designing.run import DesignRun, beginning, wished_request
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 
 

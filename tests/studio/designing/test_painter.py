@@ -8,11 +8,10 @@ from builders import box_robot
 
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
+from hydrostat.project import Paint, Work
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.designing.painter import LEAST, Painter, lasso
 from hydrostat.studio.document import Document
-from hydrostat.studio.records.wishes import Paint
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
 from hydrostat.studio.view.things import Area, Dot, Look, Strand

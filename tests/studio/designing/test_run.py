@@ -8,10 +8,9 @@ from builders import gallery_robot
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.design import Constraints, DesignMethod, RouteOptions, TreeOptions, Zone
 from hydrostat.errors import InputError
+from hydrostat.project import Paint, Wishes, wished_constraints
 from hydrostat.robot import Robot
 from hydrostat.studio.designing.run import beginning, wished_poses, wished_request
-from hydrostat.studio.records.wished_constraints import wished_constraints
-from hydrostat.studio.records.wishes import Paint, Wishes
 
 
 @pytest.fixture(scope="module")

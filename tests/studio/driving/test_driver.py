@@ -8,6 +8,7 @@ import pytest
 from hydrostat.arrays import Vector
 from hydrostat.control import Key, Link, Timeline
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.project import Work
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell, Topic
@@ -15,7 +16,6 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.driving.driver import Driver
 from hydrostat.studio.driving.machine import Follower
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 
 pytestmark = pytest.mark.usefixtures("unchecked")

@@ -9,13 +9,13 @@ from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
+from hydrostat.project import Work
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.film import FilmKind, Recorder, check_film, film_frames, film_kinds, record_film
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.work import Work
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
+from hydrostat.project import Work
 from hydrostat.robot import Body, Point, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -16,7 +17,6 @@ from hydrostat.studio.editing.editor import Editor, Tool
 from hydrostat.studio.editing.findings import look_over
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.judge import QUIET
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
 from hydrostat.studio.view.things import Dot, Strand

@@ -9,14 +9,13 @@ from builders import gallery_robot
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
+from hydrostat.project import Wishes, Work, after_design, followed
 from hydrostat.robot import Contact, Mount, Robot, find_risks, in_words
 from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity, sheathed_segments, sheaths
 from hydrostat.studio.editing.hold import below_skin, inside
 from hydrostat.studio.editing.part import Mirror, find_part, keys_of, place_of
 from hydrostat.studio.editing.place import add_cable, add_marker, add_pin, add_winch, insert_via, move, remove
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work, after_design, followed
 
 pytestmark = pytest.mark.filterwarnings("error")
 

@@ -11,6 +11,18 @@ from hypothesis import strategies as st
 
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
+from hydrostat.project import (
+    Paint,
+    Wishes,
+    Work,
+    changed_outside,
+    comments_lost,
+    doubts,
+    folder_stamp,
+    open_note,
+    open_work,
+    save_work,
+)
 from hydrostat.robot import (
     Robot,
     RobotReader,
@@ -27,17 +39,6 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.editing.change import change, rename, set_gravity
 from hydrostat.studio.editing.part import keys_of, place_of
 from hydrostat.studio.editing.place import add_cable, add_marker, add_pin, add_winch, insert_via, move, remove
-from hydrostat.studio.records.wishes import Paint, Wishes
-from hydrostat.studio.records.work import Work
-from hydrostat.studio.work_folder import (
-    changed_outside,
-    comments_lost,
-    doubts,
-    folder_stamp,
-    open_note,
-    open_work,
-    save_work,
-)
 
 pytestmark = pytest.mark.filterwarnings("error")
 

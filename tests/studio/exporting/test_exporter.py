@@ -17,6 +17,7 @@ from PIL import Image
 import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.fabrication import KitOptions
+from hydrostat.project import Work
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
@@ -24,7 +25,6 @@ from hydrostat.studio.exporting.exporter import Export, Exporter
 from hydrostat.studio.exporting.kit_work import KitMade, make_kit
 from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.work import Work
 
 LONGEST = 60.0
 

@@ -6,9 +6,9 @@ from threading import Event
 import pytest
 from builders import gallery_robot
 
+from hydrostat.project import Work
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.pulse import SHORTEST, Pulse
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.picture import Shown

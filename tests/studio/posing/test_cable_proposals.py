@@ -10,6 +10,7 @@ import pytest
 from hydrostat.design import Constraints, TreeOptions, body_region, violations
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
+from hydrostat.project import Wishes
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.document import Document
@@ -19,7 +20,6 @@ from hydrostat.studio.posing.mover import MuscleMover
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.posing.poses import held_of, with_pose
 from hydrostat.studio.posing.propose_work import OPTIONS, POSE, Proposal, ProposalInput, asked_of_trees, sketched
-from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.view.things import Dot
 
 PATIENCE = 120.0  # the process has to start [s]

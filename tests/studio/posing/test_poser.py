@@ -9,13 +9,13 @@ import pytest
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
 from hydrostat.ik import solve_ik
+from hydrostat.project import Wishes
 from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.poser import READY, Poser
-from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Dot
 

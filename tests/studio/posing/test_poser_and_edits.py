@@ -9,14 +9,13 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.errors import InputError
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import Robot, load_robot, save_robot
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.held import HeldPoint, Mode
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.posing.poses import with_pose
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Dot
 

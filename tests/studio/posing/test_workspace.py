@@ -10,14 +10,13 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.errors import InputError
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs, Report
 from hydrostat.studio.posing.reach import MarkerReach, spread, sweep
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
 
 ROBOT = strip_robot(columns=8, rows=2)
 

@@ -9,12 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.project import Work, doubts, save_work
 from hydrostat.robot import Marker, gallery_folder, load_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.starting.autosave import AGAIN, LONGEST, PATIENCE, Autosave
-from hydrostat.studio.work_folder import doubts, save_work
 
 CRASHES = """
 import sys

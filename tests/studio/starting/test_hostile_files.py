@@ -14,10 +14,10 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.errors import InputError
+from hydrostat.project import Work
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.starting.draft import MOST_BYTES, new_draft, safe_name
 from hydrostat.studio.starting.sketch import make_sketch
 from hydrostat.studio.starting.starter import Starter

@@ -13,12 +13,11 @@ from shapely import LinearRing
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_outline
+from hydrostat.project import Paint, Wishes, Work
 from hydrostat.robot import load_robot, save_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.wishes import Paint, Wishes
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.starting.loops import (
     Loop,
     LoopCorner,

@@ -11,8 +11,8 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.errors import InputError
+from hydrostat.project import Work
 from hydrostat.robot import gallery_folder, robot_text
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 from hydrostat.studio.starting import unpack
 from hydrostat.studio.starting.unpack import unpacked

@@ -6,11 +6,11 @@ from typing import Any
 
 from nicegui import ui
 
+from hydrostat.project import Paint, Wishes
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.painter import COLOURS, WORDS
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage, pressable
-from hydrostat.studio.records.wishes import Paint, Wishes
 
 SHORT = {Paint.KEEP_OUT: "No-cable zone", Paint.WINCH_ZONES: "Winch zone", Paint.STILL: "Keep rigid (sheathed)"}
 

@@ -14,8 +14,8 @@ from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
 from hydrostat.studio.face.panels.design_method import design_method
 from hydrostat.studio.face.panels.finding_list import finding_list
-from hydrostat.studio.records.figures import told_error
 from hydrostat.studio.stage import StageName
+from hydrostat.studio.told_error import told_error
 from hydrostat.units import plural
 
 

@@ -3,6 +3,7 @@
 from nicegui import ui
 
 from hydrostat.drawing import ERROR
+from hydrostat.project import fresh_name
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import winch_badge
 from hydrostat.studio.face.page import WindowPage, icon_button
@@ -11,8 +12,7 @@ from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.face.panels.pose_muscles import muscles_card
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.poses import same_as
-from hydrostat.studio.records.figures import told_error
-from hydrostat.studio.records.work import fresh_name
+from hydrostat.studio.told_error import told_error
 from hydrostat.studio.view.robot_things import Bar
 from hydrostat.studio.view.things import RobotShape
 from hydrostat.units import plural

@@ -7,10 +7,10 @@ from typing import Any
 
 from nicegui import Client, core, events, helpers, ui
 
+from hydrostat.project import Work
 from hydrostat.robot import Robot
 from hydrostat.studio.face.window import build_window
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
 

@@ -5,8 +5,8 @@ from builders import gallery_robot
 from desk import Desk, at_desk, is_shown
 
 from hydrostat.design import DesignMethod
+from hydrostat.project import Paint
 from hydrostat.robot import Robot
-from hydrostat.studio.records.wishes import Paint
 from hydrostat.studio.stage import StageName
 
 

@@ -1,11 +1,11 @@
-"""`Work`: all that can be undone; what of it follows when the robot is changed."""
+"""`Work`: robot, keyframes and wishes; changes of the robot carried over to the others."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from hydrostat.control import Timeline
+from hydrostat.project.wishes import Wishes
 from hydrostat.robot import Robot
-from hydrostat.studio.records.wishes import Wishes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,18 +1,14 @@
-"""`save_work`, `open_work`: a robot's folder as the studio keeps it: robot.toml and, beside it, studio.json."""
+"""`save_work`, `open_work`: a robot's folder with robot.toml and, next to it, studio.json."""
 
 import hashlib
-import json
 import tomllib
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, ValidationError
-
-from hydrostat import units
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
+from hydrostat.project.project_file import PROJECT_FILE, read_project_file, write_project_file
+from hydrostat.project.wishes import Wishes
+from hydrostat.project.work import Work
 from hydrostat.robot import (
     FILE,
     Source,
@@ -20,63 +16,9 @@ from hydrostat.robot import (
     lost_comments,
     merged_text,
     read_text,
-    replace_file,
     robot_text,
     save_robot,
 )
-from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
-
-STUDIO_FILE = "studio.json"
-
-LARGEST = 20_000_000  # the file may have this many bytes
-
-
-class StudioFile(BaseModel):
-    """The whole file; what it does not know is an error, and so is a number that is none."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-
-    format: Literal[1] = 1  # of the file
-    timeline: Timeline  # keyframes
-    wishes: Wishes  # for a design
-
-
-def write_studio_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:
-    """Write the file whole or not at all (InputError: it cannot be written)."""
-    text = StudioFile(timeline=timeline, wishes=wishes).model_dump_json(indent=2)
-    replace_file(folder / STUDIO_FILE, text.encode() + b"\n")
-
-
-def read_studio_file(folder: Path, cables: Sequence[str] = ()) -> StudioFile:
-    """What a folder's file says, if there is one (InputError: it is wrong); one may number the robot's cables."""
-    file = folder / STUDIO_FILE
-    if not file.exists():
-        return StudioFile(timeline=Timeline(), wishes=Wishes())
-    content = read_stranger(file, name=STUDIO_FILE, most=LARGEST)
-    try:
-        return StudioFile.model_validate_json(_with_names(content, cables))
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(map(str, first["loc"]))[:80]
-        raise InputError(units.printable(": ".join(filter(None, (STUDIO_FILE, place, first["msg"])))[:300])) from None
-    except InputError as error:
-        raise InputError(f"{STUDIO_FILE}: {error}") from None
-
-
-def _with_names(content: bytes, cables: Sequence[str]) -> bytes:
-    """A file from before cables had names, which numbers from 0 those that are kept, with their names."""
-    try:
-        read = json.loads(content)
-        kept = read["wishes"]["kept_cables"]
-        numbers = [one for one in kept if type(one) is int]
-    except (ValueError, TypeError, LookupError, RecursionError):
-        return content  # it is told what is wrong when it is looked at
-    if not numbers:
-        return content
-    read["wishes"]["kept_cables"] = [cables[one] for one in numbers if 0 <= one < len(cables)]
-    return json.dumps(read).encode()
-
 
 MOST_TOLD = 5  # so many lost comments are told one by one
 
@@ -85,7 +27,7 @@ def open_work(folder: Path) -> Work:
     """Read a robot's folder; a broken studio.json is left, `open_note` says why (InputError: as for `load_robot`)."""
     robot = load_robot(folder)
     try:
-        kept = read_studio_file(_home(folder), [cable.name for cable in robot.cables])
+        kept = read_project_file(_home(folder), [cable.name for cable in robot.cables])
     except InputError:
         return Work(robot=robot)
     return Work(robot=robot, timeline=kept.timeline, wishes=kept.wishes)
@@ -94,7 +36,7 @@ def open_work(folder: Path) -> Work:
 def open_note(folder: Path) -> str:
     """Reason why keyframes and wishes of a folder could not be read; "" if they could."""
     try:
-        read_studio_file(_home(folder))
+        read_project_file(_home(folder))
     except InputError as error:
         return f"keyframes and wishes were not read: {error}"
     return ""
@@ -108,18 +50,18 @@ def save_work(work: Work, folder: Path, text: str = "") -> None:
     """
     folder = _home(folder)
     save_robot(work.robot, folder, text=_text(work, folder, text))
-    kept = (folder / STUDIO_FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes()
+    kept = (folder / PROJECT_FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes()
     if kept or work.robot.cables:  # a kit keeps the tensions of cables to these limits
-        write_studio_file(folder, work.timeline, work.wishes)
+        write_project_file(folder, work.timeline, work.wishes)
 
 
 def folder_stamp(folder: Path) -> str:
-    """Changes when robot.toml, studio.json or the body's file do; "" for a folder without a robot."""
+    """Hash that changes when robot.toml, studio.json or the body's file do; "" for a folder without a robot."""
     home = _home(folder)
     if not (home / FILE).is_file():
         return ""
     body = _body_file(home)
-    files = [home / FILE, home / STUDIO_FILE, *([home / body] if body else [])]
+    files = [home / FILE, home / PROJECT_FILE, *([home / body] if body else [])]
     stamp = hashlib.sha256()
     try:
         for file in files:
@@ -148,7 +90,7 @@ def comments_lost(work: Work, folder: Path) -> list[str]:
 
 
 def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
-    """What to ask a person before work is saved; none if nothing is lost. Stamp: when last saved, "": never."""
+    """Questions for a person before work is saved; none if nothing is lost. Stamp: when last saved, "": never."""
     asked = []
     if changed_outside(folder, stamp):
         asked.append(
@@ -165,7 +107,7 @@ def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
         asked.append("Comments in robot.toml would be lost, as what they speak of is gone:\n" + "\n".join(told))
     note = open_note(folder)
     if note:
-        asked.append(f"{STUDIO_FILE} cannot be read and would be replaced.")
+        asked.append(f"{PROJECT_FILE} cannot be read and would be replaced.")
     return asked
 
 

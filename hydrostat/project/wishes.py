@@ -1,4 +1,4 @@
-"""`Wishes`: what a person asks of a design, and has painted on the body."""
+"""`Wishes`: a person's request for a design, with zones painted on the body."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ from hydrostat.units import quote
 
 
 class Paint(StrEnum):
-    """What a painted zone means; names of the fields of `hs.Constraints`."""
+    """Meanings of painted zones: names of fields of `Constraints`."""
 
     WINCH_ZONES = "winch_zones"
     KEEP_OUT = "keep_out"
@@ -32,7 +32,7 @@ class Paint(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Wishes:
-    """What a design shall be like.
+    """Request for a design.
 
     Raises:
         InputError: a number out of its range, a mirror that is no axis, or a method that there is not.

@@ -1,8 +1,8 @@
-"""`wished_constraints`: what a person's wishes say of what can be built."""
+"""`wished_constraints`: the constraints in a person's wishes."""
 
 from hydrostat.design import Constraints
+from hydrostat.project.wishes import Paint, Wishes
 from hydrostat.robot import Robot
-from hydrostat.studio.records.wishes import Paint, Wishes
 
 
 def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:

@@ -1,1 +1,0 @@
-"""Records that the studio keeps with a robot: plain and frozen."""
