@@ -154,9 +154,7 @@ def test_a_design_on_the_skin_is_sewn_as_it_was_simulated(depth: float, unchecke
     moved = source.pose("wave").targets
     rest = [np.subtract(marker.at, moved[marker.name]) for marker in source.markers if marker.name in moved]
     assert network.rms_error < 0.6 * np.sqrt(np.mean(np.sum(np.square(rest), axis=1)))
-    table = depth_table(robot)
-    bare = [(how, point) for how, point in zip(table.column("how"), table.column("point"), strict=True)]
-    sewn = [how for how, point in bare if point != "1 (winch)" and "tube" not in str(how)]
+    sewn = [row.how for row in depth_table(robot).rows if row.point != "1 (winch)" and "tube" not in row.how]
     assert sewn
     assert set(sewn) == {"sewn to the skin"}
     holes = space_pattern(robot, PatternOptions(force=True)).holes

@@ -3,10 +3,12 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 from types import MappingProxyType
+from typing import Annotated
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
+from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.fabrication.moulds.casting import SILICONE_PRICE
 
 NO_SOURCE = "estimate, no source"
@@ -105,16 +107,28 @@ PRICES = MappingProxyType(
 """By key; none is younger than its month says, and those without a source are guesses: ask your shop."""
 
 
+class BillGroup(StrEnum):
+    """Group of items of the bill."""
+
+    BODY = "body"
+    CABLES = "cables"
+    WINCHES = "winches"
+    CONTROL = "control"
+    MOULD = "mould"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Item:
-    """One line of the bill."""
+    """Item of the bill."""
 
-    group: str  # such as "body"
+    group: BillGroup  # that its costs are added to
     what: str  # is bought
     specification: str  # which kind
     quantity: float  # in the unit of its price
     price: Price  # of one unit
     mass: float | None = None  # of all of it [g]; None where it is not known
+    is_poured: bool = False  # whether it is foam or silicone of the body
+    is_named_by_kind: bool = False  # whether the sheet names it by the beginning of its specification
 
     @property
     def cost(self) -> float:
@@ -127,33 +141,44 @@ class Item:
         return self.price.of_packs(self.quantity)
 
 
-def cost_of(items: Iterable[Item], group: str | None = None) -> float:
+def cost_of(items: Iterable[Item], group: BillGroup | None = None) -> float:
     """Cost of what is used up of all items, or of those of a group."""
     return sum(item.cost for item in items if group in (None, item.group))
 
 
-def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table:
+@dataclass(frozen=True, kw_only=True)
+class BillRow:
+    """Line of the bill: an item, or the total of a group or of all."""
+
+    group: Annotated[str, text_column("group")]
+    what: Annotated[str, text_column("what")]
+    spec: Annotated[str, text_column("specification")] = ""
+    amount: Annotated[float | None, number_column("quantity", decimals=2)] = None
+    unit: Annotated[str, text_column("unit")] = ""
+    mass: Annotated[float | None, number_column("mass", "g")]
+    price: Annotated[float | None, number_column("price", "USD", decimals=2)] = None
+    cost_used: Annotated[float, number_column("used up", "USD", decimals=2)]
+    cost_packs: Annotated[float, number_column("in whole packs", "USD", decimals=2)]
+    source: Annotated[str, text_column("source of the price")] = ""
+    short_name: str  # what the sheet calls it
+    is_total: bool = False  # whether it adds others up
+
+
+def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table[BillRow]:
     """The bill, with totals of the groups and of all (InputError: a price not in USD: currencies cannot be added)."""
     for item in items:
         if item.price.currency != "USD":
             raise InputError(f"the price of {item.what} must be in USD, not {item.price.currency}")
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[BillRow] = []
     for group in dict.fromkeys(item.group for item in items):
         mine = [item for item in items if item.group == group]
-        rows += [_row(item) for item in mine]
-        rows.append((group, "total", "", None, "", _mass(mine), None, cost_of(mine), _spent(mine), ""))
-    rows.append(("all", "total", "", None, "", _mass(items), None, cost_of(items), _spent(items), ""))
+        rows += [_item_row(item) for item in mine]
+        rows.append(_total_row(group, mine))
+    rows.append(_total_row("all", items))
     return Table(
         name="bill_of_materials",
         title="Bill of materials",
-        columns=(
-            *text_columns("group", "what", "specification"),
-            *number_columns("quantity", decimals=2),
-            *text_columns("unit"),
-            *number_columns("mass", unit="g"),
-            *number_columns("price", "used up", "in whole packs", unit="USD", decimals=2),
-            *text_columns("source of the price"),
-        ),
+        row=BillRow,
         rows=tuple(rows),
         notes=(
             "Quantities are what one robot takes, without waste. Used up: that share of the packs; in whole packs: "
@@ -164,18 +189,32 @@ def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table:
     )
 
 
-def _row(item: Item) -> tuple[Cell, ...]:
-    price = item.price
-    return (
-        *(item.group, item.what, item.specification, item.quantity, price.unit, item.mass),
-        *(price.amount, item.cost, item.spent, price.words),
+def _item_row(item: Item) -> BillRow:
+    kind = item.specification.partition(",")[0] if item.is_named_by_kind else ""
+    return BillRow(
+        group=item.group,
+        what=item.what,
+        spec=item.specification,
+        amount=item.quantity,
+        unit=item.price.unit,
+        mass=item.mass,
+        price=item.price.amount,
+        cost_used=item.cost,
+        cost_packs=item.spent,
+        source=item.price.words,
+        short_name=kind or item.what,
     )
 
 
-def _spent(items: Iterable[Item]) -> float:
-    return float(sum(item.spent for item in items))
-
-
-def _mass(items: Iterable[Item]) -> float:
-    """Mass of all items, as far as it is known [g]."""
-    return float(sum(item.mass or 0.0 for item in items))
+def _total_row(group: str, items: Iterable[Item]) -> BillRow:
+    """Total of a group of items; their masses as far as they are known."""
+    items = tuple(items)
+    return BillRow(
+        group=group,
+        what="total",
+        mass=float(sum(item.mass or 0.0 for item in items)),
+        cost_used=cost_of(items),
+        cost_packs=float(sum(item.spent for item in items)),
+        short_name="total",
+        is_total=True,
+    )

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from hydrostat.fabrication.kit import Check
-from hydrostat.fabrication.lists.table import Table, number_columns, text_columns
+from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.fabrication.patterns.stitches import runs_of
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
@@ -84,24 +85,46 @@ def cable_cuts(
     return tuple(cuts)
 
 
-def cable_table(cuts: tuple[CableCut, ...]) -> Table:
+@dataclass(frozen=True, kw_only=True)
+class CableRow:
+    """Line of the cut list of cables; lengths in millimetres."""
+
+    cable: Annotated[str, text_column("cable")]
+    winch: Annotated[str, text_column("winch")]
+    body: Annotated[float, number_column("body", "mm")]
+    slack: Annotated[float, number_column("slack", "mm")]
+    outside: Annotated[float, number_column("outside", "mm")]
+    lead: Annotated[float, number_column("lead", "mm")]
+    wraps: Annotated[float, number_column("wraps", "mm")]
+    release: Annotated[float, number_column("release", "mm")]
+    knot: Annotated[float, number_column("knot", "mm")]
+    tail: Annotated[float, number_column("tail", "mm")]
+    total: Annotated[float, number_column("total", "mm")]
+    cut: Annotated[float, number_column("cut to", "mm", decimals=0)]
+    spool_mark: Annotated[float, number_column("spool mark from end", "mm", decimals=0)]
+
+
+def cable_table(cuts: tuple[CableCut, ...]) -> Table[CableRow]:
     """The cut list."""
     return Table(
         name="cable_cuts",
         title="Cables to cut",
-        columns=(
-            *text_columns("cable", "winch"),
-            *number_columns(
-                *("body", "slack", "outside", "lead", "wraps", "release", "knot", "tail", "total"), unit="mm"
-            ),
-            *number_columns("cut to", "spool mark from end", unit="mm", decimals=0),
-        ),
+        row=CableRow,
         rows=tuple(
-            (
-                f"C{cut.number}",
-                cut.winch,
-                *(cut.body, cut.slack, cut.outside, cut.lead, cut.wraps, cut.release, cut.knot, cut.tail),
-                *(cut.length, cut.cut, cut.spool_mark),
+            CableRow(
+                cable=f"C{cut.number}",
+                winch=cut.winch,
+                body=cut.body,
+                slack=cut.slack,
+                outside=cut.outside,
+                lead=cut.lead,
+                wraps=cut.wraps,
+                release=cut.release,
+                knot=cut.knot,
+                tail=cut.tail,
+                total=cut.length,
+                cut=cut.cut,
+                spool_mark=cut.spool_mark,
             )
             for cut in cuts
         ),
@@ -116,13 +139,12 @@ def cable_table(cuts: tuple[CableCut, ...]) -> Table:
     )
 
 
-def check_lengths(table: Table, simulation: Simulation) -> Check:
+def check_lengths(table: Table[CableRow], simulation: Simulation) -> Check:
     """Check whether the lengths of the list are those that were simulated."""
     robot = simulation.robot
     sheathed = [float(cable.segments[~cable.bare].sum()) for cable in robot.cables]
     simulated = 1e3 * (simulation.cables.rest_lengths + np.array(sheathed))
-    place = table.headings.index("body [mm]")
-    listed = np.array([float(texts[place]) for texts in table.texts])
+    listed = np.array([float(text) for text in table.texts_of("body")])
     gap = float(np.abs(listed - simulated).max(initial=0.0))
     return Check(
         what="lengths in the cable cut list are the rest lengths of the simulation",
@@ -181,23 +203,50 @@ def sheath_cuts(robot: Robot, *, seats: Mapping[int, float], outside: Mapping[in
     return tuple(cuts)
 
 
-def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube: float) -> Table:
+AT_BODY = "where the cable begins"  # end of a tube from the base that does not go on in the body
+
+
+@dataclass(frozen=True, kw_only=True)
+class SheathRow:
+    """Line of the cut list of tubes, or its total; lengths in millimetres."""
+
+    cable: Annotated[str, text_column("cable")]
+    winch: Annotated[str, text_column("winch")]
+    start: Annotated[str, text_column("from")] = ""
+    end: Annotated[str, text_column("to")] = ""
+    bore: Annotated[float, number_column("bore", "mm")]
+    tube: Annotated[float, number_column("outside", "mm")]
+    run: Annotated[float, number_column("run", "mm")]
+    seat: Annotated[float, number_column("seat", "mm")]
+    length: Annotated[float, number_column("cut to", "mm")]
+    number: int | None = None  # of its cable, from 1; None for the total
+
+
+def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube: float) -> Table[SheathRow]:
     """The cut list, with its total in the last row; bore and outer diameter of the tube in mm."""
-    rows = [
-        (f"C{cut.cable}", cut.winch, *_tube_ends(robot, cut), bore, tube, cut.run, cut.seat, cut.length) for cut in cuts
-    ]
+    rows = [_sheath_row(robot, cut, bore, tube) for cut in cuts]
     if rows:
         run, seat = sum(cut.run for cut in cuts), sum(cut.seat for cut in cuts)
-        rows.append(("total", f"{len(cuts)} pieces", "", "", bore, tube, run, seat, run + seat))
+        pieces = f"{len(cuts)} pieces"
+        rows.append(SheathRow(cable="total", winch=pieces, bore=bore, tube=tube, run=run, seat=seat, length=run + seat))
     return Table(
-        name="sheath_cuts",
-        title="PTFE tube to cut",
-        columns=(
-            *text_columns("cable", "winch", "from", "to"),
-            *number_columns("bore", "outside", "run", "seat", "cut to", unit="mm"),
-        ),
-        rows=tuple(rows),
-        notes=_sheath_notes(cuts),
+        name="sheath_cuts", title="PTFE tube to cut", row=SheathRow, rows=tuple(rows), notes=_sheath_notes(cuts)
+    )
+
+
+def _sheath_row(robot: Robot, cut: SheathCut, bore: float, tube: float) -> SheathRow:
+    last = len(robot.cables[cut.cable - 1].points) - 1
+    return SheathRow(
+        cable=f"C{cut.cable}",
+        winch=cut.winch,
+        start="base" if cut.start is None else point_name(cut.start, last),
+        end=AT_BODY if cut.end == 0 else point_name(cut.end, last),
+        bore=bore,
+        tube=tube,
+        run=cut.run,
+        seat=cut.seat,
+        length=cut.length,
+        number=cut.cable,
     )
 
 
@@ -220,13 +269,13 @@ def _sheath_notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def check_sheaths(table: Table, simulation: Simulation, *, outside: Mapping[int, float]) -> Check:
+def check_sheaths(table: Table[SheathRow], simulation: Simulation, *, outside: Mapping[int, float]) -> Check:
     """Check whether tubes of the list cover what the simulation leaves out of cables, beside tube `outside` [mm]."""
     robot = simulation.robot
     listed = np.array([-outside.get(index, 0.0) for index in range(len(robot.cables))])
-    for cable, run in zip(table.column("cable"), table.column("run"), strict=True):
-        if cable != "total" and isinstance(run, float):
-            listed[int(str(cable).removeprefix("C")) - 1] += run
+    for row in table.rows:
+        if row.number is not None:
+            listed[row.number - 1] += row.run
     lengths = np.array([cable.length for cable in robot.cables])
     gap = float(np.abs(listed - 1e3 * (lengths - simulation.cables.rest_lengths)).max(initial=0.0))
     pieces = max(0, len(table.rows) - 1)
@@ -236,12 +285,6 @@ def check_sheaths(table: Table, simulation: Simulation, *, outside: Mapping[int,
         allowed=f"{ALLOWED:g} mm for each cable",
         passed=gap <= ALLOWED,
     )
-
-
-def _tube_ends(robot: Robot, cut: SheathCut) -> tuple[str, str]:
-    last = len(robot.cables[cut.cable - 1].points) - 1
-    begin = "base" if cut.start is None else point_name(cut.start, last)
-    return begin, "where the cable begins" if cut.end == 0 else point_name(cut.end, last)
 
 
 def point_name(index: int, last: int) -> str:

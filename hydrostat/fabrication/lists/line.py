@@ -1,10 +1,11 @@
 """`FishingLine`: braided fishing lines, and whether they bear what the poses ask of the cables."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
+from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.robot import Robot
 
 POUND = 4.448222  # newtons in a pound of force: lines are sold by these
@@ -73,11 +74,26 @@ def line_for(diameter: float) -> FishingLine:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LineRow:
+    """Strength of the line of one cable against its largest tension; loads in newtons."""
+
+    cable: Annotated[str, text_column("cable")]
+    winch: Annotated[str, text_column("winch")]
+    tension: Annotated[float, number_column("largest tension", "N")]
+    line: Annotated[str, text_column("line")]
+    strength: Annotated[float, number_column("breaks at", "N", decimals=0)]
+    at_knot: Annotated[float, number_column("at a knot", "N", decimals=0)]
+    working_load: Annotated[float, number_column("working load", "N", decimals=0)]
+    hold: Annotated[float | None, number_column("stopper holds", "N", decimals=0)]
+    verdict: Annotated[str, text_column("verdict")]
+
+
+@dataclass(frozen=True, kw_only=True)
 class LineCheck:
     """Verdict on whether one line bears all cables."""
 
     line: FishingLine  # what they are made of
-    table: Table  # strength of each cable's line against its tension
+    table: Table[LineRow]  # strength of each cable's line against its tension
     problems: tuple[str, ...]  # cables that would break
     warnings: tuple[str, ...]  # cables above the working load
 
@@ -88,7 +104,7 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
         raise InputError(f"{len(tensions)} tensions given for {len(robot.cables)} cables")
     problems: list[str] = []
     warnings: list[str] = []
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[LineRow] = []
     for number, (cable, tension) in enumerate(zip(robot.cables, map(float, tensions), strict=True), start=1):
         pulls = f'cable C{number} of winch "{cable.winch}" pulls {tension:.1f} N'
         verdict = "holds"
@@ -105,25 +121,30 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
                 "is set"
             )
             verdict = f"{verdict}; knot the stopper"
-        strengths = (line.strength, line.at_knot, line.working_load, hold)
-        rows.append((f"C{number}", cable.winch, tension, line.name, *strengths, verdict))
+        rows.append(
+            LineRow(
+                cable=f"C{number}",
+                winch=cable.winch,
+                tension=tension,
+                line=line.name,
+                strength=line.strength,
+                at_knot=line.at_knot,
+                working_load=line.working_load,
+                hold=hold,
+                verdict=verdict,
+            )
+        )
     table = _line_table(tuple(rows), line, largest=float(max(tensions, default=0.0)))
     return LineCheck(line=line, table=table, problems=tuple(problems), warnings=tuple(warnings))
 
 
-def _line_table(rows: tuple[tuple[Cell, ...], ...], line: FishingLine, *, largest: float) -> Table:
+def _line_table(rows: tuple[LineRow, ...], line: FishingLine, *, largest: float) -> Table[LineRow]:
     """Strength of a line against the tension of each cable, and which line would do for the largest [N]."""
     enough = next((each for each in LINES if each.working_load >= largest), None)
     return Table(
         name="line_strength",
         title="Strength of the line",
-        columns=(
-            *text_columns("cable", "winch"),
-            *number_columns("largest tension", unit="N"),
-            *text_columns("line"),
-            *number_columns("breaks at", "at a knot", "working load", "stopper holds", unit="N", decimals=0),
-            *text_columns("verdict"),
-        ),
+        row=LineRow,
         rows=rows,
         notes=(
             f"At a knot a line keeps {KNOT:g} of its strength, if badly tied; tie a doubled Palomar. Working load: "

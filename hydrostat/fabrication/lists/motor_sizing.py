@@ -2,10 +2,11 @@
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
-from hydrostat.fabrication.lists.table import Table, number_columns, text_columns
+from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.fabrication.parts.motor import MARGIN, Motor
 from hydrostat.robot import Robot, Winch
 
@@ -128,30 +129,49 @@ def _sizing(robot: Robot, demand: Demand, motor: Motor, winch: Winch, torque: fl
     )
 
 
-def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) -> Table:
+@dataclass(frozen=True, kw_only=True)
+class MotorRow:
+    """Demand of one winch on its motor against what the motor gives; torques in N mm."""
+
+    winch: Annotated[str, text_column("winch")]
+    cables: Annotated[int, number_column("cables", decimals=0)]
+    tension: Annotated[float, number_column("largest tension", "N")]
+    radius: Annotated[float, number_column("spool radius", "mm")]
+    torque: Annotated[float, number_column("largest torque", "N mm")]
+    needed: Annotated[float, number_column("with margin", "N mm")]
+    stall_torque: Annotated[float, number_column("motor stalls at", "N mm", decimals=0)]
+    rated_torque: Annotated[float, number_column("bears for long", "N mm", decimals=0)]
+    turns: Annotated[float, number_column("spool turns", decimals=2)]
+    free_speed: Annotated[float, number_column("free speed", "rpm", decimals=0)]
+    loaded_speed: Annotated[float, number_column("loaded speed", "rpm", decimals=0)]
+    cable_speed: Annotated[float, number_column("cable speed", "mm/s")]
+    time: Annotated[float | None, number_column("full travel in", "s")]
+    verdict: Annotated[str, text_column("verdict")]
+
+
+def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) -> Table[MotorRow]:
     """Table of what each winch asks of the motor and what it gets."""
     poses = ", ".join(demand.poses) or "no pose"
     return Table(
         name="motor_sizing",
         title=f"Motors: {motor.title}",
-        columns=(
-            *text_columns("winch"),
-            *number_columns("cables", decimals=0),
-            *number_columns("largest tension", unit="N"),
-            *number_columns("spool radius", unit="mm"),
-            *number_columns("largest torque", "with margin", unit="N mm"),
-            *number_columns("motor stalls at", "bears for long", unit="N mm", decimals=0),
-            *number_columns("spool turns", decimals=2),
-            *number_columns("free speed", "loaded speed", unit="rpm", decimals=0),
-            *number_columns("cable speed", unit="mm/s"),
-            *number_columns("full travel in", unit="s"),
-            *text_columns("verdict"),
-        ),
+        row=MotorRow,
         rows=tuple(
-            (
-                *(sizing.winch, sizing.cables, sizing.tension, sizing.radius, sizing.torque, sizing.needed),
-                *(motor.stall_torque, motor.rated_torque, sizing.turns, motor.speed),
-                *(sizing.loaded, sizing.pull, sizing.time, sizing.verdict),
+            MotorRow(
+                winch=sizing.winch,
+                cables=sizing.cables,
+                tension=sizing.tension,
+                radius=sizing.radius,
+                torque=sizing.torque,
+                needed=sizing.needed,
+                stall_torque=motor.stall_torque,
+                rated_torque=motor.rated_torque,
+                turns=sizing.turns,
+                free_speed=motor.speed,
+                loaded_speed=sizing.loaded,
+                cable_speed=sizing.pull,
+                time=sizing.time,
+                verdict=sizing.verdict,
             )
             for sizing in sizings
         ),

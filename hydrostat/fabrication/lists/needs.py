@@ -1,8 +1,9 @@
 """Items of the bill: everything that a robot takes."""
 
 import math
+from dataclasses import replace
 
-from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, Item, Price
+from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
@@ -15,7 +16,6 @@ SPOOL = 100e3  # thread on a spool [mm]
 THREAD = 4.0  # Thread for a length of seam: two threads of a lock stitch, sewn twice. Assumed.
 DOWEL = 15.0  # length of a dowel [mm]: a little less than the holes in both pieces are deep
 
-_BODY, _CABLES, _WINCHES, _CONTROL, _MOULD = "body", "cables", "winches", "control", "mould"
 _SILICONES = ("ecoflex", "dragon skin")  # beginnings of names of materials that are poured and are no foam
 
 
@@ -48,14 +48,14 @@ def filling_mass(given: ListInput) -> float:
 
 
 def _item(
-    group: str, what: str, specification: str, quantity: float, price: str | Price, mass: float | None = None
+    group: BillGroup, what: str, specification: str, quantity: float, price: str | Price, mass: float | None = None
 ) -> Item:
     """An item of the bill, its price by its key in the table."""
     known = PRICES[price] if isinstance(price, str) else price
     return Item(group=group, what=what, specification=specification, quantity=quantity, price=known, mass=mass)
 
 
-_NEEDLES = _item(_BODY, "needles", "sewing, and a long doll needle", 1.0, "needle")
+_NEEDLES = _item(BillGroup.BODY, "needles", "sewing, and a long doll needle", 1.0, "needle")
 
 
 def _plush(given: ListInput, cloth: Cloth) -> list[Item]:
@@ -64,10 +64,16 @@ def _plush(given: ListInput, cloth: Cloth) -> list[Item]:
     filling = given.robot.body.material.name or "as the robot file says"
     zipper = f"{math.ceil(cloth.zipper / 10) * 10:g} mm or longer"
     return [
-        _item(_BODY, "felt", felt, 1e-6 * cloth.felt, "felt"),
-        _item(_BODY, "fibre filling", filling, 1e-3 * mass, "filling", mass),
-        _item(_BODY, "all-purpose thread", f"polyester, {1e-3 * thread:.0f} m", math.ceil(thread / SPOOL), "thread"),
-        _item(_BODY, "zipper", zipper, float(cloth.zipper > 0), "zipper"),
+        _item(BillGroup.BODY, "felt", felt, 1e-6 * cloth.felt, "felt"),
+        _item(BillGroup.BODY, "fibre filling", filling, 1e-3 * mass, "filling", mass),
+        _item(
+            BillGroup.BODY,
+            "all-purpose thread",
+            f"polyester, {1e-3 * thread:.0f} m",
+            math.ceil(thread / SPOOL),
+            "thread",
+        ),
+        _item(BillGroup.BODY, "zipper", zipper, float(cloth.zipper > 0), "zipper"),
         _NEEDLES,
     ]
 
@@ -76,10 +82,12 @@ def _foam(given: ListInput, foam: FoamNeeds) -> list[Item]:
     kind = foam.material or given.robot.body.material.name or "as the robot file says"
     what = "silicone" if kind.startswith(_SILICONES) else "foam"
     return [
-        _item(_BODY, f"{what}, part A", kind, 1e-3 * foam.part_a, what, foam.part_a),
-        _item(_BODY, f"{what}, part B", kind, 1e-3 * foam.part_b, what, foam.part_b),
-        _item(_BODY, "skin", "knitted glove or sleeve", 1.0, "skin"),
-        _item(_BODY, "spray glue", "3M Super 77, between foam and skin", 1.0, "glue"),
+        *(
+            replace(_item(BillGroup.BODY, f"{what}, part {part}", kind, 1e-3 * mass, what, mass), is_poured=True)
+            for part, mass in (("A", foam.part_a), ("B", foam.part_b))
+        ),
+        _item(BillGroup.BODY, "skin", "knitted glove or sleeve", 1.0, "skin"),
+        _item(BillGroup.BODY, "spray glue", "3M Super 77, between foam and skin", 1.0, "glue"),
         _NEEDLES,
     ]
 
@@ -92,8 +100,15 @@ def _cables(
     ring = math.pi / 4 * (given.options.tube**2 - given.options.bore**2)
     sizes = f"{given.options.bore:g} mm inside, {given.options.tube:g} mm outside"
     return [
-        _item(_CABLES, "braided fishing line", f"{line.name}, {line.diameter:g} mm", 1e-3 * length, "line", thread),
-        _item(_CABLES, "PTFE tube", sizes, 1e-3 * tube, "tube", PTFE * ring * tube),
+        _item(
+            BillGroup.CABLES,
+            "braided fishing line",
+            f"{line.name}, {line.diameter:g} mm",
+            1e-3 * length,
+            "line",
+            thread,
+        ),
+        _item(BillGroup.CABLES, "PTFE tube", sizes, 1e-3 * tube, "tube", PTFE * ring * tube),
     ]
 
 
@@ -103,18 +118,21 @@ def _winches(given: ListInput) -> list[Item]:
     price = Price(amount=motor.price, source=source, month="dated as told there")
     if motor.price_source.startswith(NO_SOURCE):
         price = Price(amount=motor.price)
-    return [
-        _item(_WINCHES, "geared motor", motor.title, float(count), price, count * motor.mass),
+    bought = [
+        _item(BillGroup.WINCHES, "geared motor", motor.title, float(count), price, count * motor.mass),
         *(
-            _item(_WINCHES, "screw or nut", title, float(number), "screws")
+            _item(BillGroup.WINCHES, "screw or nut", title, float(number), "screws")
             for title, number in given.screws.items()
             if title != motor.title
         ),
-        _plastic(_WINCHES, "PLA for printed parts", given.printed),
+    ]
+    return [
+        *(replace(item, is_named_by_kind=True) for item in bought),
+        _plastic(BillGroup.WINCHES, "PLA for printed parts", given.printed),
     ]
 
 
-def _plastic(group: str, what: str, parts: tuple[Printed, ...]) -> Item:
+def _plastic(group: BillGroup, what: str, parts: tuple[Printed, ...]) -> Item:
     """Filament for printed parts."""
     mass, pieces = sum(part.count * part.mass for part in parts), sum(part.count for part in parts)
     return _item(group, what, f"{pieces} pieces, with a little infill", 1e-3 * mass, "pla", mass)
@@ -126,28 +144,28 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
         return []
     count, area, gauge = float(len(plan.winches)), *plan.wire
     feed = [
-        _item(_CONTROL, "power supply", f"{plan.motor.volts:g} V, {plan.supply:g} A or more", 1.0, "supply"),
-        _item(_CONTROL, "fuse with holder", f"blade fuse, {plan.fuse:g} A", 1.0, "fuse"),
-        _item(_CONTROL, "switch", f"for {plan.fuse:g} A, large enough to be hit", 1.0, "switch"),
-        _item(_CONTROL, "twin lead", f"{area:g} mm^2 (AWG {gauge}) or thicker", 2.0, "lead"),
+        _item(BillGroup.CONTROL, "power supply", f"{plan.motor.volts:g} V, {plan.supply:g} A or more", 1.0, "supply"),
+        _item(BillGroup.CONTROL, "fuse with holder", f"blade fuse, {plan.fuse:g} A", 1.0, "fuse"),
+        _item(BillGroup.CONTROL, "switch", f"for {plan.fuse:g} A, large enough to be hit", 1.0, "switch"),
+        _item(BillGroup.CONTROL, "twin lead", f"{area:g} mm^2 (AWG {gauge}) or thicker", 2.0, "lead"),
     ]
     if plan.servos:
         bus = "OpenRB-150 or alike, drives the servos by their bus"
         chain = "of three wires with JST EH plugs (X3P), one from servo to servo"
-        plugs = [_item(_CONTROL, "servo cable", chain, count, "servo cable")]
-        return [_item(_CONTROL, "controller board for servos", bus, 1.0, "servo board"), *plugs, *feed]
+        plugs = [_item(BillGroup.CONTROL, "servo cable", chain, count, "servo cable")]
+        return [_item(BillGroup.CONTROL, "controller board for servos", bus, 1.0, "servo board"), *plugs, *feed]
     kinds = {name: plan.boards.count(name) for name in dict.fromkeys(plan.boards)}
     bridge = f"carrier of a DRV8874 or alike: {plan.motor.stall_current:g} A, current sense of 1.1 V/A"
     parts = [
-        _item(_CONTROL, "controller board", f"Arduino {name.capitalize()} or alike", float(many), "controller")
+        _item(BillGroup.CONTROL, "controller board", f"Arduino {name.capitalize()} or alike", float(many), "controller")
         for name, many in kinds.items()
     ]
     if plan.motor.key == "n20":
         magnets = "magnetic, for micro metal gearmotors with a long shaft, 12 counts a turn"
-        parts.append(_item(_CONTROL, "encoder", magnets, count, "encoder"))
+        parts.append(_item(BillGroup.CONTROL, "encoder", magnets, count, "encoder"))
     small = "1 of 10 uF from RESET to GND of each board, and 10 kOhm from each PWM pin to GND"
-    parts.append(_item(_CONTROL, "capacitor and resistors", small, 1.0, "small parts"))
-    return [*parts, _item(_CONTROL, "motor driver", bridge, count, "driver"), *feed]
+    parts.append(_item(BillGroup.CONTROL, "capacitor and resistors", small, 1.0, "small parts"))
+    return [*parts, _item(BillGroup.CONTROL, "motor driver", bridge, count, "driver"), *feed]
 
 
 def _mould(given: ListInput) -> list[Item]:
@@ -160,12 +178,24 @@ def _mould(given: ListInput) -> list[Item]:
     varnish = "shellac or acrylic varnish, two coats on the printed mould"
     sealed = bool(given.mould) and not poured > 0
     return [
-        _item(_MOULD, "silicone", litres, 1e-3 * poured, "silicone", foam.silicone_mass if foam else None),
-        _plastic(_MOULD, "PLA for the mould", given.mould),
-        _item(_MOULD, "bolt M4 with nut", nut, float(given.bolts), "bolts"),
-        _item(_MOULD, "rod of 3 mm", rod, 1e-3 * DOWEL * dowels, "rod"),
-        _item(_MOULD, "glue for plastic", "for pieces with dowels between them", float(dowels > 0), "plastic glue"),
-        _item(_MOULD, "modelling clay", "without sulphur, seals the frames of the silicone", float(poured > 0), "clay"),
-        _item(_MOULD, "sealer", varnish, float(sealed), "sealer"),
-        _item(_MOULD, "release agent", "for polyurethane foam", float(foam is not None), "release"),
+        _item(BillGroup.MOULD, "silicone", litres, 1e-3 * poured, "silicone", foam.silicone_mass if foam else None),
+        _plastic(BillGroup.MOULD, "PLA for the mould", given.mould),
+        _item(BillGroup.MOULD, "bolt M4 with nut", nut, float(given.bolts), "bolts"),
+        _item(BillGroup.MOULD, "rod of 3 mm", rod, 1e-3 * DOWEL * dowels, "rod"),
+        _item(
+            BillGroup.MOULD,
+            "glue for plastic",
+            "for pieces with dowels between them",
+            float(dowels > 0),
+            "plastic glue",
+        ),
+        _item(
+            BillGroup.MOULD,
+            "modelling clay",
+            "without sulphur, seals the frames of the silicone",
+            float(poured > 0),
+            "clay",
+        ),
+        _item(BillGroup.MOULD, "sealer", varnish, float(sealed), "sealer"),
+        _item(BillGroup.MOULD, "release agent", "for polyurethane foam", float(foam is not None), "release"),
     ]

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
-from hydrostat.fabrication.lists.table import Table, text_columns
+from hydrostat.fabrication.lists.table import Table, text_column
 from hydrostat.fabrication.parts.board import BOARDS, board_for
 from hydrostat.fabrication.parts.motor import Motor
 
@@ -26,6 +27,14 @@ CELL, CELLS, USED = 1.2, 2.0, 0.8
 
 RESTING = 1 / 3
 """Share of the largest currents that motors draw on average while a robot is shown. Assumed, measured on none."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerRow:
+    """Part of the power supply, or a setting of it."""
+
+    what: Annotated[str, text_column("what")]
+    amount: Annotated[str, text_column("how much")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +97,7 @@ class PowerPlan:
         return USED * CELLS / max(RESTING * self.largest, 1e-9)
 
     @property
-    def table(self) -> Table:
+    def table(self) -> Table[PowerRow]:
         """What to buy and set, as a list."""
         area, gauge = self.wire
         rows: list[tuple[str, str]] = [
@@ -104,8 +113,8 @@ class PowerPlan:
         return Table(
             name="power",
             title="Power",
-            columns=text_columns("what", "how much"),
-            rows=tuple(rows),
+            row=PowerRow,
+            rows=tuple(PowerRow(what=what, amount=amount) for what, amount in rows),
             notes=(
                 f"Current rises evenly with torque, from {self.motor.free_current:g} A to "
                 f"{self.motor.stall_current:g} A at stall. Spare: {SPARE:g} times. Battery: motors draw a third of "

@@ -2,15 +2,18 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Annotated
 
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.fabrication.lists.cuts import point_name
-from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
+from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.geometry import Solid, Surface
-from hydrostat.robot import Body, Cable, Robot
+from hydrostat.robot import Body, Robot
 
 SKIN = 4.0  # A point at most so deep [mm] is sewn to the skin: the needle only dips into the foam. Assumed.
 
@@ -22,7 +25,68 @@ enough of it left to hold; for deeper ones a tube is laid before casting. Assume
 CLOSE = 2.0  # Points nearer than this [mm] cannot be told apart with a needle. Assumed.
 
 
-def stitch_table(stitches: tuple[CableStitches, ...]) -> Table:
+class Reach(StrEnum):
+    """Position of a point of a cable in a body in space, by the tool that reaches it."""
+
+    OUTSIDE = "outside the body"
+    TUBE = "in its tube"
+    TUBE_END = "end of its tube"
+    SKIN = "sewn to the skin"
+    NEEDLE = "long needle"
+    LAID = "tube laid before casting"
+
+
+@dataclass(frozen=True, kw_only=True)
+class StitchRow:
+    """Point of a cable that is sewn through cloth; lengths in millimetres."""
+
+    cable: Annotated[str, text_column("cable")]
+    winch: Annotated[str, text_column("winch")]
+    panel: Annotated[str, text_column("panel")]
+    point: Annotated[str, text_column("point")]
+    way: Annotated[str, text_column("way")]
+    x: Annotated[float, number_column("x", "mm")]
+    y: Annotated[float, number_column("y", "mm")]
+    gap: Annotated[float | None, number_column("from the last point", "mm")]
+    along: Annotated[float, number_column("from the winch", "mm")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthRow:
+    """Point of a cable in a body in space; lengths in millimetres."""
+
+    cable: Annotated[str, text_column("cable")]
+    winch: Annotated[str, text_column("winch")]
+    point: Annotated[str, text_column("point")]
+    x: Annotated[float, number_column("x", "mm")]
+    y: Annotated[float, number_column("y", "mm")]
+    z: Annotated[float, number_column("z", "mm")]
+    gap: Annotated[float | None, number_column("from the last point", "mm")]
+    along: Annotated[float, number_column("from the winch", "mm")]
+    depth: Annotated[float, number_column("depth", "mm")]
+    skin_x: Annotated[float, number_column("skin x", "mm")]
+    skin_y: Annotated[float, number_column("skin y", "mm")]
+    skin_z: Annotated[float, number_column("skin z", "mm")]
+    how: Annotated[Reach, text_column("how")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlaneRow:
+    """Point of a cable in the middle plane of a flat body that is cast; lengths in millimetres."""
+
+    cable: Annotated[str, text_column("cable")]
+    winch: Annotated[str, text_column("winch")]
+    point: Annotated[str, text_column("point")]
+    x: Annotated[float, number_column("x", "mm")]
+    y: Annotated[float, number_column("y", "mm")]
+    gap: Annotated[float | None, number_column("from the last point", "mm")]
+    along: Annotated[float, number_column("from the winch", "mm")]
+
+
+Stitching = Table[StitchRow] | Table[DepthRow] | Table[PlaneRow]
+
+
+def stitch_table(stitches: tuple[CableStitches, ...]) -> Table[StitchRow]:
     """Table of the stitches from hole to hole, for plush robots."""
     rows = []
     for cable in stitches:
@@ -30,17 +94,23 @@ def stitch_table(stitches: tuple[CableStitches, ...]) -> Table:
         for stitch in cable.stitches:
             gap = None if before is None else math.dist(before, stitch.place)
             along, before = along + (gap or 0.0), stitch.place
-            name = point_name(stitch.number - 1, last)
             rows.append(
-                (f"C{cable.cable}", cable.winch, cable.panel, name, _through_cloth(stitch), *stitch.place, gap, along)
+                StitchRow(
+                    cable=f"C{cable.cable}",
+                    winch=cable.winch,
+                    panel=cable.panel,
+                    point=point_name(stitch.number - 1, last),
+                    way=_through_cloth(stitch),
+                    x=stitch.place[0],
+                    y=stitch.place[1],
+                    gap=gap,
+                    along=along,
+                )
             )
     return Table(
         name="stitching",
         title="Stitching order",
-        columns=(
-            *text_columns("cable", "winch", "panel", "point", "way"),
-            *number_columns("x", "y", "from the last point", "from the winch", unit="mm"),
-        ),
+        row=StitchRow,
         rows=tuple(rows),
         notes=(
             "Out: from inside to outside of the panel; in: the way back. Where a cable does not go through the cloth, "
@@ -56,24 +126,34 @@ def _through_cloth(stitch: Stitch) -> str:
     return "out" if stitch.after is Side.OUTSIDE else "in"
 
 
-def depth_table(robot: Robot) -> Table:
+def depth_table(robot: Robot) -> Table[DepthRow]:
     """Table of the points of the cables with their depth under the skin, for bodies in space."""
     rows = []
     if robot.cables:
-        points = np.concatenate([np.array(cable.points) for cable in robot.cables])
-        depths, skin = _under_skin(robot.body, points)
-        steps = [(cable, step) for cable in robot.cables for step in range(len(cable.points))]
-        for (cable, step), row, depth, nearest in zip(steps, _along(robot), 1e3 * depths, 1e3 * skin, strict=True):
-            rows.append((*row, float(depth), *nearest.tolist(), _reach(cable, step, float(depth))))
+        places = np.concatenate([np.array(cable.points) for cable in robot.cables])
+        depths, skin = _under_skin(robot.body, places)
+        for point, depth, nearest in zip(_cable_points(robot), 1e3 * depths, (1e3 * skin).tolist(), strict=True):
+            rows.append(
+                DepthRow(
+                    cable=point.cable,
+                    winch=point.winch,
+                    point=point.name,
+                    x=point.at[0],
+                    y=point.at[1],
+                    z=point.at[2],
+                    gap=point.gap,
+                    along=point.along,
+                    depth=float(depth),
+                    skin_x=nearest[0],
+                    skin_y=nearest[1],
+                    skin_z=nearest[2],
+                    how=_reach(point.beside, float(depth)),
+                )
+            )
     return Table(
         name="stitching",
         title="Where the cables pass",
-        columns=(
-            *text_columns("cable", "winch", "point"),
-            *number_columns("x", "y", "z", "from the last point", "from the winch", "depth", unit="mm"),
-            *number_columns("skin x", "skin y", "skin z", unit="mm"),
-            *text_columns("how"),
-        ),
+        row=DepthRow,
         rows=tuple(rows),
         notes=(
             "Depth is that under the skin, below 0 outside the body; skin is the nearest place of the surface, where a "
@@ -85,16 +165,24 @@ def depth_table(robot: Robot) -> Table:
     )
 
 
-def plane_table(robot: Robot) -> Table:
+def plane_table(robot: Robot) -> Table[PlaneRow]:
     """Table of the points of the cables in the middle plane, for flat bodies that are cast."""
     return Table(
         name="stitching",
         title="Where the cables pass",
-        columns=(
-            *text_columns("cable", "winch", "point"),
-            *number_columns("x", "y", "from the last point", "from the winch", unit="mm"),
+        row=PlaneRow,
+        rows=tuple(
+            PlaneRow(
+                cable=point.cable,
+                winch=point.winch,
+                point=point.name,
+                x=point.at[0],
+                y=point.at[1],
+                gap=point.gap,
+                along=point.along,
+            )
+            for point in _cable_points(robot)
         ),
-        rows=tuple(_along(robot)),
         notes=(
             "All points lie in the middle of the thickness; x and y count from the middle of the drawing, seen from "
             "the front.",
@@ -104,14 +192,34 @@ def plane_table(robot: Robot) -> Table:
     )
 
 
-def _along(robot: Robot) -> Iterator[tuple[Cell, ...]]:
-    """Rows of the points of all cables: cable, winch, point, where it is, how far from the last and from the winch."""
+@dataclass(frozen=True, kw_only=True)
+class _CablePoint:
+    """Point of a cable; lengths in millimetres."""
+
+    cable: str
+    winch: str
+    name: str
+    at: tuple[float, ...]
+    gap: float | None  # from the point before it
+    along: float  # from the winch
+    beside: tuple[bool, ...]  # whether the segments at the point are bare
+
+
+def _cable_points(robot: Robot) -> Iterator[_CablePoint]:
+    """Points of all cables, from the winch of each."""
     for number, cable in enumerate(robot.cables, start=1):
         along = np.concatenate([[0.0], np.cumsum(cable.segments)])
         for step, place in enumerate(cable.points):
-            name, gap = point_name(step, len(cable.points) - 1), 1e3 * float(cable.segments[step - 1]) if step else None
-            at = (1e3 * float(value) for value in place)
-            yield (f"C{number}", cable.winch, name, *at, gap, 1e3 * float(along[step]))
+            segments = [segment for segment in (step - 1, step) if 0 <= segment < len(cable.segments)]
+            yield _CablePoint(
+                cable=f"C{number}",
+                winch=cable.winch,
+                name=point_name(step, len(cable.points) - 1),
+                at=tuple(1e3 * float(value) for value in place),
+                gap=1e3 * float(cable.segments[step - 1]) if step else None,
+                along=1e3 * float(along[step]),
+                beside=tuple(bool(cable.bare[segment]) for segment in segments),
+            )
 
 
 def _under_skin(body: Body, points: Points) -> tuple[Vector, Points]:
@@ -121,17 +229,15 @@ def _under_skin(body: Body, points: Points) -> tuple[Vector, Points]:
     return -solid.distances(points), places
 
 
-def _reach(cable: Cable, step: int, depth: float) -> str:
-    """How a point of a cable is reached."""
-    beside = [place for place in (step - 1, step) if 0 <= place < len(cable.segments)]
-    bare = [bool(cable.bare[place]) for place in beside]
+def _reach(bare: tuple[bool, ...], depth: float) -> Reach:
+    """Position of a point with such segments beside it, so deep under the skin [mm]."""
     if depth < 0:
-        return "outside the body"
+        return Reach.OUTSIDE
     if not all(bare):
-        return "end of its tube" if any(bare) else "in its tube"
+        return Reach.TUBE_END if any(bare) else Reach.TUBE
     if depth <= SKIN:
-        return "sewn to the skin"
-    return "long needle" if depth <= NEEDLE else "tube laid before casting"
+        return Reach.SKIN
+    return Reach.NEEDLE if depth <= NEEDLE else Reach.LAID
 
 
 def close_warnings(robot: Robot) -> tuple[str, ...]:
@@ -148,12 +254,12 @@ def close_warnings(robot: Robot) -> tuple[str, ...]:
     return (f"{cables}: points as near to each other as {least:.1f} mm, below {CLOSE:g} mm, are sewn by one stitch",)
 
 
-def deep_warnings(table: Table) -> tuple[str, ...]:
+def deep_warnings(table: Table[DepthRow]) -> tuple[str, ...]:
     """Which cables have points too deep for a needle, a sentence each."""
     deep: dict[str, float] = {}
-    for cable, how, depth in zip(table.column("cable"), table.column("how"), table.column("depth"), strict=True):
-        if how == "tube laid before casting" and isinstance(depth, float):
-            deep[str(cable)] = max(deep.get(str(cable), 0.0), depth)
+    for row in table.rows:
+        if row.how is Reach.LAID:
+            deep[row.cable] = max(deep.get(row.cable, 0.0), row.depth)
     return tuple(
         f"cable {cable} runs up to {depth:.0f} mm under the skin, too deep for a needle ({NEEDLE:g} mm): lay a tube in "
         "the mould before the foam is poured"

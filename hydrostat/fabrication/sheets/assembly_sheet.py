@@ -65,10 +65,11 @@ def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
         pages = single_maps(robot, given.stitches, width=WIDE, height=235.0 - tight, view=views[0] if views else None)
         pictures |= {f"single_{number}": page for number, page in enumerate(pages, start=1)}
     left = 195.0 - tight - boxed - pictures["map"].height
-    if given.power is not None:
+    power = given.lists.power
+    if power is not None:
         marks = winch_marks_of(robot)
-        mine = tuple(marks[name] for name in given.power.winches)
-        pictures["wiring"] = wiring_scheme(given.power, mine, width=WIDE)
+        mine = tuple(marks[name] for name in power.winches)
+        pictures["wiring"] = wiring_scheme(power, mine, width=WIDE)
     return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
 
 

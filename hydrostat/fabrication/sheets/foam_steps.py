@@ -29,7 +29,7 @@ def skin_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
 def _cable_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
     """How cables come in or on the body, by their depth."""
     cables, depths = len(given.robot.cables), CableDepths.of(given)
-    tubes = "sheath_cuts" in given.tables and bool(given.tables["sheath_cuts"].rows)
+    tubes = bool(given.lists.tubes.rows)
     deep = sorted({*depths.drawn, *depths.laid, *depths.tubed}, key=lambda cable: int(cable[1:]))
     steps = [
         AssemblyStep(

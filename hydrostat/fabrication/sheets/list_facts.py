@@ -1,9 +1,8 @@
 """`bill_facts`, `piece_facts`, `power_facts`: what is bought, pieces by their numbers, and wires, for a sheet."""
 
-from collections.abc import Mapping
 from typing import Any
 
-from hydrostat.fabrication.lists.table import Cell, Table
+from hydrostat.fabrication.lists.bill import BillRow
 from hydrostat.fabrication.parts.board import BOARDS
 from hydrostat.fabrication.sheets.legible import shortened
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
@@ -12,30 +11,18 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.winch_marks import winch_marks_of
 
 Facts = dict[str, Any]  # plain data, as JSON has it
-_TOTAL = "total"  # what the bill calls the rows that sum others
-_BY_DETAIL = ("screw or nut", "geared motor")  # things of the bill that are called by their specification
 
 _UNITS = {"piece": "", "m^2": "m²"}
 
 
-def bill_facts(given: SheetInput) -> Facts | None:
+def bill_facts(given: SheetInput) -> Facts:
     """What is bought, how much of it, and what it costs, with the total."""
-    bill = given.tables.get("bill_of_materials")
-    if bill is None:
-        return None
-    known, title = [column.title for column in bill.columns], _cost_title(bill)
-    rows = []
-    for row, texts in zip(bill.rows, bill.texts, strict=True):
-        cells = dict(zip(known, row, strict=True))
-        what = str(cells.get("what", texts[0]))
-        if what == _TOTAL:
-            continue
-        detail = str(cells.get("specification", "")).partition(",")[0]
-        name = detail if what in _BY_DETAIL and detail else what
-        cost = cells.get(title)
-        rows.append([shortened(name, 40), _amount(cells), _dollars(cost)])
-    for words, total in zip(("used up", "in whole packs"), costs_of(given), strict=False):
-        rows.append([words, "", f"{total:.0f}"])
+    rows = [
+        [shortened(row.short_name, 40), _amount(row), _dollars(row.cost_used)]
+        for row in given.lists.bill.rows
+        if not row.is_total
+    ]
+    rows += [[words, "", f"{cost:.0f}"] for words, cost in _costs(given)]
     return {
         "file": "lists/bill_of_materials.csv",
         "heads": ["what", "amount", "USD"],
@@ -44,53 +31,31 @@ def bill_facts(given: SheetInput) -> Facts | None:
     }
 
 
-def _amount(cells: Mapping[str, Cell]) -> str:
+def _amount(row: BillRow) -> str:
     """How much of a thing, small masses in grams."""
-    quantity, unit = cells.get("quantity"), str(cells.get("unit", "") or "")
-    if not isinstance(quantity, float | int):
-        return str(quantity or "")
-    if unit == "kg" and quantity < 1:
-        return f"{1e3 * quantity:.0f} g"
-    return f"{quantity:.3g} {_UNITS.get(unit, unit)}".strip()
-
-
-def _dollars(cost: Cell) -> str:
-    """A cost in full dollars."""
-    if not isinstance(cost, float | int):
+    if row.amount is None:
         return ""
+    if row.unit == "kg" and row.amount < 1:
+        return f"{1e3 * row.amount:.0f} g"
+    return f"{row.amount:.3g} {_UNITS.get(row.unit, row.unit)}".strip()
+
+
+def _dollars(cost: float) -> str:
+    """A cost in full dollars."""
     return "<1" if 0 < cost < 0.5 else f"{cost:.0f}"
 
 
-def costs_of(given: SheetInput) -> tuple[float, ...]:
-    """Costs of all that is used up, and of all in whole packs [USD]; only those that the bill says."""
-    bill = given.tables.get("bill_of_materials")
-    title = _cost_title(bill) if bill is not None else ""
-    if bill is None or not title:
-        return ()
-    known = [column.title for column in bill.columns]
-    named = bill.column("what") if "what" in known else ("",) * len(bill.rows)
-    sums = []
-    for column in (title, "in whole packs"):
-        costs = [
-            cell
-            for cell, what in zip(bill.column(column) if column in known else (), named, strict=False)
-            if isinstance(cell, float | int) and what != _TOTAL
-        ]
-        sums += [float(sum(costs))] if costs else []
-    return tuple(sums)
+def _costs(given: SheetInput) -> list[tuple[str, float]]:
+    """Costs of all that is used up, and of all in whole packs [USD], by their names; none if nothing is bought."""
+    rows = [row for row in given.lists.bill.rows if not row.is_total]
+    used, packs = sum(row.cost_used for row in rows), sum(row.cost_packs for row in rows)
+    return [("used up", used), ("in whole packs", packs)] if rows else []
 
 
 def cost_text(given: SheetInput) -> tuple[str, ...]:
     """What it costs; nothing if nothing is known."""
-    names = ("used up", "in whole packs")
-    told = [f"{cost:.0f} USD {name}" for cost, name in zip(costs_of(given), names, strict=False)]
+    told = [f"{cost:.0f} USD {name}" for name, cost in _costs(given)]
     return (f"about {', '.join(told)}",) if told else ()
-
-
-def _cost_title(bill: Table) -> str:
-    """Title under which the bill says what a thing costs; empty if it does not."""
-    known = [column.title for column in bill.columns]
-    return next((title for title in ("used up", "cost") if title in known), "")
 
 
 _OF_ONE, _OF_MANY, _OF_ALL = " of winch ", " of winches ", " of every winch"
@@ -177,7 +142,7 @@ def _kind(title: str) -> str:
 
 def power_facts(given: SheetInput) -> Facts | None:
     """Supply, fuse, leads and battery, what to mind, and which wire goes where; None without motors."""
-    plan = given.power
+    plan = given.lists.power
     if plan is None:
         return None
     marks = winch_marks_of(given.robot)

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 
 from hydrostat.fabrication.kit_options import Method, MouldKind
+from hydrostat.fabrication.lists.cuts import AT_BODY
 from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
@@ -19,11 +20,13 @@ _NAME, _SHORT = 60, 26  # longest name of the robot, of a winch, in letters
 
 _POURS = ("first", "second")
 
-_CABLES = {"cable": "cable", "cut to": "cut to", "slack": "slack", "spool mark from end": "spool mark"}
-"""Columns of the list of cables, and what the sheet calls them."""
+_CABLES = {"cable": "cable", "cut": "cut to", "slack": "slack", "spool_mark": "spool mark"}
+"""Fields of the list of cables that the sheet shows, with their headings there."""
 
-_TUBES = {"cable": "cable", "from": "from", "to": "to", "cut to": "cut to"}  # the same of the list of tubes
-_PLACES = {"where the cable begins": "body"}  # what the list of tubes calls a place, and the sheet, which has less room
+_TUBES = {"cable": "cable", "start": "from", "end": "to", "length": "cut to"}
+"""The same of the list of tubes."""
+
+_PLACES = {AT_BODY: "body"}  # what the list of tubes calls a place, and the sheet, which has less room
 
 
 def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
@@ -41,9 +44,9 @@ def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
         "mind": note_lines(given.problems, (*((letters,) if letters else ()), *given.warnings), given.robot),
         "forced": bool(given.problems),
         "bill": bill_facts(given),
-        "cables": _table(given, "cable_cuts", _CABLES),
+        "cables": _table(given.lists.cables, _CABLES),
         "log": [f"C{number}" for number in range(1, len(given.robot.cables) + 1)],
-        "tubes": _table(given, "sheath_cuts", _TUBES),
+        "tubes": _table(given.lists.tubes, _TUBES),
         "winches": _winches(given),
         "pieces": piece_facts(given),
         "shown": f"C{stitches.cable}" if (stitches := shown_stitches(given)) else "",
@@ -91,23 +94,22 @@ def _about(given: SheetInput, steps: Iterable[Iterable[AssemblyStep]]) -> list[s
     ]
 
 
-def _table(given: SheetInput, name: str, titles: Mapping[str, str]) -> Facts | None:
-    """Some columns of a list, as text; all of them if it has none of these. None if there is no such list or no row."""
-    table: Table | None = given.tables.get(name)
-    if table is None or not table.rows:
+def _table(table: Table, headings: Mapping[str, str]) -> Facts | None:
+    """Some fields of a list, as text, under such headings; None if it has no row."""
+    if not table.rows:
         return None
-    known = [column.title for column in table.columns]
-    places = [known.index(title) for title in titles if title in known] or list(range(len(known)))
+    columns = [[_short_place(text) for text in table.texts_of(field)] for field in headings]
     return {
-        "file": f"lists/{name}.csv",
-        "heads": [titles.get(known[place], table.columns[place].heading) for place in places],
-        "right": [table.columns[place].align is Align.RIGHT for place in places],
-        # What stands in brackets after the number of a point is seen on the map.
-        "rows": [
-            [shortened(_PLACES.get(row[place], row[place]).partition(" (")[0], 20) for place in places]
-            for row in table.texts
-        ],
+        "file": f"lists/{table.name}.csv",
+        "heads": list(headings.values()),
+        "right": [table.columns[field].align is Align.RIGHT for field in headings],
+        "rows": [list(row) for row in zip(*columns, strict=True)],
     }
+
+
+def _short_place(text: str) -> str:
+    """A text of a list in short; what stands in brackets after the number of a point is seen on the map."""
+    return shortened(_PLACES.get(text, text).partition(" (")[0], 20)
 
 
 def _winches(given: SheetInput) -> list[Facts]:

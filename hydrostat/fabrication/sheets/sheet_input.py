@@ -1,12 +1,10 @@
 """`SheetInput`: all that the assembly sheet tells."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method, Paper
-from hydrostat.fabrication.lists.power import PowerPlan
-from hydrostat.fabrication.lists.table import Table
+from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.solids.assembly import PartAssembly
@@ -21,18 +19,16 @@ class SheetInput:
     robot: Robot  # that is built
     method: Method  # how
     paper: Paper  # of the pages
+    lists: Lists  # of what is bought and cut
     motor: str = "geared motor"  # what its motors are, in words
     winch: PartAssembly | None = None  # the unit that is drawn apart; of several, that with the most cables
     base: PartAssembly | None = None  # with the winches that stand outside the body
     seat: PartAssembly | None = None  # of the body, where one is made
     stopper: PartAssembly | None = None  # drawn apart
     printed: tuple[Printed, ...] = ()  # all that comes from the printer
-    # lists by name; told are "bill_of_materials", "cable_cuts" and "sheath_cuts", if they are there
-    tables: Mapping[str, Table] = field(default_factory=dict)
     stitches: tuple[CableStitches, ...] = ()  # of each cable of a plush robot
     gusset: bool = False  # whether strips between front and back make a plush body thick
     mould: Mould | None = None  # of a robot of foam
-    power: PowerPlan | None = None  # what feeds its motors
     checks: tuple[Check, ...] = ()  # of the kit on itself
     problems: tuple[str, ...] = ()  # why the robot cannot be built well, if it is built all the same
     warnings: tuple[str, ...] = ()  # what to mind

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_options import Method
-from hydrostat.fabrication.lists.stitching import SKIN
+from hydrostat.fabrication.lists.stitching import SKIN, DepthRow, Reach
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot
@@ -56,10 +56,6 @@ def _mm(value: float) -> str:
     return f"{1e3 * value + 0.0:.0f}".replace("-", "−")
 
 
-_NEEDLE, _LAID = "long needle", "tube laid before casting"
-_IN_TUBE = ("in its tube", "end of its tube")
-
-
 @dataclass(frozen=True, kw_only=True)
 class CableDepths:
     """Names of cables, C1, C2, ..."""
@@ -71,21 +67,23 @@ class CableDepths:
 
     @classmethod
     def of(cls, given: SheetInput) -> "CableDepths":
-        """Read the list of stitches; without one all cables are sewn on."""
-        table = given.tables.get("stitching")
-        titles = [column.title for column in table.columns] if table else []
-        if table is None or "how" not in titles or "depth" not in titles:
+        """Read the depths of their points; cables whose depths are not listed are sewn on."""
+        points = (
+            [row for row in given.lists.stitching.rows if isinstance(row, DepthRow)] if given.lists.stitching else []
+        )
+        if not points:
             return cls(sewn=tuple(f"C{number}" for number in range(1, len(given.robot.cables) + 1)))
-        found: dict[str, set[str]] = {}
-        for cable, how, depth in zip(*(table.column(title) for title in ("cable", "how", "depth")), strict=True):
-            deep = how in _IN_TUBE and isinstance(depth, float | int) and depth > SKIN
-            found.setdefault(str(cable), set()).add("tube" if deep else str(how))
-        inside = {_NEEDLE, _LAID}
+        found: dict[str, set[Reach]] = {}
+        for point in points:
+            in_tube = point.how in (Reach.TUBE, Reach.TUBE_END)
+            how = Reach.TUBE if in_tube and point.depth > SKIN else Reach.TUBE_END if in_tube else point.how
+            found.setdefault(point.cable, set()).add(how)
+        deep = {Reach.NEEDLE, Reach.LAID, Reach.TUBE}
         return cls(
-            sewn=tuple(cable for cable, hows in found.items() if not hows & {*inside, "tube"}),
-            drawn=tuple(cable for cable, hows in found.items() if _NEEDLE in hows),
-            laid=tuple(cable for cable, hows in found.items() if _LAID in hows),
-            tubed=tuple(cable for cable, hows in found.items() if "tube" in hows),
+            sewn=tuple(cable for cable, hows in found.items() if not hows & deep),
+            drawn=tuple(cable for cable, hows in found.items() if Reach.NEEDLE in hows),
+            laid=tuple(cable for cable, hows in found.items() if Reach.LAID in hows),
+            tubed=tuple(cable for cable, hows in found.items() if Reach.TUBE in hows),
         )
 
 

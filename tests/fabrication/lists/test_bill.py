@@ -7,7 +7,7 @@ import pytest
 from small_inputs import PLAIN, box, given, square
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, Item, Price, bill_table, cost_of
+from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price, bill_table, cost_of
 from hydrostat.fabrication.lists.cuts import cable_cuts, sheath_cuts
 from hydrostat.fabrication.lists.line import line_for
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
@@ -33,22 +33,23 @@ def needs(this: ListInput) -> dict[str, Item]:
 def test_totals_of_groups_and_of_all() -> None:
     price = Price(amount=2.0, unit="m", pack=5.0)
     items = (
-        Item(group="a", what="x", specification="", quantity=1.5, price=price, mass=4.0),
-        Item(group="a", what="y", specification="", quantity=2.0, price=price),
-        Item(group="b", what="z", specification="", quantity=6.0, price=price, mass=1.0),
+        Item(group=BillGroup.BODY, what="x", specification="", quantity=1.5, price=price, mass=4.0),
+        Item(group=BillGroup.BODY, what="y", specification="", quantity=2.0, price=price),
+        Item(group=BillGroup.MOULD, what="z", specification="", quantity=6.0, price=price, mass=1.0),
     )
     table = bill_table(items)
-    assert table.column("used up") == pytest.approx((3.0, 4.0, 7.0, 12.0, 12.0, 19.0))
-    assert table.column("in whole packs") == pytest.approx((10.0, 10.0, 20.0, 20.0, 20.0, 40.0))
-    assert table.column("mass") == (4.0, None, 4.0, 1.0, 1.0, 5.0)
+    assert tuple(row.cost_used for row in table.rows) == pytest.approx((3.0, 4.0, 7.0, 12.0, 12.0, 19.0))
+    assert tuple(row.cost_packs for row in table.rows) == pytest.approx((10.0, 10.0, 20.0, 20.0, 20.0, 40.0))
+    assert tuple(row.mass for row in table.rows) == (4.0, None, 4.0, 1.0, 1.0, 5.0)
     assert cost_of(items) == 19.0
-    assert cost_of(items, "a") == 7.0
+    assert [row.is_total for row in table.rows] == [False, False, True, False, True, True]
+    assert cost_of(items, BillGroup.BODY) == 7.0
 
 
 def test_currencies_are_not_added() -> None:
     price = Price(amount=2.0, currency="EUR")
     with pytest.raises(InputError, match="the price of x must be in USD, not EUR"):
-        bill_table((Item(group="a", what="x", specification="", quantity=1.0, price=price),))
+        bill_table((Item(group=BillGroup.BODY, what="x", specification="", quantity=1.0, price=price),))
 
 
 def test_a_full_pack_is_one_pack() -> None:
@@ -139,7 +140,7 @@ def test_a_hand_of_foam_costs_what_the_thesis_paid() -> None:
     items = needs(given(robot, foam=hand)).values()
     core = sum(item.cost for item in items if item.what.startswith("foam"))
     assert 1 < core < 5  # "a few dollars each" (N2)
-    assert 50 < cost_of(items, "mould") < 200  # "about 100 USD" (N2)
+    assert 50 < cost_of(items, BillGroup.MOULD) < 200  # "about 100 USD" (N2)
 
 
 def test_the_foam_that_is_poured_may_be_another_than_was_simulated() -> None:

@@ -45,7 +45,7 @@ def test_in_the_body_the_spool_is_where_the_cable_is_counted_from():
 def test_the_table_tells_no_mark_more_precisely_than_it_is_known():
     """Oracle: where the stopper goes is a matter of the robot, not of the list."""
     table = cable_table(cable_cuts(square(), leads={0: 12.3}, outside={0: 7.7}, spare_wraps=2.0))
-    titles = [column.title for column in table.columns]
+    titles = [column.title for column in table.columns.values()]
     assert {"cable", "cut to", "slack", "spool mark from end", "body"} <= set(titles)
     assert not any("stopper" in title or "exit" in title for title in titles)
     numbers = dict(zip(titles, table.texts[0], strict=True))
@@ -110,8 +110,8 @@ def test_the_table_ends_with_its_total() -> None:
     robot = square(Cable(winch="pull", points=POINTS, sheathed=((0, 1), (2, 4))))
     found = sheath_cuts(robot, seats={0: 5.0}, outside={})
     table = sheath_table(robot, found, bore=1.0, tube=2.0)
-    assert [row[2:4] for row in table.rows[:-1]] == [("1 (winch)", "2"), ("3", "5 (stopper)")]
-    assert table.column("cut to") == pytest.approx((55.0, 100.0, 155.0))
+    assert [(row.start, row.end) for row in table.rows[:-1]] == [("1 (winch)", "2"), ("3", "5 (stopper)")]
+    assert tuple(row.length for row in table.rows) == pytest.approx((55.0, 100.0, 155.0))
     assert sheath_table(robot, (), bore=1.0, tube=2.0).rows == ()
     assert any("from its shaft" in note for note in table.notes)
     assert not any("from the base" in note for note in table.notes)

@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from builders import gallery_robot
 from shapely import transform
@@ -29,9 +28,9 @@ def test_names_and_order() -> None:
     assert [table.name for table in lists.tables] == names
     assert lists.problems == lists.warnings == ()
     assert all(check.passed for check in lists.checks)
-    assert lists.table("cable_cuts").rows[0][0] == "C1"
-    with pytest.raises(InputError, match="Available: bill_of_materials"):
-        lists.table("shopping")
+    assert lists.cables.rows[0].cable == "C1"
+    assert lists.cost == (lists.bill.rows[-1].cost_used, lists.bill.rows[-1].cost_packs)
+    assert [row.is_total for row in lists.bill.rows[-2:]] == [True, True]
 
 
 def test_problems_and_warnings_come_through() -> None:
@@ -41,7 +40,7 @@ def test_problems_and_warnings_come_through() -> None:
     assert "breaks" in lists.problems[0]
     assert any("cannot reach" in warning for warning in lists.warnings)
     assert any("80 mm under the skin" in warning for warning in lists.warnings)
-    assert "each core of foam" in lists.tables[0].notes[-1]
+    assert "each core of foam" in lists.bill.notes[-1]
 
 
 def test_a_pose_that_was_not_solved_is_told() -> None:
@@ -79,16 +78,13 @@ def test_gallery_robots_have_sound_lists(name: str, unchecked: None) -> None:
         )
     )
     assert all(check.passed for check in lists.checks), lists.checks
-    cuts = lists.table("cable_cuts")
-    for cable, total in zip(robot.cables, cuts.column("total"), strict=True):
-        assert isinstance(total, float)
-        assert 1e3 * cable.length < total < 1e3 * cable.length + 400
-    assert len(lists.table("stitching").rows) == sum(len(cable.points) for cable in robot.cables)
-    tubes = lists.table("sheath_cuts").column("cut to")
-    assert all(isinstance(length, float) and length > 0 for length in tubes)
-    bill = lists.table("bill_of_materials")
-    assert all(isinstance(cost, float) and math.isfinite(cost) and cost > 0 for cost in bill.column("used up"))
-    used, spent = (np.array(bill.column(title), dtype=float) for title in ("used up", "in whole packs"))
-    assert (used <= spent + 1e-9).all()
+    for cable, row in zip(robot.cables, lists.cables.rows, strict=True):
+        assert 1e3 * cable.length < row.total < 1e3 * cable.length + 400
+    assert lists.stitching is not None
+    assert len(lists.stitching.rows) == sum(len(cable.points) for cable in robot.cables)
+    assert all(isinstance(row.length, float) and row.length > 0 for row in lists.tubes.rows)
+    costs = [row.cost_used for row in lists.bill.rows]
+    assert all(isinstance(cost, float) and math.isfinite(cost) and cost > 0 for cost in costs)
+    assert all(row.cost_used <= row.cost_packs + 1e-9 for row in lists.bill.rows)
     for table in lists.tables:
         assert table.csv.decode().count("\r\n") == len(table.rows) + 1

@@ -80,8 +80,8 @@ def test_a_winch_without_cables_asks_for_nothing() -> None:
     robot = square(Cable(winch="pull", points=(START, (0.01, 0.0))))
     demand = demand_of(robot, 0.0)
     table = motor_table(size_winches(robot, demand, PLAIN), demand, PLAIN)
-    assert table.column("verdict") == ("good",)
-    assert table.column("largest torque") == (0.0,)
+    assert tuple(row.verdict for row in table.rows) == ("good",)
+    assert tuple(row.torque for row in table.rows) == (0.0,)
 
 
 def test_a_demand_of_another_robot_is_refused() -> None:

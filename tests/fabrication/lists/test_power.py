@@ -19,7 +19,7 @@ def test_three_servos_by_hand() -> None:
     assert plan.feeds == 1
     assert plan.cells == 4
     assert plan.hours == pytest.approx(0.8 * 2.0 / 0.31)
-    assert dict(plan.table.rows)["supply"] == "5 V, 3 A or more"
+    assert {row.what: row.amount for row in plan.table.rows}["supply"] == "5 V, 3 A or more"
 
 
 def test_ten_strong_servos_are_fed_in_several_places() -> None:

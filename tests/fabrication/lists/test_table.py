@@ -2,17 +2,27 @@
 
 import csv
 import io
+from dataclasses import dataclass
+from typing import Annotated
 
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.table import Align, Column, Table
-
-COLUMNS = (Column(title="name", align=Align.LEFT), Column(title="length", unit="mm"), Column(title="turns", decimals=3))
+from hydrostat.fabrication.lists.table import Align, Column, Table, columns_of, number_column, text_column
 
 
-def table(*rows: tuple) -> Table:
-    return Table(name="test", title="Test", columns=COLUMNS, rows=rows)
+@dataclass(frozen=True)
+class Row:
+    """A name, two numbers, and what is not printed."""
+
+    name: Annotated[str, text_column("name")]
+    length: Annotated[float | None, number_column("length", "mm")]
+    turns: Annotated[float | None, number_column("turns", decimals=3)]
+    hidden: float = float("nan")
+
+
+def table(*rows: tuple) -> Table[Row]:
+    return Table(name="test", title="Test", row=Row, rows=tuple(Row(*row) for row in rows))
 
 
 def read(content: bytes) -> list[list[str]]:
@@ -48,13 +58,24 @@ def test_letters_of_all_languages() -> None:
     assert read(table(("größe 手", 1.0, 1.0)).csv)[1][0] == "größe 手"
 
 
-@pytest.mark.parametrize("row", [("a", 1.0), ("a", float("nan"), 1.0), ("a", 1.0, float("inf"))])
-def test_refuses_what_is_no_row(row: tuple) -> None:
+@pytest.mark.parametrize("row", [("a", float("nan"), 1.0), ("a", 1.0, float("inf"))])
+def test_refuses_what_is_no_number(row: tuple) -> None:
     with pytest.raises(InputError, match="row 0"):
         table(row)
 
 
-def test_columns_by_title() -> None:
-    assert table(("a", 1.0, 2.0), ("b", 3.0, 4.0)).column("length") == (1.0, 3.0)
-    with pytest.raises(InputError, match="name, length, turns"):
-        table().column("width")
+def test_refuses_a_row_of_another_type() -> None:
+    with pytest.raises(InputError, match="row 1 must be a Row, not a tuple"):
+        Table(name="test", title="Test", row=Row, rows=(Row("a", 1.0, 2.0), ("a", 1.0, 2.0)))  # type: ignore[arg-type]
+
+
+def test_columns_are_the_fields_that_are_printed() -> None:
+    columns = {"name": ("name", Align.LEFT), "length": ("length", Align.RIGHT), "turns": ("turns", Align.RIGHT)}
+    assert {field: (column.title, column.align) for field, column in columns_of(Row).items()} == columns
+    assert Column(title="x").heading == "x"
+
+
+def test_one_field_as_it_is_printed() -> None:
+    assert table(("a", 1.0, 2.0), ("b", None, 4.0)).texts_of("length") == ("1.0", "")
+    with pytest.raises(KeyError, match="width"):
+        table().texts_of("width")

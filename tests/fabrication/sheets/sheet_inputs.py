@@ -9,7 +9,12 @@ from plush_robots import SQUARE, drawn_body
 
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method, MouldKind, Paper
-from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.lists.bill import BillGroup, Item, Price, bill_table
+from hydrostat.fabrication.lists.cuts import CableCut, SheathRow, cable_table
+from hydrostat.fabrication.lists.line import LineRow
+from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.lists.motor_sizing import MotorRow
+from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.pull import Pull
@@ -62,31 +67,34 @@ def printed(winches: int, cables: int) -> tuple[Printed, ...]:
     )
 
 
-def tables(cables: int, bill: int = 8) -> dict[str, Table]:
-    """Lists as the room of lists names their columns."""
-    words = [Column(title=title, align=Align.LEFT) for title in ("cable", "winch", "from", "to")]
-    lengths = [Column(title=title, unit="mm") for title in ("cut to", "slack", "spool mark from end")]
-    bought = (Column(title="what", align=Align.LEFT), Column(title="quantity"), Column(title="unit", align=Align.LEFT))
-    return {
-        "cable_cuts": Table(
-            name="cable_cuts",
-            title="Cables",
-            columns=(*words[:2], *lengths),
-            rows=tuple((f"C{number}", "pull", 400.0 + number, 0.0, 121.5) for number in range(1, cables + 1)),
-        ),
-        "sheath_cuts": Table(
-            name="sheath_cuts",
-            title="Sheaths",
-            columns=(*words, lengths[0]),
-            rows=tuple((f"C{number}", "pull", "1 (winch)", "2", 23.25) for number in range(1, cables + 1)),
-        ),
-        "bill_of_materials": Table(
-            name="bill_of_materials",
-            title="Bill of materials",
-            columns=(*bought, Column(title="cost", unit="USD", decimals=2)),
-            rows=tuple((f"thing number {number}", 0.25 * number, "m", 3.0) for number in range(1, bill + 1)),
-        ),
+def lists(cables: int, items: int | tuple[Item, ...] = 8, **more: Any) -> Lists:
+    """Lists of so many cables, each in a tube, and of some things to buy."""
+    price = Price(amount=3.0, unit="m")
+    if isinstance(items, int):
+        names = [f"thing number {number}" for number in range(1, items + 1)]
+        items = tuple(
+            Item(group=BillGroup.BODY, what=name, specification="", quantity=1.0, price=price) for name in names
+        )
+    cuts = [
+        CableCut(number=number, winch="pull", body=40.0, slack=1.5, outside=0.0, lead=0.0, wraps=0.0, release=0.0)
+        for number in range(1, cables + 1)
+    ]
+    tubes = [
+        SheathRow(
+            cable=f"C{number}", winch="pull", start="1 (winch)", end="2", bore=1, tube=2, run=23, seat=0, length=23
+        )
+        for number in range(1, cables + 1)
+    ]
+    known = {
+        "bill": bill_table(items),
+        "cables": cable_table(tuple(cuts)),
+        "tubes": Table(name="sheath_cuts", title="Sheaths", row=SheathRow, rows=tuple(tubes)),
+        "stitching": None,
+        "strength": Table(name="line_strength", title="Line", row=LineRow, rows=()),
+        "motors": Table(name="motor_sizing", title="Motors", row=MotorRow, rows=()),
+        "power": None,
     }
+    return Lists(**(known | more))
 
 
 def checks(count: int, *, failed: int = 0) -> tuple[Check, ...]:
@@ -195,7 +203,7 @@ def _known(robot: Robot, method: Method) -> dict[str, Any]:
         "winch": winch(),
         "stopper": stopper(),
         "printed": printed(winches, cables),
-        "tables": tables(cables),
+        "lists": lists(cables),
         "checks": checks(6),
     }
 

@@ -6,11 +6,13 @@ from importlib.resources import files
 
 import pytest
 from pypdf import PdfReader
-from sheet_inputs import checks, foam, plush, tables
+from sheet_inputs import checks, foam, lists, plush
 
 from hydrostat.fabrication.kit_options import Method, Paper
+from hydrostat.fabrication.lists.bill import BillGroup, Item, Price
 from hydrostat.fabrication.lists.power import power_plan
-from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.lists.stitching import DepthRow, Reach
+from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
@@ -71,7 +73,7 @@ def test_what_a_plush_sheet_says(plush_sheet):
     ):
         assert part in text
     assert "thing number 8" in text
-    assert "121.5" in text
+    assert "122" in text
     assert "C2" in text
     assert "100 × 100 × 30 mm" in text
     assert "1 winch, 2 cables" in text
@@ -81,7 +83,7 @@ def test_what_a_plush_sheet_says(plush_sheet):
 @pytest.mark.slow
 def test_a_sheet_tells_which_motor_the_firmware_is_for():
     power = power_plan({plush().robot.winches[0].name: 40.0}, next(one for one in MOTORS if one.key == "n20"))
-    assert "hydrostat firmware ROBOT --motor n20" in words(assembly_sheet(plush(power=power)))
+    assert "hydrostat firmware ROBOT --motor n20" in words(assembly_sheet(plush(lists=lists(2, power=power))))
 
 
 def test_what_a_foam_sheet_says(foam_sheet):
@@ -168,7 +170,7 @@ def test_a_crowded_sheet_has_no_more_pages_but_of_maps(make, pages, paper):
         cables=24,
         paper=paper,
         problems=tuple(f"{number}: {long}" for number in range(9)),
-        tables=tables(24, bill=90),
+        lists=lists(24, 90),
         checks=checks(90, failed=1),
     )
     content = assembly_sheet(given)
@@ -194,36 +196,34 @@ def test_warnings_stand_in_a_box_and_problems_say_that_it_was_forced(plush_sheet
 
 @pytest.mark.slow
 def test_nothing_but_the_robot_is_enough():
-    given = plush(winch=None, stopper=None, printed=(), tables={}, checks=())
+    given = plush(winch=None, stopper=None, printed=(), lists=lists(0, 0), checks=())
     assert len(read(assembly_sheet(given)).pages) == 2
-    given = foam(winch=None, stopper=None, printed=(), tables={}, checks=(), mould=None)
+    given = foam(winch=None, stopper=None, printed=(), lists=lists(0, 0), checks=(), mould=None)
     assert len(read(assembly_sheet(given)).pages) == 4
 
 
+def item(what: str, quantity: float, price: Price, specification: str = "", **more: bool) -> Item:
+    return Item(group=BillGroup.BODY, what=what, specification=specification, quantity=quantity, price=price, **more)
+
+
 def test_the_bill_is_told_in_short():
-    words_of = [Column(title=title, align=Align.LEFT) for title in ("what", "specification")]
-    columns = (*words_of, Column(title="quantity"), Column(title="unit", align=Align.LEFT), Column(title="used up"))
-    rows = (
-        ("felt", "no PVC", 0.2, "m^2", 4.0),
-        ("screw or nut", "M2 x 6 mm screw, self-tapping", 12.0, "piece", 1.0),
-        ("filling", "fibre", 0.05, "kg", 2.0),
-        ("total", "", None, "", 7.0),
+    items = (
+        item("felt", 0.2, Price(amount=20.0, unit="m^2"), "no PVC"),
+        item("screw or nut", 12.0, Price(amount=1 / 12), "M2 x 6 mm screw, self-tapping", is_named_by_kind=True),
+        item("filling", 0.05, Price(amount=40.0, unit="kg"), "fibre"),
     )
-    bill = Table(name="bill_of_materials", title="Bill", columns=columns, rows=rows)
-    text = words(assembly_sheet(plush(tables={"bill_of_materials": bill})))
+    text = words(assembly_sheet(plush(lists=lists(2, items))))
     for part in ("felt 0.2 m² 4", "M2 x 6 mm screw 12 1", "filling 50 g 2", "used up 7", "of work about 7 USD used up"):
         assert part in text
     assert "total" not in text
 
 
-def test_a_list_with_other_columns_is_told_whole():
-    other = Table(
-        name="cable_cuts",
-        title="Cables",
-        columns=tables(1)["bill_of_materials"].columns,
-        rows=(("rope", 1.5, "m", 2.0),),
-    )
-    assert "rope" in words(assembly_sheet(plush(tables={"cable_cuts": other})))
+def test_the_lists_of_what_is_cut_are_told_in_short():
+    """Oracle: the rows of the lists, whose place in brackets is left out."""
+    text = words(assembly_sheet(plush()))
+    assert "cable cut to slack spool mark C1 250 1.5 122 C2 250 1.5 122" in text
+    assert "cable from to cut to C1 1 2 23.0 C2 1 2 23.0" in text
+    assert "Cables, in mm" in words(assembly_sheet(plush(lists=replace(lists(2), tubes=lists(0).tubes))))
 
 
 @pytest.mark.slow
@@ -250,11 +250,8 @@ def test_templates_come_with_the_package():
 
 def test_the_cost_is_told_used_up_and_in_whole_packs():
     """Oracle: sums by hand: 4 + 0.2 and 10 + 2."""
-    columns = (*(Column(title=title) for title in ("what", "quantity", "used up", "in whole packs")),)
-    bill = Table(
-        name="bill_of_materials", title="Bill", columns=columns, rows=(("felt", 1, 4.0, 10.0), ("thread", 1, 0.2, 2.0))
-    )
-    text = words(assembly_sheet(plush(tables={"bill_of_materials": bill})))
+    items = (item("felt", 1.0, Price(amount=4.0, pack=2.5)), item("thread", 1.0, Price(amount=0.2, pack=10.0)))
+    text = words(assembly_sheet(plush(lists=lists(2, items))))
     for part in ("about 4 USD used up, 12 USD in whole packs", "thread 1 <1", "used up 4", "in whole packs 12"):
         assert part in text
 
@@ -269,21 +266,20 @@ def test_a_stopper_is_set_by_the_cloth_not_by_a_mark():
         assert "from exit" not in text
 
 
-def stitching(*rows: tuple[str, float, str]) -> Table:
+def stitching(*points: tuple[str, float, Reach]) -> Table[DepthRow]:
     """A list of points: cable, depth, how."""
-    return Table(
-        name="stitching",
-        title="Where",
-        columns=(Column(title="cable"), Column(title="depth", unit="mm"), Column(title="how")),
-        rows=rows,
+    place = dict.fromkeys(("x", "y", "z", "gap", "along", "skin_x", "skin_y", "skin_z"), 0.0)
+    rows = (
+        DepthRow(cable=cable, winch="pull", point="2", depth=depth, how=how, **place) for cable, depth, how in points
     )
+    return Table(name="stitching", title="Where", row=DepthRow, rows=tuple(rows))
 
 
 @pytest.mark.slow
 def test_tubes_for_deep_cables_are_laid_before_casting(foam_sheet):
     """Oracle: the list of stitches."""
-    deep = stitching(("C1", 70.0, "tube laid before casting"), ("C2", 2.0, "sewn to the skin"))
-    text = words(assembly_sheet(foam(tables={**tables(2), "stitching": deep})))
+    deep = stitching(("C1", 70.0, Reach.LAID), ("C2", 2.0, Reach.SKIN))
+    text = words(assembly_sheet(foam(lists=lists(2, stitching=deep))))
     assert "C1 runs too deep for a needle" in text
     assert text.index("Lay tubes in the cavity") < text.index("Close it")
     assert "Lay tubes in the cavity" not in words(foam_sheet)
@@ -292,8 +288,8 @@ def test_tubes_for_deep_cables_are_laid_before_casting(foam_sheet):
 @pytest.mark.slow
 def test_cables_are_put_in_as_deep_as_the_list_has_them(foam_sheet):
     """Oracle: a list of one that is sewn on, one that is drawn through, one whose tube is deep."""
-    rows = (("C1", 2.0, "sewn to the skin"), ("C2", 9.0, "long needle"), ("C3", 9.0, "in its tube"))
-    text = words(assembly_sheet(foam(cables=3, tables={**tables(3), "stitching": stitching(*rows)})))
+    rows = (("C1", 2.0, Reach.SKIN), ("C2", 9.0, Reach.NEEDLE), ("C3", 9.0, Reach.TUBE))
+    text = words(assembly_sheet(foam(cables=3, lists=lists(3, stitching=stitching(*rows)))))
     assert "C2 and C3, before the skin is on" in text
     assert "Push the tube of C3" in text
     assert "C1. Pull the skin over the body" in text
@@ -377,7 +373,9 @@ def test_a_robot_without_cables_has_no_empty_heading():
         given = make()
         robot = given.robot.with_network((), ())
         text = words(
-            assembly_sheet(replace(given, robot=robot, stitches=(), printed=(), winch=None, stopper=None, tables={}))
+            assembly_sheet(
+                replace(given, robot=robot, stitches=(), printed=(), winch=None, stopper=None, lists=lists(0, 0))
+            )
         )
         for heading in ("Where the cables run", "Calibrate", "Log", "A winch", "Winches", "Cut the cables", "Tie"):
             assert heading not in text.replace("all winches", "")
