@@ -32,7 +32,7 @@ LOCKING = {
     2: {0.35: 0.14, 0.4: 0.20, 0.43: 0.27, 0.45: 0.35, 0.47: 0.54, 0.49: 1.4},
     3: {0.35: 0.12, 0.4: 0.20, 0.43: 0.31, 0.45: 0.45, 0.47: 0.77, 0.49: 2.4},
 }
-"""Relative bending stiffness added by locking with 4 elements across a limb, in 2D and 3D (`lab/locking/locking.py`)."""
+"""Relative bending stiffness added by locking, 4 elements across a limb, in 2D and 3D (`lab/locking/locking.py`)."""
 
 LEAST_ACROSS = {2: 2.0, 3: 3.0}
 """A limb with fewer elements across bends much too stiffly, in the plane and in space (docs/decisions/0012)."""
