@@ -12,7 +12,7 @@ from hydrostat.design import Craft
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Demand
 from hydrostat.robot import Body, Cable, Face, PoseTarget, Robot, Winch
-from hydrostat.studio.designing.design_work import Candidate, Reach
+from hydrostat.studio.designing.design_work import Candidate, PoseResult
 
 LARGEST = 8_000_000  # more bytes than these are not kept: cards that would go beyond are left out, the last first
 
@@ -20,7 +20,7 @@ _PLAIN = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=Fals
 
 
 class ReachRecord(BaseModel):
-    """A `Reach`, with lists for arrays."""
+    """A `PoseResult`, with lists for arrays."""
 
     model_config = _PLAIN
 
@@ -112,7 +112,7 @@ def _record(candidate: Candidate) -> CardRecord:
     )
 
 
-def _reach_record(reach: Reach) -> ReachRecord:
+def _reach_record(reach: PoseResult) -> ReachRecord:
     return ReachRecord(
         pose=reach.pose,
         nodes=reach.nodes.tolist(),
@@ -144,12 +144,12 @@ def _candidate(record: CardRecord, robot: Robot, number: int) -> Candidate:
     )
 
 
-def _reach(record: ReachRecord, robot: Robot) -> Reach:
+def _reach(record: ReachRecord, robot: Robot) -> PoseResult:
     """With arrays (InputError: of other shapes than the body)."""
     nodes = np.array(record.nodes)
     if nodes.shape != robot.body.mesh.nodes.shape:
         raise InputError("networks from an earlier session are of another body")
-    return Reach(
+    return PoseResult(
         pose=record.pose,
         nodes=nodes,
         contractions=np.array(record.contractions),

@@ -24,7 +24,7 @@ from hydrostat.units import plural
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Reach:
+class PoseResult:
     """Result of a network in one pose."""
 
     pose: PoseTarget  # that was wanted
@@ -42,7 +42,7 @@ class Solution:
 
     winches: tuple[Winch, ...]  # of the network
     cables: tuple[Cable, ...]  # of the network
-    reaches: tuple[Reach, ...]  # what it reaches of each pose
+    reaches: tuple[PoseResult, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
     built: float  # the same, expected of a robot as it is built [m]
     craft: Craft  # what it takes to sew and to motorise it
@@ -56,7 +56,7 @@ class Candidate:
     number: int  # by which it is named; no two have the same
     source: Robot  # the robot that it was designed for
     robot: Robot  # that one with the network
-    reaches: tuple[Reach, ...]  # what it reaches of each pose
+    reaches: tuple[PoseResult, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
     built: float  # the same, expected of a robot as it is built [m]
     craft: Craft  # what it takes to sew and to motorise it
@@ -78,7 +78,7 @@ class Candidate:
         """The largest in any pose [N]."""
         return max((float(reach.tensions.max(initial=0.0)) for reach in self.reaches), default=0.0)
 
-    def reach(self, pose: str) -> Reach | None:
+    def reach(self, pose: str) -> PoseResult | None:
         """Return the result in a pose; None if the network was not designed for it."""
         return next((reach for reach in self.reaches if reach.pose.name == pose), None)
 
@@ -101,10 +101,10 @@ def solution(found: Network | Alternative) -> Solution:
     )
 
 
-def _reach(reached: IKResult) -> Reach:
+def _reach(reached: IKResult) -> PoseResult:
     pose, solved = reached.wanted, reached.pose
     places = {name: tuple(np.asarray(solved.markers[name]).tolist()) for name in pose.targets}
-    return Reach(
+    return PoseResult(
         pose=pose,
         nodes=solved.nodes,
         contractions=solved.contractions,

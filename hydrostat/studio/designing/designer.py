@@ -15,7 +15,7 @@ from hydrostat.project import Paint, Wishes, after_design
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.cards_file import cards_content, read_cards
-from hydrostat.studio.designing.design_work import BestSoFar, Candidate, DesignsFound, Reach, design_work, network_words
+from hydrostat.studio.designing.design_work import BestSoFar, Candidate, DesignsFound, PoseResult, design_work, network_words
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
 from hydrostat.studio.designing.run import (
@@ -277,7 +277,7 @@ class Designer(Stage):
             self._document.judge.learn(candidate.robot, demand=candidate.demand)
         self.outcome = f"{plural(len(found), 'network')} restored from an earlier session" if found else ""
 
-    def _reach(self) -> Reach | None:
+    def _reach(self) -> PoseResult | None:
         """Result of the chosen candidate in the chosen pose; None: the body is shown at rest."""
         candidate = self.candidate
         if candidate is None or self.pose is None or self.painter.busy:
