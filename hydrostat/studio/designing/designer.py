@@ -15,7 +15,14 @@ from hydrostat.project import Paint, Wishes, after_design
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.cards_file import cards_content, read_cards
-from hydrostat.studio.designing.design_work import BestSoFar, Candidate, DesignsFound, PoseResult, design_work, network_words
+from hydrostat.studio.designing.design_work import (
+    BestSoFar,
+    Candidate,
+    DesignsFound,
+    PoseResult,
+    design_work,
+    network_words,
+)
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
 from hydrostat.studio.designing.run import (
