@@ -25,7 +25,10 @@ SOFT, HARD = 0.5, 2.0  # cables that feel so much softer or stiffer than the mod
 def calibrate(
     robot: OwnRobotFolder,
     port: Annotated[
-        str, typer.Option(metavar="KIND:PORT", help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.")
+        str,
+        typer.Option(
+            "--motors", metavar="KIND:PORT", help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated."
+        ),
     ],
     spools: Annotated[
         str,
@@ -46,7 +49,7 @@ def calibrate(
     With --spools, each named winch then reels in its full travel in steps. At each step, read the position of a mark on
     its cable from a ruler and type it.
 
-    Example: hydrostat calibrate examples/starfish --port dynamixel:/dev/ttyUSB0
+    Example: hydrostat calibrate examples/starfish --motors dynamixel:/dev/ttyUSB0
     """
     import numpy as np
 

@@ -39,6 +39,7 @@ def drive(
     port: Annotated[
         str | None,
         typer.Option(
+            "--motors",
             metavar="KIND:PORT",
             help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
             show_default="simulated motors",
@@ -54,11 +55,11 @@ def drive(
     smoothing: Annotated[
         float, typer.Option(metavar="HZ", help="Cutoff frequency for smoothing a resting hand. 0 = no smoothing.")
     ] = 1.5,
-    seconds: Annotated[float, typer.Option(metavar="S", help="Duration. 0 = until you stop it.")] = 0.0,
+    seconds: Annotated[float, typer.Option(metavar="SECONDS", help="Duration. 0 = until you stop it.")] = 0.0,
 ) -> None:
     """Drive winches by keys, gamepad, MIDI, OSC, glove or camera.
 
-    Without --port the motors are simulated, and every line starts with "simulated". With --port, winch limits, a
+    Without --motors the motors are simulated, and every line starts with "simulated". With --motors, winch limits, a
     watchdog and a tension guard protect the robot. Motors hold when the input is lost, and stop at the end, on Ctrl-C,
     on SIGTERM and on any error.
 

@@ -57,10 +57,10 @@ def fabricate(
     seam: Annotated[str, typer.Option(metavar="LENGTH", help="Seam allowance for plush robots.")] = "8 mm",
     line: Annotated[str, typer.Option(metavar="LENGTH", help="Diameter of the braided line used as cable.")] = "0.4 mm",
     clearance: Annotated[
-        str, typer.Option(metavar="LENGTH", help="Print clearance per side between moving parts.")
+        str, typer.Option("--print-clearance", metavar="LENGTH", help="Print clearance per side between moving parts.")
     ] = "0.3 mm",
     step: Annotated[
-        bool, typer.Option("--step", help='Also write printed parts as STEP. Needs pip install "hydrostat[cad]".')
+        bool, typer.Option("--cad", help='Also write printed parts as STEP. Needs pip install "hydrostat[cad]".')
     ] = False,
     force: Force = False,
 ) -> None:
@@ -82,7 +82,9 @@ def fabricate(
         mould=kits.MouldOptions(kind=kind, bed=_lengths("--bed", bed)),
         paper=parse_choice(kits.Paper, paper, what="--paper"),
         pattern=kits.PatternOptions(seam_allowance=_millimetres("--seam", seam)),
-        parts=kits.PartOptions(cable=_millimetres("--line", line), clearance=_millimetres("--clearance", clearance)),
+        parts=kits.PartOptions(
+            cable=_millimetres("--line", line), clearance=_millimetres("--print-clearance", clearance)
+        ),
         step=step,
         force=force,
     )

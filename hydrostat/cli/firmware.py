@@ -33,12 +33,15 @@ def firmware(
     port: Annotated[
         str | None,
         typer.Option(
-            metavar="PORT,...", help="Flash the boards on these ports, e.g. /dev/ttyACM0.", show_default="none"
+            "--flash",
+            metavar="PORT,...",
+            help="Flash the boards on these ports, e.g. /dev/ttyACM0.",
+            show_default="none",
         ),
     ] = None,
     motor: Annotated[
         str | None,
-        typer.Option(metavar="KEY", help="Motor model: n20 or 25d.", show_default="the one in motors.toml, else 25d"),
+        typer.Option(metavar="NAME", help="Motor model: n20 or 25d.", show_default="the one in motors.toml, else 25d"),
     ] = None,
     counts: Annotated[
         float | None,
@@ -52,8 +55,8 @@ def firmware(
 
     Limits come from robot.toml and motors.toml. Missing encoder counts are added to motors.toml; --motor or --counts
     replaces them. Robots with more motors than one board drives use several boards, each with its own port. Without
-    --port the command prints the flash command instead of running it. Needs Debian's gcc-avr and avr-libc, and avrdude
-    to flash. Then run: hydrostat calibrate ROBOT --port firmware:/dev/ttyACM0.
+    --flash the command prints the flash command instead of running it. Needs Debian's gcc-avr and avr-libc, and avrdude
+    to flash. Then run: hydrostat calibrate ROBOT --motors firmware:/dev/ttyACM0.
 
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
     """
@@ -84,7 +87,7 @@ def firmware(
     ports = port.split(",") if port else []
     if ports and len(ports) != given.boards:
         words = f"{plural(len(ports), 'port')} for {plural(given.boards, 'board')}"
-        raise InputError(f"--port {port}: {words}. Separate ports by commas.")
+        raise InputError(f"--flash {port}: {words}. Separate ports by commas.")
     places = [out if given.boards == 1 else out / f"board_{number}" for number in range(1, given.boards + 1)]
     build.check_ports(ports)
     shown = ", ".join(dict.fromkeys(f"{each.counts:g}" for each in given.motors))
@@ -101,7 +104,7 @@ def firmware(
         _tell(kind, number, given)
         _flash(kind, image, ports[number - 1] if ports else None)
     if ports:
-        print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --port firmware:{port}")
+        print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --motors firmware:{port}")
 
 
 _USUAL = "25d"

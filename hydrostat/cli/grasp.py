@@ -37,10 +37,12 @@ def grasp(
         str | None,
         typer.Option(metavar="X,Y,Z", help="Object center [mm].", show_default="near the markers of the pose"),
     ] = None,
-    friction: Annotated[float, typer.Option(help="Coulomb friction coefficient between robot and object.")] = 0.5,
+    friction: Annotated[
+        float, typer.Option(metavar="MU", help="Coulomb friction coefficient between robot and object.")
+    ] = 0.5,
     mass: Annotated[str, typer.Option(metavar="MASS", help="Object mass.")] = "58 g",
     step: Annotated[
-        str, typer.Option(metavar="LENGTH", help="Pull increment. The result hardly depends on it.")
+        str, typer.Option("--increment", metavar="LENGTH", help="Pull increment. The result hardly depends on it.")
     ] = "2mm",
     bands: Annotated[
         bool,
@@ -64,7 +66,7 @@ def grasp(
     from hydrostat.units import LENGTH, MASS
 
     require_folder(out)
-    weight, stride = positive("--mass", mass, MASS), positive("--step", step, LENGTH)
+    weight, stride = positive("--mass", mass, MASS), positive("--increment", step, LENGTH)
     loaded = _feeling(read_robot(robot))
     held = read_thing(thing, loaded.body.mesh.dim, mass=weight, friction=friction)
     options = PullOptions(direction=_direction(pull, loaded.body.mesh.dim), step=stride)

@@ -17,7 +17,7 @@ def learn(
     data: Annotated[Path, typer.Argument(metavar="DATA", help="Sample folder written by `hydrostat sample`.")],
     out: Annotated[Path, typer.Option(metavar="MODEL", help="Model file to write.")],
     count: Annotated[
-        int | None, typer.Option(metavar="N", help="Use only the first N samples.", show_default="all")
+        int | None, typer.Option("--max-samples", metavar="N", help="Use only the first N samples.", show_default="all")
     ] = None,
     members: Annotated[
         int | None,
@@ -34,7 +34,7 @@ def learn(
     seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
     start: Annotated[
         Path | None,
-        typer.Option("--from", metavar="MODEL", help="Model of a coarser mesh, to fine-tune with the samples."),
+        typer.Option("--fine-tune", metavar="MODEL", help="Model of a coarser mesh, to fine-tune with the samples."),
     ] = None,
     threads: Annotated[int, typer.Option(metavar="N", help="Number of CPU cores for training.")] = 1,
 ) -> None:
@@ -64,7 +64,7 @@ def learn(
     samples = samples if count is None else samples.first(count)
     if start is not None:
         if chosen != {"members": None, "steps": None}:
-            raise InputError("--from: not available with --members or --steps. Remove them.")
+            raise InputError("--fine-tune: not available with --members or --steps. Remove them.")
         known = load_model(start)
         with one_interrupt("stopping: saving the best model so far ..."):
             model = correct_model(known, samples, tell=told())

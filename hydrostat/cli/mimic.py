@@ -32,12 +32,15 @@ def mimic(
         ),
     ],
     out: OutFolder,
-    poses: Annotated[int, typer.Option(metavar="N", help="Total number of poses, including earlier ones in DIR.")] = 60,
+    poses: Annotated[
+        int, typer.Option("--count", metavar="N", help="Total number of poses, including earlier ones in DIR.")
+    ] = 60,
     worn: Annotated[bool, typer.Option("--worn", help="Record without prompts: the robot wears the glove.")] = False,
     tips: Annotated[bool, typer.Option("--tips", help="Learn fingertip positions instead of contractions.")] = False,
     port: Annotated[
         str | None,
         typer.Option(
+            "--motors",
             metavar="KIND:PORT",
             help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
             show_default="simulated motors",
@@ -50,16 +53,16 @@ def mimic(
     and shows the most informative next pose. After each pose it prints the cross-validation error and saves the pairs
     in DIR. Run the command again to add poses. With --worn the robot wears the glove, and you need not press Enter.
 
-    Without --port the motors are simulated, and DIR/pose.png shows each pose.
+    Without --motors the motors are simulated, and DIR/pose.png shows each pose.
 
-    Example: hydrostat mimic examples/cupping_hand --glove emulated --poses 30 --out build/glove
+    Example: hydrostat mimic examples/cupping_hand --glove emulated --count 30 --out build/glove
     """
     from hydrostat import control, teleop
 
     if port is not None:
         control.check_port(port)
     if poses < 4:
-        raise InputError(f"--poses {poses}: must be at least 4")
+        raise InputError(f"--count {poses}: must be at least 4")
     require_folder(out)
     loaded = read_robot(robot)
     wearer = teleop.EmulatedHand(teleop.winch_channels(loaded))

@@ -28,11 +28,14 @@ def play(
     moves: Annotated[
         Path, typer.Argument(metavar="MOVES.csv", help="Table of contractions: columns time_s, WINCH ... [mm].")
     ],
-    loop: Annotated[int, typer.Option(metavar="N", help="Number of repetitions. 0 = until you stop it.")] = 1,
+    loop: Annotated[
+        int, typer.Option("--repeat", metavar="N", help="Number of repetitions. 0 = until you stop it.")
+    ] = 1,
     speed: Annotated[float, typer.Option(metavar="TIMES", help="Playback speed factor.")] = 1.0,
     port: Annotated[
         str | None,
         typer.Option(
+            "--motors",
             metavar="KIND:PORT",
             help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
             show_default="simulated motors",
@@ -41,11 +44,11 @@ def play(
 ) -> None:
     """Play a table of contractions on the motors in real time.
 
-    Without --port the motors are simulated, and every line starts with "simulated". `hydrostat trajectory` and the
-    studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM and on any error. With --port they also stop
-    if a cable tension is far above the simulated one, or missing.
+    Without --motors the motors are simulated, and every line starts with "simulated". `hydrostat trajectory` and the
+    studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM and on any error. With --motors they also
+    stop if a cable tension is far above the simulated one, or missing.
 
-    Example: hydrostat play examples/starfish build/dance/trajectory.csv --loop 3
+    Example: hydrostat play examples/starfish build/dance/trajectory.csv --repeat 3
     """
     import numpy as np
 
@@ -55,7 +58,7 @@ def play(
     if port is not None:
         control.check_port(port)
     if loop < 0:
-        raise InputError(f"--loop {loop}: must be 0 or more. 0 plays until you stop it.")
+        raise InputError(f"--repeat {loop}: must be 0 or more. 0 plays until you stop it.")
     player = control.Player()
     player.rounds = loop or inf
     try:

@@ -33,7 +33,7 @@ def sample(
         str | None, typer.Option(metavar="FORCE", help="Maximum cable tension for --draw tension.")
     ] = None,
     seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
-    nodes: Annotated[bool, typer.Option("--nodes", help="Also save all node positions.")] = False,
+    nodes: Annotated[bool, typer.Option("--save-nodes", help="Also save all node positions.")] = False,
     shard: Annotated[
         str | None,
         typer.Option(metavar="I/N", help="Run part I of N, counted from 1, e.g. in a job array.", show_default="1/1"),

@@ -33,7 +33,7 @@ def simulate(
         str | None,
         typer.Option(metavar="TIME", help="Simulated time.", show_default="length of --ramp or --play, at least 1 s"),
     ] = None,
-    step: Annotated[str, typer.Option(metavar="TIME", help="Maximum time step.")] = "5ms",
+    step: Annotated[str, typer.Option("--time-step", metavar="TIME", help="Maximum time step.")] = "5ms",
     ramp: Annotated[str, typer.Option(metavar="TIME", help="Time over which the winches reach their target.")] = "0.5s",
     play: Annotated[
         Path | None, typer.Option(metavar="FILE.csv", help="Contractions over time: columns time_s, WINCH ... [mm].")
@@ -137,7 +137,7 @@ def _move(
 
     profile = _profile(simulation, contractions, ramp, play)
     seconds = asked("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
-    dt = positive("--step", step, TIME)
+    dt = positive("--time-step", step, TIME)
     start = simulation.motion_at_rest(simulation.solve(profile.at(0.0)) if rests_at_first(simulation.robot) else None)
     began = time.process_time()
     with progress_bar() as tell:

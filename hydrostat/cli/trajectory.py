@@ -40,15 +40,18 @@ def trajectory(
             help="Path between poses: smooth or linear contractions, or straight marker paths.",
         ),
     ] = "smooth",
-    speed: Annotated[str, typer.Option(metavar="SPEED", help="Maximum winch speed.")] = "50 mm/s",
+    speed: Annotated[str, typer.Option("--max-speed", metavar="SPEED", help="Maximum winch speed.")] = "50 mm/s",
     acceleration: Annotated[
         str | None,
         typer.Option(
-            metavar="ACCELERATION", help="Maximum winch acceleration.", show_default="200 mm/s^2; no limit if linear"
+            "--max-acceleration",
+            metavar="ACCELERATION",
+            help="Maximum winch acceleration.",
+            show_default="200 mm/s^2; no limit if linear",
         ),
     ] = None,
     hold: Annotated[str, typer.Option(metavar="TIME", help="Time to hold each pose.")] = "0s",
-    loop: Annotated[bool, typer.Option("--loop", help="Return to rest at the end.")] = False,
+    loop: Annotated[bool, typer.Option("--return", help="Return to rest at the end.")] = False,
     tension: MostTension = None,
     equal: EqualWinches = None,
     width: PictureWidth = 640,
@@ -59,14 +62,14 @@ def trajectory(
     trajectory.json, trajectory.png and trajectory.gif. Each pose is solved from the previous one, and the path between
     them is simulated. The report lists snap-throughs, and poses that a search from rest reaches better.
 
-    Example: hydrostat trajectory examples/starfish --poses wave,star_jump --loop --out build/dance
+    Example: hydrostat trajectory examples/starfish --poses wave,star_jump --return --out build/dance
     """
     from hydrostat.ik import IKStatus, PathKind, solve_ik_trajectory
     from hydrostat.units import ACCELERATION, SPEED, TIME
 
     require_folder(out)
-    fastest = positive("--speed", speed, SPEED)
-    hardest = asked("--acceleration", acceleration, ACCELERATION)
+    fastest = positive("--max-speed", speed, SPEED)
+    hardest = asked("--max-acceleration", acceleration, ACCELERATION)
     stay = positive("--hold", hold, TIME, zero=True)
     limits = pose_limits(tension, equal)
     kind = parse_choice(PathKind, path, what="--path")

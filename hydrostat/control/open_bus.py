@@ -67,7 +67,7 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
     ports, buses = rest.split(","), list[Bus]()
     if len(ports) != calibration.boards:
         boards = plural(calibration.boards, "board")
-        raise InputError(f"--port {text}: has {plural(len(ports), 'port')}, and motors.toml has motors on {boards}")
+        raise InputError(f"--motors {text}: has {plural(len(ports), 'port')}, and motors.toml has motors on {boards}")
     try:
         for board, port in enumerate(ports, 1):
             name, _, baud = port.partition("@")
@@ -87,12 +87,12 @@ def check_port(text: str) -> None:
     if text != EMULATED and (kind not in _KINDS or not all(ports) or len(set(ports)) < len(ports)):
         shown = ", ".join(f"{each}:/dev/ttyUSB0" for each in _KINDS)
         raise InputError(
-            f"--port {text}: write {EMULATED}, or one such as {shown}; commas part those of several boards"
+            f"--motors {text}: write {EMULATED}, or one such as {shown}; commas part those of several boards"
         )
     for port in ports:
         _, at, baud = port.partition("@")
         if at and not baud.isdecimal():
-            raise InputError(f"--port {text}: the baud rate after @ must be a number, such as 57600")
+            raise InputError(f"--motors {text}: the baud rate after @ must be a number, such as 57600")
 
 
 def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:

@@ -32,7 +32,7 @@ def copy(starfish: Path, tmp_path: Path) -> Path:
 @pytest.mark.slow
 def test_emulated_motors_are_calibrated_and_saved(copy: Path) -> None:
     """Its spools are 1 % larger than told, and cable lies on cable after a turn: by hand 2.09 mm more in 60 mm."""
-    code, out, err = run_in_own_time("calibrate", copy, "--port", "emulated", "--spools", "right")
+    code, out, err = run_in_own_time("calibrate", copy, "--motors", "emulated", "--spools", "right")
     assert (code, err) == (0, "")
     lines = out.splitlines()
     assert all(line.startswith("emulated: ") for line in lines)
@@ -55,7 +55,7 @@ def test_emulated_motors_are_calibrated_and_saved(copy: Path) -> None:
 
 
 def test_a_spool_that_is_none_is_named(run: Run, copy: Path) -> None:
-    code, _, err = run("calibrate", copy, "--port", "emulated", "--spools", "right,tail")
+    code, _, err = run("calibrate", copy, "--motors", "emulated", "--spools", "right,tail")
     assert (code, err) == (
         2,
         'hydrostat: error: --spools right,tail: unknown winch "tail". Available: right, left, feet, or all.\n',
@@ -68,7 +68,7 @@ def test_a_spool_that_is_none_is_named(run: Run, copy: Path) -> None:
 )
 def test_ports_that_are_none_leave_nothing(run: Run, copy: Path, port: str, told: str) -> None:
     before = sorted(copy.iterdir())
-    code, _, err = run("calibrate", copy, "--port", port)
+    code, _, err = run("calibrate", copy, "--motors", port)
     assert code in (1, 2)
     assert told in err
     assert err.count("\n") == 1

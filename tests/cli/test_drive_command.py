@@ -19,7 +19,7 @@ Run = Callable[..., tuple[int, str, str]]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("port", [[], ["--port", "emulated"]], ids=["simulated", "emulated"])
+@pytest.mark.parametrize("port", [[], ["--motors", "emulated"]], ids=["simulated", "emulated"])
 def test_keys_turn_winches_and_bars_are_shown(starfish: Path, port: list[str]) -> None:
     ours, theirs = os.openpty()
     words = [sys.executable, "-c", PROGRAM, "drive", str(starfish), *port]
@@ -85,7 +85,7 @@ def test_messages_move_fingertips(run: Run, starfish: Path) -> None:
         (("--source", "glove:/dev/ttyUSB0"), "needs --map FILE; `hydrostat mimic` makes it"),
         (("--map", "none.json"), "none.json: cannot be read"),
         (("--model", "none.model"), "--model: needs --tips. Add it."),
-        (("--port", "nonsense"), "--port nonsense: write emulated"),
+        (("--motors", "nonsense"), "--motors nonsense: write emulated"),
         (("--seconds", -1), "--seconds -1: must not be negative"),
     ],
 )

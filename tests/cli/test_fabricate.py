@@ -40,7 +40,7 @@ BAD = {
     ): '--bed 220 mm: not a build volume. Write three lengths with a unit, e.g. "220 x 220 x 250 mm".',
     ("--bed", "0x220x250mm"): "--bed 0 mm: must be above 0, e.g. 12 mm",
     ("--seam", "0 mm"): "--seam 0 mm: must be above 0, e.g. 12 mm",
-    ("--clearance", "0.3"): '--clearance 0.3: "0.3" has no unit; write for example "12 mm"',
+    ("--print-clearance", "0.3"): '--print-clearance 0.3: "0.3" has no unit; write for example "12 mm"',
     ("--tension", "-1 N"): "--tension -1 N: must be above 0, e.g. 20 N",
     ("--line", "3 mm"): "cable 3 mm, bore 1 mm and tube 2 mm must rise: the cable runs in the bore of the tube",
 }

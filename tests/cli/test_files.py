@@ -114,7 +114,7 @@ def test_robots_of_the_gallery_are_read_by_their_names_and_not_written(run: Run,
     code, _, err = run("train", "gallery:nobody", "--out", tmp_path / "policy")
     assert code == 2
     assert 'unknown gallery robot "nobody". Available: bear, ' in err
-    for command in (("scale", "gallery:starfish", 2), ("calibrate", "gallery:starfish", "--port", "emulated")):
+    for command in (("scale", "gallery:starfish", 2), ("calibrate", "gallery:starfish", "--motors", "emulated")):
         code, _, err = run(*command)
         assert code == 2
         assert "hydrostat new my_starfish --from gallery:starfish" in err

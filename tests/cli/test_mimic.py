@@ -24,7 +24,7 @@ def rows(out: Path) -> list[list[str]]:
 @pytest.mark.slow
 def test_a_lesson_with_an_emulated_glove_and_a_drive_by_it(run: Run, starfish: Path, tmp_path: Path) -> None:
     out = tmp_path / "glove"
-    code, told, err = run("mimic", starfish, "--glove", "emulated", "--out", out, "--poses", 4)
+    code, told, err = run("mimic", starfish, "--glove", "emulated", "--out", out, "--count", 4)
     assert (code, err) == (0, "")
     assert len(rows(out)) == 1 + 4
     assert rows(out)[0][:2] == ["pose", "time_s"]
@@ -34,7 +34,7 @@ def test_a_lesson_with_an_emulated_glove_and_a_drive_by_it(run: Run, starfish: P
         told,
     )
     assert json.loads((out / "map.json").read_text())["poses"] == 4
-    code, told, err = run("mimic", starfish, "--glove", "emulated", "--out", out, "--poses", 5, "--worn")
+    code, told, err = run("mimic", starfish, "--glove", "emulated", "--out", out, "--count", 5, "--worn")
     assert (code, err) == (0, "")
     assert told.startswith("simulated: 4 poses")
     assert len(rows(out)) == 1 + 5
@@ -84,9 +84,9 @@ def test_a_person_presses_enter_and_sees_the_pose(starfish: Path, tmp_path: Path
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (("--glove", "emulated", "--poses", 2), "--poses 2: must be at least 4"),
+        (("--glove", "emulated", "--count", 2), "--count 2: must be at least 4"),
         (("--glove", "camera:x"), "a camera needs MediaPipe's model file"),
-        (("--glove", "emulated", "--port", "nonsense"), "--port nonsense: write emulated"),
+        (("--glove", "emulated", "--motors", "nonsense"), "--motors nonsense: write emulated"),
     ],
 )
 def test_one_clear_line(run: Run, starfish: Path, tmp_path: Path, options: tuple[object, ...], told: str) -> None:

@@ -15,7 +15,7 @@ Run = Callable[..., tuple[int, str, str]]
 
 @pytest.mark.slow
 def test_a_ramp(run: Run, starfish: Path, tmp_path: Path) -> None:
-    options = ("--dynamic", "--duration", "0.1s", "--step", "20 ms", "--ramp", "50ms")
+    options = ("--dynamic", "--duration", "0.1s", "--time-step", "20 ms", "--ramp", "50ms")
     code, out, _ = run("simulate", starfish, *options, "--contract", "left=5mm", "--out", tmp_path)
     assert code == 0
     assert "5 steps to 0.1 s" in out
@@ -39,7 +39,9 @@ def test_a_table_is_played(run: Run, starfish: Path, tmp_path: Path) -> None:
     """Oracle: the contractions of the table, for as long as it lasts, but a second at least."""
     played = tmp_path / "wave.csv"
     played.write_text("time_s,left\n0,0\n0.2,6\n1.2,2\n")
-    code, _, _ = run("simulate", starfish, "--dynamic", "--play", played, "--step", "0.1s", "--out", tmp_path / "out")
+    code, _, _ = run(
+        "simulate", starfish, "--dynamic", "--play", played, "--time-step", "0.1s", "--out", tmp_path / "out"
+    )
     assert code == 0
     with (tmp_path / "out" / "motion.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -54,8 +56,8 @@ def test_a_table_is_played(run: Run, starfish: Path, tmp_path: Path) -> None:
     [
         (("--duration", "2s"), ("--dynamic", "--duration")),
         (("--dynamic", "--duration", "2"), ("--duration 2", "no unit")),
-        (("--dynamic", "--step", "0s"), ("--step 0s", "above 0")),
-        (("--dynamic", "--step", "5mm"), ("--step 5mm",)),
+        (("--dynamic", "--time-step", "0s"), ("--time-step 0s", "above 0")),
+        (("--dynamic", "--time-step", "5mm"), ("--time-step 5mm",)),
         (("--dynamic", "--jacobian"), ("--jacobian",)),
         (("--dynamic", "--play", "none.csv"), ("none.csv", "there is no such file")),
         (("--dynamic", "--play", "none.csv", "--contract", "left=5mm"), ("--play", "--contract")),

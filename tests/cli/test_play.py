@@ -29,7 +29,7 @@ def wave(tmp_path: Path) -> Path:
 @pytest.mark.slow
 def test_it_plays_in_real_time_and_says_that_it_is_simulated(run: Run, starfish: Path, wave: Path) -> None:
     began = time.monotonic()
-    code, out, err = run("play", starfish, wave, "--loop", 2, "--speed", 0.5)
+    code, out, err = run("play", starfish, wave, "--repeat", 2, "--speed", 0.5)
     assert time.monotonic() - began > 2.4
     assert (code, err) == (0, "")
     lines = out.splitlines()
@@ -41,7 +41,7 @@ def test_it_plays_in_real_time_and_says_that_it_is_simulated(run: Run, starfish:
 
 @pytest.mark.slow
 def test_it_plays_on_emulated_motors(starfish: Path, wave: Path) -> None:
-    code, out, err = run_in_own_time("play", starfish, wave, "--port", "emulated", "--speed", 0.5)
+    code, out, err = run_in_own_time("play", starfish, wave, "--motors", "emulated", "--speed", 0.5)
     assert (code, err) == (0, "")
     lines = out.splitlines()
     assert all(line.startswith("emulated: ") for line in lines)
@@ -55,14 +55,14 @@ def test_it_plays_on_emulated_motors(starfish: Path, wave: Path) -> None:
 @pytest.mark.parametrize(
     ("port", "told"),
     [
-        ("nonsense", "--port nonsense: write emulated, or one such as dynamixel:/dev/ttyUSB0"),
-        ("dynamixel:", "--port dynamixel:: write emulated"),
+        ("nonsense", "--motors nonsense: write emulated, or one such as dynamixel:/dev/ttyUSB0"),
+        ("dynamixel:", "--motors dynamixel:: write emulated"),
         ("dynamixel:/dev/ttyUSB0@fast", "the baud rate after @ must be a number"),
         ("dynamixel:/dev/ttyUSB0", "has no motors.toml; `hydrostat calibrate` makes it"),
     ],
 )
 def test_ports_that_are_none(run: Run, starfish: Path, wave: Path, port: str, told: str) -> None:
-    code, _, err = run("play", starfish, wave, "--port", port)
+    code, _, err = run("play", starfish, wave, "--motors", port)
     assert code == 2
     assert told in err
 
@@ -98,7 +98,7 @@ def test_a_signal_stops_the_motors(starfish: Path, wave: Path, number: int, code
     """Also in the background of a script, where SIGINT comes ignored."""
     before = signal.SIG_IGN if ignored else signal.SIG_DFL
     work = subprocess.Popen(
-        [sys.executable, "-uc", PROGRAM, "play", str(starfish), str(wave), "--loop", "0"],
+        [sys.executable, "-uc", PROGRAM, "play", str(starfish), str(wave), "--repeat", "0"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -143,7 +143,7 @@ def test_an_error_while_playing_stops_the_motors(
         ("time_s,left\n0,1\n1,99\n", (), "wave.csv, line 3, column left: 99 mm is beyond what the winch can take in"),
         ("time_s,left\n0,0\n1,50\n", ("--speed", 4), "line 3, column left: moves at 200 mm/s, the motors at 150 mm/s"),
         (WAVE, ("--speed", 9), "--speed 9: the speed must be from 0.1 to 4 times, not 9"),
-        (WAVE, ("--loop", -1), "--loop -1: must be 0 or more"),
+        (WAVE, ("--repeat", -1), "--repeat -1: must be 0 or more"),
     ],
 )
 def test_one_clear_line(
@@ -176,7 +176,7 @@ def test_a_table_too_fast_for_the_motors_is_refused_before_they_are_armed(
     monkeypatch.setattr("hydrostat.control.arm_motors", lambda *_, **__: armed.append(1))
     table = tmp_path / "fast.csv"
     table.write_text("time_s,left\n0,0\n0.1,10\n")
-    code, _, err = run("play", starfish, table, "--port", "emulated")
+    code, _, err = run("play", starfish, table, "--motors", "emulated")
     assert (code, armed) == (2, [])
     assert "moves at 100 mm/s, the motors at 60 mm/s at most" in err
 
@@ -199,7 +199,7 @@ def test_signals_are_caught_from_before_motors_are_armed(
     monkeypatch.setattr("hydrostat.control.arm_motors", armed)
     monkeypatch.chdir(wave.parent)
     before = signal.getsignal(signal.SIGTERM)
-    code, _, err = run(words[0], starfish, *words[1:], "--port", "emulated")
+    code, _, err = run(words[0], starfish, *words[1:], "--motors", "emulated")
     assert (code, "no motors here" in err) == (1, True)
     assert caught != [before]
     assert callable(caught[0])

@@ -266,7 +266,7 @@ def test_what_killed_learning_left_is_cleared_too(
         "design gallery:starfish --winches 1 --cables 1 --out out",
         "learn data --out m.model",
         "fabricate gallery:starfish --out out/kit",
-        "calibrate robot --port emulated",
+        "calibrate robot --motors emulated",
     ],
 )
 def test_where_nothing_can_be_written_is_told_before_the_work(

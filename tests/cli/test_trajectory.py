@@ -20,7 +20,16 @@ pytestmark = pytest.mark.usefixtures("unchecked")
 
 @pytest.mark.slow
 def test_files_are_what_the_library_finds(run: Run, starfish: Path, tmp_path: Path) -> None:
-    options = ("--poses", "star_jump,rest", "--speed", "0.1 m/s", "--acceleration", "500 mm/s^2", "--width", "200")
+    options = (
+        "--poses",
+        "star_jump,rest",
+        "--max-speed",
+        "0.1 m/s",
+        "--max-acceleration",
+        "500 mm/s^2",
+        "--width",
+        "200",
+    )
     code, out, err = run("trajectory", starfish, *options, "--out", tmp_path / "out")
     assert code == 0
     assert "following the path" in err
@@ -47,10 +56,10 @@ def test_files_are_what_the_library_finds(run: Run, starfish: Path, tmp_path: Pa
 
 @pytest.mark.slow
 def test_the_profile_can_be_played(run: Run, starfish: Path, tmp_path: Path) -> None:
-    options = ("--poses", "wave", "--path", "linear", "--speed", "200 mm/s", "--width", "200")
+    options = ("--poses", "wave", "--path", "linear", "--max-speed", "200 mm/s", "--width", "200")
     assert run("trajectory", starfish, *options, "--out", tmp_path / "way")[0] == 0
     file = tmp_path / "way" / "trajectory.csv"
-    played = ("--dynamic", "--play", file, "--step", "50ms", "--duration", "0.2s")
+    played = ("--dynamic", "--play", file, "--time-step", "50ms", "--duration", "0.2s")
     assert run("simulate", starfish, *played, "--out", tmp_path / "motion")[0] == 0
     facts = json.loads((tmp_path / "motion" / "pose.json").read_text())
     values = read_profile(file, hs.load_robot(starfish)).at(0.2)
@@ -62,16 +71,16 @@ def test_the_profile_can_be_played(run: Run, starfish: Path, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--speed", "50"), "--speed 50: "),
-        (("--speed", "0 mm/s"), "--speed 0 mm/s: must be above 0"),
-        (("--acceleration", "5 mm"), "--acceleration 5 mm: "),
+        (("--max-speed", "50"), "--max-speed 50: "),
+        (("--max-speed", "0 mm/s"), "--max-speed 0 mm/s: must be above 0"),
+        (("--max-acceleration", "5 mm"), "--max-acceleration 5 mm: "),
         (("--hold", "-1s"), "--hold -1s: must be 0 or more"),
         (("--path", "round"), '--path must be one of smooth, linear, straight, not "round"'),
         (("--poses", "wave,dance"), "dance"),
         (("--poses", ","), "--poses: no pose named"),
         (("--equal", "left"), "--equal left: too few winches"),
         (("--equal", "left,tail"), "tail"),
-        (("--path", "linear", "--acceleration", "1 m/s^2"), "no limit on the acceleration can hold"),
+        (("--path", "linear", "--max-acceleration", "1 m/s^2"), "no limit on the acceleration can hold"),
         (("--width", "2"), "--width 2"),
     ],
 )

@@ -48,6 +48,17 @@ def test_help_speaks_plainly(place: str) -> None:
     assert _faults(TEXTS[place]) == []
 
 
+def test_an_option_takes_one_kind_of_value() -> None:
+    """An option means the same in all commands: what it takes has one name, `None` for a switch."""
+    kinds: dict[str, set[str | None]] = {}
+    for command in get_command(app).commands.values():  # type: ignore[attr-defined]
+        for parameter in command.params:
+            for name in parameter.opts:
+                kinds.setdefault(name, set()).add(getattr(parameter, "metavar", None))
+    several = {name: kind for name, kind in kinds.items() if name.startswith("--") and len(kind) > 1}
+    assert set(several) <= {"--out", "--method"}, several  # a folder or a file to write; names of a closed set
+
+
 def test_all_commands_are_read() -> None:
     """Oracle: the commands and an option that the README uses."""
     assert {"hydrostat pose", "hydrostat pose --pose", "hydrostat design --winches", "hydrostat new name"} <= set(TEXTS)

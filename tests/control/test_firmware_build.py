@@ -119,7 +119,7 @@ def test_a_robot_on_its_board_is_driven_within_its_limits(robot: Robot, motors: 
 
 
 def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A program in place of avrdude notes how it is called; nothing is written without --port."""
+    """A program in place of avrdude notes how it is called; nothing is written without --flash."""
     Board()  # skips where avr-gcc is not there
     folder = tmp_path / "starfish"
     run = CliRunner().invoke
@@ -130,7 +130,7 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     tool.chmod(0o755)
     monkeypatch.setenv("PATH", str(tool.parent), prepend=":")
     few = run(
-        app, ["firmware", str(folder), "--board", "uno", "--port", "/dev/ttyACM7", "--out", str(tmp_path / "few")]
+        app, ["firmware", str(folder), "--board", "uno", "--flash", "/dev/ttyACM7", "--out", str(tmp_path / "few")]
     )
     assert "1 port for 2 boards" in str(few.exception)
     assert not (tmp_path / "few").exists()
@@ -140,19 +140,19 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     assert "avrdude -p atmega2560 -c wiring" in shown.output
     assert not noted.exists()
     assert all(each.counts == 8245.92 for each in read_calibration(folder, robot_of(folder)).motors)
-    gone = run(app, [*given, "--port", "/dev/ttyACM7"])  # avrdude would try it for ever
+    gone = run(app, [*given, "--flash", "/dev/ttyACM7"])  # avrdude would try it for ever
     assert "/dev/ttyACM7 is not there; look at the plug" in str(gone.exception)
     port, *others = (tmp_path / name for name in ("ttyACM7", "ttyACM8", "ttyACM9"))
     for each in (port, *others):
         each.touch()
-    done = run(app, [*given, "--port", str(port)])
+    done = run(app, [*given, "--flash", str(port)])
     assert done.exit_code == 0, done.output
     image = tmp_path / "built" / "winches.hex"
     assert noted.read_text().split() == f"-p atmega2560 -c wiring -b 115200 -D -P {port} -U flash:w:{image}:i".split()
     assert image.read_text().startswith(":10")
     noted.unlink()
     both = run(
-        app, [*given[:2], "--board", "uno", "--out", str(tmp_path / "two"), "--port", ",".join(map(str, others))]
+        app, [*given[:2], "--board", "uno", "--out", str(tmp_path / "two"), "--flash", ",".join(map(str, others))]
     )
     assert both.exit_code == 0, both.output
     assert "board 2, uno: 1 motor, wiring" in both.output
