@@ -12,6 +12,7 @@ from hydrostat.cli.design_results import STALE, print_front, print_poses, write_
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
+from hydrostat.cli.options import DefaultText
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import plural
 
@@ -26,10 +27,17 @@ STOPPING = "stopping: solving and writing the best network so far ..."  # said w
 Winches = Annotated[
     str | None,
     typer.Option(
-        metavar="N|auto", help="Number of winches, or auto for the fewest that meet the tolerance.", show_default="2"
+        metavar="N|auto",
+        help="Number of winches, or auto for the fewest that meet the tolerance.",
+        show_default=DefaultText("DesignRequest", "winches"),
     ),
 ]
-Cables = Annotated[int | None, typer.Option(metavar="N", help="Maximum number of cables in total.", show_default="6")]
+Cables = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", help="Maximum number of cables in total.", show_default=DefaultText("DesignRequest", "cables")
+    ),
+]
 Poses = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Pose to design for. Repeatable.", show_default="all")
 ]
@@ -38,18 +46,27 @@ Method = Annotated[
     typer.Option(
         metavar="routes|trees",
         help="Search method: routes (adjoint-based) or trees (Chang 2018).",
-        show_default="routes",
+        show_default=DefaultText("DesignRequest", "method"),
     ),
 ]
 ConstraintsFile = Annotated[
     Path | None, typer.Option(metavar="FILE.toml", help="Constraints file. Options below override it.")
 ]
 CablesPerWinch = Annotated[
-    int | None, typer.Option(metavar="N", help="Maximum number of cables per winch.", show_default="6")
+    int | None,
+    typer.Option(
+        metavar="N",
+        help="Maximum number of cables per winch.",
+        show_default=DefaultText("Constraints", "cables_per_winch"),
+    ),
 ]
 Clearance = Annotated[
     str | None,
-    typer.Option(metavar="LENGTH", help="Minimum distance from cable to edge.", show_default="5 mm"),
+    typer.Option(
+        metavar="LENGTH",
+        help="Minimum distance from cable to edge.",
+        show_default=DefaultText("Constraints", "clearance"),
+    ),
 ]
 Depth = Annotated[
     str | None,
@@ -59,8 +76,14 @@ Depth = Annotated[
         show_default="anywhere inside",
     ),
 ]
-Tension = Annotated[str | None, typer.Option(metavar="FORCE", help="Maximum cable tension.", show_default="20 N")]
-Slack = Annotated[str | None, typer.Option(metavar="LENGTH", help="Maximum cable slack.", show_default="0 mm")]
+Tension = Annotated[
+    str | None,
+    typer.Option(metavar="FORCE", help="Maximum cable tension.", show_default=DefaultText("Constraints", "tension")),
+]
+Slack = Annotated[
+    str | None,
+    typer.Option(metavar="LENGTH", help="Maximum cable slack.", show_default=DefaultText("Constraints", "slack")),
+]
 SteppedSpools = Annotated[
     bool, typer.Option("--stepped-spools", help="Allow cable spools from half to twice the winch spool radius.")
 ]
@@ -75,14 +98,14 @@ Simplicity = Annotated[
     float | None,
     typer.Option(
         help="Weight of simplicity in the score: fewer winches, cables and holes. 0 = ignore; 10 = quick to sew.",
-        show_default="1",
+        show_default=DefaultText("RouteOptions", "simplicity"),
     ),
 ]
 Reach = Annotated[
     float | None,
     typer.Option(
         help="Weight of workspace size in the score. 0 = ignore; 1 = twice the workspace may cost twice the error.",
-        show_default="0",
+        show_default=DefaultText("RouteOptions", "reach"),
     ),
 ]
 AsModelled = Annotated[
@@ -105,7 +128,11 @@ Tolerance = Annotated[
 ]
 Fibres = Annotated[
     str | None,
-    typer.Option(metavar="edges|elements", help="Location of muscles for --method trees.", show_default="edges"),
+    typer.Option(
+        metavar="edges|elements",
+        help="Location of muscles for --method trees.",
+        show_default=DefaultText("TreeOptions", "fibres"),
+    ),
 ]
 Knobs = Annotated[
     list[str] | None,
@@ -168,11 +195,13 @@ def design(
         fibres=fibres,
         knobs=knob or [],
         file=constraints,
-        cables_per_winch=cables_per_winch,
-        clearance=clearance,
-        depth=depth,
-        tension=tension,
-        slack=slack,
+        limits={
+            "cables_per_winch": cables_per_winch,
+            "clearance": clearance,
+            "depth": depth,
+            "tension": tension,
+            "slack": slack,
+        },
         stepped=stepped_spools,
         symmetric=symmetric,
         lock_winch=lock_winch or [],

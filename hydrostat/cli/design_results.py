@@ -67,7 +67,7 @@ def _wished_tension(robot: "Robot", folder: Path) -> float | None:
         return None
 
     try:
-        return wished_constraints(robot, read_project_file(home).wishes).tension_limit
+        return wished_constraints(robot, read_project_file(home)[1]).tension_limit
     except InputError as error:
         raise InputError(f"{error}. Fix the file, or set the limit with --tension") from None
 
@@ -187,15 +187,13 @@ def _told(constraints: "Constraints") -> dict[str, str]:
 
 def _words(name: str, value: Any) -> str:
     """The value of one constraint with its unit; nothing if it asks nothing."""
+    from hydrostat.design import RANGES
+
     if isinstance(value, bool):
         return "allowed" if value else "not allowed"
     if isinstance(value, tuple):
         return ", ".join(value) if name.startswith("locked") else str(len(value) or "")
     if isinstance(value, float):
-        factor, unit = _UNITS.get(name, (1e3, " mm"))
-        return f"{factor * value:g}{unit}"
+        factor, unit = RANGES[name].shown
+        return f"{factor * value:g}{'°' if unit == 'degrees' else f' {unit}'.rstrip()}"
     return "" if value is None else str(value)
-
-
-_UNITS = {"tension": (1.0, " N"), "torque": (1.0, " N m"), "turn": (1.0, "°"), "spool_ratio": (1.0, "")}
-"""Factors and units of constraints that are no lengths."""

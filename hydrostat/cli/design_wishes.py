@@ -1,11 +1,11 @@
 """Design request of `hydrostat design`, from its options and its constraints file."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_type_hints
 
-from hydrostat.cli.options import asked, positive
+from hydrostat.cli.options import positive
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 
@@ -31,11 +31,7 @@ class DesignArguments:
     fibres: str | None = None
     knobs: Sequence[str] = ()
     file: Path | None = None  # of constraints; what follows comes before it
-    cables_per_winch: int | None = None
-    clearance: str | None = None
-    depth: str | None = None
-    tension: str | None = None
-    slack: str | None = None
+    limits: Mapping[str, str | int | None] = field(default_factory=dict)  # by the fields of `Constraints`
     stepped: bool = False
     symmetric: str | None = None
     lock_winch: Sequence[str] = ()
@@ -81,24 +77,31 @@ def _uncertainty(robot: "Robot", typed: DesignArguments) -> "BuildTolerances | N
 
 def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
     """The constraints of a file, with those of the command line before them."""
-    from hydrostat.design import Constraints, read_constraints
-    from hydrostat.units import FORCE, LENGTH
+    from hydrostat.design import STEPPED, Constraints, read_constraints
 
     constraints = Constraints() if typed.file is None else read_constraints(typed.file, robot)
     if typed.symmetric not in (None, "x", "y", "z"):
         raise InputError(f"--symmetric {typed.symmetric}: unknown axis. Allowed: x, y, z.")
-    given = {
-        "cables_per_winch": typed.cables_per_winch,
-        "clearance": asked("--clearance", typed.clearance, LENGTH),
-        "depth": asked("--depth", typed.depth, LENGTH, zero=True),
-        "tension": asked("--tension", typed.tension, FORCE),
-        "slack": asked("--slack", typed.slack, LENGTH, zero=True),
-        "spool_ratio": 2.0 if typed.stepped else None,
+    given: dict[str, Any] = {
+        **{name: _limit(name, value) for name, value in typed.limits.items()},
+        "spool_ratio": STEPPED if typed.stepped else None,
         "mirror": typed.symmetric,
         "locked_winches": tuple(dict.fromkeys(_winch(name, robot) for name in typed.lock_winch)) or None,
         "locked_cables": tuple(dict.fromkeys(_cable(name, robot) for name in typed.lock_cable)) or None,
     }
     return replace(constraints, **{name: value for name, value in given.items() if value is not None})
+
+
+def _limit(name: str, value: str | int | None) -> float | int | None:
+    """The value of a number of `Constraints`, typed with its unit if it has one."""
+    from hydrostat.design import RANGES
+    from hydrostat.units import ANGLE, FORCE, LENGTH, TORQUE
+
+    if not isinstance(value, str):
+        return value
+    allowed = RANGES[name]
+    dimension = {"m": LENGTH, "N": FORCE, "N m": TORQUE, "degrees": ANGLE}[allowed.unit]
+    return positive(f"--{name.replace('_', '-')}", value, dimension, zero=allowed.holds(0.0))
 
 
 def _options(typed: DesignArguments, *, trees: bool, open_winches: bool) -> "RouteOptions | TreeOptions | None":
@@ -126,11 +129,15 @@ def _options(typed: DesignArguments, *, trees: bool, open_winches: bool) -> "Rou
 
 def _knob(text: str) -> tuple[str, Any]:
     """A knob of trees and its value."""
+    from hydrostat.design import TreeKnobs
+
     name, _, value = text.partition("=")
-    kind = {"threshold": int, "distance": float, "steps": int, "phi": float}.get(name)
+    kinds = get_type_hints(TreeKnobs)
+    kind = kinds.get(name)
     if kind is None:
+        *names, last = kinds
         raise InputError(
-            f"--knob {text}: unknown setting. Write threshold, distance, steps or phi with a value, e.g. phi=0.5."
+            f"--knob {text}: unknown setting. Write {', '.join(names)} or {last} with a value, e.g. phi=0.5."
         )
     try:
         return name, kind(value)

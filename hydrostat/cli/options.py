@@ -27,6 +27,34 @@ EqualWinches = Annotated[
         metavar="WINCH,WINCH", help="Couple winches so they share one contraction, e.g. left,right. Repeatable."
     ),
 ]
+
+
+class DefaultText(str):
+    """Text of an option's default, read from a field of a record of `hydrostat.design` when help is printed.
+
+    Records take a second to import, which commands should not spend before they are called.
+    """
+
+    __slots__ = ("field", "record")
+
+    def __new__(cls, record: str, field: str) -> "DefaultText":
+        """Text of a field of a record with this name."""
+        text = super().__new__(cls, f"{record}.{field}")
+        text.record, text.field = record, field
+        return text
+
+    def __format__(self, spec: str) -> str:
+        """The default with its unit."""
+        from hydrostat import design
+
+        value = getattr(getattr(design, self.record), self.field)
+        if not isinstance(value, float):
+            return format(str(value), spec)
+        allowed = design.RANGES.get(self.field, design.Range()) if self.record == "Constraints" else design.Range()
+        scale, unit = allowed.shown
+        return format(f"{scale * value:g} {unit}".rstrip(), spec)
+
+
 PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the animation [pixels].")]
 
 

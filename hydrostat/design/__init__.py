@@ -7,7 +7,7 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.design.buildable import violations
     from hydrostat.design.built_error import BuiltErrors, built_errors, expected_error
-    from hydrostat.design.constraints import RANGES, Constraints
+    from hydrostat.design.constraints import RANGES, STEPPED, Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.craft import Craft, SewingTimes, build_effort, front, sewing_minutes
     from hydrostat.design.design_cables import design_cables, find_network
@@ -34,11 +34,12 @@ if TYPE_CHECKING:
     from hydrostat.design.request import (
         AUTO,
         COUNTS,
+        KNOB_RANGES,
         ROUTE_RANGES,
-        TREE_RANGES,
         DesignMethod,
         DesignRequest,
         RouteOptions,
+        TreeKnobs,
         TreeOptions,
     )
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
@@ -53,9 +54,10 @@ if TYPE_CHECKING:
 __all__ = [
     "AUTO",
     "COUNTS",
+    "KNOB_RANGES",
     "RANGES",
     "ROUTE_RANGES",
-    "TREE_RANGES",
+    "STEPPED",
     "Activation",
     "Alternative",
     "BuildTolerances",
@@ -75,12 +77,14 @@ __all__ = [
     "Layout",
     "Network",
     "PricedPath",
+    "Range",
     "Region",
     "RouteGraph",
     "RouteOptions",
     "RouteTrace",
     "Severity",
     "SewingTimes",
+    "TreeKnobs",
     "TreeOptions",
     "TreeTrace",
     "WinchSite",

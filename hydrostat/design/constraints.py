@@ -2,11 +2,12 @@
 
 # Of the thesis (docs/thesis.md): R12, R14, R44, R53, E12
 
+import dataclasses
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import inf, isfinite
 from numbers import Integral, Real
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -48,6 +49,23 @@ class Range:
         kind = "a whole number, " if self.whole else "finite and " if self.most == inf else ""
         words = f"{kind}{'above' if self.above else 'at least'} {scale * self.least:g}"
         return f"{words}{end}" if self.most == inf else f"{words} and at most {scale * self.most:g}{end}"
+
+    @property
+    def shown(self) -> tuple[float, str]:
+        """Factor and unit of the values as people read them: millimetres for metres."""
+        return (1e3, "mm") if self.unit == "m" else (1.0, self.unit)
+
+
+LONGEST = 20.0
+"""Largest length that can be asked for [m]: a larger one was meant in another unit."""
+
+_LENGTH = Range(above=True, most=LONGEST, unit="m")
+_GAP = Range(most=LONGEST, unit="m")
+
+
+def _limit(default: Any, allowed: Range | None = None, *, trees: bool = False) -> Any:
+    """Field of `Constraints`: its default, the values that it may have, and whether winch trees keep it."""
+    return dataclasses.field(default=default, metadata={"range": allowed, "trees": trees})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,24 +117,24 @@ class Constraints:
     still: tuple[Zone, ...] = ()
     mount: Mount | None = None
     built_in: bool = True
-    cables_per_winch: int = 6
-    clearance: float = 0.005
-    depth: float | None = None
-    winch_clearance: float = 0.012
-    winch_gap: float = 0.025
-    hole_gap: float = 0.004
-    cable_gap: float = 0.004
-    turn: float = 30.0
-    bend_radius: float = 0.0
-    longest: float | None = None
-    tension: float = 20.0
-    torque: float | None = None
-    travel: float = 0.06
-    release: float = 0.0
-    spool_radius: float = 0.006
-    slack: float = 0.0
-    spool_ratio: float = 1.0
-    leads: bool = True
+    cables_per_winch: int = _limit(6, Range(whole=True, least=1, most=60), trees=True)
+    clearance: float = _limit(0.005, Range(above=True, most=1.0, unit="m"), trees=True)
+    depth: float | None = _limit(None, Range(most=0.1, unit="m", optional=True))
+    winch_clearance: float = _limit(0.012, _GAP, trees=True)
+    winch_gap: float = _limit(0.025, _GAP, trees=True)
+    hole_gap: float = _limit(0.004, _GAP, trees=True)
+    cable_gap: float = _limit(0.004, _GAP)
+    turn: float = _limit(30.0, Range(above=True, most=180.0, unit="degrees"))
+    bend_radius: float = _limit(0.0, _GAP)
+    longest: float | None = _limit(None, Range(above=True, most=LONGEST, optional=True, unit="m"))
+    tension: float = _limit(20.0, Range(above=True, most=1000.0, unit="N"), trees=True)
+    torque: float | None = _limit(None, Range(above=True, most=100.0, unit="N m", optional=True))
+    travel: float = _limit(0.06, _LENGTH, trees=True)
+    release: float = _limit(0.0, _GAP, trees=True)
+    spool_radius: float = _limit(0.006, _LENGTH, trees=True)
+    slack: float = _limit(0.0, Range(most=1.0, unit="m"))
+    spool_ratio: float = _limit(1.0, Range(least=1.0, most=LARGEST_STEP))
+    leads: bool = _limit(True, trees=True)
     mirror: str | None = None
     locked_winches: tuple[str, ...] = ()
     locked_cables: tuple[str, ...] = ()
@@ -149,6 +167,10 @@ class Constraints:
             return self.tension
         arm = self.spool_radius * self.spool_ratio
         return min(self.tension, self.torque / (arm * self.cables_per_winch))
+
+    def restrict_to_trees(self) -> "Constraints":
+        """The constraints that winch trees keep; the others ask nothing."""
+        return Constraints(**{one.name: getattr(self, one.name) for one in fields(self) if one.name not in ROUTES_ONLY})
 
     def flip(self, dim: int) -> Vector:
         """Signs that make of coordinates those of their mirror image, (dim,); all 1 without a mirror."""
@@ -242,32 +264,14 @@ class Constraints:
                     raise InputError(f"constraints: {field} names {name!r} twice; name it once")
 
 
-LONGEST = 20.0
-"""No length that is asked for is longer [m]: more was meant in another unit."""
+RANGES: dict[str, Range] = {one.name: allowed for one in fields(Constraints) if (allowed := one.metadata.get("range"))}
+"""Allowed values of each number of `Constraints`."""
 
-_LENGTH = Range(above=True, most=LONGEST, unit="m")
-_GAP = Range(most=LONGEST, unit="m")
+ROUTES_ONLY = tuple(one.name for one in fields(Constraints) if not one.metadata.get("trees"))
+"""Constraints that winch trees do not keep."""
 
-RANGES = {
-    "cables_per_winch": Range(whole=True, least=1, most=60),
-    "clearance": Range(above=True, most=1.0, unit="m"),
-    "depth": Range(most=0.1, unit="m", optional=True),
-    "winch_clearance": _GAP,
-    "winch_gap": _GAP,
-    "hole_gap": _GAP,
-    "cable_gap": _GAP,
-    "turn": Range(above=True, most=180.0, unit="degrees"),
-    "bend_radius": _GAP,
-    "longest": Range(above=True, most=LONGEST, optional=True, unit="m"),
-    "tension": Range(above=True, most=1000.0, unit="N"),
-    "torque": Range(above=True, most=100.0, unit="N m", optional=True),
-    "travel": _LENGTH,
-    "release": _GAP,
-    "spool_radius": _LENGTH,
-    "slack": Range(most=1.0, unit="m"),
-    "spool_ratio": Range(least=1.0, most=LARGEST_STEP),
-}
-"""What each number of `Constraints` may be."""
+STEPPED = 2.0
+"""Spool ratio of a robot whose spools may differ."""
 
 _SIZES = 10.0  # lengths of constraints are at most so many sizes of the body
 _ASKEW = 0.02  # share of its width by which a body's two sides may lie unevenly about a mirror

@@ -1,15 +1,16 @@
 """`read_constraints`: from a TOML file to `Constraints` for one robot."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from decimal import Decimal
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_type_hints
 
-from pydantic import BeforeValidator, Field, Strict
+from pydantic import BeforeValidator, Field, Strict, create_model
 
 from hydrostat import units
-from hydrostat.design.constraints import Constraints
+from hydrostat.design.constraints import RANGES, Constraints
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
@@ -18,7 +19,6 @@ from hydrostat.robot import (
     Coordinates,
     Force,
     Length,
-    Mount,
     Name,
     Number,
     Robot,
@@ -72,40 +72,38 @@ class BuiltTable(TomlTable):
     spool: Number | None = None
 
 
-class ConstraintsTable(TomlTable):
-    """The whole file: the fields of `Constraints`, zones as tables of one zone each."""
-
-    winch_zone: list[ZoneTable] = Field(default_factory=list)
-    keep_out: list[ZoneTable] = Field(default_factory=list)
-    still: list[ZoneTable] = Field(default_factory=list)
-    mount: Mount | None = None
-    built_in: Choice | None = None
-    cables_per_winch: Count | None = None
-    clearance: Length | None = None
-    depth: Length | None = None
-    winch_clearance: Length | None = None
-    winch_gap: Length | None = None
-    hole_gap: Length | None = None
-    cable_gap: Length | None = None
-    turn: Angle | None = None
-    bend_radius: Length | None = None
-    longest: Length | None = None
-    tension: Force | None = None
-    torque: Torque | None = None
-    travel: Length | None = None
-    release: Length | None = None
-    spool_radius: Length | None = None
-    slack: Length | None = None
-    spool_ratio: Number | None = None
-    leads: Choice | None = None
-    mirror: Axis | None = None
-    locked_winches: list[Name] | None = None
-    locked_cables: list[Part] | None = None
-    built: BuiltTable | None = None
-
-
 ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "still": "still"}
 """Tables of the file, and the fields of `Constraints` that they make."""
+
+_KINDS = {"mirror": Axis, "locked_winches": list[Name], "locked_cables": list[Part], bool: Choice}
+_QUANTITIES = {"m": Length, "degrees": Angle, "N": Force, "N m": Torque, "": Number}
+
+
+def _forms() -> dict[str, Any]:
+    """Type and default of each key of the file, from the fields of `Constraints` and their ranges."""
+    tables, hints = {field: table for table, field in ZONES.items()}, get_type_hints(Constraints)
+    forms: dict[str, Any] = {}
+    for name in (field.name for field in fields(Constraints)):
+        if name in tables:
+            forms[tables[name]] = (list[ZoneTable], Field(default_factory=list))
+            continue
+        allowed = RANGES.get(name)
+        kind: Any
+        if allowed is None:
+            kind = _KINDS.get(name) or _KINDS.get(hints[name], hints[name])
+        else:
+            kind = Count if allowed.whole else _QUANTITIES[allowed.unit]
+        forms[name] = (kind | None, None)
+    return forms
+
+
+ConstraintsTable = create_model(
+    "ConstraintsTable",
+    __base__=TomlTable,
+    __doc__="The whole file: the fields of `Constraints`, zones as tables of one zone each.",
+    **_forms(),
+    built=(BuiltTable | None, None),
+)
 
 
 def read_constraints(path: str | Path, robot: Robot) -> Constraints:
@@ -146,16 +144,10 @@ class _ConstraintsReader(TablesFile):
     def constraints(self) -> Constraints:
         """The constraints that the text describes, which fit the robot."""
         given: dict[str, Any] = {
-            key: value
-            for key, value in self.table
-            if value is not None and key not in {*ZONES, "spool_ratio", "mirror", "built"}
+            key: _plain(value) for key, value in self.table if value is not None and key not in {*ZONES, "built"}
         }
         for table, field in ZONES.items():
             given[field] = self.records(table, self._zone)
-        if self.table.spool_ratio is not None:
-            given["spool_ratio"] = float(self.table.spool_ratio)
-        if self.table.mirror is not None:
-            given["mirror"] = str(self.table.mirror)
         given["locked_winches"] = tuple(self.table.locked_winches or ())
         given["locked_cables"] = tuple(
             self.at(f"locked_cables[{place}]", partial(cable_name, name, self.robot))
@@ -190,6 +182,11 @@ def cable_name(given: str | int, robot: Robot) -> str:
     if text not in names and text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= len(names):
         return names[int(text[:9]) - 1]
     return robot.cable(text).name
+
+
+def _plain(value: Any) -> Any:
+    """The value of a key as `Constraints` holds it."""
+    return float(value) if isinstance(value, Decimal) else str(value) if isinstance(value, Axis) else value
 
 
 def _usual_but(given: dict[str, Any], robot: Robot) -> BuildTolerances:

@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import Any, Self
 
 from hydrostat.closed_set import make_member
-from hydrostat.design.constraints import Constraints, Range
+from hydrostat.design.constraints import ROUTES_ONLY, Constraints, Range
 from hydrostat.design.muscles.activation import FibreKind
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
@@ -90,6 +90,16 @@ ROUTE_RANGES = {
 
 
 @dataclass(frozen=True, kw_only=True)
+class TreeKnobs:
+    """Knobs of the thesis's search, one value of each (R46)."""
+
+    threshold: int = 60  # number of candidate fibres (R39)
+    distance: float = 1.5  # largest gap between two fibres that are joined, in mean mesh edges (R40)
+    steps: int = 12  # most fibres joined to one route (R40)
+    phi: float = 0.5  # weight of the mean against the spread in the score (R43)
+
+
+@dataclass(frozen=True, kw_only=True)
 class TreeOptions:
     """How winch trees are grown; lengths in units of the mean mesh edge unless said otherwise.
 
@@ -134,20 +144,14 @@ class TreeOptions:
                     raise InputError(f"TreeOptions.{name} must be {allowed}, not {value!r}")
 
     @classmethod
-    def single(cls, *, threshold: int = 60, distance: float = 1.5, steps: int = 12, phi: float = 0.5) -> Self:
-        """The thesis's search as it stands: one value of each knob, one network, none chosen by its pose error.
-
-        Args:
-            threshold: number of candidate fibres.
-            distance: largest gap between two fibres that are joined, in mean mesh edges.
-            steps: most fibres joined to one route.
-            phi: weight of the mean against the spread in the score.
-        """
+    def single(cls, **knobs: float) -> Self:
+        """The thesis's search as it stands: `TreeKnobs` by name, one network, none chosen by its pose error."""
+        single = TreeKnobs(**knobs)  # type: ignore[arg-type]
         return cls(
-            thresholds=(threshold,),
-            distances=(distance,),
-            growth_steps=steps,
-            phis=(phi,),
+            thresholds=(single.threshold,),
+            distances=(single.distance,),
+            growth_steps=single.steps,
+            phis=(single.phi,),
             shares=1,
             trials=1,
             loss=0.0,
@@ -163,6 +167,14 @@ TREE_RANGES = {
     "trials": Range(whole=True, least=1),
 }
 """What each number of `TreeOptions` may be."""
+
+KNOB_RANGES = {
+    "threshold": TREE_RANGES["thresholds"],
+    "distance": TREE_RANGES["distances"],
+    "steps": TREE_RANGES["growth_steps"],
+    "phi": TREE_RANGES["phis"],
+}
+"""Allowed values of each of `TreeKnobs`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -272,7 +284,7 @@ class DesignRequest:
         if self.improve or self.winches == AUTO:
             raise InputError('method "trees" starts from nothing with a number of winches; use method "routes"')
         usual = Constraints()
-        asked = [name for name in _ROUTES_ONLY if getattr(self.constraints, name) != getattr(usual, name)]
+        asked = [name for name in ROUTES_ONLY if getattr(self.constraints, name) != getattr(usual, name)]
         if asked:
             raise InputError(f'method "trees" does not keep {", ".join(asked)}; use method "routes", which does')
 
@@ -281,12 +293,6 @@ _OPTIONS: dict[str, type[RouteOptions] | type[TreeOptions]] = {
     DesignMethod.ROUTES: RouteOptions,
     DesignMethod.TREES: TreeOptions,
 }
-
-_ROUTES_ONLY = (
-    "winch_zones", "keep_out", "still", "mount", "built_in", "depth", "cable_gap", "turn", "bend_radius", "longest",
-    "torque", "slack", "spool_ratio", "mirror", "locked_winches", "locked_cables",
-)  # fmt: skip
-"""Constraints that winch trees are not grown within."""
 
 
 def _with_own(constraints: Constraints, robot: Robot) -> Constraints:

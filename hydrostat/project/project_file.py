@@ -2,16 +2,18 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import field, fields, make_dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal, get_type_hints
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ConfigDict, ValidationError, create_model
 
 from hydrostat import units
 from hydrostat.control import Timeline
+from hydrostat.design import Constraints, RouteOptions, TreeKnobs
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
-from hydrostat.project.wishes import Wishes
+from hydrostat.project.wishes import ELSEWHERE, Wishes
 from hydrostat.robot import replace_file
 
 PROJECT_FILE = "studio.json"
@@ -19,30 +21,56 @@ PROJECT_FILE = "studio.json"
 LARGEST = 20_000_000  # maximum size of the file [bytes]
 
 
-class ProjectFile(BaseModel):
-    """The whole file; a key that is unknown or a number that is not finite is an error."""
+KEYS = (
+    "winches", "cables", "poses", "zones", "mirror", "tension", "clearance", "depth", "tolerance", "simplicity",
+    "cables_per_winch", "slack", "stepped", "torque", "improve", "kept_winches", "kept_cables", "method",
+    "threshold", "distance", "steps", "phi",
+)  # fmt: skip
+"""Wishes that are always written, in their order in the file."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+MORE = tuple(one.name for one in fields(Constraints) if one.name not in (*KEYS, *ELSEWHERE))
+"""Constraints that are written only where they are not the usual ones."""
 
-    format: Literal[1] = 1  # of the file
-    timeline: Timeline  # keyframes
-    wishes: Wishes  # for a design
+
+def _wishes_table() -> type:
+    """Record with the wishes as they stand in the file, side by side; pydantic names it in complaints."""
+    usual, hints = Wishes(), {"stepped": bool}
+    for record in (RouteOptions, TreeKnobs, Constraints, Wishes):
+        hints |= get_type_hints(record)
+    forms = [(name, hints[name], field(default=usual.value(name))) for name in (*KEYS, *MORE)]
+    return make_dataclass("Wishes", forms, frozen=True, kw_only=True)
+
+
+_TABLE = _wishes_table()
+
+_FILE = create_model(
+    "ProjectFile",
+    __doc__="The whole file; a key that is unknown or a number that is not finite is an error.",
+    __config__=ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False),
+    format=(Literal[1], 1),
+    timeline=(Timeline, ...),
+    wishes=(_TABLE, ...),
+)
 
 
 def write_project_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:
-    """Write the file whole or not at all (InputError: it cannot be written)."""
-    text = ProjectFile(timeline=timeline, wishes=wishes).model_dump_json(indent=2)
+    """Write keyframes and wishes whole or not at all (InputError: the file cannot be written)."""
+    usual = Wishes()
+    table = _TABLE(**{name: wishes.value(name) for name in (*KEYS, *MORE)})
+    left_out = {name for name in MORE if wishes.value(name) == usual.value(name)}
+    text = _FILE(timeline=timeline, wishes=table).model_dump_json(indent=2, exclude={"wishes": left_out})
     replace_file(folder / PROJECT_FILE, text.encode() + b"\n")
 
 
-def read_project_file(folder: Path, cables: Sequence[str] = ()) -> ProjectFile:
+def read_project_file(folder: Path, cables: Sequence[str] = ()) -> tuple[Timeline, Wishes]:
     """Read a folder's file, if there is one (InputError: it is wrong); an old one may number the robot's cables."""
     file = folder / PROJECT_FILE
     if not file.exists():
-        return ProjectFile(timeline=Timeline(), wishes=Wishes())
+        return Timeline(), Wishes()
     content = read_stranger(file, name=PROJECT_FILE, most=LARGEST)
     try:
-        return ProjectFile.model_validate_json(_with_names(content, cables))
+        read: Any = _FILE.model_validate_json(_with_names(content, cables))
+        return read.timeline, Wishes.of(**vars(read.wishes))
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))[:80]

@@ -1,19 +1,23 @@
 """`Wishes`: a person's request for a design, with zones painted on the body."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
+from typing import Any
 
 from hydrostat.closed_set import make_member
 from hydrostat.design import (
     COUNTS,
+    KNOB_RANGES,
     RANGES,
     ROUTE_RANGES,
-    TREE_RANGES,
+    STEPPED,
     Constraints,
     DesignMethod,
     DesignRequest,
+    Range,
     RouteOptions,
+    TreeKnobs,
     TreeOptions,
     Zone,
 )
@@ -32,55 +36,76 @@ class Paint(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Wishes:
-    """Request for a design.
+    """Request for a design: the records that a design takes, and names and zones that outlive changes of the robot.
+
+    `of`, `with_values` and `value` reach fields of the records by their names, in ranges of a person's units; "stepped"
+    is whether cables may have spools up to twice as large or small as their winch's.
 
     Raises:
-        InputError: a number out of its range, a mirror that is no axis, or a method that there is not.
+        InputError: a number out of its range, or an unknown method.
     """
 
-    winches: int = int(DesignRequest.winches)  # how many; 0: as few as will do
-    cables: int = DesignRequest.cables  # how many in all
+    winches: int = int(DesignRequest.winches)  # number of winches; 0: as few as will do
+    cables: int = DesignRequest.cables  # number of cables in total
     poses: tuple[str, ...] = ()  # names of the poses to reach; empty: all
-    zones: tuple[tuple[Paint, Zone], ...] = ()  # painted on the body, with what they mean
-    mirror: str | None = None  # axis of symmetry, "x", "y" or "z"; None: no symmetry
-    tension: float = Constraints.tension  # the most that a cable bears [N]
-    clearance: float = Constraints.clearance  # least distance of a cable from the edge [m]
-    depth: float | None = None  # in space, of cables under the skin, 0 on it [m]; None: anywhere (R53)
-    tolerance: float | None = None  # error good enough where winches are counted [m]; None: a hundredth of the body
-    simplicity: float = RouteOptions.simplicity  # how much a simple network is worth; 0: whatever helps at all is kept
-    cables_per_winch: int = Constraints.cables_per_winch  # most cables of one winch
-    slack: float = Constraints.slack  # the most that a stopper may leave loose [m]
-    stepped: bool = False  # whether cables may have spools up to twice as large or small as their winch's
-    torque: float | None = None  # the most that the motor of a winch gives [N m]; None: as much as the tensions ask
+    zones: tuple[tuple[Paint, Zone], ...] = ()  # painted on the body, with their meanings
+    constraints: Constraints = field(default_factory=Constraints)  # without zones and parts to keep, which stand here
     improve: bool = False  # begin with the robot's own winches and cables
     kept_winches: tuple[str, ...] = ()  # names of the robot's own winches that stay
     kept_cables: tuple[str, ...] = ()  # names of the robot's own cables that stay, and their winches with them
-
-    method: DesignMethod = DesignRequest.method  # routes, ours, or the thesis's winch trees with the knobs that follow
-    threshold: int = 60  # number of candidate fibres (R39)
-    distance: float = 1.5  # largest gap between two fibres that are joined, in mean mesh edges (R40)
-    steps: int = 12  # most fibres joined to one route (R40)
-    phi: float = 0.5  # weight of the mean against the spread in the score (R43)
-
-    @property
-    def tree_options(self) -> TreeOptions:
-        """The knobs of the thesis's search as wished (R46)."""
-        return TreeOptions.single(threshold=self.threshold, distance=self.distance, steps=self.steps, phi=self.phi)
+    method: DesignMethod = DesignRequest.method  # routes, ours, or the thesis's winch trees
+    options: RouteOptions = field(default_factory=RouteOptions)  # of the search for routes
+    knobs: TreeKnobs = field(default_factory=TreeKnobs)  # of the search for winch trees
 
     def __post_init__(self) -> None:
         make_member(self, "method", DesignMethod)
-        if self.mirror not in (None, "x", "y", "z"):
-            raise InputError(f"mirror must be x, y, z or nothing, not {quote(self.mirror)}")
         if self.winches != 0 and not COUNTS["winches"].holds(self.winches):
             raise InputError(f"winches must be {COUNTS['winches']}, or 0 for as few as will do, not {self.winches}")
-        for name, allowed in _COUNTED.items():
-            if not allowed.holds(getattr(self, name)):
-                raise InputError(f"{_said(name)} must be {allowed}, not {getattr(self, name)}")
-        for name, (allowed, scale, unit) in _AMOUNTS.items():
-            value = getattr(self, name)
-            if not allowed.holds(value):
-                words = allowed.words(scale, unit)
-                raise InputError(f"{_said(name)} must be {words}, not {scale * value:g} {unit}")
+        if not COUNTS["cables"].holds(self.cables):
+            raise InputError(f"cables must be {COUNTS['cables']}, not {self.cables}")
+
+    @classmethod
+    def of(cls, **values: Any) -> "Wishes":
+        """Wishes with these values, else the usual ones (InputError: a value out of its range)."""
+        return cls().with_values(**values)
+
+    def with_values(self, **values: Any) -> "Wishes":
+        """Copy with other values (InputError: one is out of its range)."""
+        changes: dict[str, dict[str, Any]] = {"": {}}
+        for name, value in values.items():
+            _check(name, value)
+            key, told = ("spool_ratio", STEPPED if value else 1.0) if name == "stepped" else (name, value)
+            changes.setdefault(_record(key), {})[key] = told
+        own = changes.pop("")
+        return replace(self, **own, **{part: replace(getattr(self, part), **new) for part, new in changes.items()})
+
+    def value(self, name: str) -> Any:
+        """Value of a field, of its own or of one of its records."""
+        if name == "stepped":
+            return self.constraints.spool_ratio > 1.0
+        part = _record(name)
+        return getattr(getattr(self, part) if part else self, name)
+
+    @property
+    def tree_options(self) -> TreeOptions:
+        """Options of the thesis's search with these knobs (R46)."""
+        return TreeOptions.single(**asdict(self.knobs))
+
+
+OWN = tuple(one.name for one in fields(Wishes))
+"""Fields that stand in `Wishes` itself, and the records that it has."""
+
+OPTIONS = ("tolerance", "simplicity")
+"""Fields of `RouteOptions` that can be wished."""
+
+ELSEWHERE = (*Paint, "locked_winches", "locked_cables", "spool_ratio")
+"""Fields of `Constraints` that are wished by other names: as `zones`, `kept_winches`, `kept_cables` and "stepped"."""
+
+
+def wish_range(name: str) -> Range:
+    """Allowed values of a number that can be wished."""
+    options = {option: ROUTE_RANGES[option] for option in OPTIONS}
+    return {**RANGES, **options, **KNOB_RANGES}[name]
 
 
 def moved_zone(zone: Zone, move: Callable[[Point], Point]) -> Zone:
@@ -90,25 +115,32 @@ def moved_zone(zone: Zone, move: Callable[[Point], Point]) -> Zone:
     return replace(zone, at=at, box=box, outline=tuple(map(move, zone.outline)))
 
 
-_COUNTED = {
-    "cables": COUNTS["cables"],
-    "cables_per_winch": RANGES["cables_per_winch"],
-    "simplicity": ROUTE_RANGES["simplicity"],
-    "threshold": TREE_RANGES["thresholds"],
-    "distance": TREE_RANGES["distances"],
-    "steps": TREE_RANGES["growth_steps"],
-    "phi": TREE_RANGES["phis"],
-}
-
-_AMOUNTS = {  # what each amount may be, and the unit in which it is told
-    "tension": (RANGES["tension"], 1.0, "N"),
-    "clearance": (RANGES["clearance"], 1e3, "mm"),
-    "depth": (RANGES["depth"], 1e3, "mm"),
-    "tolerance": (ROUTE_RANGES["tolerance"], 1e3, "mm"),
-    "slack": (RANGES["slack"], 1e3, "mm"),
-    "torque": (RANGES["torque"], 1.0, "N m"),
-}
+def _record(name: str) -> str:
+    """Field of `Wishes` that holds the record with a value; "" for its own values."""
+    if name in OWN:
+        return ""
+    return "knobs" if name in KNOB_RANGES else "options" if name in OPTIONS else "constraints"
 
 
-def _said(name: str) -> str:
-    return name.replace("_", " ")
+def _check(name: str, value: Any) -> None:
+    """Refuse a value that its record would refuse, in a person's units."""
+    if name == "mirror":
+        _check_mirror(value)
+    allowed = None if name in OWN or _is_plain(name) else wish_range(name)
+    if allowed is None or allowed.holds(value):
+        return
+    words = name.replace("_", " ")
+    if not allowed.unit:
+        raise InputError(f"{words} must be {allowed}, not {value}")
+    scale, unit = allowed.shown
+    raise InputError(f"{words} must be {allowed.words(scale, unit)}, not {scale * value:g} {unit}")
+
+
+def _check_mirror(value: object) -> None:
+    if value not in (None, "x", "y", "z"):
+        raise InputError(f"mirror must be x, y, z or nothing, not {quote(value)}")
+
+
+def _is_plain(name: str) -> bool:
+    """Tell whether a value is no number, so that its record checks it."""
+    return name == "stepped" or (_record(name) == "constraints" and name not in RANGES)

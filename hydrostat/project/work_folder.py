@@ -27,10 +27,10 @@ def open_work(folder: Path) -> Work:
     """Read a robot's folder; a broken studio.json is left, `open_note` says why (InputError: as for `load_robot`)."""
     robot = load_robot(folder)
     try:
-        kept = read_project_file(_home(folder), [cable.name for cable in robot.cables])
+        timeline, wishes = read_project_file(_home(folder), [cable.name for cable in robot.cables])
     except InputError:
         return Work(robot=robot)
-    return Work(robot=robot, timeline=kept.timeline, wishes=kept.wishes)
+    return Work(robot=robot, timeline=timeline, wishes=wishes)
 
 
 def open_note(folder: Path) -> str:

@@ -293,7 +293,6 @@ _EXAMPLES = {
     "sheathed": "sheathed = [[0, 1]]",
     "targets": "targets = { tip = [40, 90] }",
     "outline": "outline = [[0, 0], [10, 0], [10, 20]]",
-    "cables_per_winch": "cables_per_winch = 4",
     "locked_cables": "locked_cables = [1, 2]",
     "locked_winches": 'locked_winches = ["left"]',
 }
@@ -347,7 +346,7 @@ def _message(error: Any, location: tuple[Any, ...], form: type[TomlTable]) -> st
     if kind not in _SENTENCES:
         return error["msg"].removeprefix("Value error, ")
     limits = {name: str(limit).replace("'", "") for name, limit in error.get("ctx", {}).items()}
-    example = _EXAMPLES.get(key, "[0, 0]")
+    example = _EXAMPLES.get(key) or (f"{key} = 4" if kind == "int_type" else "[0, 0]")
     return _SENTENCES[kind].format(key=quote(key), value=quote(error["input"]), example=example, **limits)
 
 

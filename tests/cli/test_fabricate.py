@@ -120,8 +120,8 @@ def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Pa
     """Oracle: the wish; by its kit in the studio no cable is pulled harder either."""
     robot = near_the_edge()
     save_work(Work(robot=robot), tmp_path / "usual")
-    assert designed_tension(robot, tmp_path / "usual") == Wishes().tension
-    save_work(Work(robot=robot, wishes=Wishes(tension=7.5)), tmp_path / "weak")
+    assert designed_tension(robot, tmp_path / "usual") == Wishes().constraints.tension
+    save_work(Work(robot=robot, wishes=Wishes.of(tension=7.5)), tmp_path / "weak")
     assert designed_tension(robot, tmp_path / "weak") == designed_tension(robot, tmp_path / "weak/robot.toml") == 7.5
     (tmp_path / "weak" / "studio.json").write_text("{")
     with pytest.raises(InputError, match=r"^studio\.json: .*\. Fix the file, or set the limit with --tension"):
@@ -134,7 +134,7 @@ def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Pa
 def test_a_kit_keeps_to_a_tension(run: Run, tmp_path: Path, starfish: Path) -> None:
     """Oracle: the largest tension of its list: of the 3 N that the studio kept to, and more if the command says so."""
     largest, robot = {}, tmp_path / "robot"
-    save_work(Work(robot=load_robot(starfish), wishes=Wishes(tension=3.0)), robot)
+    save_work(Work(robot=load_robot(starfish), wishes=Wishes.of(tension=3.0)), robot)
     for limit, asked in {"3 N": (), "200 N": ("--tension", "200 N")}.items():
         code, out, _ = run("fabricate", robot, *asked, "--force", "--out", tmp_path / limit[0])
         assert code == 0

@@ -33,10 +33,10 @@ def test_nothing_typed_and_nothing_wished_is_what_the_record_says(unchecked: Non
 
 
 def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
-    limits = {"tension": "12 N", "clearance": "4 mm", "slack": "3 mm", "stepped": True, "lock_winch": ("up",)}
-    typed = DesignArguments(winches="auto", cables=4, tolerance="2 mm", **limits)  # type: ignore[arg-type]
+    limits = {"tension": "12 N", "clearance": "4 mm", "slack": "3 mm"}
+    typed = DesignArguments(winches="auto", cables=4, tolerance="2 mm", limits=limits, stepped=True, lock_winch=("up",))
     lengths = {"tolerance": 0.002, "clearance": 0.004, "slack": 0.003}
-    wishes = Wishes(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)  # type: ignore[arg-type]
+    wishes = Wishes.of(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)
     assert parse_request(robot(), typed) == wished_request(robot(), wishes)
 
 

@@ -55,7 +55,7 @@ def test_what_is_said_is_the_one_judgement_once_a_robot_rests(squid: Robot) -> N
 def test_other_wishes_and_other_kits_are_judged_anew(squid: Robot) -> None:
     judge = Judge(Bell())
     usual = judged(judge, squid)
-    tight = Wishes(clearance=0.012)
+    tight = Wishes.of(clearance=0.012)
     assert judge.of(squid, tight) is None
     assert len(judged(judge, squid, tight)) >= len(usual)
     judge.options = KitOptions(motor="25d")

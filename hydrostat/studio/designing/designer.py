@@ -110,7 +110,7 @@ class Designer(Stage):
 
     def wish(self, **wishes: Any) -> None:
         """Change what is asked for; one step to undo (InputError: a number out of its range)."""
-        wanted = replace(self.wishes, **wishes)
+        wanted = self.wishes.with_values(**wishes)
         if wanted != self.wishes:
             self._document.change("change design settings", wishes=wanted, merge=f"wish {' '.join(wishes)}")
 
@@ -206,7 +206,9 @@ class Designer(Stage):
         """The network that is shown, targets, zones."""
         shown, ease, reach = self.shown, self._ease, self._reach()
         fits = ease is not None and len(ease.tensions) == len(shown.cables)
-        things = robot_things(shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.tension)
+        things = robot_things(
+            shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.constraints.tension
+        )
         there = reach is not None and ease is not None and not ease.moving
         for targets, colour in self._targets():
             things += target_things(targets, reach.places if reach is not None and there else {}, colour=colour)

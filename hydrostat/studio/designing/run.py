@@ -16,7 +16,6 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
     The options are of the search for routes; if left out its usual ones, with the wished tolerance and simplicity.
     Winch trees are grown as the thesis does it, by one value of each of its knobs (R46).
     """
-    usual = RouteOptions(tolerance=wishes.tolerance, simplicity=wishes.simplicity)
     trees = wishes.method is DesignMethod.TREES
     request = DesignRequest(
         poses=wished_poses(robot, wishes),
@@ -24,7 +23,7 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
         cables=wishes.cables,
         constraints=wished_constraints(robot, wishes),
         method=wishes.method,
-        options=wishes.tree_options if trees else options or usual,
+        options=wishes.tree_options if trees else options or wishes.options,
         improve=wishes.improve,
     )
     request.fitted(robot)  # what does not fit is told at once

@@ -79,7 +79,7 @@ class Machine:
     @property
     def strongest(self) -> float:
         """The most that a cable should bear [N]."""
-        return self._document.work.wishes.tension
+        return self._document.work.wishes.constraints.tension
 
     def meet(self, robot: Robot | None = None) -> None:
         """The robot, the one that is open if left out, may be another one than before."""

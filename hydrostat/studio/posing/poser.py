@@ -99,7 +99,7 @@ class Poser(Stage):
         """Ghosts, the robot, points that are held, and rings where they should be."""
         now = self._fit()
         robot, wish, shape = now.robot, now.wish, now.shape
-        limit = self._document.work.wishes.tension
+        limit = self._document.work.wishes.constraints.tension
         keys = {f"marker:{self._chosen}", f"point:{self._chosen}"} if self._chosen else set()
         found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, colour=GHOST)]
         if now.ghost is not None:
@@ -256,13 +256,13 @@ class Poser(Stage):
     def bars(self) -> list[Bar]:
         """Bars of all winches: contraction and tension."""
         now = self._fit()
-        return winch_bars(now.robot, now.shape, self._document.work.wishes.tension)
+        return winch_bars(now.robot, now.shape, self._document.work.wishes.constraints.tension)
 
     def step(self, now: float) -> bool:
         """One update of the mover; the first only says that it may take a while."""
         current = self._fit()
         robot, wish = current.robot, current.wish
-        tension = self._document.work.wishes.tension
+        tension = self._document.work.wishes.constraints.tension
         if self._done is not None and all(
             old is new for old, new in zip(self._done, (robot, wish, tension), strict=True)
         ):

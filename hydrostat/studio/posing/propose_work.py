@@ -9,7 +9,6 @@ from typing import Any
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design import (
     Activation,
-    Constraints,
     DesignMethod,
     DesignRequest,
     TreeOptions,
@@ -57,13 +56,12 @@ def asked_of_trees(robot: Robot, wishes: Wishes) -> DesignRequest:
 
     Raises InputError for counts that do not fit each other.
     """
-    limits = Constraints(tension=wishes.tension, clearance=wishes.clearance, cables_per_winch=wishes.cables_per_winch)
     return DesignRequest(
         poses=(robot.pose(POSE),),
         winches=wishes.winches or min(WINCHES, wishes.cables),
         cables=wishes.cables,
         method=DesignMethod.TREES,
-        constraints=limits,
+        constraints=wishes.constraints.restrict_to_trees(),
         options=replace(wishes.tree_options, shares=SHARES),
     ).fitted(robot)
 

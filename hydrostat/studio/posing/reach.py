@@ -105,7 +105,7 @@ class MarkerReach:
     def cloud(self, robot: Robot) -> Cloud | None:
         """Return the workspace found so far, if it holds for this robot."""
         search = self._search
-        fits = search is not None and search.fits(robot, self._document.work.wishes.tension)
+        fits = search is not None and search.fits(robot, self._document.work.wishes.constraints.tension)
         return search.cloud if search is not None and fits else None
 
     @property
@@ -116,7 +116,7 @@ class MarkerReach:
 
     def start(self, marker: str, count: int = COUNT) -> None:
         """Begin to look where a marker can go (InputError: no such marker, no cables, or other work is in progress)."""
-        robot, tension = self._document.robot, self._document.work.wishes.tension
+        robot, tension = self._document.robot, self._document.work.wishes.constraints.tension
         if _place(robot, marker) is None:
             raise InputError(f'unknown marker "{marker}"')
         if not robot.cables:
@@ -155,7 +155,7 @@ class MarkerReach:
         if topic is not Topic.ROBOT or search is None or not self._document.is_open:
             return
         work = self._document.work
-        if not search.fits(work.robot, work.wishes.tension):
+        if not search.fits(work.robot, work.wishes.constraints.tension):
             self.clear()
 
     def _grow(self, search: _ReachSearch, points: Points) -> None:

@@ -1,7 +1,5 @@
 """Wishes as a design is asked for. Oracle: the fields of `Constraints`, its own messages."""
 
-from dataclasses import replace
-
 import pytest
 from builders import gallery_robot
 
@@ -22,7 +20,7 @@ DISC, TRIANGLE = Zone(at=(0.0, 0.0), radius=0.02), Zone(outline=((0.0, 0.0), (0.
 
 
 def test_every_wish_is_a_constraint(starfish: Robot) -> None:
-    wishes = Wishes(
+    wishes = Wishes.of(
         zones=((Paint.KEEP_OUT, DISC), (Paint.STILL, TRIANGLE), (Paint.WINCH_ZONES, DISC), (Paint.KEEP_OUT, TRIANGLE)),
         mirror="x",
         tension=12.0,
@@ -42,13 +40,13 @@ def test_every_wish_is_a_constraint(starfish: Robot) -> None:
 
 
 def test_a_depth_is_for_bodies_in_space(starfish: Robot) -> None:
-    wishes = Wishes(depth=0.0)
+    wishes = Wishes.of(depth=0.0)
     assert wished_constraints(starfish, wishes) == Constraints()
     trunk = gallery_robot("trunk")
     assert wished_constraints(trunk, wishes) == Constraints(depth=0.0)
     assert wished_request(trunk, wishes).constraints.depth == 0.0
     with pytest.raises(InputError, match="does not keep depth"):
-        wished_request(trunk, Wishes(depth=0.0, method=DesignMethod.TREES))
+        wished_request(trunk, Wishes.of(depth=0.0, method=DesignMethod.TREES))
 
 
 def test_no_wish_is_no_constraint(starfish: Robot) -> None:
@@ -70,7 +68,7 @@ def test_poses_by_name_all_if_none_is_left(starfish: Robot) -> None:
 
 
 def test_as_few_winches_as_will_do(starfish: Robot) -> None:
-    asked = wished_request(starfish, Wishes(winches=0, cables=4, tolerance=0.003, simplicity=4.0))
+    asked = wished_request(starfish, Wishes.of(winches=0, cables=4, tolerance=0.003, simplicity=4.0))
     assert (asked.winches, asked.cables, asked.improve) == ("auto", 4, False)
     assert asked.options == RouteOptions(tolerance=0.003, simplicity=4.0)
     assert wished_request(starfish, Wishes(winches=3)).winches == 3
@@ -84,10 +82,10 @@ def test_the_knobs_of_the_thesis_are_those_of_the_command_line(starfish: Robot) 
     assert (asked.method, asked.options) == (DesignMethod.TREES, TreeOptions.single())
     knobs = {"threshold": 40, "distance": 2.5, "steps": 8, "phi": 0.3}
     typed = DesignArguments(method="trees", knobs=[f"{name}={value}" for name, value in knobs.items()])
-    wished = wished_request(starfish, Wishes(method=DesignMethod.TREES, **knobs))  # type: ignore[arg-type]
+    wished = wished_request(starfish, Wishes.of(method=DesignMethod.TREES, **knobs))
     assert wished == parse_request(starfish, typed)
     with pytest.raises(InputError, match="does not keep mirror"):
-        wished_request(starfish, Wishes(method=DesignMethod.TREES, mirror="x"))
+        wished_request(starfish, Wishes.of(method=DesignMethod.TREES, mirror="x"))
     with pytest.raises(InputError, match="with a number of winches"):
         wished_request(starfish, Wishes(method=DesignMethod.TREES, winches=0))
 
@@ -97,7 +95,7 @@ def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:
     with pytest.raises(InputError, match="does not touch the body"):
         wished_request(starfish, far)
     with pytest.raises(InputError, match="mirror"):
-        wished_request(starfish, replace(far, zones=(), mirror="z"))
+        wished_request(starfish, far.with_values(zones=(), mirror="z"))
 
 
 @pytest.mark.parametrize(
@@ -119,7 +117,7 @@ def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:
 )
 def test_numbers_out_of_range(wrong: dict[str, float], words: str) -> None:
     with pytest.raises(InputError) as caught:
-        Wishes(**wrong)  # type: ignore[arg-type]
+        Wishes.of(**wrong)
     assert str(caught.value) == words
 
 
@@ -127,7 +125,7 @@ def test_a_search_begins_with_what_stays(starfish: Robot) -> None:
     """Oracle: the names and numbers that were wished for."""
 
     def begun(**wishes: object) -> Robot:
-        return beginning(starfish, wished_request(starfish, Wishes(**wishes)))  # type: ignore[arg-type]
+        return beginning(starfish, wished_request(starfish, Wishes.of(**wishes)))
 
     assert (begun().winches, begun().cables) == ((), ())
     assert begun(improve=True) is starfish

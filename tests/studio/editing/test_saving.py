@@ -250,7 +250,7 @@ def work_of(robot: Robot) -> Work:
     timeline = Timeline(keys=(Key(time=0.5, contractions={"left": 0.01}),), smooth=True)
     from hydrostat.design import Zone
 
-    wishes = Wishes(winches=3, zones=((Paint.STILL, Zone(at=(0.0, 0.0), radius=0.01)),), mirror="y", tolerance=0.002)
+    wishes = Wishes.of(winches=3, zones=((Paint.STILL, Zone(at=(0.0, 0.0), radius=0.01)),), mirror="y", tolerance=0.002)
     return Work(robot=robot, timeline=timeline, wishes=wishes)
 
 

@@ -58,7 +58,7 @@ def test_a_network_of_a_moment_can_be_built_and_reaches_what_it_says(starfish: R
     held = held_of(starfish, "wave")
     node = starfish.body.mesh.nodes[np.argmax(starfish.body.mesh.nodes[:, 0])]
     held["point_1"] = HeldPoint(at=tuple(node), target=tuple(node))
-    wishes = Wishes(winches=2, cables=4, tension=15.0, clearance=0.006)
+    wishes = Wishes.of(winches=2, cables=4, tension=15.0, clearance=0.006)
     found = sketched(starfish, posed(starfish, held, wishes), BodyPhysics(starfish))
     assert found.words == ""
     assert len(found.winches) == 2
@@ -75,7 +75,7 @@ def test_a_network_of_a_moment_can_be_built_and_reaches_what_it_says(starfish: R
 
 def test_what_is_asked_follows_the_wishes(starfish: Robot) -> None:
     robot = replace(starfish, poses={POSE: replace(starfish.pose("wave"), name=POSE)})
-    asked = asked_of_trees(robot, Wishes(winches=0, cables=3, phi=0.2, threshold=33, mirror="x"))
+    asked = asked_of_trees(robot, Wishes.of(winches=0, cables=3, phi=0.2, threshold=33, mirror="x"))
     assert (asked.winches, asked.cables, asked.method) == (2, 3, "trees")
     assert asked.tree_options.phis == (0.2,)
     assert asked.tree_options.thresholds == (33,)

@@ -132,7 +132,7 @@ def test_a_target_out_of_reach_wrecks_nothing(starfish: Robot, poser: Poser, mod
 
 
 def test_the_tension_limit_holds(starfish: Robot, document: Document, poser: Poser) -> None:
-    document.change("limit", wishes=replace(Wishes(), tension=2.0))
+    document.change("limit", wishes=Wishes.of(tension=2.0))
     name, target = farthest(starfish)
     drag_marker(starfish, poser, name, target)
     settle(poser)

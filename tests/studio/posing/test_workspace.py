@@ -155,6 +155,6 @@ def test_places_within_another_limit_are_forgotten() -> None:
     document.open(Work(robot=ROBOT))
     reach = MarkerReach(document, Begun(document.bell))
     reach.start(ROBOT.markers[0].name)
-    document.change("limit", wishes=replace(Wishes(), tension=3.0))
+    document.change("limit", wishes=Wishes.of(tension=3.0))
     assert reach.cloud(document.robot) is None
     assert reach.count == 0

@@ -6,7 +6,7 @@ from typing import Any
 
 from nicegui import ui
 
-from hydrostat.project import Paint, Wishes
+from hydrostat.project import Paint, Wishes, wish_range
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.painter import COLOURS, WORDS
 from hydrostat.studio.face.messages import sent_number
@@ -80,21 +80,21 @@ def design_limits(page: WindowPage) -> None:
     with _more("Limits"):
         with ui.element("div").classes("studio-row"):
             shows += [
-                number_box(page, "Maximum tension", "N", "tension"),
-                number_box(page, "Edge clearance", "mm", "clearance"),
+                number_box(page, "Maximum tension", "tension"),
+                number_box(page, "Edge clearance", "clearance"),
             ]
         if page.session.document.robot.body.mesh.dim == 3:
-            shows.append(number_box(page, "Cable depth below the skin", "mm", "depth"))
+            shows.append(number_box(page, "Cable depth below the skin", "depth"))
         shows.append(_mirror(page))
         with ui.element("div").classes("studio-row"):
             shows += [
-                number_box(page, "Tolerance", "mm", "tolerance"),
-                number_box(page, "Maximum slack", "mm", "slack"),
+                number_box(page, "Tolerance", "tolerance"),
+                number_box(page, "Maximum slack", "slack"),
             ]
         with ui.element("div").classes("studio-row"):
             shows += [
-                number_box(page, "Cables per winch", "", "cables_per_winch"),
-                number_box(page, "Maximum torque", "N m", "torque"),
+                number_box(page, "Cables per winch", "cables_per_winch"),
+                number_box(page, "Maximum torque", "torque"),
             ]
         shows.append(_switch(page, "Different spool radii", "stepped"))
     _own(page, shows)
@@ -110,12 +110,11 @@ def _more(title: str) -> ui.expansion:
     return ui.expansion(title).classes("design-more").props('dense header-class="studio-section"')
 
 
-def number_box(page: WindowPage, words: str, unit: str, name: str) -> Show:
-    """A box for a wish; empty for one that is left open."""
-    designer = page.session.designer
-    scale = 1e3 if unit == "mm" else 1.0
-    whole = isinstance(getattr(Wishes, name), int)
-    optional = getattr(Wishes, name) is None
+def number_box(page: WindowPage, words: str, name: str, unit: str = "") -> Show:
+    """Build a box for a number that can be wished, in the unit of its range; empty where it is left open."""
+    designer, allowed = page.session.designer, wish_range(name)
+    scale, own_unit = allowed.shown
+    unit, whole, optional = unit or own_unit, allowed.whole, allowed.optional
     box = ui.number(words, suffix=unit or None, format="%.6g").props("dense outlined hide-bottom-space stack-label")
     box.classes("flex-1 studio-figure").style("min-width: 0").props(f'data-testid="wish-{name}"')
     if optional:
@@ -131,7 +130,7 @@ def number_box(page: WindowPage, words: str, unit: str, name: str) -> Show:
         show(designer.wishes)
 
     def show(wishes: Wishes) -> None:
-        value = getattr(wishes, name)
+        value = wishes.value(name)
         box.set_value(None if value is None else float(f"{scale * value:.6g}"))
 
     for event in ("blur", "keydown.enter", "clear"):
@@ -143,7 +142,7 @@ def _switch(page: WindowPage, words: str, name: str) -> Show:
     designer = page.session.designer
     switch = ui.switch(words).props(f'dense data-testid="wish-{name}"').style("font-size: 13px")
     switch.on_value_change(lambda event: page.act(lambda: designer.wish(**{name: bool(event.value)})))
-    return lambda wishes: switch.set_value(getattr(wishes, name))
+    return lambda wishes: switch.set_value(wishes.value(name))
 
 
 def _mirror(page: WindowPage) -> Show:
@@ -156,7 +155,7 @@ def _mirror(page: WindowPage) -> Show:
         choice.classes("design-toggle")
         choice.props('data-testid="wish-mirror"')
     choice.on_value_change(lambda event: page.act(lambda: designer.wish(mirror=event.value or None)))
-    return lambda wishes: choice.set_value(wishes.mirror or "")
+    return lambda wishes: choice.set_value(wishes.constraints.mirror or "")
 
 
 def _own(page: WindowPage, shows: list[Show]) -> None:

@@ -25,11 +25,11 @@ def design_method(page: WindowPage) -> None:
     with ui.column().classes("w-full").style("gap: 8px") as room:
         ui.label(HINT).classes("studio-hint")
         with ui.element("div").classes("studio-row"):
-            shows = [number_box(page, "Fibers kept", "", "threshold"), number_box(page, "phi, 0 to 1", "", "phi")]
+            shows = [number_box(page, "Fibers kept", "threshold"), number_box(page, "phi, 0 to 1", "phi")]
         with ui.element("div").classes("studio-row"):
             shows += [
-                number_box(page, "Maximum gap", "edges", "distance"),
-                number_box(page, "Fibers joined", "", "steps"),
+                number_box(page, "Maximum gap", "distance", "edges"),
+                number_box(page, "Fibers joined", "steps"),
             ]
 
     def send(value: Any) -> None:

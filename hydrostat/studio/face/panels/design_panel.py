@@ -102,7 +102,8 @@ def _simplicity(page: WindowPage) -> None:
     choices = {value: words for words, value in SIMPLICITIES.items()}
     with ui.element("div").classes("studio-row") as row:
         ui.label("Complexity").classes("flex-1")
-        choice = ui.toggle(choices, value=designer.wishes.simplicity if designer.wishes.simplicity in choices else None)
+        wanted = designer.wishes.options.simplicity
+        choice = ui.toggle(choices, value=wanted if wanted in choices else None)
         choice.props('dense no-caps unelevated padding="2px 10px"')
         choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
         choice.classes("design-toggle").props('data-testid="wish-simplicity"')
@@ -112,11 +113,11 @@ def _simplicity(page: WindowPage) -> None:
             )
 
     def send(value: float | None) -> None:
-        if value is not None and value != designer.wishes.simplicity:
+        if value is not None and value != designer.wishes.options.simplicity:
             page.act(lambda: designer.wish(simplicity=float(value)))
 
     def show() -> None:
-        wished = designer.wishes.simplicity
+        wished = designer.wishes.options.simplicity
         choice.set_value(wished if wished in choices else None)
         row.set_visibility(designer.wishes.method is DesignMethod.ROUTES)
 

@@ -22,16 +22,16 @@ def test_counts_and_limits_become_wishes(starfish: Robot) -> None:
             assert getattr(designer.wishes, name) == before
             assert desk.one(f"design-{name}").text == str(before)
         await desk.type("wish-tension", 12.5)
-        assert designer.wishes.tension == pytest.approx(12.5)
+        assert designer.wishes.constraints.tension == pytest.approx(12.5)
         await desk.type("wish-clearance", 4.0)
-        assert designer.wishes.clearance == pytest.approx(0.004)
+        assert designer.wishes.constraints.clearance == pytest.approx(0.004)
         await desk.type("wish-tension", -1.0)  # refused: the wish stays, and so does the number that is shown
-        assert designer.wishes.tension == pytest.approx(12.5)
+        assert designer.wishes.constraints.tension == pytest.approx(12.5)
         assert desk.one("wish-tension").value == pytest.approx(12.5)
         await desk.choose("wish-mirror", "x")
-        assert designer.wishes.mirror == "x"
+        assert designer.wishes.constraints.mirror == "x"
         await desk.press("Undo")
-        assert designer.wishes.mirror is None
+        assert designer.wishes.constraints.mirror is None
         assert desk.one("wish-mirror").value == ""
 
     at_desk(starfish, act)
@@ -48,13 +48,13 @@ def test_the_thesis_search_has_its_knobs(starfish: Robot) -> None:
         assert not is_shown(desk.one("wish-simplicity"))
         for knob, value in (("threshold", 40), ("distance", 2.5), ("steps", 8), ("phi", 0.3)):
             await desk.type(f"wish-{knob}", value)
-            assert getattr(designer.wishes, knob) == pytest.approx(value)
+            assert designer.wishes.value(knob) == pytest.approx(value)
         await desk.type("wish-phi", 1.5)  # refused
         assert desk.one("wish-phi").value == pytest.approx(0.3)
         await desk.press("design-go")
         assert len(desk.begun) == 1
         await desk.press("Undo")
-        assert designer.wishes.phi == pytest.approx(0.5)
+        assert designer.wishes.knobs.phi == pytest.approx(0.5)
 
     at_desk(starfish, act)
 
@@ -103,9 +103,9 @@ def test_cables_on_the_skin_are_for_bodies_in_space(starfish: Robot) -> None:
         desk.go(StageName.DESIGN)
         designer = desk.session.designer
         await desk.type("wish-depth", 2.5)
-        assert designer.wishes.depth == pytest.approx(0.0025)
+        assert designer.wishes.constraints.depth == pytest.approx(0.0025)
         await desk.type("wish-depth", None)
-        assert designer.wishes.depth is None
+        assert designer.wishes.constraints.depth is None
 
     at_desk(starfish, flat)
     at_desk(gallery_robot("trunk"), act)
