@@ -1,14 +1,15 @@
 """What to do with a body of foam until it is a robot, in order. Times are estimates; none was measured."""
 
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.fabrication.kit_plan import KitPlan
+from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, tie_step, winch_steps
 
 
-def skin_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
+def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
     """Steps from a body of foam to a robot."""
-    cables = len(given.robot.cables)
+    cables = len(plan.robot.cables)
     return (
-        *(_cable_steps(given) if cables else ()),
+        *(_cable_steps(plan, lists) if cables else ()),
         AssemblyStep(
             "Fix the skin",
             20,
@@ -21,15 +22,16 @@ def skin_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
             ),
             wait="15 min",
         ),
-        *winch_steps(given),
+        *winch_steps(plan),
         *((tie_step(cables),) if cables else ()),
     )
 
 
-def _cable_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
+def _cable_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
     """How cables come in or on the body, by their depth."""
-    cables, depths = len(given.robot.cables), CableDepths.of(given)
-    tubes = bool(given.lists.tubes.rows)
+    cables = len(plan.robot.cables)
+    depths = CableDepths.of(lists.stitching, cables)
+    tubes = bool(lists.tubes.rows)
     deep = sorted({*depths.drawn, *depths.laid, *depths.tubed}, key=lambda cable: int(cable[1:]))
     steps = [
         AssemblyStep(

@@ -3,8 +3,9 @@
 import re
 
 from hydrostat.fabrication.kit_options import MouldKind
+from hydrostat.fabrication.kit_plan import KitPlan
+from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.moulds.mould import Mould
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, minutes_text
 from hydrostat.units import plural
 
@@ -65,19 +66,19 @@ def body_mass(mould: Mould) -> float:
     return mix.density * mould.volumes.get("cavity", mix.volume)
 
 
-def mould_steps(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]:
+def mould_steps(plan: KitPlan, lists: Lists, mould: Mould) -> tuple[AssemblyStep, ...]:
     """Steps from the files of the mould to a body of foam."""
     printed = mould.kind is MouldKind.PRINTED
     mix, foams = mould.casting.body, foam_expansion(mould)
     return (
-        *(_printed_first(given) if printed else _silicone_first(given, mould)),
+        *(_printed_first(plan) if printed else _silicone_first(plan, mould)),
         AssemblyStep(
             "Spray release agent",
             10,
             "On both halves and on keys, sprue and vents: two thin coats. Let the solvent dry.",
             wait="10 min",
         ),
-        *_tubes_first(given),
+        *_tubes_first(CableDepths.of(lists.stitching, len(plan.robot.cables))),
         AssemblyStep("Close it", 10, f"{_closing(mould)} {mould.stands}"),
         AssemblyStep(
             "Weigh and stir",
@@ -90,15 +91,15 @@ def mould_steps(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]:
     )
 
 
-def _in_pieces(given: SheetInput) -> bool:
+def _in_pieces(plan: KitPlan) -> bool:
     """Whether something of the mould is printed in pieces that are joined."""
-    return any(re.fullmatch(r"(mould|positive|frame)_(lower|upper)_\d+", part.name) for part in given.printed)
+    return any(re.fullmatch(r"(mould|positive|frame)_(lower|upper)_\d+", part.name) for part in plan.printed)
 
 
-def _printed_first(given: SheetInput) -> tuple[AssemblyStep, ...]:
+def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     glue = (
         " A half that is in pieces is joined with glue and dowels of 3 mm in its holes; never glue half to half."
-        if _in_pieces(given)
+        if _in_pieces(plan)
         else ""
     )
     return (
@@ -107,7 +108,7 @@ def _printed_first(given: SheetInput) -> tuple[AssemblyStep, ...]:
             20,
             "All plates from mould/plate_1.3mf on: PLA, 0.2 mm layers, three walls, as the pieces lie, no supports "
             "in the cavity." + glue,
-            wait=f"about {minutes_text(60 * given.print_hours)} of printing, all parts",
+            wait=f"about {minutes_text(60 * plan.print_hours)} of printing, all parts",
         ),
         AssemblyStep(
             "Seal the cavity",
@@ -119,8 +120,8 @@ def _printed_first(given: SheetInput) -> tuple[AssemblyStep, ...]:
     )
 
 
-def _silicone_first(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]:
-    glue = " What is in pieces is joined with glue and dowels of 3 mm in its holes." if _in_pieces(given) else ""
+def _silicone_first(plan: KitPlan, mould: Mould) -> tuple[AssemblyStep, ...]:
+    glue = " What is in pieces is joined with glue and dowels of 3 mm in its holes." if _in_pieces(plan) else ""
     masses = [f"{mix.mass:.0f} g" for mix in mould.casting.silicone] or ["the amount"]
     return (
         AssemblyStep(
@@ -130,7 +131,7 @@ def _silicone_first(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]
             + glue
             + " Fill and sand what the silicone "
             "should not copy. Leave the two halves of the positive apart.",
-            wait=f"about {minutes_text(60 * given.print_hours)} of printing, all parts",
+            wait=f"about {minutes_text(60 * plan.print_hours)} of printing, all parts",
         ),
         AssemblyStep(
             "Pour the first half",
@@ -157,9 +158,8 @@ def _silicone_first(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]
     )
 
 
-def _tubes_first(given: SheetInput) -> tuple[AssemblyStep, ...]:
+def _tubes_first(depths: CableDepths) -> tuple[AssemblyStep, ...]:
     """Tubes that no needle reaches later."""
-    depths = CableDepths.of(given)
     if not depths.laid:
         return ()
     return (

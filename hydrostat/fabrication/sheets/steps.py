@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_options import Method
-from hydrostat.fabrication.lists.stitching import SKIN, DepthRow, Reach
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.fabrication.kit_plan import KitPlan
+from hydrostat.fabrication.lists.stitching import SKIN, DepthRow, Reach, Stitching
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot
 from hydrostat.units import plural
@@ -66,13 +66,11 @@ class CableDepths:
     tubed: tuple[str, ...] = ()  # those whose own tube runs in the body, deeper than the skin
 
     @classmethod
-    def of(cls, given: SheetInput) -> "CableDepths":
+    def of(cls, stitching: Stitching | None, cables: int) -> "CableDepths":
         """Read the depths of their points; cables whose depths are not listed are sewn on."""
-        points = (
-            [row for row in given.lists.stitching.rows if isinstance(row, DepthRow)] if given.lists.stitching else []
-        )
+        points = [row for row in stitching.rows if isinstance(row, DepthRow)] if stitching is not None else []
         if not points:
-            return cls(sewn=tuple(f"C{number}" for number in range(1, len(given.robot.cables) + 1)))
+            return cls(sewn=tuple(f"C{number}" for number in range(1, cables + 1)))
         found: dict[str, set[Reach]] = {}
         for point in points:
             in_tube = point.how in (Reach.TUBE, Reach.TUBE_END)
@@ -104,15 +102,15 @@ def cables_text(cables: Iterable[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
 
 
-def marks_on(given: SheetInput, mount: Mount) -> tuple[str, ...]:
+def marks_on(plan: KitPlan, mount: Mount) -> tuple[str, ...]:
     """Marks of the winches that are mounted so."""
-    marks = winch_marks_of(given.robot)
-    return tuple(marks[winch.name] for winch in given.robot.winches if winch.mount is mount)
+    marks = winch_marks_of(plan.robot)
+    return tuple(marks[winch.name] for winch in plan.robot.winches if winch.mount is mount)
 
 
-def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
+def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     """Steps for the winches: put together, on the base, then in a body of foam; into plush they go with the filling."""
-    inside, outside = marks_on(given, Mount.BODY), marks_on(given, Mount.WORLD)
+    inside, outside = marks_on(plan, Mount.BODY), marks_on(plan, Mount.WORLD)
     count = len(inside) + len(outside)
     steps = []
     if count:
@@ -126,7 +124,7 @@ def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
         )
     if outside:
         steps.append(_base_step(outside))
-    if inside and given.method is Method.FOAM:
+    if inside and plan.method is Method.FOAM:
         steps.append(
             AssemblyStep(
                 "Put winches in",
@@ -135,9 +133,9 @@ def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
                 "Lead the wires out together; sew the skin round them.",
             )
         )
-    if given.seat is not None:
-        steps.append(_seat_step(given.robot))
-    elif (held := held_text(given.robot)) and given.method is Method.FOAM:
+    if plan.rigid.seat_assembly is not None:
+        steps.append(_seat_step(plan.robot))
+    elif (held := held_text(plan.robot)) and plan.method is Method.FOAM:
         steps.append(AssemblyStep("Hold it", 5, held))
     return tuple(steps)
 
