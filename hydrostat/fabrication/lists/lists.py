@@ -17,9 +17,15 @@ from hydrostat.fabrication.lists.cuts import (
     sheath_table,
 )
 from hydrostat.fabrication.lists.line import LineRow, check_line, line_for
-from hydrostat.fabrication.lists.motor_sizing import MotorRow, motor_table, motor_warnings, size_winches
+from hydrostat.fabrication.lists.motors import (
+    MotorRow,
+    PowerPlan,
+    motor_table,
+    motor_warnings,
+    power_plan,
+    size_winches,
+)
 from hydrostat.fabrication.lists.needs import all_needs
-from hydrostat.fabrication.lists.power import PowerPlan, power_plan
 from hydrostat.fabrication.lists.stitching import (
     Stitching,
     close_warnings,

@@ -7,7 +7,7 @@ from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
 from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
-from hydrostat.fabrication.lists.power import PowerPlan
+from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.solids.printed import Printed
 
 POLYETHYLENE = 0.97e-3  # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)

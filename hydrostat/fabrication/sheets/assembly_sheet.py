@@ -9,17 +9,15 @@ from hydrostat.drawing import Camera, Canvas
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.lists import Lists
-from hydrostat.fabrication.sheets.cable_map import body_solid, flat_map, space_map
+from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps, space_map
+from hydrostat.fabrication.sheets.diagrams import skin_scheme, stitch_scheme, stopper_scheme, wiring_scheme
 from hydrostat.fabrication.sheets.facts import PictureFacts, PictureName, SheetData, SheetFacts
 from hydrostat.fabrication.sheets.legible import PrintableText, note_lines
 from hydrostat.fabrication.sheets.list_facts import piece_numbers
-from hydrostat.fabrication.sheets.schemes import skin_scheme, stitch_scheme, stopper_scheme
+from hydrostat.fabrication.sheets.map_layout import best_views, body_solid
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts, shown_stitches
-from hydrostat.fabrication.sheets.sight import best_views
-from hydrostat.fabrication.sheets.single_maps import single_maps
 from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portrait, undercut_picture
 from hydrostat.fabrication.sheets.steps import CableDepths
-from hydrostat.fabrication.sheets.wiring import wiring_scheme
 from hydrostat.fabrication.winch_marks import winch_marks_of
 
 _TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ", "words.typ")

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.bill import BillRow
-from hydrostat.fabrication.lists.power import PowerPlan
+from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.parts.board import BOARDS
 from hydrostat.fabrication.sheets.facts import PieceFacts, PowerFacts, TableFacts

@@ -10,11 +10,18 @@ from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
-from hydrostat.fabrication.sheets import foam_steps, mould_steps, plush_steps
 from hydrostat.fabrication.sheets.facts import MouldFacts, SheetFacts, StepFacts, TableFacts, WinchFacts
+from hydrostat.fabrication.sheets.foam_steps import (
+    body_mass,
+    cure_times,
+    foam_expansion,
+    mould_steps,
+    other_way,
+    skin_steps,
+)
 from hydrostat.fabrication.sheets.legible import note_lines, sentence, shortened
 from hydrostat.fabrication.sheets.list_facts import bill_facts, cost_text, piece_facts, power_facts, winch_files
-from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
+from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text, plush_steps
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.units import plural
 
@@ -60,8 +67,8 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         ],
         "mould": _mould(mould),
         "power": power_facts(lists.power, plan.robot),
-        "other_way": list(mould_steps.other_way(mould)) if mould else [],
-        "cures": [list(cure) for cure in mould_steps.cure_times(mould)],
+        "other_way": list(other_way(mould)) if mould else [],
+        "cures": [list(cure) for cure in cure_times(mould)],
     }
 
 
@@ -74,10 +81,10 @@ def shown_stitches(plan: KitPlan) -> CableStitches | None:
 def _all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
     """The steps, page by page."""
     if plan.method is Method.PLUSH:
-        return [plush_steps.plush_steps(plan)]
+        return [plush_steps(plan)]
     mould = plan.work.mould
-    before = [mould_steps.mould_steps(plan, lists, mould)] if mould is not None else []
-    return [*before, foam_steps.skin_steps(plan, lists)]
+    before = [mould_steps(plan, lists, mould)] if mould is not None else []
+    return [*before, skin_steps(plan, lists)]
 
 
 def _about(plan: KitPlan, lists: Lists, steps: Iterable[Iterable[AssemblyStep]]) -> list[str]:
@@ -164,8 +171,8 @@ def _mould(mould: Mould | None) -> MouldFacts | None:
     ]
     return {
         "silicone": mould.kind is MouldKind.SILICONE,
-        "foams": mould_steps.foam_expansion(mould),
-        "weighs": f"{mould_steps.body_mass(mould):.0f} g",
+        "foams": foam_expansion(mould),
+        "weighs": f"{body_mass(mould):.0f} g",
         "undercut": _undercut(mould.pull.share),
         "amounts": amounts,
         "ratio": sentence(body.ratio),

@@ -12,8 +12,8 @@ from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
 from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price, bill_table, cost_of
 from hydrostat.fabrication.lists.cuts import cable_cuts, sheath_cuts
 from hydrostat.fabrication.lists.line import line_for
+from hydrostat.fabrication.lists.motors import power_plan
 from hydrostat.fabrication.lists.needs import all_needs, filling_mass
-from hydrostat.fabrication.lists.power import power_plan
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed

@@ -17,7 +17,7 @@ from hydrostat.fabrication.lists.bill import BillGroup, Item, Price, bill_table
 from hydrostat.fabrication.lists.cuts import CableCut, SheathRow, cable_table
 from hydrostat.fabrication.lists.line import LineRow
 from hydrostat.fabrication.lists.lists import Lists
-from hydrostat.fabrication.lists.motor_sizing import MotorRow
+from hydrostat.fabrication.lists.motors import MotorRow
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.moulds.mould import Mould
@@ -26,7 +26,7 @@ from hydrostat.fabrication.moulds.release import FineSurface
 from hydrostat.fabrication.moulds.stance import MouldOrientation
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.patterns.stitches import cable_stitches
-from hydrostat.fabrication.sheets.cable_map import body_solid
+from hydrostat.fabrication.sheets.map_layout import body_solid
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
 from hydrostat.fabrication.solids.printed import Printed

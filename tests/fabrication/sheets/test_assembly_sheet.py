@@ -10,8 +10,8 @@ from sheet_inputs import changed, checks, foam, lists, plush
 
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.lists.bill import BillGroup, Item, Price
-from hydrostat.fabrication.lists.power import power_plan
-from hydrostat.fabrication.lists.stitching import DepthRow, Reach
+from hydrostat.fabrication.lists.motors import power_plan
+from hydrostat.fabrication.lists.stitching import DepthRow, PointAccess
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.parts.motor import MOTORS
@@ -266,7 +266,7 @@ def test_a_stopper_is_set_by_the_cloth_not_by_a_mark():
         assert "from exit" not in text
 
 
-def stitching(*points: tuple[str, float, Reach]) -> Table[DepthRow]:
+def stitching(*points: tuple[str, float, PointAccess]) -> Table[DepthRow]:
     """A list of points: cable, depth, how."""
     place = dict.fromkeys(("x", "y", "z", "gap", "along", "skin_x", "skin_y", "skin_z"), 0.0)
     rows = (
@@ -278,7 +278,7 @@ def stitching(*points: tuple[str, float, Reach]) -> Table[DepthRow]:
 @pytest.mark.slow
 def test_tubes_for_deep_cables_are_laid_before_casting(foam_sheet):
     """Oracle: the list of stitches."""
-    deep = stitching(("C1", 70.0, Reach.LAID), ("C2", 2.0, Reach.SKIN))
+    deep = stitching(("C1", 70.0, PointAccess.LAID), ("C2", 2.0, PointAccess.SKIN))
     text = words(assembly_sheet(*foam(lists=lists(2, stitching=deep))))
     assert "C1 runs too deep for a needle" in text
     assert text.index("Lay tubes in the cavity") < text.index("Close it")
@@ -288,7 +288,7 @@ def test_tubes_for_deep_cables_are_laid_before_casting(foam_sheet):
 @pytest.mark.slow
 def test_cables_are_put_in_as_deep_as_the_list_has_them(foam_sheet):
     """Oracle: a list of one that is sewn on, one that is drawn through, one whose tube is deep."""
-    rows = (("C1", 2.0, Reach.SKIN), ("C2", 9.0, Reach.NEEDLE), ("C3", 9.0, Reach.TUBE))
+    rows = (("C1", 2.0, PointAccess.SKIN), ("C2", 9.0, PointAccess.NEEDLE), ("C3", 9.0, PointAccess.TUBE))
     text = words(assembly_sheet(*foam(cables=3, lists=lists(3, stitching=stitching(*rows)))))
     assert "C2 and C3, before the skin is on" in text
     assert "Push the tube of C3" in text
