@@ -20,8 +20,8 @@ if TYPE_CHECKING:
         PatternOptions,
     )
     from hydrostat.fabrication.lists.bill import PRICES
+    from hydrostat.fabrication.lists.motors import power_plan
     from hydrostat.fabrication.lists.needs import control_needs
-    from hydrostat.fabrication.lists.power import power_plan
     from hydrostat.fabrication.lists.stitching import depth_table
     from hydrostat.fabrication.moulds.mould import Mould, make_mould
     from hydrostat.fabrication.parts.board import BOARDS, BoardKind, board_for

@@ -1,7 +1,7 @@
-"""`BodyWork`: what making the soft body takes: of felt its pattern (R10), of foam its mould and mixes (R50 to R54)."""
+"""`plush_work`, `foam_work`: the pattern of a body of felt (R10), the mould and mixes of one of foam (R50 to R54)."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,45 +9,21 @@ from jaxtyping import Float
 
 from hydrostat.fabrication.checks.mould_checks import mould_checks
 from hydrostat.fabrication.checks.pattern_checks import patch_checks, pattern_checks
-from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import STUFFINGS, KitOptions, MouldKind, PartOptions
-from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds
-from hydrostat.fabrication.moulds.mould import Mould, make_mould
+from hydrostat.fabrication.kit_plan import BodyWork, Cloth, FoamNeeds
+from hydrostat.fabrication.moulds.mould import make_mould
 from hydrostat.fabrication.moulds.pocket import WinchRoom
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.patches.space_pattern import space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
 from hydrostat.fabrication.patterns.shape import Circle, PatternPart
-from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.sheets.tiles import tiled_pdf
-from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Face, Mount, Robot
 from hydrostat.units import plural
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class BodyWork:
-    """Work of making the soft body: files, parts, and what is said of them."""
-
-    files: Mapping[str, bytes] = field(default_factory=dict)  # content by path in the kit
-    printed: tuple[Printed, ...] = ()  # pieces of a mould
-    spare: tuple[Printed, ...] = ()  # what is printed only if the body is to be cast in another way
-    assemblies: tuple[PartAssembly, ...] = ()  # of the mould
-    holes: int = 0  # pinholes in the cloth, each for a grommet
-    stitches: tuple[CableStitches, ...] = ()  # of each cable of a plush robot
-    gusset: bool = False  # whether a strip between front and back makes a plush body thick
-    cloth: Cloth | None = None  # of a plush robot
-    foam: FoamNeeds | None = None  # of a robot of foam
-    mould: Mould | None = None  # of a robot of foam, for the sheet
-    summary: tuple[str, ...] = ()  # what it is, a line each
-    problems: tuple[str, ...] = ()  # why it cannot be built well
-    warnings: tuple[str, ...] = ()  # what to mind
-    checks: tuple[Check, ...] = ()  # that it is true to the simulation
-
 
 MANY_PIECES = 40  # more pieces of a mould than that are a warning: a judgement, each is some hours on a printer
 MUCH_PLASTIC = 5e3  # more plastic for a mould than that is a warning [g]: five of the usual spools, a judgement too
@@ -76,6 +52,8 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
             material=body.material,
             silicone=sum(mix.volume for mix in mould.casting.silicone),
             silicone_mass=sum(mix.mass for mix in mould.casting.silicone),
+            bolts=mould.bolts,
+            dowels=mould.dowels,
         ),
         mould=mould,
         summary=(

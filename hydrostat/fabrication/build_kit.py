@@ -1,16 +1,14 @@
 """`build_kit`: from a robot to everything that it is built from."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
-from hydrostat.fabrication.body_work import BodyWork, foam_work, plush_work
+from hydrostat.fabrication.body_work import foam_work, plush_work
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.demand import Demand, find_demand
-from hydrostat.fabrication.kit import MANIFEST, Check, Kit, UnbuildableError, manifest
+from hydrostat.fabrication.kit import MANIFEST, Kit, UnbuildableError, manifest
 from hydrostat.fabrication.kit_options import KitOptions, Method
-from hydrostat.fabrication.lists.list_input import ListInput
+from hydrostat.fabrication.kit_plan import BodyWork, KitFindings, KitPlan
 from hydrostat.fabrication.lists.lists import Lists, make_lists
 from hydrostat.fabrication.parts.motor import choose_motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
@@ -19,7 +17,6 @@ from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
@@ -59,18 +56,22 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
     if options.step:
         require_cad()
     plan = _plan(robot, options, tell)
-    if plan.problems and not options.force:
-        raise UnbuildableError(plan.problems)
+    tell("Lists")
+    lists = make_lists(plan)
+    tell("Checks")
+    findings = _findings(plan, lists)
+    if findings.problems and not options.force:
+        raise UnbuildableError(findings.problems)
     tell("Files")
-    files, summary = _files(plan), (*_summary(plan), *_cable_summary(robot, plan))
+    files, summary = _files(plan, lists, findings), (*_summary(plan, lists), *_cable_summary(plan))
     facts = {
         "method": plan.method,
         "motor": plan.rigid.motor.key,
         "summary": summary,
-        "problems": plan.problems,
-        "warnings": plan.warnings,
+        "problems": findings.problems,
+        "warnings": findings.warnings,
     }
-    files[MANIFEST] = manifest(robot, options, files, checks=plan.checks, told=facts)
+    files[MANIFEST] = manifest(robot, options, files, checks=findings.checks, told=facts)
     tell.end()
     return Kit(
         robot=robot,
@@ -79,46 +80,10 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
         printed=plan.printed,
         files=files,
         summary=summary,
-        problems=plan.problems,
-        warnings=plan.warnings,
-        checks=plan.checks,
+        problems=findings.problems,
+        warnings=findings.warnings,
+        checks=findings.checks,
     )
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class _Plan:
-    """All that a kit is written from."""
-
-    drawn: Robot  # as it was given
-    robot: Robot  # as it is sewn: of pairs both cables
-    options: KitOptions
-    method: Method
-    demand: Demand
-    rigid: RigidParts
-    work: BodyWork
-    lists: Lists
-    checks: tuple[Check, ...]
-
-    @property
-    def printed(self) -> tuple[Printed, ...]:
-        return (*self.rigid.printed, *self.work.printed)
-
-    @cached_property
-    def problems(self) -> tuple[str, ...]:
-        """Why it is refused: what was known before, then what came of making it, each once."""
-        large = too_large((*self.printed, *self.work.spare), self.options.mould.bed)
-        failed = (
-            f"the self-check failed: {check.what}: {check.measured} (allowed: {check.allowed})"
-            for check in self.checks
-            if not check.passed
-        )
-        known = find_refusals(self.drawn, self.demand, options=self.options)
-        made = (*self.rigid.problems, *self.work.problems, *self.lists.problems)
-        return tuple(dict.fromkeys((*known, *made, *large, *failed)))
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        return (*self.work.warnings, *self.rigid.warnings, *self.lists.warnings, *self.demand.far)
 
 
 class _Stages:
@@ -145,33 +110,12 @@ class _Stages:
         self.part(self._total, self._total)
 
 
-def _plan(robot: Robot, options: KitOptions, tell: _Stages) -> _Plan:
-    method = options.method_for(robot.body)
-    drawn, robot = robot, sewn_robot(robot) if method is Method.PLUSH else robot
+def _plan(drawn: Robot, options: KitOptions, tell: _Stages) -> KitPlan:
+    robot = sewn_robot(drawn) if options.method_for(drawn.body) is Method.PLUSH else drawn
     tell("Loads in its poses")
     demand = find_demand(robot, tension=options.tension, progress=tell.part)
     rigid, work = _parts_and_body(drawn, robot, options, demand, tell)
-    tell("Lists")
-    lists = make_lists(_list_input(robot, options, method, demand, rigid, work))
-    tell("Checks")
-    solids = (*rigid.printed, *work.printed, *work.spare)
-    checks = (
-        *work.checks,
-        *lists.checks,
-        *spool_checks(robot, rigid.units),
-        *solid_checks(solids, (*rigid.assemblies, *work.assemblies)),
-    )
-    return _Plan(
-        drawn=drawn,
-        robot=robot,
-        options=options,
-        method=method,
-        demand=demand,
-        rigid=rigid,
-        work=work,
-        lists=lists,
-        checks=checks,
-    )
+    return KitPlan(drawn=drawn, robot=robot, options=options, demand=demand, rigid=rigid, work=work)
 
 
 def _parts_and_body(
@@ -198,32 +142,31 @@ def _parts_and_body(
     return parts, foam_work(robot, options, parts.units)
 
 
-def _list_input(
-    robot: Robot, options: KitOptions, method: Method, demand: Demand, rigid: RigidParts, work: BodyWork
-) -> ListInput:
-    exits = [way for unit in rigid.units for way in unit.exits]
-    return ListInput(
-        robot=robot,
-        demand=demand,
-        motor=rigid.motor,
-        method=method,
-        options=options.parts,
-        printed=rigid.printed,
-        mould=work.printed,
-        screws={title: count for title, count in rigid.bought if title != rigid.motor.title},
-        leads={way.cable: way.lead for way in exits},
-        seats={way.cable: way.seat for way in exits},
-        outside=dict(rigid.base.tubes) if rigid.base else {},
-        stitches=work.stitches,
-        cloth=work.cloth,
-        foam=work.foam,
-        bolts=work.mould.bolts if work.mould else 0,
-        dowels=work.mould.dowels if work.mould else 0,
-        stopper_hold=rigid.stopper.hold if rigid.stopper else None,
+def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
+    """Results of all checks; problems are those known before, then those of making it, each once."""
+    rigid, work = plan.rigid, plan.work
+    checks = (
+        *work.checks,
+        *lists.checks,
+        *spool_checks(plan.robot, rigid.units),
+        *solid_checks((*plan.printed, *work.spare), (*rigid.assemblies, *work.assemblies)),
+    )
+    failed = (
+        f"the self-check failed: {check.what}: {check.measured} (allowed: {check.allowed})"
+        for check in checks
+        if not check.passed
+    )
+    large = too_large((*plan.printed, *work.spare), plan.options.mould.bed)
+    known = find_refusals(plan.drawn, plan.demand, options=plan.options)
+    made = (*rigid.problems, *work.problems, *lists.problems)
+    return KitFindings(
+        checks=checks,
+        problems=tuple(dict.fromkeys((*known, *made, *large, *failed))),
+        warnings=(*work.warnings, *rigid.warnings, *lists.warnings, *plan.demand.far),
     )
 
 
-def _files(plan: _Plan) -> dict[str, bytes]:
+def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, bytes]:
     """Content by path in the kit, without the manifest."""
     rigid, work, name = plan.rigid, plan.work, plan.robot.name
     return {
@@ -232,32 +175,9 @@ def _files(plan: _Plan) -> dict[str, bytes]:
         **_solid_files("mould", name, work.printed, plan.options),
         **_solid_files("positive", name, work.spare, plan.options),
         **_base_files(name, rigid),
-        **{f"lists/{table.name}.csv": table.csv for table in plan.lists.tables},
-        "assembly_sheet.pdf": assembly_sheet(_sheet(plan)),
+        **{f"lists/{table.name}.csv": table.csv for table in lists.tables},
+        "assembly_sheet.pdf": assembly_sheet(plan, lists, findings),
     }
-
-
-def _sheet(plan: _Plan) -> SheetInput:
-    rigid, work = plan.rigid, plan.work
-    most = max(rigid.units, key=lambda unit: len(unit.cables), default=None)
-    return SheetInput(
-        robot=plan.robot,
-        method=plan.method,
-        paper=plan.options.paper,
-        motor=rigid.motor.title,
-        winch=most.assembly if most else None,
-        base=rigid.base.assembly if rigid.base else None,
-        seat=rigid.seat.assembly,
-        stopper=rigid.stopper.assembly if rigid.stopper else None,
-        printed=plan.printed,
-        lists=plan.lists,
-        stitches=work.stitches,
-        gusset=work.gusset,
-        mould=work.mould,
-        checks=plan.checks,
-        problems=plan.problems,
-        warnings=plan.warnings,
-    )
 
 
 def _solid_files(folder: str, name: str, parts: tuple[Printed, ...], options: KitOptions) -> dict[str, bytes]:
@@ -281,19 +201,20 @@ def _base_files(name: str, rigid: RigidParts) -> dict[str, bytes]:
     return {"parts/base.svg": pattern_svg(sheet), "parts/base.dxf": pattern_dxf(sheet)}
 
 
-def _cable_summary(robot: Robot, plan: _Plan) -> tuple[str, ...]:
+def _cable_summary(plan: KitPlan) -> tuple[str, ...]:
     """Where the cables of a flat robot run, a line if it says so."""
+    robot = plan.drawn
     if robot.face is None or not plan.robot.cables:
         return ()
     words = face_words(robot) if plan.method is Method.PLUSH else Face.MIDDLE.words
     return (f"Cables: {len(plan.robot.cables)}, {words}",)
 
 
-def _summary(plan: _Plan) -> tuple[str, ...]:
+def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
     """What is in a kit, a line each."""
     count = sum(part.count for part in plan.printed)
     mass = sum(part.count * part.mass for part in plan.printed)
-    used, packs = plan.lists.cost
+    used, packs = lists.cost
     return (
         *plan.work.summary,
         f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}" if plan.rigid.units else "Winches: none",

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.bill import BillGroup, BillRow, Item, bill_table, cost_of
 from hydrostat.fabrication.lists.cuts import (
     CableRow,
@@ -16,10 +17,15 @@ from hydrostat.fabrication.lists.cuts import (
     sheath_table,
 )
 from hydrostat.fabrication.lists.line import LineRow, check_line, line_for
-from hydrostat.fabrication.lists.list_input import ListInput
-from hydrostat.fabrication.lists.motor_sizing import MotorRow, motor_table, motor_warnings, size_winches
+from hydrostat.fabrication.lists.motors import (
+    MotorRow,
+    PowerPlan,
+    motor_table,
+    motor_warnings,
+    power_plan,
+    size_winches,
+)
 from hydrostat.fabrication.lists.needs import all_needs
-from hydrostat.fabrication.lists.power import PowerPlan, power_plan
 from hydrostat.fabrication.lists.stitching import (
     Stitching,
     close_warnings,
@@ -62,25 +68,25 @@ class Lists:
         return float(total.cost_used), float(total.cost_packs)
 
 
-def make_lists(given: ListInput) -> Lists:
+def make_lists(plan: KitPlan) -> Lists:
     """All lists of a robot (InputError: a demand of another robot, or lengths for cables that it does not have)."""
-    robot, options, demand = given.robot, given.options, given.demand
-    cuts = cable_cuts(robot, leads=given.leads, outside=given.outside, spare_wraps=options.spare_wraps)
-    pieces = sheath_cuts(robot, seats=given.seats, outside=given.outside)
+    robot, options, demand, rigid = plan.robot, plan.options.parts, plan.demand, plan.rigid
+    cuts = cable_cuts(robot, leads=rigid.leads, outside=rigid.outside, spare_wraps=options.spare_wraps)
+    pieces = sheath_cuts(robot, seats=rigid.seats, outside=rigid.outside)
     cables, tubes = cable_table(cuts), sheath_table(robot, pieces, bore=options.bore, tube=options.tube)
-    strength = check_line(robot, demand.tensions, given.line or line_for(options.cable), hold=given.stopper_hold)
-    sizings = size_winches(robot, demand, given.motor)
-    power = power_plan({each.winch: each.torque for each in sizings if each.cables}, given.motor)
-    items = tuple(all_needs(given, strength.line, cuts, pieces, power))
-    stitching, minded = _sewing(given)
+    strength = check_line(robot, demand.tensions, line_for(options.cable), hold=rigid.stopper_hold)
+    sizings = size_winches(robot, demand, rigid.motor)
+    power = power_plan({each.winch: each.torque for each in sizings if each.cables}, rigid.motor)
+    items = tuple(all_needs(plan, strength.line, cuts, pieces, power))
+    stitching, minded = _sewing(plan)
     simulation = Simulation(robot)
     return Lists(
-        bill=bill_table(items, _bill_notes(given, items)),
+        bill=bill_table(items, _bill_notes(plan, items)),
         cables=cables,
         tubes=tubes,
         stitching=stitching,
         strength=strength.table,
-        motors=motor_table(sizings, demand, given.motor),
+        motors=motor_table(sizings, demand, rigid.motor),
         power=power,
         problems=strength.problems,
         warnings=(
@@ -89,25 +95,25 @@ def make_lists(given: ListInput) -> Lists:
             *motor_warnings(sizings),
             *minded,
         ),
-        checks=(check_lengths(cables, simulation), check_sheaths(tubes, simulation, outside=given.outside)),
+        checks=(check_lengths(cables, simulation), check_sheaths(tubes, simulation, outside=rigid.outside)),
     )
 
 
-def _bill_notes(given: ListInput, items: tuple[Item, ...]) -> tuple[str, ...]:
+def _bill_notes(plan: KitPlan, items: tuple[Item, ...]) -> tuple[str, ...]:
     """Cost of a mould against that of the bodies that come out of it (N2)."""
-    if given.foam is None:
+    if plan.work.foam is None:
         return ()
     core, mould = sum(item.cost for item in items if item.is_poured), cost_of(items, BillGroup.MOULD)
     return (f"The mould costs about {mould:.0f} USD, each core of foam {core:.2f} USD. {_MOULD_COST}.",)
 
 
-def _sewing(given: ListInput) -> tuple[Stitching | None, tuple[str, ...]]:
+def _sewing(plan: KitPlan) -> tuple[Stitching | None, tuple[str, ...]]:
     """Table of where the cables are sewn, if it is known, and warnings about it."""
-    if given.stitches:
-        return stitch_table(given.stitches), ()
-    if given.robot.body.mesh.dim == 3:
-        table = depth_table(given.robot)
-        return table, (*deep_warnings(table), *close_warnings(given.robot))
-    if given.method is Method.FOAM and given.robot.cables:
-        return plane_table(given.robot), close_warnings(given.robot)
+    if plan.work.stitches:
+        return stitch_table(plan.work.stitches), ()
+    if plan.robot.body.mesh.dim == 3:
+        table = depth_table(plan.robot)
+        return table, (*deep_warnings(table), *close_warnings(plan.robot))
+    if plan.method is Method.FOAM and plan.robot.cables:
+        return plane_table(plan.robot), close_warnings(plan.robot)
     return None, ()

@@ -3,11 +3,11 @@
 import math
 from dataclasses import replace
 
+from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
 from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
-from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
-from hydrostat.fabrication.lists.power import PowerPlan
+from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.solids.printed import Printed
 
 POLYETHYLENE = 0.97e-3  # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
@@ -20,7 +20,7 @@ _SILICONES = ("ecoflex", "dragon skin")  # beginnings of names of materials that
 
 
 def all_needs(
-    given: ListInput,
+    plan: KitPlan,
     line: FishingLine,
     cuts: tuple[CableCut, ...],
     tubes: tuple[SheathCut, ...],
@@ -28,22 +28,22 @@ def all_needs(
 ) -> list[Item]:
     """Everything that a robot takes, group by group."""
     items = []
-    if given.cloth is not None:
-        items += _plush(given, given.cloth)
-    if given.foam is not None:
-        items += _foam(given, given.foam)
+    if plan.work.cloth is not None:
+        items += _plush(plan, plan.work.cloth)
+    if plan.work.foam is not None:
+        items += _foam(plan, plan.work.foam)
     items += [
-        *_cables(given, line, cuts, tubes),
-        *_winches(given),
+        *_cables(plan, line, cuts, tubes),
+        *_winches(plan),
         *control_needs(power),
-        *_mould(given),
+        *_mould(plan),
     ]
     return [item for item in items if item.quantity > 0]
 
 
-def filling_mass(given: ListInput) -> float:
+def filling_mass(plan: KitPlan) -> float:
     """Mass of what the body is made of: its volume at rest times the density of its material [g]."""
-    body = given.robot.body
+    body = plan.robot.body
     return 1e3 * float(body.mesh.volumes.sum()) * (body.thickness or 1.0) * body.material.density
 
 
@@ -58,10 +58,10 @@ def _item(
 _NEEDLES = _item(BillGroup.BODY, "needles", "sewing, and a long doll needle", 1.0, "needle")
 
 
-def _plush(given: ListInput, cloth: Cloth) -> list[Item]:
-    mass, thread = filling_mass(given), THREAD * cloth.seam
+def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
+    mass, thread = filling_mass(plan), THREAD * cloth.seam
     felt = "that a laser may cut: wool, polyester or acrylic, no PVC; 1 to 2 mm"
-    filling = given.robot.body.material.name or "as the robot file says"
+    filling = plan.robot.body.material.name or "as the robot file says"
     zipper = f"{math.ceil(cloth.zipper / 10) * 10:g} mm or longer"
     return [
         _item(BillGroup.BODY, "felt", felt, 1e-6 * cloth.felt, "felt"),
@@ -78,8 +78,8 @@ def _plush(given: ListInput, cloth: Cloth) -> list[Item]:
     ]
 
 
-def _foam(given: ListInput, foam: FoamNeeds) -> list[Item]:
-    kind = foam.material or given.robot.body.material.name or "as the robot file says"
+def _foam(plan: KitPlan, foam: FoamNeeds) -> list[Item]:
+    kind = foam.material or plan.robot.body.material.name or "as the robot file says"
     what = "silicone" if kind.startswith(_SILICONES) else "foam"
     return [
         *(
@@ -92,13 +92,11 @@ def _foam(given: ListInput, foam: FoamNeeds) -> list[Item]:
     ]
 
 
-def _cables(
-    given: ListInput, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]
-) -> list[Item]:
+def _cables(plan: KitPlan, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]) -> list[Item]:
     length, tube = sum(cut.cut for cut in cuts), sum(cut.length for cut in tubes)
     thread = POLYETHYLENE * math.pi / 4 * line.diameter**2 * length
-    ring = math.pi / 4 * (given.options.tube**2 - given.options.bore**2)
-    sizes = f"{given.options.bore:g} mm inside, {given.options.tube:g} mm outside"
+    ring = math.pi / 4 * (plan.options.parts.tube**2 - plan.options.parts.bore**2)
+    sizes = f"{plan.options.parts.bore:g} mm inside, {plan.options.parts.tube:g} mm outside"
     return [
         _item(
             BillGroup.CABLES,
@@ -112,8 +110,8 @@ def _cables(
     ]
 
 
-def _winches(given: ListInput) -> list[Item]:
-    motor, count = given.motor, given.units
+def _winches(plan: KitPlan) -> list[Item]:
+    motor, count = plan.rigid.motor, plan.num_motors
     source = f"the table of motors ({motor.price_source})"
     price = Price(amount=motor.price, source=source, month="dated as told there")
     if motor.price_source.startswith(NO_SOURCE):
@@ -122,13 +120,12 @@ def _winches(given: ListInput) -> list[Item]:
         _item(BillGroup.WINCHES, "geared motor", motor.title, float(count), price, count * motor.mass),
         *(
             _item(BillGroup.WINCHES, "screw or nut", title, float(number), "screws")
-            for title, number in given.screws.items()
-            if title != motor.title
+            for title, number in plan.rigid.screws.items()
         ),
     ]
     return [
         *(replace(item, is_named_by_kind=True) for item in bought),
-        _plastic(BillGroup.WINCHES, "PLA for printed parts", given.printed),
+        _plastic(BillGroup.WINCHES, "PLA for printed parts", plan.rigid.printed),
     ]
 
 
@@ -168,25 +165,27 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
     return [*parts, _item(BillGroup.CONTROL, "motor driver", bridge, count, "driver"), *feed]
 
 
-def _mould(given: ListInput) -> list[Item]:
+def _mould(plan: KitPlan) -> list[Item]:
     """What a mould is made of, and what joins, holds and seals its pieces."""
-    foam, dowels = given.foam, given.dowels
-    poured = foam.silicone_mass if foam else 0.0
-    litres = f"for moulds, Mold Max 30 or alike, both parts, {1e-6 * foam.silicone if foam else 0:.2f} l"
+    foam = plan.work.foam
+    if foam is None:
+        return []
+    poured = foam.silicone_mass
+    litres = f"for moulds, Mold Max 30 or alike, both parts, {1e-6 * foam.silicone:.2f} l"
     nut = "and two washers, longer than the closed mould is thick; or threaded rod"
-    rod = f"wood or steel, for {dowels} dowels of {DOWEL:g} mm"
+    rod = f"wood or steel, for {foam.dowels} dowels of {DOWEL:g} mm"
     varnish = "shellac or acrylic varnish, two coats on the printed mould"
-    sealed = bool(given.mould) and not poured > 0
+    sealed = bool(plan.work.printed) and not poured > 0
     return [
-        _item(BillGroup.MOULD, "silicone", litres, 1e-3 * poured, "silicone", foam.silicone_mass if foam else None),
-        _plastic(BillGroup.MOULD, "PLA for the mould", given.mould),
-        _item(BillGroup.MOULD, "bolt M4 with nut", nut, float(given.bolts), "bolts"),
-        _item(BillGroup.MOULD, "rod of 3 mm", rod, 1e-3 * DOWEL * dowels, "rod"),
+        _item(BillGroup.MOULD, "silicone", litres, 1e-3 * poured, "silicone", poured),
+        _plastic(BillGroup.MOULD, "PLA for the mould", plan.work.printed),
+        _item(BillGroup.MOULD, "bolt M4 with nut", nut, float(foam.bolts), "bolts"),
+        _item(BillGroup.MOULD, "rod of 3 mm", rod, 1e-3 * DOWEL * foam.dowels, "rod"),
         _item(
             BillGroup.MOULD,
             "glue for plastic",
             "for pieces with dowels between them",
-            float(dowels > 0),
+            float(foam.dowels > 0),
             "plastic glue",
         ),
         _item(
@@ -197,5 +196,5 @@ def _mould(given: ListInput) -> list[Item]:
             "clay",
         ),
         _item(BillGroup.MOULD, "sealer", varnish, float(sealed), "sealer"),
-        _item(BillGroup.MOULD, "release agent", "for polyurethane foam", float(foam is not None), "release"),
+        _item(BillGroup.MOULD, "release agent", "for polyurethane foam", 1.0, "release"),
     ]

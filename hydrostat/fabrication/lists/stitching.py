@@ -25,7 +25,7 @@ enough of it left to hold; for deeper ones a tube is laid before casting. Assume
 CLOSE = 2.0  # Points nearer than this [mm] cannot be told apart with a needle. Assumed.
 
 
-class Reach(StrEnum):
+class PointAccess(StrEnum):
     """Position of a point of a cable in a body in space, by the tool that reaches it."""
 
     OUTSIDE = "outside the body"
@@ -67,7 +67,7 @@ class DepthRow:
     skin_x: Annotated[float, number_column("skin x", "mm")]
     skin_y: Annotated[float, number_column("skin y", "mm")]
     skin_z: Annotated[float, number_column("skin z", "mm")]
-    how: Annotated[Reach, text_column("how")]
+    how: Annotated[PointAccess, text_column("how")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,7 +147,7 @@ def depth_table(robot: Robot) -> Table[DepthRow]:
                     skin_x=nearest[0],
                     skin_y=nearest[1],
                     skin_z=nearest[2],
-                    how=_reach(point.beside, float(depth)),
+                    how=_point_access(point.beside, float(depth)),
                 )
             )
     return Table(
@@ -229,15 +229,15 @@ def _under_skin(body: Body, points: Points) -> tuple[Vector, Points]:
     return -solid.distances(points), places
 
 
-def _reach(bare: tuple[bool, ...], depth: float) -> Reach:
+def _point_access(bare: tuple[bool, ...], depth: float) -> PointAccess:
     """Position of a point with such segments beside it, so deep under the skin [mm]."""
     if depth < 0:
-        return Reach.OUTSIDE
+        return PointAccess.OUTSIDE
     if not all(bare):
-        return Reach.TUBE_END if any(bare) else Reach.TUBE
+        return PointAccess.TUBE_END if any(bare) else PointAccess.TUBE
     if depth <= SKIN:
-        return Reach.SKIN
-    return Reach.NEEDLE if depth <= NEEDLE else Reach.LAID
+        return PointAccess.SKIN
+    return PointAccess.NEEDLE if depth <= NEEDLE else PointAccess.LAID
 
 
 def close_warnings(robot: Robot) -> tuple[str, ...]:
@@ -258,7 +258,7 @@ def deep_warnings(table: Table[DepthRow]) -> tuple[str, ...]:
     """Which cables have points too deep for a needle, a sentence each."""
     deep: dict[str, float] = {}
     for row in table.rows:
-        if row.how is Reach.LAID:
+        if row.how is PointAccess.LAID:
             deep[row.cable] = max(deep.get(row.cable, 0.0), row.depth)
     return tuple(
         f"cable {cable} runs up to {depth:.0f} mm under the skin, too deep for a needle ({NEEDLE:g} mm): lay a tube in "

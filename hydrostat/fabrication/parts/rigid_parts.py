@@ -64,12 +64,61 @@ class RigidParts:
         return tuple(counts.items())
 
     @property
+    def screws(self) -> dict[str, int]:
+        """Number of screws and nuts by what they are called."""
+        return {title: count for title, count in self.bought if title != self.motor.title}
+
+    @property
+    def leads(self) -> dict[int, float]:
+        """Length of each cable from the exit of its winch to its spool [mm], by its index."""
+        return {way.cable: way.lead for unit in self.units for way in unit.exits}
+
+    @property
+    def seats(self) -> dict[int, float]:
+        """Depth of the seat of the tube of each cable at its winch [mm], by its index."""
+        return {way.cable: way.seat for unit in self.units for way in unit.exits}
+
+    @property
+    def outside(self) -> dict[int, float]:
+        """Length of the tube from the base with the motors to where a cable begins [mm], by its index."""
+        return dict(self.base.tubes) if self.base else {}
+
+    @property
+    def stopper_hold(self) -> float | None:
+        """Tension at which a cable begins to slip in its stopper [N]; None without stoppers."""
+        return self.stopper.hold if self.stopper else None
+
+    @property
+    def winch_assembly(self) -> PartAssembly | None:
+        """The winch with the most cables; None without winches."""
+        largest = max(self.units, key=lambda unit: len(unit.cables), default=None)
+        return largest.assembly if largest else None
+
+    @property
+    def base_assembly(self) -> PartAssembly | None:
+        """The base with the winches that stand outside the body; None if all are in it."""
+        return self.base.assembly if self.base else None
+
+    @property
+    def seat_assembly(self) -> PartAssembly | None:
+        """The seat of the body; None where none is made."""
+        return self.seat.assembly
+
+    @property
+    def stopper_assembly(self) -> PartAssembly | None:
+        """The stopper of a cable; None without cables."""
+        return self.stopper.assembly if self.stopper else None
+
+    @property
     def assemblies(self) -> tuple[PartAssembly, ...]:
         """Each winch, the base with all on it, the seat, the stopper."""
-        base = (self.base.assembly,) if self.base else ()
-        seat = (self.seat.assembly,) if self.seat.assembly else ()
-        stopper = (self.stopper.assembly,) if self.stopper else ()
-        return (*(unit.assembly for unit in self.units), *base, *seat, *stopper)
+        found = (
+            *(unit.assembly for unit in self.units),
+            self.base_assembly,
+            self.seat_assembly,
+            self.stopper_assembly,
+        )
+        return tuple(assembly for assembly in found if assembly is not None)
 
     @property
     def problems(self) -> tuple[str, ...]:

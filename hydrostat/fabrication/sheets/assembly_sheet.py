@@ -2,27 +2,28 @@
 
 import json
 import math
+from collections.abc import Sequence
 from importlib.resources import files
 
 from hydrostat.drawing import Camera, Canvas
 from hydrostat.fabrication.kit_options import Method, Paper
-from hydrostat.fabrication.sheets.cable_map import body_solid, flat_map, space_map
+from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
+from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps, space_map
+from hydrostat.fabrication.sheets.diagrams import skin_scheme, stitch_scheme, stopper_scheme, wiring_scheme
+from hydrostat.fabrication.sheets.facts import PictureFacts, PictureName, SheetData, SheetFacts
 from hydrostat.fabrication.sheets.legible import PrintableText, note_lines
 from hydrostat.fabrication.sheets.list_facts import piece_numbers
-from hydrostat.fabrication.sheets.schemes import skin_scheme, stitch_scheme, stopper_scheme
+from hydrostat.fabrication.sheets.map_layout import best_views, body_solid
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts, shown_stitches
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.sight import best_views
-from hydrostat.fabrication.sheets.single_maps import single_maps
 from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portrait, undercut_picture
 from hydrostat.fabrication.sheets.steps import CableDepths
-from hydrostat.fabrication.sheets.wiring import wiring_scheme
 from hydrostat.fabrication.winch_marks import winch_marks_of
 
 _TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ", "words.typ")
 
 
-def assembly_sheet(given: SheetInput) -> bytes:
+def assembly_sheet(plan: KitPlan, lists: Lists, findings: KitFindings) -> bytes:
     """A PDF: two pages for a robot of plush, four for one of foam, one of wires. The same robot gives the same bytes.
 
     All words of the user reach the template as data, so that none of them is taken for markup.
@@ -30,82 +31,106 @@ def assembly_sheet(given: SheetInput) -> bytes:
     import typst
 
     room = files("hydrostat.fabrication.sheets")
-    pages = "plush_pages.typ" if given.method is Method.PLUSH else "foam_pages.typ"
+    pages = "plush_pages.typ" if plan.method is Method.PLUSH else "foam_pages.typ"
     source = b"\n".join((room / name).read_bytes() for name in (*_TEMPLATES, pages, "wiring.typ"))
-    pictures = {name: {"svg": canvas.svg, "width": canvas.width} for name, canvas in sheet_pictures(given).items()}
-    legible = PrintableText(given.robot)
-    words = legible.facts(sheet_facts(given, letters=legible.warning))
-    facts = json.dumps({**words, "pictures": pictures}, ensure_ascii=False)
+    robot = plan.robot
+    views = best_views(robot, body_solid(robot)) if robot.body.mesh.dim == 3 else ()
+    pictures = sheet_pictures(plan, lists, findings, views)
+    legible = PrintableText(robot)
+    words: SheetFacts = legible.facts(sheet_facts(plan, lists, findings, letters=legible.warning))
+    data: SheetData = {
+        **words,
+        "pictures": {name: _picture_facts(canvas) for name, canvas in pictures.items()},
+        "singles": [_picture_facts(canvas) for canvas in _single_maps(plan, views)],
+    }
+    facts = json.dumps(data, ensure_ascii=False)
     # The time is the beginning of all time: a sheet is the same on every day.
     return typst.compile(source, sys_inputs={"sheet": facts}, ignore_system_fonts=True, timestamp=0)
+
+
+def _picture_facts(canvas: Canvas) -> PictureFacts:
+    return {"svg": canvas.svg, "width": canvas.width}
 
 
 WIDE, HALF = 182.0, 88.0  # widths of a page and of half a page without its margins [mm]; both fit both papers
 
 
-def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
-    """Pictures by name, in millimetres of paper."""
-    tight = 18.0 if given.paper is Paper.LETTER else 0.0
-    told = note_lines(given.problems, given.warnings, given.robot)
+def _shorter(paper: Paper) -> float:
+    """Height that a page lacks against A4 [mm]."""
+    return 18.0 if paper is Paper.LETTER else 0.0
+
+
+def sheet_pictures(
+    plan: KitPlan, lists: Lists, findings: KitFindings, views: Sequence[Camera]
+) -> dict[PictureName, Canvas]:
+    """Pictures by name, in millimetres of paper; views of a body in space, the best first."""
+    robot, stitches, tight = plan.robot, plan.work.stitches, _shorter(plan.options.paper)
+    told = note_lines(findings.problems, findings.warnings, robot)
     boxed = 4.0 * sum(math.ceil(len(words) / 130) for words in told) + (4.0 if told else 0.0)
-    robot = given.robot
-    views = best_views(robot, body_solid(robot)) if robot.body.mesh.dim == 3 else ()
-    pictures = {"portrait": portrait(robot, views[0] if views else None, width=44.0, height=32.0)}
+    pictures: dict[PictureName, Canvas] = {
+        "portrait": portrait(robot, views[0] if views else None, width=44.0, height=32.0)
+    }
     if views:
         pictures["map"] = space_map(robot, width=112.0, height=119.0 - (tight + boxed) / 2, views=views[:1])
         pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views[1:])
     else:
-        if given.method is Method.FOAM:
+        if plan.method is Method.FOAM:
             pictures["map_both"] = flat_map(robot, (), width=WIDE, height=112.0 - tight / 2)
-        pictures["map"] = flat_map(robot, given.stitches, width=112.0, height=119.0 - (tight + boxed) / 2)
+        pictures["map"] = flat_map(robot, stitches, width=112.0, height=119.0 - (tight + boxed) / 2)
     pictures["calibration"] = stopper_scheme(
-        cloth="cloth" if given.method is Method.PLUSH else "skin", width=HALF, height=26.0
+        cloth="cloth" if plan.method is Method.PLUSH else "skin", width=HALF, height=26.0
     )
-    if robot.cables and given.method is not Method.FOAM:
-        pages = single_maps(robot, given.stitches, width=WIDE, height=235.0 - tight, view=views[0] if views else None)
-        pictures |= {f"single_{number}": page for number, page in enumerate(pages, start=1)}
     left = 195.0 - tight - boxed - pictures["map"].height
-    power = given.lists.power
-    if power is not None:
+    if lists.power is not None:
         marks = winch_marks_of(robot)
-        mine = tuple(marks[name] for name in power.winches)
-        pictures["wiring"] = wiring_scheme(power, mine, width=WIDE)
-    return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
+        mine = tuple(marks[name] for name in lists.power.winches)
+        pictures["wiring"] = wiring_scheme(lists.power, mine, width=WIDE)
+    return pictures | _schemes(plan, lists) | _parts(plan, min(left, 112.0)) | _mould(plan)
 
 
-def _schemes(given: SheetInput) -> dict[str, Canvas]:
-    if given.method is Method.FOAM:
-        depths = CableDepths.of(given)
-        drawn = bool(depths.drawn or depths.laid or depths.tubed)
-        tubes = any(cable.sheathed for cable in given.robot.cables)
-        if not given.robot.cables:
+def _single_maps(plan: KitPlan, views: Sequence[Camera]) -> list[Canvas]:
+    """Pages of maps with one cable each; none for a robot of foam."""
+    if not plan.robot.cables or plan.method is Method.FOAM:
+        return []
+    height, view = 235.0 - _shorter(plan.options.paper), views[0] if views else None
+    return single_maps(plan.robot, plan.work.stitches, width=WIDE, height=height, view=view)
+
+
+def _schemes(plan: KitPlan, lists: Lists) -> dict[PictureName, Canvas]:
+    cables = plan.robot.cables
+    if plan.method is Method.FOAM:
+        if not cables:
             return {}
+        depths = CableDepths.of(lists.stitching, len(cables))
+        drawn = bool(depths.drawn or depths.laid or depths.tubed)
+        tubes = any(cable.sheathed for cable in cables)
         return {"skin": skin_scheme(sewn=bool(depths.sewn), drawn=drawn, tubes=tubes, width=HALF)}
-    shown = shown_stitches(given)
+    shown = shown_stitches(plan)
     if shown is None:
         return {}
-    mark = winch_marks_of(given.robot)[shown.winch]
+    mark = winch_marks_of(plan.robot)[shown.winch]
     return {"stitches": stitch_scheme(shown, mark, width=HALF, height=38.0)}
 
 
-def _parts(given: SheetInput, height: float) -> dict[str, Canvas]:
-    pictures: dict[str, Canvas] = {}
-    of_winch, of_stopper = piece_numbers(given)
-    if given.winch is not None:
-        pictures["winch"] = exploded_picture(given.winch, of_winch, width=74.0, height=height)
-    if given.stopper is not None:
-        pictures["stopper"] = exploded_picture(given.stopper, of_stopper, width=38.0, height=min(0.6 * height, 52.0))
-    if given.base is not None:
-        wide = HALF if given.seat is None else 0.55 * HALF
-        pictures["base"] = exploded_picture(given.base, {}, width=wide, height=56.0)
-    if given.seat is not None:
-        pictures["seat"] = exploded_picture(given.seat, {}, width=0.4 * HALF, height=56.0)
+def _parts(plan: KitPlan, height: float) -> dict[PictureName, Canvas]:
+    pictures: dict[PictureName, Canvas] = {}
+    of_winch, of_stopper = piece_numbers(plan)
+    winch, stopper = plan.rigid.winch_assembly, plan.rigid.stopper_assembly
+    base, seat = plan.rigid.base_assembly, plan.rigid.seat_assembly
+    if winch is not None:
+        pictures["winch"] = exploded_picture(winch, of_winch, width=74.0, height=height)
+    if stopper is not None:
+        pictures["stopper"] = exploded_picture(stopper, of_stopper, width=38.0, height=min(0.6 * height, 52.0))
+    if base is not None:
+        pictures["base"] = exploded_picture(base, {}, width=HALF if seat is None else 0.55 * HALF, height=56.0)
+    if seat is not None:
+        pictures["seat"] = exploded_picture(seat, {}, width=0.4 * HALF, height=56.0)
     return pictures
 
 
-def _mould(given: SheetInput) -> dict[str, Canvas]:
-    mould = given.mould
-    if given.method is not Method.FOAM or mould is None:
+def _mould(plan: KitPlan) -> dict[PictureName, Canvas]:
+    mould = plan.work.mould
+    if plan.method is not Method.FOAM or mould is None:
         return {}
     numbers = {placed.name: number for number, placed in enumerate(mould.assembly.pieces, start=1)}
     surface = mould.pull.surface

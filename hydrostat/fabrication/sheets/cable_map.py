@@ -1,10 +1,9 @@
-"""`flat_map`, `space_map`: the very robot with its cables, holes, winches and stoppers, numbered."""
+"""`flat_map`, `space_map`, `single_maps`: the robot with its cables, holes, winches and stoppers, numbered."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from jaxtyping import Float
 
 from hydrostat.drawing import (
@@ -17,7 +16,6 @@ from hydrostat.drawing import (
     Camera,
     Canvas,
     CanvasFrame,
-    DrawnSolid,
     LineDrawing,
     Spot,
     balloon_radius,
@@ -26,8 +24,14 @@ from hydrostat.drawing import (
     text_size,
 )
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
-from hydrostat.fabrication.sheets.label_places import LabelPlaces, box_round
-from hydrostat.fabrication.sheets.sight import Visibility
+from hydrostat.fabrication.sheets.map_layout import (
+    LabelPlaces,
+    Visibility,
+    body_solid,
+    box_round,
+    flat_marks,
+    flat_rings,
+)
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Point, Robot
 
@@ -35,7 +39,6 @@ _MARGIN = 7.0  # room round the body for labels [mm]
 _DRAWN = 0.45  # grey of what is drawn on the body
 _HOLE = 0.65  # radius of a drawn hole [mm]
 _NEAR = 3.2  # a number further than this from its hole is led to it by a line [mm]
-_SHARP = 70.0  # on a body, edges are drawn that are sharper than this [degrees]: scans are rough
 _SOFT = 0.008  # over what share of the picture the light on a body is blurred
 
 
@@ -272,28 +275,91 @@ def _put_stopper(canvas: Canvas, run: CableRun) -> None:
     canvas.fill([[(float(x), float(y)) for x, y in corners]], grey=0.0)
 
 
-def flat_marks(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
-    """What is drawn on a flat body, such as eyes, to know its front by [mm]."""
-    return [1e3 * np.array(mark) for mark in robot.body.marks]
+FEWEST = 3
+"""With fewer cables one map shows them all."""
+
+_COLUMNS, _ROWS = 3, 4  # of a page
+_CELL_HEAD, _CELL_MARGIN = 5.0, 4.0  # room for a title, and round the body [mm]
+_PALE = 0.72  # grey of what does not stand out
 
 
-def flat_rings(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
-    """The outline of a flat body and its holes [m]; of a ready mesh, the rim of its triangles."""
-    if robot.body.outline is not None:
-        return list(robot.body.outline.rings)
-    mesh = robot.body.mesh
-    whole = shapely.union_all(shapely.polygons(mesh.nodes[mesh.elements]))
-    polygons = [part for part in shapely.get_parts(whole) if isinstance(part, shapely.Polygon)]
-    return [np.array(ring.coords)[:-1] for part in polygons for ring in (part.exterior, *part.interiors)]
+@dataclass(frozen=True, eq=False)
+class _Scene:
+    """What all cells show: runs in a frame, and how the body is drawn there."""
+
+    box: Float[np.ndarray, "2 2"]
+    runs: Callable[[CanvasFrame], list[CableRun]]
+    draw: Callable[[Canvas, CanvasFrame], None]
 
 
-def body_solid(robot: Robot) -> DrawnSolid:
-    """The surface of a body in space [mm]."""
-    if robot.body.healing is not None:
-        surface = robot.body.healing.surface
-        return DrawnSolid(vertices=1e3 * surface.vertices, triangles=surface.triangles, sharp=_SHARP)
-    mesh = robot.body.mesh
-    # Not `mesh.boundary`, whose order of corners would move the last digits of written sheets.
-    faces = mesh.elements[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
-    _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return DrawnSolid(vertices=1e3 * mesh.nodes, triangles=faces[np.sort(first[counts == 1])], sharp=_SHARP)
+def single_maps(
+    robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float, view: Camera | None = None
+) -> list[Canvas]:
+    """Pages of at most twelve small maps, each of such a size [mm]; none of fewer than three cables.
+
+    Args:
+        robot: whose cables they show.
+        stitches: of a flat body that is sewn.
+        width: of a page.
+        height: of a page, at most.
+        view: of a body in space; None for a flat one.
+    """
+    if len(robot.cables) < FEWEST:
+        return []
+    scene = _flat_scene(robot, stitches) if view is None else _space_scene(robot, view)
+    room = width / _COLUMNS
+    tall = min(height / _ROWS, _CELL_HEAD + 2 * _CELL_MARGIN + snug(scene.box, room - 2 * _CELL_MARGIN, 1e3))
+    count = len(scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0))))
+    each = _COLUMNS * max(int(height / tall), 1)
+    pages = []
+    for start in range(0, count, each):
+        shown = range(start, min(start + each, count))
+        canvas = Canvas(width, tall * -(-len(shown) // _COLUMNS))
+        for place, number in enumerate(shown):
+            left, top = room * (place % _COLUMNS), tall * (place // _COLUMNS)
+            _put_cell(canvas, robot, scene, number, (left, top, left + room, top + tall))
+        pages.append(canvas)
+    return pages
+
+
+def _flat_scene(robot: Robot, stitches: Sequence[CableStitches]) -> _Scene:
+    rings = [1e3 * ring for ring in flat_rings(robot)]
+    places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
+
+    def draw(canvas: Canvas, frame: CanvasFrame) -> None:
+        canvas.line([frame.way(ring) for ring in rings], width=THIN, grey=0.35, closed=True)
+        canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN, grey=_PALE)
+
+    box = np.array([places.min(axis=0), places.max(axis=0)])
+    return _Scene(box, lambda frame: front_runs(robot, stitches, frame), draw)
+
+
+def _space_scene(robot: Robot, view: Camera) -> _Scene:
+    pane: SightedBody = pane_of(robot, view, 500)
+
+    def runs(frame: CanvasFrame) -> list[CableRun]:
+        return [sighted(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
+
+    def draw(canvas: Canvas, frame: CanvasFrame) -> None:
+        canvas.line([frame.way(way) for way in pane.drawing.outlines], width=THIN, grey=0.35, closed=True)
+
+    return _Scene(pane.box, runs, draw)
+
+
+def _put_cell(canvas: Canvas, robot: Robot, scene: _Scene, number: int, cell: Box) -> None:
+    left, top, right, bottom = cell
+    frame = CanvasFrame.fit(
+        scene.box, (left + _CELL_MARGIN, top + _CELL_HEAD + _CELL_MARGIN, right - _CELL_MARGIN, bottom - _CELL_MARGIN)
+    )
+    runs = scene.runs(frame)
+    own = runs[number]
+    scene.draw(canvas, frame)
+    for run in runs:
+        if run is not own:
+            canvas.line([run.spots], width=THIN, grey=_PALE)
+    labels = LabelPlaces((left + 0.2, top + _CELL_HEAD, right - 0.2, bottom - 0.2))
+    cable = robot.cables[own.cable - 1]
+    put_run(canvas, labels, own, winch_marks_of(robot)[cable.winch])
+    twin = "" if own.twin is None else f", and C{own.twin} behind it"
+    words = f"C{own.cable} from {winch_marks_of(robot)[cable.winch]}{twin}"
+    canvas.text((left + 1.0, top + 2.6), words, size=9.0, anchor="start", bold=True, colour=own.colour)

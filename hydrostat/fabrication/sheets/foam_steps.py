@@ -1,14 +1,200 @@
-"""What to do with a body of foam until it is a robot, in order. Times are estimates; none was measured."""
+"""`mould_steps`, `skin_steps`: from the files of a mould to a robot of foam.
 
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, tie_step, winch_steps
+Times of cure are those of R52 and N5, all others are estimates.
+"""
+
+import re
+
+from hydrostat.fabrication.kit_options import MouldKind
+from hydrostat.fabrication.kit_plan import KitPlan
+from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.sheets.steps import (
+    AssemblyStep,
+    CableDepths,
+    cables_text,
+    minutes_text,
+    tie_step,
+    winch_steps,
+)
+from hydrostat.units import plural
+
+_SILICONE_CURE = ("Mold Max 30 silicone", "24 h, or 6 h at 60 °C")
+
+_MODEL_CURES = (("alginate", "less than 5 min"), ("plaster", "several hours"))  # of what a positive is cast with
+
+_OTHER_MOULD = (
+    "“hydrostat fabricate” with “--mould silicone” writes what it takes instead: positive and frames to print, "
+    "amounts, steps. positive/plate_1.3mf is the body alone: this mould does not need it."
+)
+
+_MODEL_FIRST = (
+    "From a model instead, as the thesis casts a hand (Fig. 4.1): hold the model still in alginate, draw it out, fill "
+    "the hole with plaster. Bed that positive to its parting line in clay in place of the first half, press keys into "
+    "the clay; after the first pour take all clay away, spray, and pour the second half."
+)
+
+_STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: it rises at once."
+_STIR_SILICONE = "Stir slowly, scrape sides and bottom, and let the bubbles rise, in a vacuum if you have one."
+_POUR_FOAM = (
+    "At once, in a thin stream down the sprue. Close a vent with tape when foam looks out of it; the sprue last."
+)
+_POUR_SILICONE = (
+    "In a thin stream down the sprue, until it stands in all vents. Tap the mould; fill up what sinks as bubbles rise."
+)
+_OPEN = (
+    "Lift the halves apart along the arrow, slowly. Where the body holds (hatched), squeeze it and roll it out. Trim "
+    "flash, sprue and vents with scissors."
+)
+_OPEN_FOAM = " Squeeze the body all over to open its cells."
 
 
-def skin_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
-    """Steps from a body of foam to a robot."""
-    cables = len(given.robot.cables)
+def foam_expansion(mould: Mould) -> bool:
+    """Tell whether what is poured is a foam; what else is cast is silicone."""
+    return mould.casting.expansion > 1
+
+
+def other_way(mould: Mould) -> tuple[str, str]:
+    """Another way to the mould: a title, and what to know of it."""
+    if mould.kind is MouldKind.PRINTED:
+        return "Or a mould of silicone", _OTHER_MOULD
+    return "Or from a model, without a printed positive", _MODEL_FIRST
+
+
+def cure_times(mould: Mould | None) -> tuple[tuple[str, str], ...]:
+    """How long each material cures, that of the body last."""
+    if mould is None:
+        return ()
+    what, time = mould.casting.times[-1]
+    body = (what.removesuffix(" cures"), time.partition(" (")[0])
+    return (body,) if mould.kind is MouldKind.PRINTED else (_SILICONE_CURE, *_MODEL_CURES, body)
+
+
+def body_mass(mould: Mould) -> float:
+    """Mass of the body alone, without sprue, vents and what is spare [g]."""
+    mix = mould.casting.body
+    return mix.density * mould.volumes.get("cavity", mix.volume)
+
+
+def mould_steps(plan: KitPlan, lists: Lists, mould: Mould) -> tuple[AssemblyStep, ...]:
+    """Steps from the files of the mould to a body of foam."""
+    printed = mould.kind is MouldKind.PRINTED
+    mix, foams = mould.casting.body, foam_expansion(mould)
     return (
-        *(_cable_steps(given) if cables else ()),
+        *(_printed_first(plan) if printed else _silicone_first(plan, mould)),
+        AssemblyStep(
+            "Spray release agent",
+            10,
+            "On both halves and on keys, sprue and vents: two thin coats. Let the solvent dry.",
+            wait="10 min",
+        ),
+        *_tubes_first(CableDepths.of(lists.stitching, len(plan.robot.cables))),
+        AssemblyStep("Close it", 10, f"{_closing(mould)} {mould.stands}"),
+        AssemblyStep(
+            "Weigh and stir",
+            5,
+            f"{mix.part_a:.0f} g of part A and {mix.part_b:.0f} g of part B of {mix.material}, each in its own cup, if "
+            "your tins ask for this ratio. " + (_STIR_FOAM if foams else _STIR_SILICONE),
+        ),
+        AssemblyStep("Pour", 5, _POUR_FOAM if foams else _POUR_SILICONE, wait="its cure"),
+        AssemblyStep("Open", 20, _OPEN + (_OPEN_FOAM if foams else "")),
+    )
+
+
+def _in_pieces(plan: KitPlan) -> bool:
+    """Whether something of the mould is printed in pieces that are joined."""
+    return any(re.fullmatch(r"(mould|positive|frame)_(lower|upper)_\d+", part.name) for part in plan.printed)
+
+
+def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:
+    glue = (
+        " A half that is in pieces is joined with glue and dowels of 3 mm in its holes; never glue half to half."
+        if _in_pieces(plan)
+        else ""
+    )
+    return (
+        AssemblyStep(
+            "Print the mould",
+            20,
+            "All plates from mould/plate_1.3mf on: PLA, 0.2 mm layers, three walls, as the pieces lie, no supports "
+            "in the cavity." + glue,
+            wait=f"about {minutes_text(60 * plan.print_hours)} of printing, all parts",
+        ),
+        AssemblyStep(
+            "Seal the cavity",
+            30,
+            "Sand the ridges of the layers. Brush on two coats of sealer or shellac, or the foam creeps between the "
+            "layers.",
+            wait="1 h for each coat",
+        ),
+    )
+
+
+def _silicone_first(plan: KitPlan, mould: Mould) -> tuple[AssemblyStep, ...]:
+    glue = " What is in pieces is joined with glue and dowels of 3 mm in its holes." if _in_pieces(plan) else ""
+    masses = [f"{mix.mass:.0f} g" for mix in mould.casting.silicone] or ["the amount"]
+    return (
+        AssemblyStep(
+            "Print positive and frames",
+            30,
+            "All plates from mould/plate_1.3mf on: positive, two frames, four key domes."
+            + glue
+            + " Fill and sand what the silicone "
+            "should not copy. Leave the two halves of the positive apart.",
+            wait=f"about {minutes_text(60 * plan.print_hours)} of printing, all parts",
+        ),
+        AssemblyStep(
+            "Pour the first half",
+            30,
+            "Lay the lower half of the positive on a flat board, flat side down, the lower frame round it, a dome in "
+            "each corner. Seal frame and joints to the board with tape or clay. Spray release agent. Pour "
+            f"{masses[0]} of mixed silicone in a thin stream, from one corner.",
+            wait="its cure",
+        ),
+        AssemblyStep(
+            "Pour the second half",
+            30,
+            "Turn frame, silicone and positive over. Take the domes out. Put the upper half of the positive on the "
+            "lower with dowels of 3 mm, no glue, and the upper frame on the lower; seal the joint. Spray silicone and "
+            f"positive twice: silicone sticks to silicone. Pour {masses[-1]}.",
+            wait="its cure",
+        ),
+        AssemblyStep(
+            "Take the positive out",
+            15,
+            "Open the halves, draw the positive out, clear the sprue"
+            + (f" and punch {plural(mould.vents, 'vent')} of 3 mm at the high points." if mould.vents else "."),
+        ),
+    )
+
+
+def _tubes_first(depths: CableDepths) -> tuple[AssemblyStep, ...]:
+    """Tubes that no needle reaches later."""
+    if not depths.laid:
+        return ()
+    return (
+        AssemblyStep(
+            "Lay tubes in the cavity",
+            10 * len(depths.laid),
+            f"{cables_text(depths.laid)} {'runs' if len(depths.laid) == 1 else 'run'} too deep for a needle: where "
+            "lists/stitching.csv says “tube laid before casting”, lay a PTFE tube through these points on a straight "
+            "rod, its ends closed with tape. Hold the rod at both ends: in a hole drilled through the wall, or on "
+            "pins in it.",
+        ),
+    )
+
+
+def _closing(mould: Mould) -> str:
+    if mould.bolts:
+        return f"Push the keys home and close it with {plural(mould.bolts, 'bolt')} M4; no light may shine through."
+    return "Push the keys home and strap it between two boards, not so hard that it bulges."
+
+
+def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
+    """Steps from a body of foam to a robot."""
+    cables = len(plan.robot.cables)
+    return (
+        *(_cable_steps(plan, lists) if cables else ()),
         AssemblyStep(
             "Fix the skin",
             20,
@@ -21,15 +207,16 @@ def skin_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
             ),
             wait="15 min",
         ),
-        *winch_steps(given),
+        *winch_steps(plan),
         *((tie_step(cables),) if cables else ()),
     )
 
 
-def _cable_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
+def _cable_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
     """How cables come in or on the body, by their depth."""
-    cables, depths = len(given.robot.cables), CableDepths.of(given)
-    tubes = bool(given.lists.tubes.rows)
+    cables = len(plan.robot.cables)
+    depths = CableDepths.of(lists.stitching, cables)
+    tubes = bool(lists.tubes.rows)
     deep = sorted({*depths.drawn, *depths.laid, *depths.tubed}, key=lambda cable: int(cable[1:]))
     steps = [
         AssemblyStep(

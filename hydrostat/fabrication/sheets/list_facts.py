@@ -1,33 +1,32 @@
 """`bill_facts`, `piece_facts`, `power_facts`: what is bought, pieces by their numbers, and wires, for a sheet."""
 
-from typing import Any
+from dataclasses import dataclass
 
+from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.bill import BillRow
+from hydrostat.fabrication.lists.motors import PowerPlan
+from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.parts.board import BOARDS
+from hydrostat.fabrication.sheets.facts import PieceFacts, PowerFacts, TableFacts
 from hydrostat.fabrication.sheets.legible import shortened
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.solids.assembly import Placed
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.winch_marks import winch_marks_of
-
-Facts = dict[str, Any]  # plain data, as JSON has it
+from hydrostat.robot import Robot
 
 _UNITS = {"piece": "", "m^2": "m²"}
 
 
-def bill_facts(given: SheetInput) -> Facts:
+def bill_facts(bill: Table[BillRow]) -> TableFacts:
     """What is bought, how much of it, and what it costs, with the total."""
     rows = [
-        [shortened(row.short_name, 40), _amount(row), _dollars(row.cost_used)]
-        for row in given.lists.bill.rows
-        if not row.is_total
+        [shortened(row.short_name, 40), _amount(row), _dollars(row.cost_used)] for row in bill.rows if not row.is_total
     ]
-    rows += [[words, "", f"{cost:.0f}"] for words, cost in _costs(given)]
     return {
-        "file": "lists/bill_of_materials.csv",
+        "file": f"lists/{bill.name}.csv",
         "heads": ["what", "amount", "USD"],
         "right": [False, True, True],
-        "rows": rows,
+        "rows": [*rows, *([words, "", f"{cost:.0f}"] for words, cost in _costs(bill))],
     }
 
 
@@ -45,16 +44,16 @@ def _dollars(cost: float) -> str:
     return "<1" if 0 < cost < 0.5 else f"{cost:.0f}"
 
 
-def _costs(given: SheetInput) -> list[tuple[str, float]]:
+def _costs(bill: Table[BillRow]) -> list[tuple[str, float]]:
     """Costs of all that is used up, and of all in whole packs [USD], by their names; none if nothing is bought."""
-    rows = [row for row in given.lists.bill.rows if not row.is_total]
+    rows = [row for row in bill.rows if not row.is_total]
     used, packs = sum(row.cost_used for row in rows), sum(row.cost_packs for row in rows)
     return [("used up", used), ("in whole packs", packs)] if rows else []
 
 
-def cost_text(given: SheetInput) -> tuple[str, ...]:
+def cost_text(bill: Table[BillRow]) -> tuple[str, ...]:
     """What it costs; nothing if nothing is known."""
-    told = [f"{cost:.0f} USD {name}" for name, cost in _costs(given)]
+    told = [f"{cost:.0f} USD {name}" for name, cost in _costs(bill)]
     return (f"about {', '.join(told)}",) if told else ()
 
 
@@ -64,11 +63,11 @@ _OF_ONE, _OF_MANY, _OF_ALL = " of winch ", " of winches ", " of every winch"
 _BOUGHT = " (bought)"
 
 
-def piece_numbers(given: SheetInput) -> tuple[dict[str, int], dict[str, int]]:
+def piece_numbers(plan: KitPlan) -> tuple[dict[str, int], dict[str, int]]:
     """Numbers of the pieces of the winch and of the stopper by name; pieces of one title share a number."""
     numbers: list[dict[str, int]] = []
     count = 0
-    for assembly in (given.winch, given.stopper):
+    for assembly in _numbered(plan):
         titles: dict[str, int] = {}
         for placed in assembly.pieces if assembly else ():
             if placed.title not in titles:
@@ -78,51 +77,68 @@ def piece_numbers(given: SheetInput) -> tuple[dict[str, int], dict[str, int]]:
     return numbers[0], numbers[1]
 
 
-def piece_facts(given: SheetInput) -> list[Facts]:
+def _numbered(plan: KitPlan) -> tuple[PartAssembly | None, PartAssembly | None]:
+    """Assemblies whose pieces have numbers: the winch and the stopper."""
+    return plan.rigid.winch_assembly, plan.rigid.stopper_assembly
+
+
+@dataclass
+class _Piece:
+    """A piece that is counted."""
+
+    title: str
+    count: int = 0
+    files: str = ""
+
+    def facts(self, number: str) -> PieceFacts:
+        return {"number": number, "title": self.title, "count": str(self.count), "files": self.files}
+
+
+def piece_facts(plan: KitPlan) -> list[PieceFacts]:
     """Every piece of the pictures with its number and how many are needed in all, then what else is printed."""
-    units = (len(given.robot.winches), len(given.robot.cables))
+    units = (len(plan.robot.winches), len(plan.robot.cables))
     kinds: dict[str, list[Printed]] = {}
-    for part in given.printed:
-        kinds.setdefault(_kind_of(part, given), []).append(part)
-    pieces: dict[int, Facts] = {}
-    for assembly, numbers, unit in zip((given.winch, given.stopper), piece_numbers(given), units, strict=True):
+    for part in plan.printed:
+        kinds.setdefault(_kind_of(part, plan), []).append(part)
+    pieces: dict[int, _Piece] = {}
+    for assembly, numbers, unit in zip(_numbered(plan), piece_numbers(plan), units, strict=True):
         for placed in assembly.pieces if assembly else ():
-            entry = pieces.setdefault(numbers[placed.name], {"title": _called(placed), "count": 0, "files": ""})
+            piece = pieces.setdefault(numbers[placed.name], _Piece(_called(placed)))
             if placed.printed and placed.title in kinds:
-                entry |= _count_and_files(kinds.pop(placed.title))
-            elif not entry["files"]:
-                entry["count"] += unit
-                entry["title"] += "" if placed.printed or entry["title"].endswith(_BOUGHT) else _BOUGHT
-    drawn = [{"number": str(number), **entry} for number, entry in pieces.items()]
-    rest = [{"number": "", "title": kind, **_count_and_files(parts)} for kind, parts in kinds.items()]
-    return [{**entry, "count": str(entry["count"])} for entry in (*drawn, *rest)]
+                piece.count, piece.files = _count_and_files(kinds.pop(placed.title))
+            elif not piece.files:
+                piece.count += unit
+                piece.title += "" if placed.printed or piece.title.endswith(_BOUGHT) else _BOUGHT
+    rest = [_Piece(kind, *_count_and_files(parts)) for kind, parts in kinds.items()]
+    return [*(piece.facts(str(number)) for number, piece in pieces.items()), *(piece.facts("") for piece in rest)]
 
 
-def winch_files(given: SheetInput, winch: str) -> list[str]:
+def winch_files(plan: KitPlan, winch: str) -> list[str]:
     """Stems of the files that a winch does not share with all others."""
     found = []
-    for part in given.printed:
+    for part in plan.printed:
         kind, _, names = part.title.partition(_OF_MANY)
         if names:
             mine = f", {winch}, " in f", {names}, "
         else:
             kind, _, name = part.title.partition(_OF_ONE)
             mine = name == winch
-        if kind and mine and len(given.robot.winches) > 1:
+        if kind and mine and len(plan.robot.winches) > 1:
             found.append(part.name)
     return found
 
 
-def _count_and_files(parts: list[Printed]) -> Facts:
+def _count_and_files(parts: list[Printed]) -> tuple[int, str]:
     """How many of a kind, and from which files."""
     files = [part.name + (f" × {part.count}" if len(parts) > 1 and part.count > 1 else "") for part in parts]
-    return {"count": sum(part.count for part in parts), "files": shortened(", ".join(files), 90)}
+    return sum(part.count for part in parts), shortened(", ".join(files), 90)
 
 
-def _kind_of(part: Printed, given: SheetInput) -> str:
+def _kind_of(part: Printed, plan: KitPlan) -> str:
     """What a printed part is called in the list."""
     kind = _kind(part.title)
-    if given.mould and part.name in {piece.name for piece in given.mould.printed} and "positive" not in kind:
+    mould = plan.work.mould
+    if mould and part.name in {piece.name for piece in mould.printed} and "positive" not in kind:
         kind = f"Mould, {kind[:1].lower()}{kind[1:]}"
     optional = ", optional" if part.name.startswith("grommet") else ""
     return shortened(kind[:1].upper() + kind[1:], 44) + optional
@@ -140,12 +156,11 @@ def _kind(title: str) -> str:
     return title.removeprefix("mould, ").removeprefix("Mould, ")
 
 
-def power_facts(given: SheetInput) -> Facts | None:
+def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
     """Supply, fuse, leads and battery, what to mind, and which wire goes where; None without motors."""
-    plan = given.lists.power
     if plan is None:
         return None
-    marks = winch_marks_of(given.robot)
+    marks = winch_marks_of(robot)
     named = [f"{marks[name]} {shortened(name, 24)}" for name in plan.winches]
     mind = [
         "The fuse sits in the plus lead, at the supply. The switch for the motors stays in reach while they turn.",

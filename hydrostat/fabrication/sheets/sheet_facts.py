@@ -4,15 +4,24 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 
 from hydrostat.fabrication.kit_options import Method, MouldKind
+from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.cuts import AT_BODY
+from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
-from hydrostat.fabrication.sheets import foam_steps, mould_steps, plush_steps
+from hydrostat.fabrication.sheets.facts import MouldFacts, SheetFacts, StepFacts, TableFacts, WinchFacts
+from hydrostat.fabrication.sheets.foam_steps import (
+    body_mass,
+    cure_times,
+    foam_expansion,
+    mould_steps,
+    other_way,
+    skin_steps,
+)
 from hydrostat.fabrication.sheets.legible import note_lines, sentence, shortened
-from hydrostat.fabrication.sheets.list_facts import Facts, bill_facts, cost_text, piece_facts, power_facts, winch_files
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
+from hydrostat.fabrication.sheets.list_facts import bill_facts, cost_text, piece_facts, power_facts, winch_files
+from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text, plush_steps
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.units import plural
 
@@ -29,57 +38,58 @@ _TUBES = {"cable": "cable", "start": "from", "end": "to", "length": "cut to"}
 _PLACES = {AT_BODY: "body"}  # what the list of tubes calls a place, and the sheet, which has less room
 
 
-def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
+def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: str = "") -> SheetFacts:
     """All words and numbers, long ones shortened; `letters`: a sentence on letters that cannot be printed."""
-    plush = given.method is Method.PLUSH
-    steps = _all_steps(given)
+    plush = plan.method is Method.PLUSH
+    steps, mould, stitches = _all_steps(plan, lists), plan.work.mould, shown_stitches(plan)
     return {
-        "paper": given.paper.value,
-        "method": given.method.value,
-        "title": shortened(given.robot.name, _NAME),
-        "pairs": given.pairs,
-        "flat": given.robot.body.mesh.dim == 2,
+        "paper": plan.options.paper.value,
+        "method": plan.method.value,
+        "title": shortened(plan.robot.name, _NAME),
+        "pairs": plan.pairs,
+        "flat": plan.robot.body.mesh.dim == 2,
         "kind": "Plush robot" if plush else "Foam robot",
-        "facts": _about(given, steps),
-        "mind": note_lines(given.problems, (*((letters,) if letters else ()), *given.warnings), given.robot),
-        "forced": bool(given.problems),
-        "bill": bill_facts(given),
-        "cables": _table(given.lists.cables, _CABLES),
-        "log": [f"C{number}" for number in range(1, len(given.robot.cables) + 1)],
-        "tubes": _table(given.lists.tubes, _TUBES),
-        "winches": _winches(given),
-        "pieces": piece_facts(given),
-        "shown": f"C{stitches.cable}" if (stitches := shown_stitches(given)) else "",
-        "motor": shortened(given.motor, 80),
+        "facts": _about(plan, lists, steps),
+        "mind": note_lines(findings.problems, (*((letters,) if letters else ()), *findings.warnings), plan.robot),
+        "forced": bool(findings.problems),
+        "bill": bill_facts(lists.bill),
+        "cables": _table(lists.cables, _CABLES),
+        "log": [f"C{number}" for number in range(1, len(plan.robot.cables) + 1)],
+        "tubes": _table(lists.tubes, _TUBES),
+        "winches": _winches(plan),
+        "pieces": piece_facts(plan),
+        "shown": f"C{stitches.cable}" if stitches else "",
+        "motor": shortened(plan.rigid.motor.title, 80),
         "steps": [[_step(step) for step in page] for page in steps],
         "checks": [
             {"what": check.what, "measured": check.measured, "allowed": check.allowed, "passed": check.passed}
-            for check in given.checks
+            for check in findings.checks
         ],
-        "mould": _mould(given.mould),
-        "power": power_facts(given),
-        "other_way": list(mould_steps.other_way(given.mould)) if given.mould else [],
-        "cures": [list(cure) for cure in mould_steps.cure_times(given.mould)],
+        "mould": _mould(mould),
+        "power": power_facts(lists.power, plan.robot),
+        "other_way": list(other_way(mould)) if mould else [],
+        "cures": [list(cure) for cure in cure_times(mould)],
     }
 
 
-def shown_stitches(given: SheetInput) -> CableStitches | None:
+def shown_stitches(plan: KitPlan) -> CableStitches | None:
     """Stitches of the cable that is drawn: of those with the most holes the first."""
-    sewn = [stitches for stitches in given.stitches if stitches.passes]
+    sewn = [stitches for stitches in plan.work.stitches if stitches.passes]
     return max(sewn, key=lambda stitches: (len(stitches.passes), -stitches.cable)) if sewn else None
 
 
-def _all_steps(given: SheetInput) -> list[tuple[AssemblyStep, ...]]:
+def _all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
     """The steps, page by page."""
-    if given.method is Method.PLUSH:
-        return [plush_steps.plush_steps(given)]
-    before = [mould_steps.mould_steps(given, given.mould)] if given.mould is not None else []
-    return [*before, foam_steps.skin_steps(given)]
+    if plan.method is Method.PLUSH:
+        return [plush_steps(plan)]
+    mould = plan.work.mould
+    before = [mould_steps(plan, lists, mould)] if mould is not None else []
+    return [*before, skin_steps(plan, lists)]
 
 
-def _about(given: SheetInput, steps: Iterable[Iterable[AssemblyStep]]) -> list[str]:
+def _about(plan: KitPlan, lists: Lists, steps: Iterable[Iterable[AssemblyStep]]) -> list[str]:
     """What kind of robot it is, a line each."""
-    robot = given.robot
+    robot = plan.robot
     nodes = 1e3 * robot.body.mesh.nodes
     sides = [*(nodes.max(axis=0) - nodes.min(axis=0)).tolist()]
     if robot.body.thickness is not None:
@@ -88,13 +98,13 @@ def _about(given: SheetInput, steps: Iterable[Iterable[AssemblyStep]]) -> list[s
     return [
         " × ".join(f"{side:.0f}" for side in sides) + " mm",
         f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
-        + (f" in {plural(given.pairs, 'pair')}" if given.pairs else ""),
+        + (f" in {plural(plan.pairs, 'pair')}" if plan.pairs else ""),
         f"about {minutes_text(busy)} of work",
-        *cost_text(given),
+        *cost_text(lists.bill),
     ]
 
 
-def _table(table: Table, headings: Mapping[str, str]) -> Facts | None:
+def _table(table: Table, headings: Mapping[str, str]) -> TableFacts | None:
     """Some fields of a list, as text, under such headings; None if it has no row."""
     if not table.rows:
         return None
@@ -112,19 +122,18 @@ def _short_place(text: str) -> str:
     return shortened(_PLACES.get(text, text).partition(" (")[0], 20)
 
 
-def _winches(given: SheetInput) -> list[Facts]:
+def _winches(plan: KitPlan) -> list[WinchFacts]:
     """Mark, name, cables and spool of each winch."""
-    robot, marks = given.robot, winch_marks_of(given.robot)
+    robot, marks = plan.robot, winch_marks_of(plan.robot)
     return [
         {
             "mark": marks[winch.name],
-            "files": ", ".join(winch_files(given, winch.name)),
+            "files": ", ".join(winch_files(plan, winch.name)),
             "name": shortened(winch.name, _SHORT),
             "cables": ", ".join(
                 _runs([i for i, cable in enumerate(robot.cables, start=1) if cable.winch == winch.name])
             ),
             "spool": f"{2e3 * robot.largest_spool(winch):.3g}",
-            "travel": f"{1e3 * winch.travel:.0f}",
         }
         for winch in robot.winches
     ]
@@ -140,11 +149,11 @@ def _runs(numbers: Iterable[int]) -> Iterator[str]:
             yield from (f"C{number}" for number in row)
 
 
-def _step(step: AssemblyStep) -> Facts:
+def _step(step: AssemblyStep) -> StepFacts:
     return {"title": step.title, "time": step.time, "text": step.text}
 
 
-def _mould(mould: Mould | None) -> Facts | None:
+def _mould(mould: Mould | None) -> MouldFacts | None:
     """What is said of a mould beside its steps."""
     if mould is None:
         return None
@@ -162,12 +171,11 @@ def _mould(mould: Mould | None) -> Facts | None:
     ]
     return {
         "silicone": mould.kind is MouldKind.SILICONE,
-        "foams": mould_steps.foam_expansion(mould),
-        "weighs": f"{mould_steps.body_mass(mould):.0f} g",
+        "foams": foam_expansion(mould),
+        "weighs": f"{body_mass(mould):.0f} g",
         "undercut": _undercut(mould.pull.share),
         "amounts": amounts,
         "ratio": sentence(body.ratio),
-        "release": sentence(casting.release),
         "pieces": [f"{number} {placed.title}" for number, placed in enumerate(mould.assembly.pieces, start=1)],
     }
 

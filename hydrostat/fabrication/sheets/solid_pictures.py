@@ -25,7 +25,7 @@ from hydrostat.drawing import (
     line_drawing,
     snug,
 )
-from hydrostat.fabrication.sheets.cable_map import body_solid, flat_marks, flat_rings
+from hydrostat.fabrication.sheets.map_layout import body_solid, flat_marks, flat_rings
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import triangles_of
 from hydrostat.robot import Robot

@@ -1,11 +1,11 @@
-"""What robots of plush and of foam share: what a step is, cables and how deep they lie, winches."""
+"""`plush_steps`, and steps that robots of plush and of foam share. Times are estimates; none was measured."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_options import Method
-from hydrostat.fabrication.lists.stitching import SKIN, DepthRow, Reach
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.fabrication.kit_plan import KitPlan
+from hydrostat.fabrication.lists.stitching import SKIN, DepthRow, PointAccess, Stitching
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot
 from hydrostat.units import plural
@@ -66,24 +66,22 @@ class CableDepths:
     tubed: tuple[str, ...] = ()  # those whose own tube runs in the body, deeper than the skin
 
     @classmethod
-    def of(cls, given: SheetInput) -> "CableDepths":
+    def of(cls, stitching: Stitching | None, cables: int) -> "CableDepths":
         """Read the depths of their points; cables whose depths are not listed are sewn on."""
-        points = (
-            [row for row in given.lists.stitching.rows if isinstance(row, DepthRow)] if given.lists.stitching else []
-        )
+        points = [row for row in stitching.rows if isinstance(row, DepthRow)] if stitching is not None else []
         if not points:
-            return cls(sewn=tuple(f"C{number}" for number in range(1, len(given.robot.cables) + 1)))
-        found: dict[str, set[Reach]] = {}
+            return cls(sewn=tuple(f"C{number}" for number in range(1, cables + 1)))
+        found: dict[str, set[PointAccess]] = {}
         for point in points:
-            in_tube = point.how in (Reach.TUBE, Reach.TUBE_END)
-            how = Reach.TUBE if in_tube and point.depth > SKIN else Reach.TUBE_END if in_tube else point.how
+            in_tube = point.how in (PointAccess.TUBE, PointAccess.TUBE_END)
+            how = PointAccess.TUBE if in_tube and point.depth > SKIN else PointAccess.TUBE_END if in_tube else point.how
             found.setdefault(point.cable, set()).add(how)
-        deep = {Reach.NEEDLE, Reach.LAID, Reach.TUBE}
+        deep = {PointAccess.NEEDLE, PointAccess.LAID, PointAccess.TUBE}
         return cls(
             sewn=tuple(cable for cable, hows in found.items() if not hows & deep),
-            drawn=tuple(cable for cable, hows in found.items() if Reach.NEEDLE in hows),
-            laid=tuple(cable for cable, hows in found.items() if Reach.LAID in hows),
-            tubed=tuple(cable for cable, hows in found.items() if Reach.TUBE in hows),
+            drawn=tuple(cable for cable, hows in found.items() if PointAccess.NEEDLE in hows),
+            laid=tuple(cable for cable, hows in found.items() if PointAccess.LAID in hows),
+            tubed=tuple(cable for cable, hows in found.items() if PointAccess.TUBE in hows),
         )
 
 
@@ -104,15 +102,15 @@ def cables_text(cables: Iterable[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
 
 
-def marks_on(given: SheetInput, mount: Mount) -> tuple[str, ...]:
+def marks_on(plan: KitPlan, mount: Mount) -> tuple[str, ...]:
     """Marks of the winches that are mounted so."""
-    marks = winch_marks_of(given.robot)
-    return tuple(marks[winch.name] for winch in given.robot.winches if winch.mount is mount)
+    marks = winch_marks_of(plan.robot)
+    return tuple(marks[winch.name] for winch in plan.robot.winches if winch.mount is mount)
 
 
-def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
+def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     """Steps for the winches: put together, on the base, then in a body of foam; into plush they go with the filling."""
-    inside, outside = marks_on(given, Mount.BODY), marks_on(given, Mount.WORLD)
+    inside, outside = marks_on(plan, Mount.BODY), marks_on(plan, Mount.WORLD)
     count = len(inside) + len(outside)
     steps = []
     if count:
@@ -126,7 +124,7 @@ def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
         )
     if outside:
         steps.append(_base_step(outside))
-    if inside and given.method is Method.FOAM:
+    if inside and plan.method is Method.FOAM:
         steps.append(
             AssemblyStep(
                 "Put winches in",
@@ -135,9 +133,9 @@ def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
                 "Lead the wires out together; sew the skin round them.",
             )
         )
-    if given.seat is not None:
-        steps.append(_seat_step(given.robot))
-    elif (held := held_text(given.robot)) and given.method is Method.FOAM:
+    if plan.rigid.seat_assembly is not None:
+        steps.append(_seat_step(plan.robot))
+    elif (held := held_text(plan.robot)) and plan.method is Method.FOAM:
         steps.append(AssemblyStep("Hold it", 5, held))
     return tuple(steps)
 
@@ -182,3 +180,135 @@ def marks_text(marks: tuple[str, ...]) -> str:
     if len(numbers) > 2 and numbers == list(range(numbers[0], numbers[-1] + 1)):
         return f"{marks[0]} to {marks[-1]}"
     return marks[0] if len(marks) == 1 else f"{', '.join(marks[:-1])} and {marks[-1]}"
+
+
+def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
+    """Steps from the folder of files to a robot that is sewn up."""
+    cables = len(plan.robot.cables)
+    return (
+        *_prints(plan),
+        AssemblyStep(
+            "Cut the cloth",
+            20,
+            "Laser pattern/pattern.svg or pattern/pattern.dxf: marks first, then pinholes, edges last. Or print "
+            f"pattern/pattern_{plan.options.paper}.pdf at 100 %, check that the bar measures 100 mm, cut by hand and "
+            "punch the pinholes. Keep the grain arrows along the cloth.",
+        ),
+        *(_cables(plan) if cables else ()),
+        AssemblyStep(
+            "Put the zipper in",
+            25,
+            "Slit the back panel along its opening mark. Sew the zipper in, its slide on the outside, and open it.",
+        ),
+        _sew(plan),
+        *winch_steps(plan),
+        *((tie_step(cables),) if cables else ()),
+        _stuff(plan),
+        AssemblyStep(
+            "Close and calibrate" if cables else "Close it",
+            10 + 5 * cables,
+            ("Close the zipper, lead the wires out at its end, then calibrate. " if cables else "Close the zipper. ")
+            + _matched(plan)
+            + held_text(plan.robot),
+        ),
+    )
+
+
+def _matched(plan: KitPlan) -> str:
+    """How the two of a pair are set."""
+    if not plan.pairs:
+        return ""
+    return (
+        f"Set the two of a pair (C1 with C{plan.pairs + 1}, and so on) equally tight: a limb leans to the tighter one. "
+    )
+
+
+def _prints(plan: KitPlan) -> tuple[AssemblyStep, ...]:
+    if not plan.printed:
+        return ()
+    count = plural(sum(part.count for part in plan.printed), "part")
+    return (
+        AssemblyStep(
+            "Print the parts",
+            20,
+            f"All plates from parts/plate_1.3mf on: {count} of "
+            "PLA, 0.2 mm layers, no supports, as they lie. Try every fit before you go on: spools turn freely, motors "
+            "slide in without force.",
+            wait=f"about {minutes_text(60 * plan.print_hours)} of printing",
+        ),
+    )
+
+
+def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
+    cables = len(plan.robot.cables)
+    tubes = sum(len(cable.sheathed) for cable in plan.robot.cables)
+    sheaths = "Tie sheaths to the inside of the cloth at both ends, the line in them. " if tubes else ""
+    grommets = " Grommets are optional: sew one behind a hole that frays." if _grommets(plan) else ""
+    return (
+        AssemblyStep(
+            "Cut cables and sheaths" if tubes else "Cut the cables",
+            3 * (cables + tubes),
+            "Cut each line to lists/cable_cuts.csv, pulled straight. Mark its spool mark with a pen, from the end that "
+            "gets the stopper, and tape the cable's number to it."
+            + (" Cut tubes to lists/sheath_cuts.csv, square, with a sharp blade." if tubes else ""),
+        ),
+        AssemblyStep(
+            "Stitch the cables",
+            10 * cables,
+            f"{_laid(plan)} (lists/stitching.csv). Begin at the winch and follow the numbers of the map: solid runs "
+            f"outside, dashed inside. {sheaths}End outside; put the stopper on loosely behind the last hole.{grommets}",
+        ),
+    )
+
+
+def _laid(plan: KitPlan) -> str:
+    """What is laid flat, and which cables are sewn on it in which order."""
+    cables = len(plan.robot.cables)
+    if plan.pairs:
+        return (
+            f"Lay the front panel flat, right side up, and take {_row(1, plan.pairs)} in order. Then the back panel, "
+            f"as its marks show: {_row(plan.pairs + 1, cables)}, each behind its twin"
+        )
+    panel = plan.panels[0] if plan.panels else "front"
+    what = f"the {panel} panel" if _flat(plan) else "each patch"
+    return f"Lay {what} flat, right side up. Take {_row(1, cables)} in order"
+
+
+def _row(first: int, last: int) -> str:
+    """C1; C1 to C6."""
+    return f"C{first}" if first == last else f"C{first} to C{last}"
+
+
+def _flat(plan: KitPlan) -> bool:
+    """Whether it is a front and a back; else a skin of patches."""
+    return plan.robot.body.mesh.dim == 2
+
+
+def _grommets(plan: KitPlan) -> bool:
+    return any(part.name.startswith("grommet") for part in plan.printed)
+
+
+def _sew(plan: KitPlan) -> AssemblyStep:
+    sides = "front and back" if _flat(plan) else "neighbouring patches"
+    between = "Sew the gusset strips between them, notch to notch" if plan.work.gusset else "Match the notches"
+    tucked = ", all lines tucked inside, clear of the seam" if plan.robot.cables else ""
+    return AssemblyStep(
+        "Sew the body",
+        45,
+        f"Lay {sides} right sides together{tucked}. {between}; sew twice along the seam line, leave no gap. "
+        "Snip the allowance in inner corners. Turn it out through the zipper.",
+    )
+
+
+def _stuff(plan: KitPlan) -> AssemblyStep:
+    inside, thickness = marks_on(plan, Mount.BODY), plan.robot.body.thickness
+    full = f"about {1e3 * thickness:.0f} mm thick" if thickness else "as large as on page 1"
+    them = "it" if len(inside) == 1 else "them"
+    places = (
+        f"Set {marks_text(inside)} where the map has {them} and tie {them} to the cloth in front. " if inside else ""
+    )
+    winches = ", then round the winches," if inside else ""
+    lumps = " No lumps by the cables." if plan.robot.cables else ""
+    return AssemblyStep(
+        "Stuff the body", 30, f"{places}Fill limbs first{winches} softly and evenly, until the body is {full}." + lumps
+    )

@@ -1,13 +1,15 @@
 """Small robots, loads and motors for the lists."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from builders import box_mesh, mesh_body
+from kit_plans import make_plan
 from plush_robots import SQUARE, drawn_body
 
 from hydrostat.fabrication.demand import Demand
-from hydrostat.fabrication.lists.list_input import ListInput
+from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.robot import Cable, Mount, Pin, Robot, Winch
 
@@ -54,6 +56,6 @@ def demand_of(robot: Robot, *tensions: float) -> Demand:
     return Demand(poses=('pose "test"',), tensions=pulls, torques=torques, taken=taken)
 
 
-def given(robot: Robot, **changes: object) -> ListInput:
-    """Lists of a robot with plain loads and a plain motor."""
-    return replace(ListInput(robot=robot, demand=demand_of(robot), motor=PLAIN), **changes)
+def given(robot: Robot, **facts: Any) -> KitPlan:
+    """Plan of a robot with plain loads and a plain motor; facts by their names."""
+    return make_plan(robot, **({"demand": demand_of(robot), "motor": PLAIN} | facts))

@@ -4,15 +4,16 @@ import math
 from dataclasses import replace
 
 import pytest
-from small_inputs import PLAIN, box, given, square
+from kit_plans import change_plan
+from small_inputs import box, given, square
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
 from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price, bill_table, cost_of
 from hydrostat.fabrication.lists.cuts import cable_cuts, sheath_cuts
 from hydrostat.fabrication.lists.line import line_for
-from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
+from hydrostat.fabrication.lists.motors import power_plan
 from hydrostat.fabrication.lists.needs import all_needs, filling_mass
-from hydrostat.fabrication.lists.power import power_plan
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed
@@ -23,10 +24,10 @@ CUBES = 3 * 1.24e-3 * (1.2 * 600 + 0.15 * (1000 - 1.2 * 600))
 """Mass of the three [g]: a shell of 1.2 mm under 600 mm^2, 15 % of the rest."""
 
 
-def needs(this: ListInput) -> dict[str, Item]:
-    cuts = cable_cuts(this.robot, leads={}, outside=this.outside, spare_wraps=2.0)
-    tubes = sheath_cuts(this.robot, seats={}, outside=this.outside)
-    power = power_plan({cable.winch: 10.0 for cable in this.robot.cables}, this.motor)
+def needs(this: KitPlan) -> dict[str, Item]:
+    cuts = cable_cuts(this.robot, leads={}, outside=this.rigid.outside, spare_wraps=2.0)
+    tubes = sheath_cuts(this.robot, seats={}, outside=this.rigid.outside)
+    power = power_plan({cable.winch: 10.0 for cable in this.robot.cables}, this.rigid.motor)
     return {item.what: item for item in all_needs(this, line_for(0.4), cuts, tubes, power)}
 
 
@@ -71,7 +72,7 @@ def test_a_plush_robot() -> None:
             square(),
             cloth=Cloth(felt=2e5, seam=1e3, zipper=96.0),
             printed=(CUBE,),
-            screws={"M2 x 6": 4, PLAIN.title: 1},
+            screws={"M2 x 6": 4},
         )
     )
     assert found["felt"].quantity == pytest.approx(0.2)
@@ -97,10 +98,10 @@ def test_a_winch_without_cables_buys_nothing() -> None:
     idle = replace(robot, winches=(*robot.winches, Winch(name="idle", at=(0.0, 0.0))))
     assert idle.cables
     for this in (robot, idle):
-        found = needs(replace(given(robot), robot=this))
+        found = needs(change_plan(given(robot), robot=this))
         assert found["geared motor"].quantity == 1
         assert found["motor driver"].quantity == 1
-    none = needs(replace(given(robot), robot=replace(robot, cables=())))
+    none = needs(change_plan(given(robot), robot=replace(robot, cables=())))
     assert not {"geared motor", "controller board", "power supply"} & set(none)
 
 
@@ -108,19 +109,19 @@ def test_what_closes_a_mould() -> None:
     """Oracle: what is asked for, and nothing of it else."""
     robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08))
     foam = FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0)
-    plain = needs(given(robot, foam=foam, mould=(CUBE,)))
+    plain = needs(given(robot, foam=foam, pieces=(CUBE,)))
     assert not {"bolt M4 with nut", "rod of 3 mm", "glue for plastic", "modelling clay"} & set(plain)
     assert plain["sealer"].quantity == 1
-    cut = needs(given(robot, foam=foam, mould=(CUBE,), bolts=8, dowels=6))
+    cut = needs(given(robot, foam=replace(foam, bolts=8, dowels=6), pieces=(CUBE,)))
     assert cut["bolt M4 with nut"].quantity == 8
     assert cut["rod of 3 mm"].quantity == pytest.approx(6 * 0.015)
     assert "6 dowels" in cut["rod of 3 mm"].specification
     assert cut["glue for plastic"].quantity == 1
-    silicone = needs(given(robot, foam=replace(foam, silicone=1e6, silicone_mass=1180.0), mould=(CUBE,), dowels=2))
+    silicone = needs(given(robot, foam=replace(foam, silicone=1e6, silicone_mass=1180.0, dowels=2), pieces=(CUBE,)))
     assert "modelling clay" in silicone
     assert "sealer" not in silicone
     with pytest.raises(InputError, match="bolts must not be negative, not -1"):
-        given(robot, bolts=-1)
+        replace(foam, bolts=-1)
 
 
 def test_motors_keep_the_source_of_their_price() -> None:
@@ -153,7 +154,7 @@ def test_the_foam_that_is_poured_may_be_another_than_was_simulated() -> None:
 
 def test_a_printed_mould_needs_no_silicone() -> None:
     robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08))
-    found = needs(given(robot, foam=FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0), mould=(CUBE,)))
+    found = needs(given(robot, foam=FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0), pieces=(CUBE,)))
     assert "silicone" not in found
     assert found["PLA for the mould"].mass == pytest.approx(CUBES)
 

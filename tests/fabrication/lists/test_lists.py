@@ -10,7 +10,7 @@ from small_inputs import box, demand_of, given, square
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import Method
-from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds
+from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds
 from hydrostat.fabrication.lists.lists import make_lists
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.robot import Robot, list_gallery

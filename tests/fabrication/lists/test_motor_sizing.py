@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from small_inputs import PLAIN, demand_of, square
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.motor_sizing import MARGIN, WinchSizing, motor_table, motor_warnings, size_winches
+from hydrostat.fabrication.lists.motors import MARGIN, WinchSizing, motor_table, motor_warnings, size_winches
 from hydrostat.robot import Cable
 
 START = (-0.02, -0.01)

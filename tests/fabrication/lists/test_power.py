@@ -2,8 +2,8 @@
 
 import pytest
 
+from hydrostat.fabrication.lists.motors import PLUG, PowerPlan, power_plan
 from hydrostat.fabrication.lists.needs import control_needs
-from hydrostat.fabrication.lists.power import PLUG, PowerPlan, power_plan
 from hydrostat.fabrication.parts.board import board_for
 from hydrostat.fabrication.parts.motor import MOTORS
 

@@ -5,7 +5,7 @@ from shapely import box as rectangle
 from small_inputs import box, given, square
 
 from hydrostat.fabrication.kit_options import Method
-from hydrostat.fabrication.lists.list_input import FoamNeeds
+from hydrostat.fabrication.kit_plan import FoamNeeds
 from hydrostat.fabrication.lists.lists import make_lists
 from hydrostat.fabrication.lists.stitching import (
     NEEDLE,

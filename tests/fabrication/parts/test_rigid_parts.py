@@ -40,6 +40,8 @@ def test_parts_of_the_gallery(name: str, unchecked: None):
     many = len(robot.winches) > 6 and all(winch.mount is Mount.WORLD for winch in robot.winches)
     assert parts.motor.key == ("xl330" if many else "n20")
     assert dict(parts.bought)[parts.motor.title] == len(robot.winches)
+    assert parts.screws == {title: number for title, number in parts.bought if title != parts.motor.title}
+    assert set(parts.leads) == set(parts.seats) == set(range(len(robot.cables)))
 
 
 def test_pieces_on_the_base_are_as_many_as_are_printed():

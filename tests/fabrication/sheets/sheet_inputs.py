@@ -1,33 +1,45 @@
 """Small inputs of sheets: a square of plush, a box of foam, parts of a few shapes, lists of a few rows."""
 
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from builders import box_mesh, mesh_body
+from kit_plans import change_plan, make_plan
 from manifold3d import Manifold
 from plush_robots import SQUARE, drawn_body
 
+from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit import Check
-from hydrostat.fabrication.kit_options import Method, MouldKind, Paper
+from hydrostat.fabrication.kit_options import Method, MouldKind
+from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.bill import BillGroup, Item, Price, bill_table
 from hydrostat.fabrication.lists.cuts import CableCut, SheathRow, cable_table
 from hydrostat.fabrication.lists.line import LineRow
 from hydrostat.fabrication.lists.lists import Lists
-from hydrostat.fabrication.lists.motor_sizing import MotorRow
+from hydrostat.fabrication.lists.motors import MotorRow
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.moulds.release import FineSurface
 from hydrostat.fabrication.moulds.stance import MouldOrientation
+from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.patterns.stitches import cable_stitches
-from hydrostat.fabrication.sheets.cable_map import body_solid
-from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.fabrication.sheets.map_layout import body_solid
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.geometry import Mesh
 from hydrostat.robot import MATERIALS, Body, Cable, Mount, Pin, Robot, Winch
+
+
+class Given(NamedTuple):
+    """Arguments of `assembly_sheet`."""
+
+    plan: KitPlan
+    lists: Lists
+    findings: KitFindings
 
 
 def winch() -> PartAssembly:
@@ -81,7 +93,15 @@ def lists(cables: int, items: int | tuple[Item, ...] = 8, **more: Any) -> Lists:
     ]
     tubes = [
         SheathRow(
-            cable=f"C{number}", winch="pull", start="1 (winch)", end="2", bore=1, tube=2, run=23, seat=0, length=23
+            cable=f"C{number}",
+            winch="pull",
+            start="1 (winch)",
+            end="2",
+            bore=1,
+            tube=2,
+            run=23.25,
+            seat=0,
+            length=23.25,
         )
         for number in range(1, cables + 1)
     ]
@@ -105,7 +125,7 @@ def checks(count: int, *, failed: int = 0) -> tuple[Check, ...]:
     )
 
 
-def plush(*, name: str = "Sam", winches: int = 1, cables: int = 2, **more: Any) -> SheetInput:
+def plush(*, name: str = "Sam", winches: int = 1, cables: int = 2, **more: Any) -> Given:
     """A square of plush with cables side by side."""
     body = drawn_body(SQUARE)
     routes = [
@@ -115,11 +135,10 @@ def plush(*, name: str = "Sam", winches: int = 1, cables: int = 2, **more: Any) 
     robot = _robot(name, body, routes, winches, Mount.BODY)
     seam = body.outline.polygon if body.outline is not None else None
     assert seam is not None
-    known = _known(robot, Method.PLUSH) | {"stitches": cable_stitches(robot, _millimetres(seam))}
-    return SheetInput(**(known | more))
+    return _given(robot, method=Method.PLUSH, stitches=cable_stitches(robot, _millimetres(seam)), **more)
 
 
-def foam(*, name: str = "Sam", winches: int = 2, cables: int = 2, silicone: bool = False, **more: Any) -> SheetInput:
+def foam(*, name: str = "Sam", winches: int = 2, cables: int = 2, silicone: bool = False, **more: Any) -> Given:
     """A box of foam with cables side by side, their winches below it."""
     mesh = box_mesh((5, 4, 3), size=(0.1, 0.08, 0.06))
     body = mesh_body(Mesh(mesh.nodes - 0.04, mesh.elements), material=MATERIALS["flexfoam-it x"])
@@ -128,8 +147,7 @@ def foam(*, name: str = "Sam", winches: int = 2, cables: int = 2, silicone: bool
         for at in np.linspace(-0.03, 0.05, cables).tolist()
     ]
     robot = _robot(name, body, routes, winches, Mount.WORLD)
-    known = _known(robot, Method.FOAM) | {"mould": mould(robot, silicone=silicone)}
-    return SheetInput(**(known | more))
+    return _given(robot, **({"method": Method.FOAM, "mould": mould(robot, silicone=silicone)} | more))
 
 
 def mould(robot: Robot, *, silicone: bool = False) -> Mould:
@@ -193,19 +211,24 @@ def _made(name: str, body: Body, routes: list[Any], names: list[str], mount: Mou
     )
 
 
-def _known(robot: Robot, method: Method) -> dict[str, Any]:
+def _given(robot: Robot, **more: Any) -> Given:
     winches, cables = len(robot.winches), len(robot.cables)
-    return {
-        "robot": robot,
-        "method": method,
-        "paper": Paper.A4,
-        "motor": "Geared motor, 6 V",
-        "winch": winch(),
-        "stopper": stopper(),
+    demand = Demand(poses=(), tensions=np.zeros(cables), torques=np.zeros(winches), taken=np.zeros((winches, 2)))
+    known = {
+        "motor": replace(MOTORS[0], title="Geared motor, 6 V"),
+        "winch_assembly": winch(),
+        "stopper_assembly": stopper(),
         "printed": printed(winches, cables),
-        "lists": lists(cables),
         "checks": checks(6),
     }
+    return changed(Given(make_plan(robot, demand), lists(cables), KitFindings()), **(known | more))
+
+
+def changed(given: Given, **facts: Any) -> Given:
+    """Other facts of the plan, the findings and the lists, by their names."""
+    told = {name: facts.pop(name) for name in ("checks", "problems", "warnings") if name in facts}
+    made = facts.pop("lists", given.lists)
+    return Given(change_plan(given.plan, **facts), made, replace(given.findings, **told))
 
 
 def _millimetres(polygon: Any) -> Any:

@@ -6,12 +6,12 @@ from importlib.resources import files
 
 import pytest
 from pypdf import PdfReader
-from sheet_inputs import checks, foam, lists, plush
+from sheet_inputs import changed, checks, foam, lists, plush
 
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.lists.bill import BillGroup, Item, Price
-from hydrostat.fabrication.lists.power import power_plan
-from hydrostat.fabrication.lists.stitching import DepthRow, Reach
+from hydrostat.fabrication.lists.motors import power_plan
+from hydrostat.fabrication.lists.stitching import DepthRow, PointAccess
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.parts.motor import MOTORS
@@ -33,18 +33,18 @@ def words(content: bytes) -> str:
 
 @pytest.fixture(scope="module")
 def plush_sheet():
-    return assembly_sheet(plush())
+    return assembly_sheet(*plush())
 
 
 @pytest.fixture(scope="module")
 def foam_sheet():
-    return assembly_sheet(foam())
+    return assembly_sheet(*foam())
 
 
 @pytest.mark.parametrize(("make", "pages"), [(plush, 2), (foam, 4)])
 @pytest.mark.parametrize(("paper", "size"), [(Paper.A4, (595.28, 841.89)), (Paper.LETTER, (612.0, 792.0))])
 def test_pages_and_paper(make, pages, paper, size):
-    reader = read(assembly_sheet(make(paper=paper)))
+    reader = read(assembly_sheet(*make(paper=paper)))
     assert len(reader.pages) == pages
     for page in reader.pages:
         assert (float(page.mediabox.width), float(page.mediabox.height)) == pytest.approx(size, abs=0.01)
@@ -52,13 +52,13 @@ def test_pages_and_paper(make, pages, paper, size):
 
 @pytest.mark.slow
 def test_the_same_bytes(plush_sheet, foam_sheet):
-    assert assembly_sheet(plush()) == plush_sheet
-    assert assembly_sheet(foam()) == foam_sheet
+    assert assembly_sheet(*plush()) == plush_sheet
+    assert assembly_sheet(*foam()) == foam_sheet
 
 
 @pytest.mark.slow
 def test_another_robot_gives_other_bytes(plush_sheet):
-    assert assembly_sheet(plush(cables=3)) != plush_sheet
+    assert assembly_sheet(*plush(cables=3)) != plush_sheet
 
 
 def test_what_a_plush_sheet_says(plush_sheet):
@@ -82,8 +82,8 @@ def test_what_a_plush_sheet_says(plush_sheet):
 
 @pytest.mark.slow
 def test_a_sheet_tells_which_motor_the_firmware_is_for():
-    power = power_plan({plush().robot.winches[0].name: 40.0}, next(one for one in MOTORS if one.key == "n20"))
-    assert "hydrostat firmware ROBOT --motor n20" in words(assembly_sheet(plush(lists=lists(2, power=power))))
+    power = power_plan({plush().plan.robot.winches[0].name: 40.0}, next(one for one in MOTORS if one.key == "n20"))
+    assert "hydrostat firmware ROBOT --motor n20" in words(assembly_sheet(*plush(lists=lists(2, power=power))))
 
 
 def test_what_a_foam_sheet_says(foam_sheet):
@@ -97,14 +97,14 @@ def test_what_a_foam_sheet_says(foam_sheet):
     ):
         assert part in text
     given = foam()
-    assert given.mould is not None
-    assert f"{given.mould.casting.body.part_a:.0f} g of part A" in text
+    assert given.plan.work.mould is not None
+    assert f"{given.plan.work.mould.casting.body.part_a:.0f} g of part A" in text
 
 
 @pytest.mark.slow
 def test_a_mould_of_silicone_is_poured_round_the_printed_positive(foam_sheet):
     """Oracle: the parts of such a mould: a positive in halves, frames and domes; clay is for the thesis's way."""
-    text = words(assembly_sheet(foam(silicone=True)))
+    text = words(assembly_sheet(*foam(silicone=True)))
     for part in ("mold max 30, second pour", "Take the domes out", "dowels of 3 mm, no glue", "24 h, or 6 h at 60 °C"):
         assert part in text
     assert "clay" not in text.split("Or from a model")[0].replace("tape or clay", "")
@@ -117,9 +117,9 @@ def test_a_mould_of_silicone_is_poured_round_the_printed_positive(foam_sheet):
 @pytest.mark.slow
 def test_a_body_of_silicone_is_not_told_of_foam(foam_sheet):
     given = foam()
-    assert given.mould is not None
+    assert given.plan.work.mould is not None
     casting, _ = make_casting(MATERIALS["ecoflex 00-30"], 480e3, pours=())
-    text = words(assembly_sheet(foam(mould=replace(given.mould, casting=casting))))
+    text = words(assembly_sheet(*foam(mould=replace(given.plan.work.mould, casting=casting))))
     assert "isocyanate" not in text
     assert "let the bubbles rise" in text
     assert "4 h at 25 °C" in text
@@ -131,10 +131,10 @@ def test_motors_in_the_body_need_no_base(foam_sheet):
     given = foam()
     inside = tuple(
         replace(winch, at=cable.points[1], mount=Mount.BODY)
-        for winch, cable in zip(given.robot.winches, given.robot.cables, strict=True)
+        for winch, cable in zip(given.plan.robot.winches, given.plan.robot.cables, strict=True)
     )
-    cables = tuple(replace(cable, points=cable.points[1:], sheathed=()) for cable in given.robot.cables)
-    text = words(assembly_sheet(replace(given, robot=given.robot.with_network(inside, cables))))
+    cables = tuple(replace(cable, points=cable.points[1:], sheathed=()) for cable in given.plan.robot.cables)
+    text = words(assembly_sheet(*changed(given, robot=given.plan.robot.with_network(inside, cables))))
     assert "W1 and W2 into their pockets in the foam" in text
     assert "base plate" not in text
     assert "W1 and W2 to the base plate" in words(foam_sheet)
@@ -142,17 +142,17 @@ def test_motors_in_the_body_need_no_base(foam_sheet):
 
 @pytest.mark.parametrize("make", [plush, foam])
 def test_names_are_words_not_markup(make):
-    assert NASTY in words(assembly_sheet(make(name=NASTY)))
+    assert NASTY in words(assembly_sheet(*make(name=NASTY)))
 
 
 @pytest.mark.slow
 def test_names_in_other_alphabets():
-    assert "Übergrößenärmel Жук" in words(assembly_sheet(plush(name="Übergrößenärmel Жук")))
+    assert "Übergrößenärmel Жук" in words(assembly_sheet(*plush(name="Übergrößenärmel Жук")))
 
 
 @pytest.mark.parametrize("name", ["octopus " * 40, "x" * 400])
 def test_long_names_are_shortened(name):
-    content = assembly_sheet(plush(name=name))
+    content = assembly_sheet(*plush(name=name))
     assert len(read(content).pages) == 2
     assert shortened(name, 60)[:20] in words(content)
     assert shortened(name, 60).endswith("…")
@@ -173,7 +173,7 @@ def test_a_crowded_sheet_has_no_more_pages_but_of_maps(make, pages, paper):
         lists=lists(24, 90),
         checks=checks(90, failed=1),
     )
-    content = assembly_sheet(given)
+    content = assembly_sheet(*given)
     assert len(read(content).pages) == pages
     text = words(content)
     assert "more in lists/bill_of_materials.csv" in text
@@ -185,8 +185,8 @@ def test_a_crowded_sheet_has_no_more_pages_but_of_maps(make, pages, paper):
 @pytest.mark.slow
 def test_warnings_stand_in_a_box_and_problems_say_that_it_was_forced(plush_sheet):
     quiet = words(plush_sheet)
-    warned = words(assembly_sheet(plush(warnings=("mind the cat",))))
-    forced = words(assembly_sheet(plush(problems=("the cat sits on it",))))
+    warned = words(assembly_sheet(*plush(warnings=("mind the cat",))))
+    forced = words(assembly_sheet(*plush(problems=("the cat sits on it",))))
     assert "MIND" not in quiet
     assert "Mind the cat." in warned
     assert "cannot be built well" not in warned
@@ -196,10 +196,10 @@ def test_warnings_stand_in_a_box_and_problems_say_that_it_was_forced(plush_sheet
 
 @pytest.mark.slow
 def test_nothing_but_the_robot_is_enough():
-    given = plush(winch=None, stopper=None, printed=(), lists=lists(0, 0), checks=())
-    assert len(read(assembly_sheet(given)).pages) == 2
-    given = foam(winch=None, stopper=None, printed=(), lists=lists(0, 0), checks=(), mould=None)
-    assert len(read(assembly_sheet(given)).pages) == 4
+    given = plush(winch_assembly=None, stopper_assembly=None, printed=(), lists=lists(0, 0), checks=())
+    assert len(read(assembly_sheet(*given)).pages) == 2
+    given = foam(winch_assembly=None, stopper_assembly=None, printed=(), lists=lists(0, 0), checks=(), mould=None)
+    assert len(read(assembly_sheet(*given)).pages) == 4
 
 
 def item(what: str, quantity: float, price: Price, specification: str = "", **more: bool) -> Item:
@@ -212,7 +212,7 @@ def test_the_bill_is_told_in_short():
         item("screw or nut", 12.0, Price(amount=1 / 12), "M2 x 6 mm screw, self-tapping", is_named_by_kind=True),
         item("filling", 0.05, Price(amount=40.0, unit="kg"), "fibre"),
     )
-    text = words(assembly_sheet(plush(lists=lists(2, items))))
+    text = words(assembly_sheet(*plush(lists=lists(2, items))))
     for part in ("felt 0.2 m² 4", "M2 x 6 mm screw 12 1", "filling 50 g 2", "used up 7", "of work about 7 USD used up"):
         assert part in text
     assert "total" not in text
@@ -220,10 +220,10 @@ def test_the_bill_is_told_in_short():
 
 def test_the_lists_of_what_is_cut_are_told_in_short():
     """Oracle: the rows of the lists, whose place in brackets is left out."""
-    text = words(assembly_sheet(plush()))
+    text = words(assembly_sheet(*plush()))
     assert "cable cut to slack spool mark C1 250 1.5 122 C2 250 1.5 122" in text
-    assert "cable from to cut to C1 1 2 23.0 C2 1 2 23.0" in text
-    assert "Cables, in mm" in words(assembly_sheet(plush(lists=replace(lists(2), tubes=lists(0).tubes))))
+    assert "cable from to cut to C1 1 2 23.2 C2 1 2 23.2" in text
+    assert "Cables, in mm" in words(assembly_sheet(*plush(lists=replace(lists(2), tubes=lists(0).tubes))))
 
 
 @pytest.mark.slow
@@ -234,7 +234,7 @@ def test_all_type_is_large_enough_and_comes_with_typst():
         if text.strip():
             sizes.add(round(size * abs(matrix[3] * page[3]), 2))
 
-    for page in read(assembly_sheet(plush(winches=8, cables=11))).pages:
+    for page in read(assembly_sheet(*plush(winches=8, cables=11))).pages:
         page.extract_text(visitor_text=note)
         for font in page["/Resources"]["/Font"].values():
             fonts.add(str(font.get_object()["/BaseFont"]).split("+")[-1])
@@ -251,7 +251,7 @@ def test_templates_come_with_the_package():
 def test_the_cost_is_told_used_up_and_in_whole_packs():
     """Oracle: sums by hand: 4 + 0.2 and 10 + 2."""
     items = (item("felt", 1.0, Price(amount=4.0, pack=2.5)), item("thread", 1.0, Price(amount=0.2, pack=10.0)))
-    text = words(assembly_sheet(plush(lists=lists(2, items))))
+    text = words(assembly_sheet(*plush(lists=lists(2, items))))
     for part in ("about 4 USD used up, 12 USD in whole packs", "thread 1 <1", "used up 4", "in whole packs 12"):
         assert part in text
 
@@ -260,13 +260,13 @@ def test_the_cost_is_told_used_up_and_in_whole_packs():
 def test_a_stopper_is_set_by_the_cloth_not_by_a_mark():
     """Oracle: lists count from the spool's shaft, so that no length from the winch's outside is right."""
     for make, cloth in ((plush, "cloth"), (foam, "skin")):
-        text = words(assembly_sheet(make()))
+        text = words(assembly_sheet(*make()))
         assert f"until it touches the {cloth} at the cable's last point; then back by the slack" in text
         assert "stopper mark" not in text
         assert "from exit" not in text
 
 
-def stitching(*points: tuple[str, float, Reach]) -> Table[DepthRow]:
+def stitching(*points: tuple[str, float, PointAccess]) -> Table[DepthRow]:
     """A list of points: cable, depth, how."""
     place = dict.fromkeys(("x", "y", "z", "gap", "along", "skin_x", "skin_y", "skin_z"), 0.0)
     rows = (
@@ -278,8 +278,8 @@ def stitching(*points: tuple[str, float, Reach]) -> Table[DepthRow]:
 @pytest.mark.slow
 def test_tubes_for_deep_cables_are_laid_before_casting(foam_sheet):
     """Oracle: the list of stitches."""
-    deep = stitching(("C1", 70.0, Reach.LAID), ("C2", 2.0, Reach.SKIN))
-    text = words(assembly_sheet(foam(lists=lists(2, stitching=deep))))
+    deep = stitching(("C1", 70.0, PointAccess.LAID), ("C2", 2.0, PointAccess.SKIN))
+    text = words(assembly_sheet(*foam(lists=lists(2, stitching=deep))))
     assert "C1 runs too deep for a needle" in text
     assert text.index("Lay tubes in the cavity") < text.index("Close it")
     assert "Lay tubes in the cavity" not in words(foam_sheet)
@@ -288,8 +288,8 @@ def test_tubes_for_deep_cables_are_laid_before_casting(foam_sheet):
 @pytest.mark.slow
 def test_cables_are_put_in_as_deep_as_the_list_has_them(foam_sheet):
     """Oracle: a list of one that is sewn on, one that is drawn through, one whose tube is deep."""
-    rows = (("C1", 2.0, Reach.SKIN), ("C2", 9.0, Reach.NEEDLE), ("C3", 9.0, Reach.TUBE))
-    text = words(assembly_sheet(foam(cables=3, lists=lists(3, stitching=stitching(*rows)))))
+    rows = (("C1", 2.0, PointAccess.SKIN), ("C2", 9.0, PointAccess.NEEDLE), ("C3", 9.0, PointAccess.TUBE))
+    text = words(assembly_sheet(*foam(cables=3, lists=lists(3, stitching=stitching(*rows)))))
     assert "C2 and C3, before the skin is on" in text
     assert "Push the tube of C3" in text
     assert "C1. Pull the skin over the body" in text
@@ -301,11 +301,11 @@ def test_cables_are_put_in_as_deep_as_the_list_has_them(foam_sheet):
 def test_names_that_no_font_can_print_are_replaced_with_a_warning(plush_sheet):
     """Oracle: typst itself refuses a page for archives with a letter that no font has."""
     given = plush(name="章鱼 7", warnings=('winch "왼쪽" is near the seam',))
-    winch = replace(given.robot.winches[0], name="왼쪽")
-    cables = tuple(replace(cable, winch="왼쪽") for cable in given.robot.cables)
-    stitches = tuple(replace(sewn, winch="왼쪽") for sewn in given.stitches)
-    named = replace(given, robot=given.robot.with_network((winch,), cables), stitches=stitches)
-    text = words(assembly_sheet(named))
+    winch = replace(given.plan.robot.winches[0], name="왼쪽")
+    cables = tuple(replace(cable, winch="왼쪽") for cable in given.plan.robot.cables)
+    stitches = tuple(replace(sewn, winch="왼쪽") for sewn in given.plan.work.stitches)
+    named = changed(given, robot=given.plan.robot.with_network((winch,), cables), stitches=stitches)
+    text = words(assembly_sheet(*named))
     assert "?? 7" in text
     assert 'Winch "W1" is near the seam.' in text
     assert "fonts of these pages lack letters" in text
@@ -344,14 +344,14 @@ def test_a_crowd_of_warnings_is_told_in_order():
 
 def test_it_is_told_where_the_robot_is_held():
     """Oracle: the pin of the robot: radius 1 m round the middle."""
-    assert "held round x 0, y 0 mm, up to 1000 mm from there" in words(assembly_sheet(plush()))
+    assert "held round x 0, y 0 mm, up to 1000 mm from there" in words(assembly_sheet(*plush()))
 
 
 def test_winches_on_the_base_and_in_the_body_are_told_apart():
     given = plush(winches=2)
-    one, two = given.robot.winches
-    robot = given.robot.with_network((one, replace(two, mount=Mount.WORLD)), given.robot.cables)
-    text = words(assembly_sheet(replace(given, robot=robot)))
+    one, two = given.plan.robot.winches
+    robot = given.plan.robot.with_network((one, replace(two, mount=Mount.WORLD)), given.plan.robot.cables)
+    text = words(assembly_sheet(*changed(given, robot=robot)))
     assert "Screw W2 to the base plate" in text
     assert "Set W1 where the map has it" in text
 
@@ -359,10 +359,10 @@ def test_winches_on_the_base_and_in_the_body_are_told_apart():
 def test_parts_are_told_with_their_files_and_for_which_winches():
     given = plush(winches=2)
     spools = [
-        Printed(name=f"spool_{letter}", title=f"Spool of winch {winch.name}", solid=given.printed[0].solid)
-        for letter, winch in zip("ab", given.robot.winches, strict=True)
+        Printed(name=f"spool_{letter}", title=f"Spool of winch {winch.name}", solid=given.plan.printed[0].solid)
+        for letter, winch in zip("ab", given.plan.robot.winches, strict=True)
     ]
-    text = words(assembly_sheet(replace(given, printed=tuple(spools))))
+    text = words(assembly_sheet(*changed(given, printed=tuple(spools))))
     assert "Spool: spool_a, spool_b 2" in text
     assert "W2 pull 2: spool_b" in text
 
@@ -371,10 +371,18 @@ def test_parts_are_told_with_their_files_and_for_which_winches():
 def test_a_robot_without_cables_has_no_empty_heading():
     for make in (plush, foam):
         given = make()
-        robot = given.robot.with_network((), ())
+        robot = given.plan.robot.with_network((), ())
         text = words(
             assembly_sheet(
-                replace(given, robot=robot, stitches=(), printed=(), winch=None, stopper=None, lists=lists(0, 0))
+                *changed(
+                    given,
+                    robot=robot,
+                    stitches=(),
+                    printed=(),
+                    winch_assembly=None,
+                    stopper_assembly=None,
+                    lists=lists(0, 0),
+                )
             )
         )
         for heading in ("Where the cables run", "Calibrate", "Log", "A winch", "Winches", "Cut the cables", "Tie"):
@@ -384,7 +392,7 @@ def test_a_robot_without_cables_has_no_empty_heading():
 def test_a_flat_robot_of_foam_has_its_map_on_page_three():
     """Oracle: hole numbers of the map, read back from the page."""
     given = plush()
-    content = assembly_sheet(replace(given, method=Method.FOAM, stitches=(), mould=None))
+    content = assembly_sheet(*changed(given, method=Method.FOAM, stitches=(), mould=None))
     page = read(content).pages[2].extract_text()
     assert "Where the cables run" in page
     assert "C2" in page.split("Skin and cables")[0]

@@ -11,9 +11,8 @@ from hydrostat.drawing import WINCHES
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.skin import flat_skin
 from hydrostat.fabrication.patterns.stitches import cable_stitches
-from hydrostat.fabrication.sheets.cable_map import flat_map
+from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps
 from hydrostat.fabrication.sheets.legible import note_lines
-from hydrostat.fabrication.sheets.single_maps import single_maps
 from hydrostat.fabrication.sheets.solid_pictures import portrait
 from hydrostat.fabrication.winch_marks import marked_name, winch_marks_of
 from hydrostat.robot import Robot

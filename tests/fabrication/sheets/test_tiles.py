@@ -17,8 +17,7 @@ from scipy import ndimage
 
 from hydrostat.fabrication import Circle, LaserLine, Layer, Pattern, PatternPart, plush_pattern
 from hydrostat.fabrication.kit_options import Paper
-from hydrostat.fabrication.sheets.tile_grid import Tile, tile_grid
-from hydrostat.fabrication.sheets.tiles import tiled_pdf
+from hydrostat.fabrication.sheets.tiles import Tile, tile_grid, tiled_pdf
 
 SIZES = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}
 PIXEL = 25.4 / 300

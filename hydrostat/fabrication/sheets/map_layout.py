@@ -1,0 +1,174 @@
+"""Contents of a map: the shape of a body, its best views, the visible side of cables, free places for labels."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Self
+
+import numpy as np
+import shapely
+from jaxtyping import Bool, Float
+
+from hydrostat.drawing import Box, Camera, DepthBuffer, DrawnSolid, Spot
+from hydrostat.robot import Robot
+
+_COARSE = 160  # pixels along a body: enough to know its near and its far side
+_TURNS = tuple(range(0, 360, 30))  # compass directions that are tried [degrees]
+_RISES = (15.0, 40.0)  # heights over the horizon that are tried [degrees]
+
+
+@dataclass(frozen=True, eq=False)
+class Visibility:
+    """The near and the far side of a body."""
+
+    front: DepthBuffer  # depths of the near side
+    back: DepthBuffer  # of the far side, as seen from there: x and depth change their sign
+
+    @classmethod
+    def of(cls, body: DrawnSolid, camera: Camera) -> Self:
+        """Look at a body."""
+        seen = camera.see(body.vertices)[body.triangles]
+        nothing = np.empty((len(seen), 3, 0))
+        turned = seen * np.array([1.0, 1.0, -1.0])
+        return cls(*(DepthBuffer.of(corners, nothing, pixels=_COARSE) for corners in (seen, turned)))
+
+    def in_front(self, seen: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, " points"]:
+        """Whether points, as seen, lie in the near half of the body or before it; so do those beside it."""
+        before = -self.front.behind(seen)
+        after = -self.back.behind(seen * np.array([1.0, 1.0, -1.0]))
+        return ~((before > 0) & (before > after))
+
+
+def best_views(robot: Robot, body: DrawnSolid) -> tuple[Camera, ...]:
+    """Three views: from where most of the cables lie in front, and then from where most of the others do."""
+    cables = [1e3 * np.array(cable.points)[1:] for cable in robot.cables]
+    points = np.concatenate([(way[:-1] + way[1:]) / 2 for way in cables if len(way) > 1] or [np.zeros((1, 3))])
+    views = [Camera.at(float(turn), rise) for rise in _RISES for turn in _TURNS]
+    seen = np.array([Visibility.of(body, view).in_front(view.see(points)) for view in views], dtype=float)
+    # Of views that are as good, the one that shows most of the body, then the first.
+    areas = np.array([np.prod(np.ptp(view.see(body.vertices)[:, :2], axis=0)) for view in views])
+    chosen = [int(np.argmax(seen.mean(axis=1) + 0.4 * areas / areas.max()))]
+    rest = seen
+    for apart_counts in (0.1, 0.4):
+        rest = rest * (1 - seen[chosen[-1]])
+        apart = np.min([_apart(views, views[other]) for other in chosen], axis=0)
+        worth = rest.mean(axis=1) + 0.3 * areas / areas.max() + apart_counts * np.minimum(apart, 1.0)
+        chosen.append(int(np.argmax(worth)))
+    return tuple(views[index] for index in chosen)
+
+
+def _apart(views: list[Camera], one: Camera) -> Float[np.ndarray, " views"]:
+    """How far views are from one of them: 0 for itself, 1 for a right angle, 2 for the opposite."""
+    return np.array([1 - float(view.axes[2] @ one.axes[2]) for view in views])
+
+
+_SHARP = 70.0  # on a body, edges are drawn that are sharper than this [degrees]: scans are rough
+
+
+def flat_marks(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
+    """What is drawn on a flat body, such as eyes, to know its front by [mm]."""
+    return [1e3 * np.array(mark) for mark in robot.body.marks]
+
+
+def flat_rings(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
+    """The outline of a flat body and its holes [m]; of a ready mesh, the rim of its triangles."""
+    if robot.body.outline is not None:
+        return list(robot.body.outline.rings)
+    mesh = robot.body.mesh
+    whole = shapely.union_all(shapely.polygons(mesh.nodes[mesh.elements]))
+    polygons = [part for part in shapely.get_parts(whole) if isinstance(part, shapely.Polygon)]
+    return [np.array(ring.coords)[:-1] for part in polygons for ring in (part.exterior, *part.interiors)]
+
+
+def body_solid(robot: Robot) -> DrawnSolid:
+    """The surface of a body in space [mm]."""
+    if robot.body.healing is not None:
+        surface = robot.body.healing.surface
+        return DrawnSolid(vertices=1e3 * surface.vertices, triangles=surface.triangles, sharp=_SHARP)
+    mesh = robot.body.mesh
+    # Not `mesh.boundary`, whose order of corners would move the last digits of written sheets.
+    faces = mesh.elements[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
+    _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    return DrawnSolid(vertices=1e3 * mesh.nodes, triangles=faces[np.sort(first[counts == 1])], sharp=_SHARP)
+
+
+_WAYS = [(np.cos(turn), np.sin(turn)) for turn in np.radians(np.arange(0, 360, 30))]
+"""Directions that are tried, to the right first."""
+
+_RINGS = (0.0, 1.5, 3.5, 6.0)  # how much further off than asked for a label may be, each tried in turn [mm]
+_STEP = 0.5  # between points that stand for a line [mm]
+
+
+@dataclass
+class LabelPlaces:
+    """What is taken on a picture, and places that are free."""
+
+    room: Box  # nothing is put beyond it
+    _points: list[np.ndarray] = field(default_factory=list)
+    _boxes: list[Box] = field(default_factory=list)
+
+    def take_line(self, way: Sequence[Spot], *, weight: int = 1) -> None:
+        """A line is there: labels avoid it where they can, the more the heavier it is."""
+        spots = np.array(way, dtype=float)
+        for start, end in pairwise(spots):
+            count = max(int(np.hypot(*(end - start)) / _STEP), 1) + 1
+            self._points += weight * [start + np.linspace(0, 1, count)[:, None] * (end - start)]
+
+    def take_box(self, box: Box) -> None:
+        """Something is there that no label may cover."""
+        self._boxes.append(box)
+
+    def beside(
+        self, at: Spot, size: tuple[float, float], *, gap: float, most: int = 1000, rings: int = 4
+    ) -> Spot | None:
+        """The middle of the best free place for a box near a spot, which is then taken; None if none is free.
+
+        The box has this size and is a gap away [mm]; it may cover `most` points of lines; so many rings of places are
+        tried.
+        """
+        best, least = None, float("inf")
+        points = self._points_about(at, gap + _RINGS[-1] + max(size))
+        for ring, further in enumerate(_RINGS[:rings]):
+            for turn, (x, y) in enumerate(_WAYS):
+                reach = gap + further
+                middle = (at[0] + x * (reach + size[0] / 2), at[1] + y * (reach + size[1] / 2))
+                box = _round(middle, size, 0.15)
+                if not self._free(box):
+                    continue
+                covered = int(_within(points, box).sum())
+                price = covered + 2.5 * ring + 0.01 * turn
+                if covered <= most and price < least:
+                    best, least = middle, price
+        if best is not None:
+            self.take_box(_round(best, size, 0.15))
+        return best
+
+    def _points_about(self, at: Spot, reach: float) -> np.ndarray:
+        """The points of lines that a label near a spot could cover."""
+        if len(self._points) > 1:
+            self._points = [np.concatenate(self._points)]
+        points = self._points[0] if self._points else np.zeros((0, 2))
+        return points[_within(points, (at[0] - reach, at[1] - reach, at[0] + reach, at[1] + reach))]
+
+    def _free(self, box: Box) -> bool:
+        left, top, right, bottom = self.room
+        if box[0] < left or box[1] < top or box[2] > right or box[3] > bottom:
+            return False
+        return not any(
+            box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3] for other in self._boxes
+        )
+
+
+def box_round(middle: Spot, radius: float) -> Box:
+    """The square round a circle [mm]."""
+    return _round(middle, (2 * radius, 2 * radius), 0.0)
+
+
+def _round(middle: Spot, size: tuple[float, float], more: float) -> Box:
+    wide, high = size[0] / 2 + more, size[1] / 2 + more
+    return middle[0] - wide, middle[1] - high, middle[0] + wide, middle[1] + high
+
+
+def _within(points: np.ndarray, box: Box) -> np.ndarray:
+    x, y = points.T
+    return (x > box[0]) & (x < box[2]) & (y > box[1]) & (y < box[3])
