@@ -145,7 +145,7 @@ class Canvas:
         self.line([frame.way(way) for way in drawing.outlines], width=MIDDLE)
 
 
-def snug(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
+def fit_height(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
     """Height of a drawing scaled to the largest size that fits a width and a height [mm]."""
     wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
     return min(height, width * high / wide)

@@ -39,7 +39,7 @@ class Anchors:
         entries = (self.weights.ravel(), (rows, self.stencils.ravel()))
         return csr_array(entries, shape=(len(self.stencils), node_count))
 
-    def chosen(self, points: Int[np.ndarray, " chosen"] | Sequence[int]) -> "Anchors":
+    def select_points(self, points: Int[np.ndarray, " select_points"] | Sequence[int]) -> "Anchors":
         """Some of them, by number."""
         which = np.asarray(points, dtype=np.int64)
         return Anchors(self.stencils[which], self.weights[which], self.distances[which])

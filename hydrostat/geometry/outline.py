@@ -92,14 +92,14 @@ class Curve:
     corners: Points  # (corners, 2), first point not repeated
 
     @cached_property
-    def closed(self) -> Points:
+    def closed_corners(self) -> Points:
         """The corners with the first one repeated at the end."""
         return np.concatenate([self.corners, self.corners[:1]])
 
     @cached_property
     def stations(self) -> Vector:
-        """Arc length at each point of `closed`."""
-        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.closed, axis=0), axis=1))])
+        """Arc length at each point of `closed_corners`."""
+        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.closed_corners, axis=0), axis=1))])
 
     @property
     def length(self) -> float:
@@ -109,7 +109,7 @@ class Curve:
     def at(self, stations: Vector) -> Points:
         """Places at stations; these may run past either end."""
         wrapped = np.mod(stations, self.length)
-        return np.column_stack([np.interp(wrapped, self.stations, self.closed[:, axis]) for axis in range(2)])
+        return np.column_stack([np.interp(wrapped, self.stations, self.closed_corners[:, axis]) for axis in range(2)])
 
     def tangents(self, stations: Vector, reach: float) -> Points:
         """Unit directions at stations, taken across `reach` to either side."""
@@ -119,12 +119,12 @@ class Curve:
     @cached_property
     def turning(self) -> Vector:
         """Angle turned to the left at each corner [rad], within (-pi, pi]."""
-        edges = np.diff(self.closed, axis=0)
+        edges = np.diff(self.closed_corners, axis=0)
         before = np.roll(edges, 1, axis=0)
         cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
         return np.arctan2(cross, np.einsum("ij,ij->i", before, edges))
 
-    def turned(self, stations: Vector, reach: float) -> Vector:
+    def turning_angles(self, stations: Vector, reach: float) -> Vector:
         """Angle turned within `reach` to either side of each station [rad]."""
         places = self._unrolled
         total = np.concatenate([[0.0], np.cumsum(np.tile(self.turning, 3))])

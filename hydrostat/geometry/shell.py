@@ -47,7 +47,7 @@ class Shell:
         """Restore the state from another process."""
         self.__dict__.update(state)
 
-    def moved(self, nodes: Nodes) -> "Shell":
+    def with_nodes(self, nodes: Nodes) -> "Shell":
         """Return the same facets at other node positions [m]."""
         shell = Shell(nodes, self.facets)
         shell.edges = self.edges
@@ -63,7 +63,7 @@ class Shell:
         return numbers.reshape(self.facets.shape).astype(np.int64)
 
     @property
-    def closed(self) -> bool:
+    def is_closed(self) -> bool:
         """True if every side of a facet belongs to exactly one other facet, of the opposite direction."""
         if self.facets.shape[1] == 2:
             there, back = self.facets.T

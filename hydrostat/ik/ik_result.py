@@ -67,7 +67,7 @@ class IKResult:
         return html_repr(words, draw_record("reached", self.pose.robot, self))
 
     @property
-    def wanted(self) -> PoseTarget:
+    def pose_target(self) -> PoseTarget:
         """The targets of the markers (InputError: only objectives were asked for)."""
         if self.target is None:
             raise InputError("this was asked for by objectives alone, there is no pose of targets")

@@ -47,5 +47,5 @@ class LinearizedPose:
         moved = np.concatenate([np.subtract(self.targets[name], targets[name]) for name in self.targets])
         residual = self.model.residual.copy()
         residual[: len(moved)] += moved
-        model, weight = self.model.aimed(residual), effort_weight(residual, self.size, self.effort)
-        return self.spread @ model.applied(model.best(weight * self.worth, self.radius)[0])
+        model, weight = self.model.with_residual(residual), effort_weight(residual, self.size, self.effort)
+        return self.spread @ model.apply_step(model.best(weight * self.worth, self.radius)[0])

@@ -141,7 +141,7 @@ def _of_gallery(source: str, wish: NewRobotWish) -> Robot:
 
 def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
     from hydrostat.geometry import read_drawing
-    from hydrostat.robot import inflated
+    from hydrostat.robot import inflate_outline
 
     content, file = read_stranger(path), _file_name(path.name)
     inner = parse_choice(Inner, wish.inner or Inner.HOLES, what="inner")
@@ -156,7 +156,9 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
             notes,
         )
     wish.refuse("an inflated body is as thick as is asked by inflate", "thickness")
-    begun = _of_bytes(inflated(drawing.outline, wish.inflate), path.with_suffix(".ply"), wish, material, size=None)
+    begun = _of_bytes(
+        inflate_outline(drawing.outline, wish.inflate), path.with_suffix(".ply"), wish, material, size=None
+    )
     return BegunRobot(begun.robot, (*notes, *begun.notes), begun.sketch)
 
 

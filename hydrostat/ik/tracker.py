@@ -127,7 +127,7 @@ class Tracker:
             raise InputError(f"seconds since the last update must be above 0, not {seconds!r:.60}")
         target = as_pose(targets)
         search = self._search(target, seconds, objectives)
-        state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
+        state = search.begin(self.pose) if self._state is None else search.adopt_state(self._state)
         weight, reason = search.problem.weight(state), IKStatus.REACHED
         if not _reached(search.problem, state):
             led = self._foretold(search, state, target)

@@ -45,14 +45,14 @@ class Assembly:
         self.shape, self.size = rest.shape, rest.size
         self.token = object()
 
-    def extended(self, energies: Sequence[Energy], *, control_count: int) -> "Assembly":
+    def with_added_energies(self, energies: Sequence[Energy], *, control_count: int) -> "Assembly":
         """Sum with more energies; all that is known of the pattern of this one serves it too."""
         for energy in energies:
             if not (isinstance(energy, Energy) and hasattr(energy, "stencils")):
                 raise InputError(f"{energy!r:.60} is no Energy with stencils; see hydrostat.mechanics.Energy")
             if energy.stencils.size and not 0 <= energy.stencils.min() <= energy.stencils.max() < self.shape[0]:
                 raise InputError(f"stencils of {type(energy).__name__} must be nodes from 0 to {self.shape[0] - 1}")
-        pattern = self.pattern.extended([energy.stencils for energy in energies])
+        pattern = self.pattern.with_added_stencils([energy.stencils for energy in energies])
         return Assembly(
             [*self.energies, *energies], rest=self.pattern.rest, control_count=control_count, pattern=pattern
         )
@@ -95,7 +95,11 @@ class Assembly:
             return self
         stencils = [energy.stencils for energy in energies]
         same = all(new is old for new, old in zip(stencils, self.pattern.stencils, strict=True))
-        return self.with_energies(energies) if same else self._like(energies, self.pattern.changed(stencils))
+        return (
+            self.with_energies(energies)
+            if same
+            else self._like(energies, self.pattern.with_replaced_stencils(stencils))
+        )
 
     def with_load(self, share: float) -> "Assembly":
         """Sum with this share of all dead loads."""

@@ -77,13 +77,13 @@ class CableEnergy(Energy):
         native.lengths(nodes, self.stencils, self.weights, self.offsets, self.roundings, self.cables, lengths)
         return lengths
 
-    def taken(self, controls: Vector) -> Vector:
+    def compute_contractions(self, controls: Vector) -> Vector:
         """Return the contraction of each cable, that is the length taken in [m]."""
         return self.ratios * controls[self.winches]
 
     def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
         """Elongations s [m]: how much longer each cable is than it should be; negative when slack."""
-        return self.lengths(nodes) - self.rest_lengths + self.taken(controls) - self.slack
+        return self.lengths(nodes) - self.rest_lengths + self.compute_contractions(controls) - self.slack
 
     def tensions(self, nodes: Nodes, controls: Vector) -> Vector:
         """T of each cable [N]."""

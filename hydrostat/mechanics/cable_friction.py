@@ -124,7 +124,7 @@ class FrictionCableEnergy(Energy):
     def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
         """S of each span [m] if nothing slips."""
         spans = self._spans
-        moved = np.where(self._firsts, spans.taken(controls) - spans.slack, self.slips)
+        moved = np.where(self._firsts, spans.compute_contractions(controls) - spans.slack, self.slips)
         passed = np.append(np.where(self._firsts, 0.0, self.slips)[1:], 0.0)
         return spans.lengths(nodes) - spans.rest_lengths + moved - passed
 
@@ -253,7 +253,7 @@ class FrictionCableEnergy(Energy):
         """Newton's step of the limits while cable slips where it does."""
         elongations = self.elongations(nodes, controls)
         tensions = self.law.tension(elongations)
-        by_elongation, by_limit = self.law.locked(tensions, np.sign(self.law.slips(elongations)))
+        by_elongation, by_limit = self.law.compute_slip_jacobians(tensions, np.sign(self.law.slips(elongations)))
         unit = np.eye(len(tensions))
         moved = np.linalg.solve(unit + by_elongation @ compliance.compliance, by_limit)
         return np.linalg.solve(unit - self._limit_slopes(nodes, tensions, compliance) @ moved, miss)
@@ -295,7 +295,7 @@ class FrictionCableEnergy(Energy):
         )
         return np.linalg.solve(slopes, pulled)
 
-    def locked(self, nodes: Nodes, controls: Vector) -> LockedTensions:
+    def linearize_tensions(self, nodes: Nodes, controls: Vector) -> LockedTensions:
         """Tensions at an equilibrium with the slopes that they and the capstan's limits have there."""
         tensions = self.span_tensions(nodes, controls)
         by_elongation, by_limit = self._locked(nodes, controls, tensions, np.zeros(len(tensions), dtype=bool))
@@ -335,7 +335,7 @@ class FrictionCableEnergy(Energy):
         drops = np.where(self._firsts, 0.0, np.append(0.0, -np.diff(tensions)))
         near = _AT_THE_LIMIT * tensions.max(initial=0.0)
         slipping = joining | (np.abs(drops) >= self.capstan_limits(nodes, controls) - near)
-        return self.law.locked(tensions, np.sign(drops) * slipping)
+        return self.law.compute_slip_jacobians(tensions, np.sign(drops) * slipping)
 
     def _by_tension(self, nodes: Nodes, tensions: Vector) -> RankMatrix:
         """D capstan limits / d tensions at fixed angles."""

@@ -67,7 +67,7 @@ class ChainLaw(TensionLaw):
         taut = series > 0
         return np.where(taut, np.cumsum(taut) - 1, -1)[group], series[taut]
 
-    def locked(self, tensions: Vector, signs: Vector) -> tuple[RankMatrix, RankMatrix]:
+    def compute_slip_jacobians(self, tensions: Vector, signs: Vector) -> tuple[RankMatrix, RankMatrix]:
         """dT/ds [N/m] and dT/dlimits while cable goes on slipping where it does.
 
         Args:

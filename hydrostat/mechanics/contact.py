@@ -36,7 +36,7 @@ class ContactSurface:
         """Regularization that makes the nearest points of parallel edges unique [m^2]."""
         return (_SOFT * self.distance) ** 2
 
-    def squared(self, nodes: Nodes, pairs: Pairs) -> Vector:
+    def compute_squared_distances(self, nodes: Nodes, pairs: Pairs) -> Vector:
         """Squared distance of each pair [m^2]."""
         squared = np.empty(len(pairs.edges))
         native.squared_distances(nodes, *pairs, self.soft, squared)
@@ -44,7 +44,7 @@ class ContactSurface:
 
     def begins(self, pairs: Pairs) -> Vector:
         """Squared distance [m^2] at which each pair is felt: below half of what it has at rest, so at rest none is."""
-        return np.minimum(self.distance**2, _REST * self.squared(self.rest, pairs))
+        return np.minimum(self.distance**2, _REST * self.compute_squared_distances(self.rest, pairs))
 
     def weights(self, pairs: Pairs, begins: Vector) -> Vector:
         """Factor of the barrier of each pair [N/m]: half as far as it is felt, it pushes by stiffness x area."""
@@ -196,7 +196,11 @@ class ContactEnergy(Energy):
 
     def _felt(self, nodes: Nodes) -> int:
         """Number of active pairs, that is pairs within the contact distance."""
-        return int((self.skin.squared(nodes, self.pairs) < self._begins).sum()) if len(self.stencils) else 0
+        return (
+            int((self.skin.compute_squared_distances(nodes, self.pairs) < self._begins).sum())
+            if len(self.stencils)
+            else 0
+        )
 
 
 _SOFT = 0.05

@@ -195,7 +195,7 @@ class ObstacleEnergy(Energy):
         """Anchor of each sample in the frame of the obstacle [m], one after another."""
         return np.zeros(0) if self.grip is None else self.grip.anchors.ravel()
 
-    def begun(self, nodes: Nodes) -> "ObstacleEnergy":
+    def with_friction_at_rest(self, nodes: Nodes) -> "ObstacleEnergy":
         """Return this energy with friction springs in their rest state."""
         return (
             self._gripping(ObstacleFriction.at_rest(*self._friction, self.places(nodes))) if self.has_history else self
@@ -205,7 +205,7 @@ class ObstacleEnergy(Energy):
         if self.grip is None:
             return self
         still = replace(self.grip, anchors=history.reshape(self.grip.anchors.shape))
-        return self._gripping(still.asked(*self._pushes(nodes)))
+        return self._gripping(still.with_normal_forces(*self._pushes(nodes)))
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
         if self.grip is None:
@@ -213,7 +213,7 @@ class ObstacleEnergy(Energy):
         some = self._felt(nodes)
         places, grip = self._located(nodes)[0][some], self.grip.only(some)
         pushes, normals = self._pushes(nodes)
-        asked = grip.asked(pushes[some], normals[some])
+        asked = grip.with_normal_forces(pushes[some], normals[some])
         return float(np.abs(asked.forces(places) - grip.forces(places)).max(initial=0.0))
 
     def with_corrected_history(
@@ -221,7 +221,10 @@ class ObstacleEnergy(Energy):
     ) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        places, grip = self._located(nodes)[0], self.grip.judged(self.history_residual(nodes, controls))
+        places, grip = (
+            self._located(nodes)[0],
+            self.grip.with_adapted_relaxation(self.history_residual(nodes, controls)),
+        )
         slips = np.flatnonzero(grip.slipping(places))
         pushes, normals = self._pushes(nodes)
         if response is None or not len(slips):
@@ -231,7 +234,7 @@ class ObstacleEnergy(Energy):
         ways = grip.only(slips).directions(places[slips])
         by_push, by_limit = (self._columns(nodes, slips, rows) for rows in (rises, ways))
         moves = -grip.friction * (by_push.T @ response(by_limit))
-        return self._gripping(grip.stepped(pushes, normals, slips, moves))
+        return self._gripping(grip.with_newton_step(pushes, normals, slips, moves))
 
     def _columns(self, nodes: Nodes, some: np.ndarray, rows: Points) -> Float[np.ndarray, "dofs some"]:
         """Slopes by all degrees of freedom of numbers with these slopes by the place of one sample each."""
@@ -248,7 +251,7 @@ class ObstacleEnergy(Energy):
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        return self._gripping(self.grip.asked(*self._pushes(nodes)).slipped(self._located(nodes)[0]))
+        return self._gripping(self.grip.with_normal_forces(*self._pushes(nodes)).drag_anchors(self._located(nodes)[0]))
 
     def _gripping(self, grip: ObstacleFriction) -> "ObstacleEnergy":
         other = copy(self)

@@ -105,7 +105,7 @@ class GuideEnergy(Energy):
         self.targets = carriage.unknowns(place, axes)
         self.stiffest = float(np.abs(self.stiffness).max())
 
-    def moved(self, place: Vector, axes: Matrix) -> "GuideEnergy":
+    def with_target(self, place: Vector, axes: Matrix) -> "GuideEnergy":
         """Return the same springs to another position [m] and other axes."""
         other = copy(self)
         other.targets = self.carriage.unknowns(place, axes)

@@ -55,7 +55,7 @@ class SelfFrictionEnergy(Energy):
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         clasp, size = self.clasp, self.stencils.shape[1] * nodes.shape[1]
-        inner = clasp.grip.only(clasp.held).stiffness(clasp.places(nodes)[clasp.held])
+        inner = clasp.grip.only(clasp.touching_nodes).stiffness(clasp.places(nodes)[clasp.touching_nodes])
         blocks = np.einsum("ta,tb,tij->taibj", clasp.shares, clasp.shares, inner).reshape(-1, size, size)
         return np.concatenate([self.contact.projected_hessian(nodes, controls, share), blocks])
 
@@ -88,18 +88,18 @@ class SelfFrictionEnergy(Energy):
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> "SelfFrictionEnergy":
         pushes, normals = self._pushes(nodes)
-        clasp = self.clasp.seated(nodes, self._felt(nodes), pushes, normals)
-        places, grip = clasp.places(nodes), clasp.grip.judged(self.history_residual(nodes, controls))
-        slips = np.flatnonzero(grip.slipping(places) | grip.asked(pushes, normals).slipping(places))
+        clasp = self.clasp.attach_springs(nodes, self._felt(nodes), pushes, normals)
+        places, grip = clasp.places(nodes), clasp.grip.with_adapted_relaxation(self.history_residual(nodes, controls))
+        slips = np.flatnonzero(grip.slipping(places) | grip.with_normal_forces(pushes, normals).slipping(places))
         if response is None or not len(slips):
             return self._with(self.contact, clasp.with_grip(grip.with_corrected_history(pushes, normals)))
         rises = self._rises(nodes, slips, normals[slips])
         drags = _drags(clasp, nodes, slips, grip.only(slips).directions(places[slips]))
         moves = -grip.friction * (rises.T @ response(drags))
-        return self._with(self.contact, clasp.with_grip(grip.stepped(pushes, normals, slips, moves)))
+        return self._with(self.contact, clasp.with_grip(grip.with_newton_step(pushes, normals, slips, moves)))
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "SelfFrictionEnergy":
-        return self._with(self.contact, self._asked(nodes).clasp.slipped(nodes))
+        return self._with(self.contact, self._asked(nodes).clasp.drag_anchors(nodes))
 
     def _with(self, contact: ContactEnergy, clasp: SelfContactFriction) -> "SelfFrictionEnergy":
         """Another state; the pattern of its Hessian is known where its stencils are the same."""
@@ -111,8 +111,8 @@ class SelfFrictionEnergy(Energy):
     def _asked(self, nodes: Nodes) -> "SelfFrictionEnergy":
         """Return this energy with the limits that belong to a shape."""
         pushes, normals = self._pushes(nodes)
-        clasp = self.clasp.seated(nodes, self._felt(nodes), pushes, normals)
-        return self._with(self.contact, clasp.with_grip(clasp.grip.asked(pushes, normals)))
+        clasp = self.clasp.attach_springs(nodes, self._felt(nodes), pushes, normals)
+        return self._with(self.contact, clasp.with_grip(clasp.grip.with_normal_forces(pushes, normals)))
 
     def _pushes(self, nodes: Nodes) -> tuple[Vector, Points]:
         """Force of other parts on each node of the boundary [N], and its direction."""
@@ -126,7 +126,7 @@ class SelfFrictionEnergy(Energy):
     def _felt(self, nodes: Nodes) -> Pairs:
         """Pairs that are felt."""
         skin, pairs = self.contact.skin, self.contact.pairs
-        return pairs.only(skin.squared(nodes, pairs) < skin.begins(pairs))
+        return pairs.only(skin.compute_squared_distances(nodes, pairs) < skin.begins(pairs))
 
     def _rises(self, nodes: Nodes, some: Int[np.ndarray, " some"], normals: Points) -> Float[np.ndarray, "dofs some"]:
         """Slopes of the forces on some nodes of the boundary along their normals by all degrees of freedom [N/m]."""
@@ -149,7 +149,7 @@ def _drags(
 ) -> Float[np.ndarray, "dofs some"]:
     """Slopes of the way of some nodes from their points, along directions, by all degrees of freedom."""
     columns = np.zeros((*nodes.shape, len(some)))
-    rows = np.searchsorted(clasp.held, some)
+    rows = np.searchsorted(clasp.touching_nodes, some)
     blocks = clasp.shares[rows][:, :, None] * ways[:, None, :]
     for corner in range(clasp.stencils.shape[1]):
         columns[clasp.stencils[rows, corner], :, np.arange(len(some))] += blocks[:, corner]

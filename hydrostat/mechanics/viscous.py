@@ -80,11 +80,11 @@ class MaxwellBranches:
     def __len__(self) -> int:
         return len(self.times)
 
-    def settled(self, nodes: Nodes) -> Metrics:
+    def relax_fully(self, nodes: Nodes) -> Metrics:
         """Return the metrics of fully relaxed branches with the body at `nodes`."""
         return np.repeat(self._inverse(nodes)[None], len(self), axis=0)
 
-    def stored(self, metrics: Metrics, nodes: Nodes) -> float:
+    def compute_stored_energy(self, metrics: Metrics, nodes: Nodes) -> float:
         """Elastic energy stored in the springs of all branches [J]."""
         total = 0.0
         gradients = self._body.deformation_gradients(nodes) if self.times.any() else np.zeros(0)
@@ -112,7 +112,7 @@ class MaxwellBranches:
             self._nodes, self._body.stencils, volumes=self._body.volumes, metrics=mean, modulus=float(weights.sum())
         )
 
-    def relaxed(self, metrics: Metrics, nodes: Nodes, step: float) -> Metrics:
+    def relax_step(self, metrics: Metrics, nodes: Nodes, step: float) -> Metrics:
         """Metrics after an implicit step [s] that ends at `nodes`."""
         if not len(self):
             return metrics

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hydrostat.robot.unfinished import unfinished
+from hydrostat.robot.unfinished import temporary_path
 
 VARIABLE = "HYDROSTAT_CACHE"
 """Environment variable: the folder of the cache; no cache where it is set and empty."""
@@ -101,7 +101,7 @@ def _write(path: Path, arrays: Arrays) -> None:
     data = buffer.getvalue()
     if len(data) > MAX_BYTES:
         return
-    part = unfinished(path)
+    part = temporary_path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _make_room(path.parent, len(data))

@@ -32,7 +32,7 @@ class ClosedMesh:
         """Surface for distance queries."""
         return Shell(self.surface.vertices, self.surface.triangles)
 
-    def moved(self, turn: Points, shift: Vector) -> "ClosedMesh":
+    def with_transform(self, turn: Points, shift: Vector) -> "ClosedMesh":
         """Return the same object with every point x at turn x + shift [m]."""
         surface = Surface(self.surface.vertices @ turn.T + shift, self.surface.triangles)
         return replace(self, surface=surface)
@@ -64,7 +64,7 @@ def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
     merged, numbers = np.unique(surface.vertices, axis=0, return_inverse=True)
     triangles = numbers.reshape(-1)[surface.triangles]
     whole = Surface(merged, triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)])
-    if not Shell(whole.vertices, whole.triangles).closed:
+    if not Shell(whole.vertices, whole.triangles).is_closed:
         raise InputError(f"{file}: is not closed, or its triangles do not all turn the same way; mend it first")
     if whole.volume <= 0:
         raise InputError(f"{file}: is inside out; turn its triangles round")

@@ -218,7 +218,7 @@ def _merged(text: str, fresh: str) -> str | None:
     added: list[tuple[str, int]] = []
     for kind in _ORDER:
         places, wanted = old.blocks_of(kind), new.blocks_of(kind)
-        pairs = matched(old.means[kind], new.means[kind])  # old number by new number
+        pairs = match_entries(old.means[kind], new.means[kind])  # old number by new number
         slots = sorted(places[before] for before in pairs.values())
         for slot, number in zip(slots, sorted(pairs), strict=True):
             before = old.blocks[places[pairs[number]]]
@@ -335,7 +335,7 @@ def _update_points(points: Any, fresh: Any, was: Sequence[Any], now: Sequence[An
         points.insert(place, deepcopy(fresh[place]))
 
 
-def matched(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> dict[int, int]:
+def match_entries(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> dict[int, int]:
     """Number of the old entry of each new one, by what keys mean: by name, else the same, else the most alike."""
     pairs: dict[int, int] = {}
     for likeness in (_same_name, _same, _alike):

@@ -96,7 +96,7 @@ def _silent(stage: str) -> None:
     """Nobody listens."""
 
 
-def inflated(outline: Outline, height: float) -> bytes:
+def inflate_outline(outline: Outline, height: float) -> bytes:
     """Blow an outline up to a body so thick where it is thickest [m], as the bytes of a PLY file for `sketch_surface`.
 
     Raises:

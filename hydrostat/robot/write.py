@@ -20,7 +20,7 @@ from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.robot import Robot
-from hydrostat.robot.unfinished import unfinished
+from hydrostat.robot.unfinished import temporary_path
 from hydrostat.robot.winch import Mount
 
 
@@ -65,7 +65,7 @@ def with_values(text: str, *, name: str | None = None, element_size: float | Non
 
 def replace_file(path: Path, content: bytes) -> Path:
     """Write a file whole or not at all (InputError: it cannot be written)."""
-    part = unfinished(path)
+    part = temporary_path(path)
     try:
         part.write_bytes(content)
         os.replace(part, path)

@@ -104,7 +104,7 @@ def intersection(*fields: Field, blend: float = 0.0) -> Field:
     return distance
 
 
-def placed(field: Field, *, turn: Float[np.ndarray, "3 3"], shift: Place = (0.0, 0.0, 0.0)) -> Field:
+def place_field(field: Field, *, turn: Float[np.ndarray, "3 3"], shift: Place = (0.0, 0.0, 0.0)) -> Field:
     """A field turned about the origin by a rotation matrix and then shifted [m]."""
     moved = np.array(shift, dtype=float)
     return lambda points: field((points - moved) @ turn)

@@ -149,10 +149,10 @@ class BodyPhysics:
 
     def _met(self, robot: Robot, obstacle: Obstacle, carriage: RigidBodyDofs | None) -> list[Energy]:
         """Return the contact energy of an obstacle and the energy that keeps a moving one rigid or on its path."""
-        field = (obstacle if carriage is None or obstacle.path else obstacle.centred()).field()
+        field = (obstacle if carriage is None or obstacle.path else obstacle.to_own_frame()).field()
         friction = robot.friction_of(obstacle)
         met = ObstacleEnergy(robot.body.mesh, field, **_felt(robot), friction=friction, carriage=carriage)
-        met, rigid = met.begun(self.rest_unknowns), _RIGID * robot.body.material.young
+        met, rigid = met.with_friction_at_rest(self.rest_unknowns), _RIGID * robot.body.material.young
         if carriage is None:
             return [met]
         if not obstacle.path:

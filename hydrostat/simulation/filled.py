@@ -30,7 +30,7 @@ class FilledMotion:
         return f"{out} mm out of plane, {aside} mm in-plane deviation (flat model moves {moved} mm)"
 
 
-def quickly_filled(robot: Robot, poses: int) -> bool:
+def is_filled_motion_fast(robot: Robot, poses: int) -> bool:
     """Return True if `filled_motion` of so many poses takes only seconds: a flat drawn body, not too fine."""
     body = robot.body
     if body.outline is None or body.thickness is None or not robot.cables or not poses:

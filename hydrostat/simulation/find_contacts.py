@@ -56,7 +56,7 @@ def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPat
     return tuple(sorted(found, key=lambda touch: -touch.strength))
 
 
-def touch_words(found: Sequence[ContactPatch]) -> str:
+def describe_contacts(found: Sequence[ContactPatch]) -> str:
     """Describe all contacts and their forces in one sentence; empty if nothing touches."""
     parts = []
     for name in dict.fromkeys(touch.obstacle for touch in found):

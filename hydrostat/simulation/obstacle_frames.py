@@ -56,7 +56,7 @@ def obstacles_in_pose(robot: Robot, carried: Points | None) -> Robot:
     if not frames:
         return robot
     return with_obstacles(
-        robot, [one.moved(*frames[one.name]) if one.name in frames else one for one in robot.obstacles]
+        robot, [one.with_frame(*frames[one.name]) if one.name in frames else one for one in robot.obstacles]
     )
 
 

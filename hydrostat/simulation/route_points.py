@@ -109,7 +109,9 @@ class RoutePoints:
         """From end to end of each bare segment."""
         return positions[..., self.starts + 1, :] - positions[..., self.starts, :]
 
-    def gathered(self, slopes: Float[np.ndarray, "*rows segments dim"]) -> Float[np.ndarray, "*rows points dim"]:
+    def gather_gradients(
+        self, slopes: Float[np.ndarray, "*rows segments dim"]
+    ) -> Float[np.ndarray, "*rows points dim"]:
         """Slopes by the spans, as slopes by the points; a point ends one segment at most, and begins one."""
         total = np.zeros((*slopes.shape[:-2], len(self.places), slopes.shape[-1]))
         total[..., self.starts + 1, :] += slopes

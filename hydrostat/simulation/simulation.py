@@ -74,7 +74,7 @@ class Simulation:
         self.cables = cable_energy(robot, self.route_points)
         self.friction = friction_energy(robot, self.route_points)
         more = [self.friction or self.cables, *energies]
-        self.assembly: Assembly = self.body.assembly.extended(more, control_count=len(robot.winches))
+        self.assembly: Assembly = self.body.assembly.with_added_energies(more, control_count=len(robot.winches))
         self._more = tuple(energies)
         springs = [*(cable.stiffness for cable in robot.cables), *(energy.stiffest for energy in energies)]
         hidden = self.body.round_off(max(springs, default=0.0))

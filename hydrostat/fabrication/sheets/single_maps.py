@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.drawing import THIN, Box, Camera, Canvas, CanvasFrame, snug
+from hydrostat.drawing import THIN, Box, Camera, Canvas, CanvasFrame, fit_height
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets.cable_map import (
     CableRun,
@@ -55,7 +55,7 @@ def single_maps(
         return []
     scene = _flat_scene(robot, stitches) if view is None else _space_scene(robot, view)
     room = width / _COLUMNS
-    tall = min(height / _ROWS, _HEAD + 2 * _MARGIN + snug(scene.box, room - 2 * _MARGIN, 1e3))
+    tall = min(height / _ROWS, _HEAD + 2 * _MARGIN + fit_height(scene.box, room - 2 * _MARGIN, 1e3))
     count = len(scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0))))
     each = _COLUMNS * max(int(height / tall), 1)
     pages = []

@@ -35,7 +35,7 @@ def whole_numbers(values: np.ndarray, kind: str = "i8") -> np.ndarray:
     return values.astype(kind)
 
 
-def damaged(name: str, what: str) -> InputError:
+def make_damage_error(name: str, what: str) -> InputError:
     """Make the error for a file that is not as it should be."""
     return InputError(f"{name}: {what}: the file is damaged or cut short, save or copy it again")
 
@@ -70,7 +70,7 @@ class Cursor:
         """Go on behind a mark (InputError: it is not there)."""
         place = self.content.find(mark, self.at)
         if place < 0:
-            raise self.damaged(f"has no {mark.decode('latin-1', 'replace')!r}")
+            raise self.make_damage_error(f"has no {mark.decode('latin-1', 'replace')!r}")
         self.at = place + len(mark)
 
     def numbers(self, count: int, kind: str) -> np.ndarray:
@@ -78,7 +78,7 @@ class Cursor:
         dtype = np.dtype(self.order + kind)
         room = (len(self.content) - self.at + 1) // 2 if self.text else (len(self.content) - self.at) // dtype.itemsize
         if not 0 <= count <= room:
-            raise self.damaged(f"declares {count} numbers, but has bytes for {max(room, 0)} at most")
+            raise self.make_damage_error(f"declares {count} numbers, but has bytes for {max(room, 0)} at most")
         if not self.text:
             values = np.frombuffer(self.content, dtype, count, self.at)
             self.at += count * dtype.itemsize
@@ -93,14 +93,14 @@ class Cursor:
             need = count - len(values)
             words, end = self._piece(min(_PIECE, 32 * need))
             if not words:
-                raise self.damaged(f"ends where {need} more numbers belong")
+                raise self.make_damage_error(f"ends where {need} more numbers belong")
             if len(words) > need:
                 last = next(islice(_WORD.finditer(self.content, self.at, end), need - 1, None))
                 words, end = words[:need], last.end()
             try:
                 values.extend(map(float, words))
             except ValueError:
-                raise self.damaged("has text where numbers belong") from None
+                raise self.make_damage_error("has text where numbers belong") from None
             self.at = end
         return values
 
@@ -111,7 +111,7 @@ class Cursor:
             space = _SPACE.search(self.content, end + size)
             end = space.start() if space else len(self.content)
             if end - self.at > size + _LONGEST:
-                raise self.damaged("has a very long word")
+                raise self.make_damage_error("has a very long word")
             words = self.content[self.at : end].split()
             if words:
                 return words, end
@@ -124,6 +124,6 @@ class Cursor:
         self.at = end
         return part.numbers(sum(1 for _ in _WORD.finditer(part.content)), kind)
 
-    def damaged(self, what: str) -> InputError:
+    def make_damage_error(self, what: str) -> InputError:
         """The error for this file, which is not as it should be."""
-        return damaged(self.name, what)
+        return make_damage_error(self.name, what)

@@ -16,7 +16,7 @@ from hydrostat.geometry.files.silhouette import (
     ShadedPart,
     Silhouette,
     contrast,
-    covered,
+    count_covered_pixels,
     shaded_part,
     silhouette,
 )
@@ -141,7 +141,7 @@ def _shade_told(found: ShadedPart, page: Page) -> str:
 
 def _body_level(seen: Contrast) -> tuple[float, bool]:
     """Contrast at which the body begins, and True if a shadow lies below it."""
-    faint, strong = covered(seen.field > seen.faint), covered(seen.field > seen.strong)
+    faint, strong = count_covered_pixels(seen.field > seen.faint), count_covered_pixels(seen.field > seen.strong)
     if faint < 1.1 * strong or strong == 0:
         return seen.strong, False
     between = (seen.field > seen.faint) & (seen.field <= seen.strong)

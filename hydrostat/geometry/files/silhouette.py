@@ -162,7 +162,7 @@ class Silhouette:
     cut: bool  # True if the body reaches the border of the image
 
 
-def covered(mask: _Mask) -> int:
+def count_covered_pixels(mask: _Mask) -> int:
     """Pixels of the largest part of a mask, its holes filled."""
     return max((patch.area for patch in _patches(_filled(mask))[1]), default=0)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.cursor import Cells, Cursor, damaged, whole_numbers
+from hydrostat.geometry.files.cursor import Cells, Cursor, make_damage_error, whole_numbers
 from hydrostat.geometry.files.soup import MOST_BYTES
 from hydrostat.geometry.files.vtk_file import TETRAHEDRON, TRIANGLE, cells_of
 from hydrostat.geometry.mesh import Mesh
@@ -56,14 +56,14 @@ def read_vtu(content: bytes, name: str) -> Cells:
     grid = _parse(content, name)
     reader = _Reader(grid.attributes, appended, encoding, name)
     if not 0 < len(grid.pieces) <= _MOST_PIECES:
-        raise damaged(name, f"has no piece, or more than {_MOST_PIECES}")
+        raise make_damage_error(name, f"has no piece, or more than {_MOST_PIECES}")
     points, tetrahedra, triangles, before = [np.zeros((0, 3))], [], [], 0
     for piece in grid.pieces:
         if not {"points", "connectivity", "offsets", "types"} <= piece.keys():
-            raise damaged(name, "has a piece without points or cells")
+            raise make_damage_error(name, "has a piece without points or cells")
         places = reader.values(piece["points"]).astype(float)
         if len(places) % 3:
-            raise damaged(name, "has points without three coordinates")
+            raise make_damage_error(name, "has points without three coordinates")
         arrays = [whole_numbers(reader.values(piece[key])) for key in ("offsets", "connectivity", "types")]
         cells = cells_of(places.reshape(-1, 3), np.append(0, arrays[0]), arrays[1], arrays[2], name)
         points.append(cells.points)
@@ -131,7 +131,7 @@ class _Reader:
         """Numbers of an array."""
         kind = _KINDS.get(data.attributes.get("type", ""))
         if kind is None:
-            raise damaged(self.name, "has an array of an unknown type")
+            raise make_damage_error(self.name, "has an array of an unknown type")
         how = data.attributes.get("format", "ascii")
         try:
             if how == "ascii":
@@ -143,7 +143,7 @@ class _Reader:
             content = self._unpacked(source, encoding) if self.packed else self._plain(source, encoding)
             found = np.frombuffer(content, np.dtype(self.order + kind))
         except (ValueError, binascii.Error, zlib.error):
-            raise damaged(self.name, "has an array that cannot be unpacked") from None
+            raise make_damage_error(self.name, "has an array that cannot be unpacked") from None
         self.budget -= len(found)
         if self.budget < 0:
             raise InputError(f"{self.name}: unpacks to more than {MOST_BYTES / 1e6:.0f} MB: save a coarser mesh")

@@ -38,7 +38,7 @@ def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolu
     spacing = _allowed_spacing(surface, resolution)
     box = surface.box + 2.0 * spacing * np.array([[-1.0], [1.0]])
     try:
-        made = contour(field, box, spacing, settled=field.settled, accuracy=_ACCURACY)
+        made = contour(field, box, spacing, settled=field.find_settled_points, accuracy=_ACCURACY)
     except SurfaceError as error:
         raise SurfaceError(
             f"the surface encloses nothing that a grid of {1e3 * spacing:.3g} mm finds: it is an open sheet or thinner "
@@ -62,7 +62,7 @@ class WindingField:
         """One half minus the winding number."""
         return 0.5 - self.solid.winding(points)
 
-    def settled(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
+    def find_settled_points(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
         """Mask of the points around which the sign is constant within a reach [m]: no triangle, and no rim nearby.
 
         Away from the triangles the winding number has the gradient of the magnetic potential of a current along

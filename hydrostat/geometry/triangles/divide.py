@@ -58,7 +58,7 @@ def sample_rings(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Cu
         stations = np.arange(count) * (curve.length / count)
         tangents = curve.tangents(stations, min(_STEP, curve.length / 16))
         reach = min(_BEND_REACH, curve.length / 12)
-        bend = np.abs(curve.turned(stations, reach)) / (2 * reach)
+        bend = np.abs(curve.turning_angles(stations, reach)) / (2 * reach)
         if sharp.size:
             gaps = np.abs(stations[:, None] - sharp)
             bend[np.minimum(gaps, curve.length - gaps).min(axis=1) <= 1.2 * reach] = 0.0
@@ -165,8 +165,8 @@ def _corners(curve: Curve) -> Stations:
     """Stations of the true corners: where a ring turns much on a short way, and little just before and after."""
     reach = min(_CORNER_REACH, curve.length / 24)
     stations = curve.stations[:-1]
-    sharp = np.abs(curve.turned(stations, reach))
-    around = np.abs(curve.turned(stations, 2 * reach))
+    sharp = np.abs(curve.turning_angles(stations, reach))
+    around = np.abs(curve.turning_angles(stations, 2 * reach))
     likely = np.flatnonzero((sharp > _CORNER_ANGLE) & (sharp > 0.75 * around))
     found: list[float] = []
     for index in likely[np.argsort(-np.abs(curve.turning[likely]) - sharp[likely], kind="stable")]:

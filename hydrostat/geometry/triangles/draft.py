@@ -178,7 +178,7 @@ class Draft:
         return self._triangulated[0]
 
     @property
-    def lost(self) -> Edges:
+    def missing_sides(self) -> Edges:
         """Sides that no triangle has; they must be split."""
         return self._triangulated[1]
 

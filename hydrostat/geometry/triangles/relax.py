@@ -55,7 +55,7 @@ def sound(draft: Draft) -> bool:
     parts = draft.divisions
     ordered = all(bool((part.ends > part.stations).all()) for part in parts)
     near = max(float(part.sagitta().max()) for part in parts) < STRAY
-    return ordered and near and draft.polygon.is_valid and not draft.lost.size
+    return ordered and near and draft.polygon.is_valid and not draft.missing_sides.size
 
 
 def _score(draft: Draft, power: float) -> float:

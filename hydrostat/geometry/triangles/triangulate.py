@@ -58,9 +58,11 @@ def _check_element_size(outline: Outline, element_size: float) -> None:
 def _with_all_sides(draft: Draft) -> Draft:
     """Split sides of the outline until the triangles have them all."""
     for _ in range(30):
-        if not draft.lost.size:
+        if not draft.missing_sides.size:
             return draft
-        for node in sorted({int(pair.min() if np.ptp(pair) == 1 else pair.max()) for pair in draft.lost}, reverse=True):
+        for node in sorted(
+            {int(pair.min() if np.ptp(pair) == 1 else pair.max()) for pair in draft.missing_sides}, reverse=True
+        ):
             ring, number = draft.place(node)
             draft = draft.with_division(ring, draft.divisions[ring].split(number))
     raise OutlineError("the outline comes too near to itself for this element size: take smaller elements")

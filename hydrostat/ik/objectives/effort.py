@@ -56,7 +56,7 @@ class Effort(Objective):
         if self.of is EffortKind.TENSION:
             return _Tension(weight / (scale or _TENSION))
         if self.of is EffortKind.SLACK:
-            return _Slack(weight / (scale or simulation.cables.taken(travel)))
+            return _Slack(weight / (scale or simulation.cables.compute_contractions(travel)))
         return _Contraction(weight / (scale or travel))
 
 

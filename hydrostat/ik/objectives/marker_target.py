@@ -61,7 +61,7 @@ class MarkerTarget(Objective):
                 if name not in targets:
                     raise InputError(f'marker "{name}" has a weight or free axes but no target; give it one')
         chosen = [_index(robot, name) for name in names]
-        anchors = simulation.marker_anchors.chosen(chosen)
+        anchors = simulation.marker_anchors.select_points(chosen)
         scales = np.array([not_negative(f"weight of marker {name}", weights.get(name, 1.0)) for name in names])
         held = np.array([_held(name, free.get(name, ""), mesh.dim) for name in names])
         goals = np.array(

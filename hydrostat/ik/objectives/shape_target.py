@@ -141,7 +141,7 @@ class _Shape(Residual):
         """From the boundary's nodes to the shape, and from its places to the body; kept for the posture asked last."""
         nodes = posture.nodes
         if self._last is None or self._last[0] is not nodes:
-            body = self._body.moved(nodes)
+            body = self._body.with_nodes(nodes)
             self._last = nodes, self.target.nearest(nodes[self._rim]), body.nearest(self.places)
         return self._last[1:]
 
@@ -189,7 +189,7 @@ def _check(name: str, shell: Shell, mesh: Mesh) -> None:
         )
     if not (shell.measures > 0).all():
         raise InputError(f"the {name} has {np.sum(shell.measures == 0)} triangles without area; heal it first")
-    if not shell.closed:
+    if not shell.is_closed:
         raise InputError(f"the {name} is not closed; heal it first")
 
 

@@ -115,7 +115,7 @@ class _TrustRegionDescent:
         for iteration in range(options.iterations):
             if self.search.patience.over:
                 return self._end(IKStatus.TIME_LIMIT, iteration)
-            self.search.told(self.state)
+            self.search.report_progress(self.state)
             if not self.fixed:
                 if self.state.error <= problem.reached and self._sharpen() and self._reached():
                     return self._end(IKStatus.REACHED, iteration)

@@ -38,7 +38,7 @@ class InverseSearch:
         self.solver = problem.simulation.solver.with_accuracy(accuracy)
         self._remembers, self._turns = problem.simulation.assembly.has_history, False
 
-    def told(self, state: InverseState) -> None:
+    def report_progress(self, state: InverseState) -> None:
         """Report the progress of the search to its listener: one more step, and the errors of a state."""
         self.steps += 1
         if self.patience.tell is not None:
@@ -135,7 +135,7 @@ class InverseSearch:
         self.solves += 1
         return self._relaxed(values, state.result)
 
-    def renewed(self, state: InverseState) -> InverseState:
+    def adopt_state(self, state: InverseState) -> InverseState:
         """A state of another search of the same robot, in the eyes of this one."""
         history = state.history if self._remembers else None
         return self.problem.idle(self.problem.state(state.values, state.result, history))

@@ -120,7 +120,7 @@ class LinearModel:
         full[active] = scale * step
         return full, 0.5 * float(aim @ aim - after @ after)
 
-    def aimed(self, residual: Float[np.ndarray, " rows"]) -> "LinearModel":
+    def with_residual(self, residual: Float[np.ndarray, " rows"]) -> "LinearModel":
         """Return the same model with another residual, that of other goals."""
         other = copy(self)
         other.residual = residual
@@ -154,7 +154,7 @@ class LinearModel:
             gradient = gradient + rows.T @ nnls(rows.T, -gradient)[0]
         return float(np.abs(gradient).max())
 
-    def applied(self, step: Vector) -> Vector:
+    def apply_step(self, step: Vector) -> Vector:
         """Contractions of the channels after a step [m]; slack ones that do not join stay as they are."""
         places = self.places
         pulls, slopes = self._pulls

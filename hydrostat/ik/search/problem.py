@@ -196,7 +196,7 @@ class InverseProblem:
         """Compute the next step from a state: contractions of the channels [m] and the predicted decrease."""
         model = self.linear(state)
         step, promise = model.best(weight * self.worth, radius, curvature)
-        return ModelStep(model.applied(step), promise, model)
+        return ModelStep(model.apply_step(step), promise, model)
 
     def linear(self, state: InverseState) -> LinearModel:
         """Return the linear model of a state: the first-order effect of the contractions."""
@@ -271,7 +271,7 @@ _LEAST_WEIGHT = 1e-8  # of the effort; enough to keep the linearised problem wel
 def _full_tension(simulation: Simulation) -> float:
     """Largest cable tension at full travel of its winch if the body were linear [N]."""
     robot, cables = simulation.robot, simulation.cables
-    travel = cables.taken(np.array([winch.travel for winch in robot.winches]))
+    travel = cables.compute_contractions(np.array([winch.travel for winch in robot.winches]))
     rest = simulation.rest
     compliance = simulation.stiffness(rest).compliance_to(cables.columns(rest.nodes)).compliance.diagonal()
     return float((travel / (1.0 / cables.law.stiffness + compliance)).max())

@@ -47,7 +47,7 @@ class PathPoint:
     distance: float
     iterations: int
 
-    def turned(self) -> "PathPoint":
+    def reverse_direction(self) -> "PathPoint":
         """Return the same point with the branch direction reversed."""
         return replace(self, tangent=Tangent(-self.tangent.move, -self.tangent.rate))
 

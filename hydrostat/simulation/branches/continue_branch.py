@@ -135,7 +135,7 @@ class _Follower:
         place = self.system.correct(nodes, 0.0, still)
         if place is None or not place.distance < _SAME:
             raise InputError("start must be an equilibrium at its own contractions; solve for it first")
-        return place if place.tangent.rate > 0 else place.turned()
+        return place if place.tangent.rate > 0 else place.reverse_direction()
 
     def _step(self, place: PathPoint, step: float) -> PathPoint | None:
         """The equilibrium one step on; None if it is not where it was predicted."""

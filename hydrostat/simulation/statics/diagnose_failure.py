@@ -26,7 +26,7 @@ def diagnose_failure(
     tensions = cables.tensions(nodes, contractions)
     if tensions.max(initial=0.0) > 0:
         cable = int(np.argmax(tensions))
-        taken = (cables.taken(contractions)[cable] - cables.slack[cable]) / cables.rest_lengths[cable]
+        taken = (cables.compute_contractions(contractions)[cable] - cables.slack[cable]) / cables.rest_lengths[cable]
         told.append(
             f"highest tension {tensions[cable]:.3g} N in cable {robot.cables[cable].name!r}, "
             f"contracted by {100 * taken:.0f} % of its bare length"

@@ -100,7 +100,7 @@ class Dynamics:
         rest = self.motion_at_rest(body.rest_unknowns, np.zeros(len(robot.winches)), None, None)
         begin = _state(rest)
         moving = self._energies(begin, 1.0, 0.0, list(statics.energies))[len(statics.energies) :]
-        self._assembly = statics.extended(moving, control_count=len(robot.winches))
+        self._assembly = statics.with_added_energies(moving, control_count=len(robot.winches))
 
     def motion_at_rest(
         self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector | None
@@ -113,7 +113,7 @@ class Dynamics:
             raise InputError(f"velocities must be finite, {shape}, not {velocities.shape}")
         begin = still.copy()
         begin[: shape[0]] = 0.0 if velocities is None else velocities
-        state = _MotionState(nodes, begin, self.memory.settled(nodes))
+        state = _MotionState(nodes, begin, self.memory.relax_fully(nodes))
         shifts = np.zeros((len(self.robot.pins), nodes.shape[1]))
         return self._motion(0.0, (contractions, shifts, history), state, still, None)
 
@@ -197,7 +197,7 @@ class Dynamics:
                 return motion, replace(result, iterations=iterations)
             history, at = assembly.with_advanced_history(result.nodes, controls).history, controls
             velocities = (result.nodes - base.nodes) / step
-            end = _MotionState(result.nodes, velocities, self.memory.relaxed(base.metrics, result.nodes, step))
+            end = _MotionState(result.nodes, velocities, self.memory.relax_step(base.metrics, result.nodes, step))
             acceleration = (velocities - base.velocities) / step
             rates.append(_MotionState(velocities, acceleration, (end.metrics - base.metrics) / step))
         assert result is not None
@@ -211,7 +211,8 @@ class Dynamics:
         statics = self._statics.with_history(history, nodes, contractions) if len(history) else self._statics
         energies = list(statics.energies)
         for slot, obstacle in self._guides.items():
-            energies[slot] = energies[slot].moved(obstacle.shift(instant), np.eye(len(obstacle.at)))  # type: ignore[attr-defined]
+            place, axes = obstacle.shift(instant), np.eye(len(obstacle.at))
+            energies[slot] = energies[slot].with_target(place, axes)  # type: ignore[attr-defined]
         return [energy.with_supports_moved(shifts) for energy in energies] if shifts.any() else energies
 
     def _energies(self, base: _MotionState, step: float, drag: float, statics: list[Energy]) -> list[Energy]:
@@ -297,7 +298,7 @@ class Dynamics:
             tensions=self._tensions(nodes, contractions, history),
             kinetic=float(0.5 * self.masses @ (state.velocities**2).sum(axis=1)),
             potential=sum(energy.with_active_terms(nodes).value(nodes, contractions) for energy in statics)
-            + self.memory.stored(state.metrics, nodes),
+            + self.memory.compute_stored_energy(state.metrics, nodes),
             history=history,
             result=result,
         )
