@@ -7,11 +7,11 @@ from hydrostat.errors import InputError
 
 
 def check_type(given: object, kind: type | tuple[type, ...], wanted: str) -> None:
-    """Refuse a thing of another kind.
+    """Raise an error unless a value has the required type.
 
     Args:
-        given: what was given.
-        kind: that it must be of.
+        given: value to check.
+        kind: required type.
         wanted: the sentence before ", not ...", such as "a kit is made of a Robot".
     """
     if not isinstance(given, kind):

@@ -63,7 +63,7 @@ def render(
         held: 1 at nodes that are held and 0 elsewhere; they are hatched.
         up: the way up as the camera sees it, from where the sky shines; up in the picture if left out.
         pale: fades the felt behind what lies on it, 0 to 1.
-        lines: how strongly the edges of the mesh are drawn, 0 to 1.
+        lines: strength of the mesh edges, 0 to 1.
         point: millimetres that a point (1/72 inch) shows, which sizes lines.
     """
     fine, corners = pixel / FINER, spots[facets]

@@ -65,9 +65,9 @@ class BoundaryTree:
         """Largest share of a straight move, at most 1, that is admissible, and the pairs within reach at its end.
 
         Args:
-            nodes: where it begins [m].
-            move: of each node [m].
-            rest: where the nodes are at rest [m]: pairs that touch there may do as they like.
+            nodes: node positions at the start [m].
+            move: displacement of each node [m].
+            rest: rest positions of the nodes [m]; pairs that touch there are not limited.
             kept: share of its distance that each pair is to keep.
             reach: up to which distance pairs are told [m].
         """

@@ -42,11 +42,11 @@ def contour(
     Args:
         field: called with many points at once, all within the box.
         box: lowest and highest coordinates [m]; the region ends at its sides.
-        spacing: of the grid [m].
+        spacing: grid spacing [m].
         distance: the field changes by at most the way between two points (a signed distance), so what is far from
             its zero need not be computed; the result is the same, only sooner.
         settled: the same for other fields: whether the sign is the same all within a reach [m] of points.
-        accuracy: of the crossings, as a share of the spacing.
+        accuracy: accuracy of the crossings, as a share of the spacing.
 
     Raises:
         SurfaceError: the grid is too fine for the box, no grid point is inside, or the field is not finite.

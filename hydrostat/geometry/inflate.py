@@ -27,7 +27,7 @@ def inflate(outline: Outline, height: float, *, spacing: float) -> Surface:
     The same input gives the same surface.
 
     Args:
-        outline: of the body [m].
+        outline: outline of the body [m].
         height: thickness where it is thickest [m].
         spacing: length of the edges of the triangles [m]; shorter next to the rim, where the surface bends.
 

@@ -114,10 +114,10 @@ def pull_out(
     answer does not depend on the steps.
 
     Args:
-        robot: which.
-        thing: with a mass; where it is at rest, clear of the body.
-        contractions: that close the robot [m].
-        options: of the pull.
+        robot: robot that grasps the object.
+        thing: object with a mass, at its rest position, clear of the body.
+        contractions: contractions that close the robot [m].
+        options: options of the pull.
         tell: is told "pulling", how far it has come, and how far at most [mm].
 
     Raises:

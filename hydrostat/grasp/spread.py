@@ -41,10 +41,10 @@ def pull_bands(
     """Pull with friction, stiffness and place changed, one at a time; and without friction, to see what cages.
 
     Args:
-        robot: which.
-        thing: with its usual friction and place.
-        contractions: that close the robot [m].
-        options: of the pull.
+        robot: robot that grasps the object.
+        thing: object with its nominal friction and position.
+        contractions: contractions that close the robot [m].
+        options: options of the pull.
         tell: is told "cases", how many are done, and how many there are.
     """
     cases = list(_cases(robot, thing))

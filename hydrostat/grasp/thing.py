@@ -20,7 +20,7 @@ def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
 
     Args:
         text: its shape and sizes.
-        dim: of the body that grasps it; a sphere is a disc in the plane.
+        dim: dimension of the body that grasps it; a sphere is a disc in the plane.
         mass: [kg].
         friction: Coulomb's coefficient.
 
@@ -72,9 +72,9 @@ def place_thing(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
     """The thing in the midst of where markers are when the robot is closed, moved out of the body at rest.
 
     Args:
-        robot: at rest it must be clear of the thing.
-        thing: anywhere.
-        closed: where the markers of the pose are [m].
+        robot: robot; at rest it must be clear of the object.
+        thing: object at any position.
+        closed: marker positions in the closed pose [m].
 
     Raises:
         InputError: no place is found near by.

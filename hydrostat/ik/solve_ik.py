@@ -58,8 +58,8 @@ def solve_ik(
 
     Args:
         simulation: the robot's physics.
-        targets: where markers should go [m].
-        limits: what the winches may do, beside their travel and release.
+        targets: target positions of markers [m].
+        limits: limits of the winches, in addition to travel and release.
         objectives: more that is wished for, or instead.
         start: a pose to begin from, and to count rates from; the rest pose if left out. Where the goals leave a choice
             it does not matter, unless `options.min_tension` is off.

@@ -115,9 +115,9 @@ class Tracker:
         """One step towards where the targets are now.
 
         Args:
-            targets: where markers should go [m].
+            targets: target positions of markers [m].
             seconds: since the last update; what a limit on the rate allows follows from it.
-            objectives: what is wished for just now, beside what was given at the start.
+            objectives: objectives for this update, in addition to those given at the start.
 
         Raises:
             InputError: as for `solve_ik`, or seconds not above 0.

@@ -35,10 +35,10 @@ class Assembly:
         """Sum of energies of a body whose nodes are at `rest` [m] before it deforms.
 
         Args:
-            energies: the terms; they read `control_count` controls.
+            energies: terms of the sum; they read `control_count` controls.
             rest: decides the order of elimination alone.
-            control_count: how many controls there are.
-            pattern: of the stencils of these energies, if it is at hand.
+            control_count: number of controls.
+            pattern: sparsity pattern of the stencils of these energies, if available.
         """
         self.energies, self.control_count = tuple(energies), control_count
         self.pattern = pattern or SparsityPattern([energy.stencils for energy in energies], rest)

@@ -85,11 +85,11 @@ class FrictionCableEnergy(Energy):
             nodes: rest positions [m].
             segments: those that are not sheathed.
             law: tension against elongation, of each cable.
-            winches: whose contraction each cable follows.
-            slack: of each cable, taken in before it begins to be taut [m]; at the winch.
+            winches: index of the winch whose contraction each cable follows.
+            slack: contraction at which each cable starts to become taut [m], at the winch.
             friction: coefficient mu of each cable.
-            turns: where they turn; their points are the segments after them.
-            ratios: what each cable takes in when its winch takes in 1 m; 1 if left out.
+            turns: via points at which the cables turn; their points are the segments after them.
+            ratios: contraction of each cable per metre of its winch's contraction; 1 by default.
         """
         cables = segments.cables
         first = np.append(True, np.diff(cables) != 0)[: len(cables)]
@@ -214,8 +214,8 @@ class FrictionCableEnergy(Energy):
         Args:
             nodes: equilibrium with the limits as they are [m].
             controls: contractions [m].
-            compliance: of the body there.
-            response: not needed.
+            compliance: compliance of the body at these nodes.
+            response: unused.
         """
         del response
         wanted = self.capstan_limits(nodes, controls)
@@ -264,7 +264,7 @@ class FrictionCableEnergy(Energy):
         Args:
             nodes: an equilibrium [m].
             controls: contractions [m].
-            compliance: of the body there.
+            compliance: compliance of the body at the pose.
         """
         return -compliance.moves @ self.tension_slopes(nodes, controls, compliance)
 
@@ -276,7 +276,7 @@ class FrictionCableEnergy(Energy):
         Args:
             nodes: an equilibrium [m].
             controls: contractions [m].
-            compliance: of the body there.
+            compliance: compliance of the body at the pose.
             taut: cables that, where they are slack, are taken as if they had just become taut and slipped; none if left
                 out.
         """

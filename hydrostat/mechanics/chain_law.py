@@ -71,8 +71,8 @@ class ChainLaw(TensionLaw):
         """dT/ds [N/m] and dT/dlimits while cable goes on slipping where it does.
 
         Args:
-            tensions: of the spans [N].
-            signs: at the point before each span 1 where cable slips towards the winch, -1 the other way, 0 where not.
+            tensions: tensions of the spans [N].
+            signs: slip direction at the point before each span: 1 towards the winch, -1 the other way, 0 for no slip.
         """
         springs = super().tangent(np.where(tensions > 0, self.elongation(tensions), 0.0))
         by_elongation, soft, same = self._joined(springs, signs != 0)

@@ -98,10 +98,10 @@ class ContactEnergy(Energy):
         """Contact of a body at rest with itself, in which nothing touches yet.
 
         Args:
-            mesh: of the body.
-            distance: at which parts begin to feel one another [m].
+            mesh: mesh of the body.
+            distance: distance at which contact forces start [m].
             young: pressure at half that distance: Young's modulus [Pa].
-            thickness: of a flat body [m].
+            thickness: thickness of a flat body [m].
             rest: all unknowns at rest [m], if there are more than the nodes of the mesh.
         """
         rest = mesh.nodes if rest is None else rest

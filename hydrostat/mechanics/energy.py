@@ -234,8 +234,8 @@ class Energy(ABC):
         Args:
             nodes: equilibrium with what is held fixed [m].
             controls: contractions [m].
-            compliance: how the body gives way to the springs of this energy; None if not known.
-            response: how it gives way to any forces; None if not known.
+            compliance: compliance of the body to the springs of this energy; None if unknown.
+            response: displacement of the body under arbitrary forces; None if unknown.
         """
         return self
 

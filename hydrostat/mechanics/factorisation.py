@@ -97,12 +97,12 @@ class Analysis:
         """Analyse the pattern of a symmetric matrix.
 
         Args:
-            indptr: where each column begins, (dofs + 1,), as in `csc_array`.
+            indptr: start of each column, (dofs + 1,), as in `csc_array`.
             indices: rows of the entries, rising in each column; both triangles.
             dim: degrees of freedom of a node, side by side.
-            points: where the nodes are, (nodes, any dimension).
-            like: of a pattern with fewer entries; its order is taken where a better one would not pay.
-            uses: how many factorisations are counted on, where that order competes with one to be found.
+            points: positions of the nodes, (nodes, any dimension).
+            like: analysis of a pattern with fewer entries; its order is taken where a better one would not pay.
+            uses: expected number of factorisations, by which that order competes with a new one.
             backend: who factorises.
 
         Raises:

@@ -42,7 +42,7 @@ def minimise(
         warp: bends steps along arcs; only straight ones without it.
         stiffness: the Hessian at `start` at other controls, such as those at which it is in equilibrium. The first step
             then costs no factorisation: it is the prediction dx/da, bent along arcs.
-        exact: whether `stiffness` is that of `start` to rounding; then it may stand for the Hessian at an end nearby.
+        exact: True if `stiffness` is that of `start` up to rounding; then it may serve as the Hessian at an end nearby.
     """
     return _EnergyDescent(assembly, controls, round_off, options, warp, exact).run(start, stiffness)
 

@@ -53,13 +53,13 @@ class ObstacleEnergy(Energy):
         """Barrier of a body at rest.
 
         Args:
-            mesh: of the body.
+            mesh: mesh of the body.
             field: distance of points from the obstacle, in its frame.
-            distance: at which it begins to be felt [m].
+            distance: distance at which contact forces start [m].
             young: pressure at half that distance: Young's modulus [Pa].
-            thickness: of a flat body [m].
+            thickness: thickness of a flat body [m].
             friction: Coulomb's coefficient mu.
-            carriage: where the unknowns of its frame are; None if it stands still.
+            carriage: unknowns of its frame; None for a static obstacle.
         """
         self.field, self.distance, self.carriage = field, distance, carriage
         self._corners, self.shares, areas = _samples(mesh)

@@ -92,9 +92,9 @@ class GuideEnergy(Energy):
         """Springs to a place [m] and to axes.
 
         Args:
-            carriage: of the thing.
-            place: to which its origin is held [m].
-            axes: to which its axes are held.
+            carriage: unknowns of the object.
+            place: position at which its origin is held [m].
+            axes: orientation in which its axes are held.
             along: stiffness of what holds its place [N/m], (dim, dim), positive semidefinite.
             turning: stiffness of what holds its axes [N/m], each at the length of the carriage from its place.
         """

@@ -115,7 +115,7 @@ class SelfContactFriction:
         """Return the friction state without normal forces.
 
         Args:
-            skin: of the body.
+            skin: boundary data of the body.
             rest: nodes [m].
             friction: mu of each side.
             springs: stiffness of each node [N/m].
@@ -173,7 +173,7 @@ class SelfContactFriction:
 
         Args:
             nodes: the shape [m].
-            pairs: that are felt there.
+            pairs: active contact pairs at that shape.
             pushes: normal force on each node of the boundary [N].
             normals: its direction.
         """

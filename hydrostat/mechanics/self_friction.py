@@ -36,8 +36,8 @@ class SelfFrictionEnergy(Energy):
         """Contact of a body at rest with friction; nothing touches yet.
 
         Args:
-            mesh: of the body.
-            contact: of the body with itself.
+            mesh: mesh of the body.
+            contact: self-contact energy of the body.
             friction: Coulomb's coefficient mu.
         """
         skin = SelfContactSurface.of(mesh, contact.skin.distance)

@@ -58,7 +58,7 @@ class TensionLaw:
         function of one number a cable. This knows, as a linear law does not, that a slack cable does not push.
 
         Args:
-            elongations: of each cable on a body that does not yet feel them [m].
+            elongations: elongation of each cable on the body before it deforms under them [m].
             compliance: positive semidefinite, (cables, cables) [m/N].
         """
         tensions = np.zeros_like(elongations)

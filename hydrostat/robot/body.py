@@ -214,14 +214,14 @@ def surface_body(
     """Body in space from the bytes of a scan or CAD model (STL, OBJ, PLY, OFF or 3MF, by its name), healed if need be.
 
     Args:
-        content: of the file.
+        content: bytes of the file.
         file: its name.
         unit: metres that a coordinate counts, if the file does not say.
-        material: what it is made of.
+        material: material of the body.
         element_size: mean length of a mesh edge [m].
         size: longest side of the bounding box [m] to scale to; None: as the file says.
         thickness: must be None; refused as bodies in space have none.
-        volume: how its change of volume is measured.
+        volume: measure of volume change.
 
     Raises:
         InputError: the file holds no surface, it encloses no body, or a number is out of its range.

@@ -9,8 +9,8 @@ def commented_text(robot: Robot, source: str) -> str:
     """The text of robot.toml with a comment before the first table of each kind.
 
     Args:
-        robot: that was just begun.
-        source: name of the file that it was begun from.
+        robot: newly created robot.
+        source: name of the file that it was created from.
     """
     flat = robot.body.mesh.dim == 2
     origin = "the middle of the drawing, x to the right, y up" if flat else "where the file of the body has it"

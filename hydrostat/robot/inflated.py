@@ -24,8 +24,8 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
 
     Args:
         robot: flat, with an outline.
-        face: where its cables run; as the robot says if left out, and if it does not, on the front.
-        element_size: of the tetrahedra [m]; that of the flat mesh if left out.
+        face: side on which its cables run; None: the robot's own, or else the front.
+        element_size: size of the tetrahedra [m]; None: that of the flat mesh.
 
     Raises:
         InputError: a robot in space, one without a drawing, or a body too thick for its outline.

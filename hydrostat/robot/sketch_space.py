@@ -48,9 +48,9 @@ def sketch_surface(
     """Robot from the bytes of a scan or CAD model; coordinates count in mm if the file does not say.
 
     Args:
-        content: of an STL, OBJ, PLY, OFF or 3MF file.
+        content: bytes of an STL, OBJ, PLY, OFF or 3MF file.
         file: its name.
-        name: of the robot.
+        name: name of the robot.
         size: longest side of the bounding box [m]; None: as the file says.
         element_size: [m]; None: so that there are about as many nodes as asked for.
         nodes: wanted; None: as many as the thesis's hand has; not used with an element size.

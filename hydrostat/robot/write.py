@@ -31,9 +31,9 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     robot.toml that was there are lost, but for a `text` that has them.
 
     Args:
-        robot: to save.
-        folder: of the robot.
-        text: of robot.toml, such as `merged_text` makes it; `robot_text` if left out.
+        robot: robot to save.
+        folder: folder of the robot.
+        text: text of robot.toml, such as `merged_text` returns; None: `robot_text`.
 
     Raises:
         InputError: a name that robot.toml does not allow, or a folder that cannot be written.

@@ -128,13 +128,13 @@ def limb(
     """A limb through joints [m], with its half breadth and depths given at each of them [m].
 
     Args:
-        joints: from the root to the end of the spine.
-        side: about the direction across the limb; what of it lies along the spine does not count.
+        joints: landmarks from the root to the end of the spine [m].
+        side: approximate direction across the limb; its component along the spine does not count.
         breadths: half the breadth at each joint.
         backs: depth of the back at each joint.
         bellies: depth of the belly; as the back if left out.
         caps: length of the rounded ends; as round as the belly if left out.
-        bend: how far from a joint the spine leaves the straight line [m].
+        bend: distance from a joint at which the spine leaves the straight line [m].
     """
     corners = np.array(list(joints), dtype=float)
     bellies = backs if bellies is None else bellies

@@ -128,7 +128,7 @@ class BodyPhysics:
 
         Args:
             start: all unknowns where a solve begins [m]; at rest if left out.
-            guided: whether other energies may hold the obstacles.
+            guided: True if other energies hold the obstacles.
 
         Raises:
             InputError: no pin, so it moves before friction on the ground can hold it; or an obstacle floats.

@@ -148,11 +148,11 @@ def check_pose(
     """Check that a pose is one of a robot, such as one that a solve can begin from.
 
     Args:
-        pose: what was given.
-        shape: of the robot's nodes.
-        winches: their number.
-        history: of physics that remember the way there; None if none do.
-        what: the pose is for, in messages.
+        pose: value to check.
+        shape: shape of the robot's node array.
+        winches: number of winches.
+        history: history variables of physics that depend on the loading path; None for other physics.
+        what: purpose of the pose, for messages.
 
     Raises:
         InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.

@@ -49,10 +49,10 @@ def filled_motion(
     """Play contractions on a flat robot and on the body in space that it becomes (`inflated_robot`), and compare.
 
     Args:
-        robot: flat, with a drawing.
-        contractions: of all winches, for each pose [m].
-        face: where its cables run; as the robot says if left out, and if it does not, on the front.
-        element_size: of the tetrahedra [m]; that of the flat mesh if left out.
+        robot: flat robot with a drawing.
+        contractions: contractions of all winches for each pose [m].
+        face: side on which its cables run; None: the robot's own, or else the front.
+        element_size: size of the tetrahedra [m]; None: that of the flat mesh.
 
     Raises:
         InputError: a robot in space, one without a drawing, or a body too thick for its outline.

@@ -38,7 +38,7 @@ def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPat
     feels, friction included (`obstacle_forces` with the other sign); those of the body on itself are normal.
 
     Args:
-        simulation: of the robot.
+        simulation: simulation of the robot.
         pose: an equilibrium of it.
 
     Raises:

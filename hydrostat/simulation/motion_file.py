@@ -45,10 +45,10 @@ def write_motion(
     """Write a motion; one that stops early is written as far as it got. Nothing is replaced before it has ended.
 
     Args:
-        robot: that moves.
+        robot: moving robot.
         motions: its instants, at least one.
         folder: made if need be; the meshes go to `frames` in it.
-        frames_per_second: for the meshes: the first instants not before are taken.
+        frames_per_second: frame rate of the meshes: each frame is the first instant at or after its time.
 
     Returns:
         The paths of motion.csv and motion.pvd, the table, and the last instant.

@@ -60,7 +60,7 @@ class Simulation:
 
         Args:
             robot: body and network.
-            options: how far Newton goes.
+            options: convergence options of Newton's method.
             body: the physics of its body, if they are at hand; making them anew takes longer than all else here.
             energies: more physics, such as a magnet or a floor; controls of theirs are the winches' contractions.
 
@@ -103,8 +103,8 @@ class Simulation:
             start: a pose to begin from; the rest pose if left out.
             strict: raise when the solver does not converge, rather than return the best pose found.
             seconds: after which it stops, with what it has; no limit if left out.
-            accuracy: about how far a node may be from equilibrium [m], for poses that are streamed, 1e-5 for instance;
-                what is left is told as `pose.result.error`. Solved to rounding if left out, and always with friction.
+            accuracy: approximate distance of a node from equilibrium [m] for streamed poses, for instance 1e-5; the
+                remaining distance is `pose.result.error`. None: solved to rounding, as always with friction.
 
         Raises:
             InputError: contractions that do not fit the robot, or a limit or an accuracy that is not above 0.
@@ -140,9 +140,9 @@ class Simulation:
 
         Args:
             contractions: cable taken in [m], (poses, winches), or each as in `solve`.
-            jacobians: whether to find slopes of the markers too.
-            nodes: whether to keep all nodes.
-            threads: that solve at the same time, one for each core; for small bodies, where two are slower, one works.
+            jacobians: also compute Jacobians of the markers.
+            nodes: keep all nodes.
+            threads: number of threads, by default one per core; for small bodies, where two are slower, one.
             start: a pose to begin each from; the rest pose if left out.
             seconds: after which one pose is given up; no limit if left out.
 
@@ -255,8 +255,8 @@ class Simulation:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
 
         Args:
-            pose: where the nodes are, and the contractions there.
-            velocities: of the nodes [m/s]; none if left out.
+            pose: initial nodes and contractions.
+            velocities: node velocities [m/s]; zero by default.
         """
         self.check_start(pose)
         if pose is None:
@@ -275,11 +275,11 @@ class Simulation:
         """The motion after `dt` [s], while contractions and pins go evenly to where they shall be.
 
         Args:
-            motion: where it begins.
-            contractions: at the end of the step [m].
+            motion: state at the start of the step.
+            contractions: contractions at the end of the step [m].
             dt: length of the step [s].
             options: scheme, drag, and how often a step that fails is cut in two.
-            pin_shifts: how far pins are from where they were at rest, at the end of the step [m].
+            pin_shifts: displacement of pins from their rest positions at the end of the step [m].
 
         Raises:
             InputError: arguments that do not fit the robot.
@@ -301,10 +301,10 @@ class Simulation:
 
         Args:
             profile: the contractions; its time is that of the motion.
-            seconds: how long.
+            seconds: duration [s].
             dt: longest step [s]; the steps are even, and the last ends in time.
-            start: where it begins; at rest if left out.
-            options: as for `step`.
+            start: initial state; at rest by default.
+            options: options as for `step`.
 
         Raises:
             InputError, NotConvergedError: as for `step`.

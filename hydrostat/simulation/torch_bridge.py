@@ -57,9 +57,9 @@ def solve_torch(
     `young` or `poisson` is given. Second derivatives are refused.
 
     Args:
-        simulation: of the robot.
+        simulation: simulation of the robot.
         contractions: cable taken in by each winch [m], (winches,).
-        slack: of each cable [m], (cables,).
+        slack: slack of each cable [m], (cables,).
         routes: rest positions of the points of each cable [m], (points, dim) each. The winch of a cable that begins
             in the world goes with its first point.
         young: Young's modulus [Pa], one number.

@@ -38,10 +38,10 @@ def drawing_of(
 
     Args:
         lines: the rings and the open lines, of `closed_rings`.
-        name: of the file, for complaints.
-        inner: what those within the body are.
-        page: on which the outer ring of a body lies.
-        notes: what there is to tell already.
+        name: name of the file, for errors.
+        inner: meaning of the lines within the body.
+        page: function that returns the page on which the outer ring of a body lies.
+        notes: notes so far.
 
     Raises:
         OutlineError: they make no body; see `body_and_holes`.

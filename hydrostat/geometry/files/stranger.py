@@ -18,8 +18,8 @@ def read_stranger(path: str | Path, *, name: str | None = None, most: int | None
     """Bytes of a file.
 
     Args:
-        path: of the file.
-        name: of the file in complaints; the path if left out.
+        path: path of the file.
+        name: name of the file in errors; None: the path.
         most: bytes that it may have; by the ending of its name if left out.
 
     Raises:

@@ -37,7 +37,7 @@ class IKOptions:
             search ends.
         iterations: maximum number of steps from one start.
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
-        min_tension: where the goals leave a choice, take the contractions with the least tension, whatever the start.
+        min_tension: among equally good contractions, choose those with the least tension, for any start.
         restarts: maximum number of restarts while a goal is not reached; 0 to save time.
         hold_free_markers: keep markers without a target where they are. This changes nothing if the target is in reach.
             Otherwise they move a distance d from rest only if that gains about d^2 over four times the body's size.

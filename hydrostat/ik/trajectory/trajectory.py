@@ -69,20 +69,20 @@ class Trajectory:
     """Contractions over time, and the equilibrium at each sample.
 
     Attributes:
-        path: what goes on a simple way from one keyframe to the next.
-        times: of the samples, from 0 [s].
-        contractions: [m].
-        speeds: of the contractions [m/s].
-        accelerations: of the contractions [m/s^2]; of a linear path 0, but for its corners, where they are infinite.
-        peak_speeds: the largest speed of each winch, between samples too [m/s].
-        peak_accelerations: the largest acceleration of each winch, between samples too [m/s^2].
-        pace: the limits on both.
+        path: quantity that follows a simple path from one keyframe to the next.
+        times: times of the samples, from 0 [s].
+        contractions: contractions at each sample [m].
+        speeds: rates of change of the contractions [m/s].
+        accelerations: second derivatives of the contractions [m/s^2]; 0 for a linear path, infinite at its corners.
+        peak_speeds: maximum speed of each winch, between samples too [m/s].
+        peak_accelerations: maximum acceleration of each winch, between samples too [m/s^2].
+        limits: limits on both.
         poses: equilibria, each continued from the one before.
-        keys: what became of the keyframes, the beginning not among them.
-        branch_jumps: where the robot jumps to another branch.
-        winches: their names.
-        cables: the winch of each cable.
-        tension: the limit on the tension of each cable [N]; infinite without one.
+        keyframes: results of the keyframes, without the start.
+        branch_jumps: jumps of the robot to another branch (snap-through).
+        winches: names of the winches.
+        cables: name of the winch of each cable.
+        tension: maximum tension of each cable [N]; infinite without a limit.
     """
 
     path: PathKind

@@ -106,9 +106,9 @@ class Bordered:
 
         Args:
             nodes: positions to begin at [m].
-            share: of the way, to begin at.
+            share: share of the way to begin at.
             across: the direction; with one that moves no node the share is kept.
-            reach: how far it may be (see `farthest`).
+            reach: largest distance from the start (see `farthest`).
             iterations: most steps of Newton.
             before: direction that the new one shall continue; `across` if left out.
         """

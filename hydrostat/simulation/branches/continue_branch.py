@@ -75,7 +75,7 @@ def continue_branch(
     Args:
         simulation: the robot's physics.
         start: an equilibrium to begin from, stable or not.
-        contractions: to go to [m].
+        contractions: contractions at the end of the branch [m].
         around_folds: go on where stability is lost, along the unstable part; else the branch ends there.
         options: length of the steps.
 

@@ -113,9 +113,9 @@ def find_equilibria(
 
     Args:
         simulation: the robot's physics.
-        contractions: at the end of every way [m].
-        count: how many ways.
-        seed: of the random ones.
+        contractions: contractions at the end of every loading path [m].
+        count: number of loading paths.
+        seed: random seed of the loading paths.
         tolerance: poses whose nodes are all within this share of the body's size are one.
         progress: told the stage, how many ways are done, and how many there are.
 

@@ -65,7 +65,7 @@ def sensitivity(
     and dL/dT dT/dtheta to the slopes.
 
     Args:
-        body: that of the robot whose pose it is.
+        body: body of the robot in the pose.
         assembly: its energies.
         cables: those of its cables.
         pose: an equilibrium.

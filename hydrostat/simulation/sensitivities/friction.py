@@ -51,9 +51,9 @@ def friction_sensitivities(
     e, the limits f(T, angles(x), mu), and B and S as in `ChainLaw.compute_slip_jacobians`. docs/theory/derivatives.md.
 
     Args:
-        robot: whose cables they are.
-        points: of the cables.
-        cables: as they are in the pose.
+        robot: robot with these cables.
+        points: points of the cables.
+        cables: energy of the cables in the pose.
         stiffness: the Hessian in the pose.
         pose: an equilibrium.
         rows: dL / d nodes at fixed tensions, and dL / d tensions at the winches.

@@ -98,10 +98,10 @@ def pose_row(
     """Take from a pose what a row holds.
 
     Args:
-        pose: where the solver ended.
-        anchors: what holds the markers.
-        keep: whether to keep the nodes.
-        slopes: of the markers with the contractions; None if they are not wanted.
+        pose: result of the solver.
+        anchors: nodes and weights that hold the markers.
+        keep: True to keep the nodes.
+        slopes: Jacobian of the markers by the contractions; None if not requested.
         diagnose: tells why there is no equilibrium.
     """
     reason, trouble, jacobian = pose.result.reason, "", None
@@ -139,10 +139,10 @@ def solve_rows(
         robot: robot that is solved.
         contractions: one row for each pose [m].
         solve: returns the row of a number.
-        jacobians: whether rows have Jacobians.
-        nodes: whether rows have nodes.
+        jacobians: True for rows with Jacobians.
+        nodes: True for rows with nodes.
         threads: threads that may work.
-        cost: of one factorization of the body [s]; small ones are faster in one thread.
+        cost: time of one factorization of the body [s]; small ones are faster in one thread.
 
     Raises:
         InputError: no number of threads.

@@ -16,10 +16,10 @@ def diagnose_failure(
     """Explain a failed solve: the cable with the highest tension, an almost flat element or the largest residual.
 
     Args:
-        robot: whose solve ended early.
+        robot: robot of the failed solve.
         cables: its cables, as if they had no friction.
-        nodes: where it ended [m].
-        contractions: of the winches [m].
+        nodes: node positions where the solve ended [m].
+        contractions: contractions of the winches [m].
         forces: left over at the nodes [N].
     """
     told = []

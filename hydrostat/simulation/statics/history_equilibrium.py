@@ -21,9 +21,9 @@ def find_history_equilibrium(
 
     Args:
         assembly: the sum, with a first guess of what is held fixed.
-        start: where to begin [m], and the Hessian there if it is known.
+        start: initial positions [m], and the Hessian there if it is known.
         controls: contractions [m].
-        relax: how to minimise.
+        relax: function that minimises the energy.
         floor: force that rounding hides [N].
 
     Returns:

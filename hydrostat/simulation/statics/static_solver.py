@@ -40,14 +40,14 @@ class StaticSolver:
         """Newton from some nodes on.
 
         Args:
-            nodes: where to begin [m].
+            nodes: initial node positions [m].
             controls: contraction of each winch [m].
             stiffness: the Hessian near there, such as that of the last result; then the first step is the prediction
                 dx/da and costs no factorisation.
             iterations: most steps, if fewer than the options allow.
-            tolerance: if looser than theirs.
-            exact: whether `stiffness` is that of `nodes` to rounding, and not of a place close by.
-            whole: whether to give up at once, at no cost, where the prediction cannot be taken whole.
+            tolerance: tolerance, if looser than that of the options.
+            exact: True if `stiffness` is that of `nodes` up to rounding, and not of positions nearby.
+            whole: give up immediately, at no cost, if the prediction cannot be taken whole.
         """
         options = replace(self.options, whole=whole)
         if iterations is not None:
