@@ -46,7 +46,7 @@ class Assembly:
         self.token = object()
 
     def with_added_energies(self, energies: Sequence[Energy], *, control_count: int) -> "Assembly":
-        """Sum with more energies; all that is known of the pattern of this one serves it too."""
+        """Return the sum with more energies; it reuses the sparsity pattern of this one."""
         for energy in energies:
             if not (isinstance(energy, Energy) and hasattr(energy, "stencils")):
                 raise InputError(f"{energy!r:.60} is no Energy with stencils; see hydrostat.mechanics.Energy")
@@ -145,11 +145,11 @@ class Assembly:
         return self.with_terms([energy.with_history(part, nodes, controls) for energy, part in parts])
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
-        """Largest force [N] by which what is held fixed while minimising is off."""
+        """Largest error [N] of the quantities that a minimisation holds fixed, such as friction limits."""
         return max((energy.history_residual(nodes, controls) for energy in self.energies), default=0.0)
 
     def with_corrected_history(self, nodes: Nodes, controls: Vector, stiffness: Stiffness | None) -> "Assembly":
-        """Sum in which that is nearer to what it should be; by Newton's method if the stiffness is given."""
+        """Return the sum with these quantities corrected; by Newton's method if the stiffness is given."""
         if stiffness is None:
             return self.with_terms([energy.with_corrected_history(nodes, controls, None) for energy in self.energies])
         energies = []
@@ -160,7 +160,7 @@ class Assembly:
         return self.with_terms(energies)
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "Assembly":
-        """Sum of what follows a state on the loading path."""
+        """Return the sum for the next increment after a state of the loading path."""
         return self.with_terms([energy.with_advanced_history(nodes, controls) for energy in self.energies])
 
     def value(self, nodes: Nodes, controls: Vector) -> float:

@@ -82,7 +82,7 @@ class CableEnergy(Energy):
         return self.ratios * controls[self.winches]
 
     def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
-        """Elongations s [m]: how much longer each cable is than it should be; negative when slack."""
+        """Elongations s [m] of the cables beyond their free length; negative when slack."""
         return self.lengths(nodes) - self.rest_lengths + self.compute_contractions(controls) - self.slack
 
     def tensions(self, nodes: Nodes, controls: Vector) -> Vector:

@@ -26,7 +26,7 @@ from hydrostat.mechanics.via_point_turns import ViaPointTurns
 
 
 class LockedTensions(NamedTuple):
-    """Tensions of the spans, and how they change while points at the capstan's limit slip on and the others stick.
+    """Tensions of the spans and their derivatives while points at the capstan limit slip on and the others stick.
 
     Attributes:
         tensions: tension T of each span [N].
@@ -197,7 +197,7 @@ class FrictionCableEnergy(Energy):
         return still.with_limits(still.capstan_limits(nodes, controls))
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
-        """Energy of what follows a state: the cable has slipped, and the limits are those of that state."""
+        """Return the energy for the next increment: the cable has slipped, and the limits are those of this state."""
         slips = self.slips + self.law.slips(self.elongations(nodes, controls))
         other = self._with(self.capstan_limits(nodes, controls), slips)
         other._share, other._missed, other._solves = 1.0, np.inf, False
@@ -234,7 +234,7 @@ class FrictionCableEnergy(Energy):
         return other
 
     def _solved_limits(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Vector | None:
-        """Limits where the capstan law holds on a body that gives way linearly; None if none are found."""
+        """Friction limits that satisfy the capstan law on a linearly compliant body; None if none are found."""
         elongations = self.elongations(nodes, controls)
         chains = CapstanChains(
             law=self.law,
@@ -346,7 +346,7 @@ class FrictionCableEnergy(Energy):
         return slopes
 
     def _limit_slopes(self, nodes: Nodes, tensions: Vector, compliance: Compliance) -> RankMatrix:
-        """D capstan limits / d tensions, of the body that gives way to these too."""
+        """D capstan limits / d tensions, including the compliance of the body."""
         before = np.append(0.0, tensions[:-1])
         held = np.exp(-self.friction * self.angles(nodes)) * np.maximum(tensions, before)
         turned = self.turn_gradients(nodes).T @ compliance.moves

@@ -44,7 +44,7 @@ class ChainLaw(TensionLaw):
         return slips
 
     def energy(self, elongation: Vector) -> Vector:
-        """Energy of each span and what friction dissipates at the point before it [J]."""
+        """Elastic energy of each span plus the energy dissipated by friction at the point before it [J]."""
         slips = self.slips(elongation)
         return super().energy(self._own(elongation, slips)) + self.limits * np.abs(slips)
 

@@ -43,11 +43,11 @@ class ContactSurface:
         return squared
 
     def begins(self, pairs: Pairs) -> Vector:
-        """Squared distance [m^2] at which each pair is felt: below half of what it has at rest, so at rest none is."""
+        """Squared distance [m^2] at which each pair becomes active: below half of its rest distance."""
         return np.minimum(self.distance**2, _REST * self.compute_squared_distances(self.rest, pairs))
 
     def weights(self, pairs: Pairs, begins: Vector) -> Vector:
-        """Factor of the barrier of each pair [N/m]: half as far as it is felt, it pushes by stiffness x area."""
+        """Factor of each pair's barrier [N/m]: its force at half the contact distance is stiffness x area."""
         one = self.areas[pairs.stencils[:, 0]]
         shared = 0.5 * self.areas[pairs.stencils].mean(axis=1)
         area = np.where(pairs.edges, shared, one)
@@ -86,7 +86,7 @@ class ContactEnergy(Energy):
     projects_first: ClassVar[bool] = True
 
     def __init__(self, skin: ContactSurface, pairs: Pairs, watch: CandidatePairs | None = None) -> None:
-        """Contact between the given pairs, and what is known of all others."""
+        """Take the active pairs, and the candidate pairs."""
         self.skin, self.pairs, self.watch = skin, pairs, watch
         self.swept: tuple[Nodes, Pairs] | None = None
         self.stencils: Stencils = pairs.stencils
@@ -187,7 +187,7 @@ class ContactEnergy(Energy):
         return _LOOK * self.skin.distance
 
     def _look_around(self, nodes: Nodes) -> CandidatePairs:
-        """Pairs that are near, and serve as long as no node moves by more than half of what is looked at beyond."""
+        """Return the candidate pairs, valid as long as no node moves by more than half of the search margin."""
         margin = 0.5 * (self._reach - self.skin.distance)
         end, pairs = self.swept or (None, None)
         if end is None or pairs is None or np.abs(nodes - end).max() > _ROUNDING * self.skin.distance:

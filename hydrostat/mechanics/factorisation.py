@@ -131,7 +131,7 @@ class Analysis:
 
 
 class Factorisation:
-    """A = L S L^T with S = diag(+-1), or what does the same.
+    """Factorisation A = L S L^T with S = diag(+-1), or an equivalent one.
 
     Attributes:
         negative: number of negative pivots, which is the number of negative eigenvalues.
@@ -167,7 +167,7 @@ class Factorisation:
 
 
 def factorise(matrix: "csc_array") -> Factorisation:
-    """Factorise one symmetric matrix whose pattern will not come again."""
+    """Factorise one symmetric matrix whose pattern is not used again."""
     return Factorisation(SuperLUFactors(matrix))
 
 
@@ -210,7 +210,7 @@ class SuperLUFactors:
         return one.T @ self.solve(other)
 
     def expand(self, reduced: np.ndarray) -> np.ndarray:
-        """Solution for what was given to `reduce`."""
+        """Solution for the vectors that were given to `reduce`."""
         return self.solve(reduced)
 
 
@@ -221,7 +221,7 @@ def _cheapest_tree(
     points: Nodes | None,
     known: tuple[symbolic.EliminationTree, float, int] | None,
 ) -> tuple[symbolic.EliminationTree, float]:
-    """Supernodes of the best of the orders that we know; of a known order where making others would not pay.
+    """Return the supernodes of the best known elimination order, or of a given order if a search would not pay.
 
     With the modelled time of a factorisation for which the order was found [s].
     """

@@ -152,7 +152,7 @@ class _EnergyDescent:
         return _Trial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
 
     def _advance(self, place: _Iterate, known: Stiffness | None) -> _Iterate | None:
-        """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones.
+        """Take one step with the factors of the last one if that pays, else with `known` ones, else with new ones.
 
         None if there is none; the place itself if it is as near to equilibrium as was asked.
         """
@@ -270,7 +270,7 @@ class _EnergyDescent:
         return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
     def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
-        """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
+        """Newton step; if the body alone is stable, it accounts for cables that become slack or taut on the way."""
         if stiffness.body_definite and stiffness.columns.size:
             springs = stiffness.coupling
             if springs.law is not None and springs.elongations is not None:

@@ -125,7 +125,7 @@ class ObstacleEnergy(Energy):
         return points
 
     def _located(self, nodes: Nodes) -> tuple[Points, Vector]:
-        """Places of the samples and their distances [m]; those asked for last are kept.
+        """Positions of the samples and their distances [m]; the last result is cached.
 
         Threads may share the energy, so all of what is kept is read and replaced at once.
         """
@@ -136,7 +136,7 @@ class ObstacleEnergy(Energy):
         return seen[1:]
 
     def _felt(self, nodes: Nodes) -> np.ndarray:
-        """Samples that feel the obstacle, or that friction holds."""
+        """Samples in contact with the obstacle, or held by friction."""
         felt = self._located(nodes)[1] < self.distance
         return np.flatnonzero(felt if self.grip is None else felt | (self.grip.limits > 0))
 
@@ -277,7 +277,7 @@ class ObstacleEnergy(Energy):
         return np.concatenate([by_corner, by_place, by_axes], axis=2)
 
     def _speeds(self, nodes: Nodes, move: Nodes) -> Vector:
-        """Bound of how far each sample goes in the frame while the unknowns make a straight move [m]."""
+        """Bound of each sample's displacement in the obstacle's frame for a straight move of the unknowns [m]."""
         way = self._points(move)
         if self.carriage is None:
             return lengths_of(way)
@@ -313,7 +313,7 @@ class ObstacleEnergy(Energy):
         return one, two
 
     def _blocks(self, nodes: Nodes, some: np.ndarray, share: float) -> HessianBlocks:
-        """Hessian of some terms, with a share of what is negative taken out."""
+        """Hessian of some terms without a share of its negative part."""
         places = self._located(nodes)[0][some]
         found = self.field(places)
         slope, curve = self._derivatives(found, self.weights[some])

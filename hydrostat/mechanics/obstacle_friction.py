@@ -1,4 +1,4 @@
-"""`ObstacleFriction`: Coulomb friction of many samples on a rigid thing, by anchored springs along its surface."""
+"""`ObstacleFriction`: Coulomb friction of samples on a rigid obstacle, by anchored springs along its surface."""
 
 from dataclasses import dataclass, replace
 
@@ -101,7 +101,7 @@ class ObstacleFriction:
         return (self.limits > 0) & (self.springs * self.ways(places)[1] >= (1.0 - _HAIR) * self.limits)
 
     def directions(self, places: Points) -> Points:
-        """Unit vectors along the ways from the anchors."""
+        """Unit vectors from the anchors to the samples, along the surface."""
         spans, lengths = self.ways(places)
         return spans / np.where(lengths > 0, lengths, 1.0)[:, None]
 

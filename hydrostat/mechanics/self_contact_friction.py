@@ -132,19 +132,19 @@ class SelfContactFriction:
 
     @cached_property
     def stencils(self) -> Stencils:
-        """A row for each: the node, then the corners of the facet that it is beside."""
+        """Stencil of each touching node: the node, then the corners of the opposite facet."""
         facets = self.skin.facets[self.beside.facets[self.touching_nodes]]
         return np.concatenate([self.skin.own[self.touching_nodes, None], facets], axis=1)
 
     @cached_property
     def shares(self) -> Float[np.ndarray, "held corners"]:
-        """Their shares in the way from the anchor to the node."""
+        """Weights of each stencil's nodes in the displacement from the anchor to the node."""
         return np.concatenate(
             [np.ones((len(self.touching_nodes), 1)), -self.beside.weights[self.touching_nodes]], axis=1
         )
 
     def places(self, nodes: Nodes) -> Ways:
-        """Way from the anchor to each node of the boundary [m]; 0 where there is none."""
+        """Displacement from the anchor to each boundary node [m]; 0 without an anchor."""
         places = np.zeros_like(self.offsets)
         places[self.touching_nodes] = (
             np.einsum("tc,tcd->td", self.shares, nodes[self.stencils]) + self.offsets[self.touching_nodes]
@@ -244,7 +244,7 @@ class SelfContactFriction:
 
 
 def _beside(corners: Float[np.ndarray, "some dim dim"], points: Ways) -> Float[np.ndarray, "some dim"]:
-    """Weights at the corners of facets of what is nearest a point each in their planes."""
+    """Barycentric weights, at the corners of facets, of the points of their planes nearest to given points."""
     spans = corners[:, 1:] - corners[:, :1]
     squares = np.einsum("tak,tbk->tab", spans, spans)
     along = np.einsum("tak,tk->ta", spans, points - corners[:, 0])[:, :, None]

@@ -1,4 +1,4 @@
-"""`SelfFrictionEnergy`: a body does not pass through itself, and its parts rub on one another."""
+"""`SelfFrictionEnergy`: self-contact with Coulomb friction."""
 
 from dataclasses import replace
 from typing import ClassVar
@@ -27,7 +27,7 @@ class SelfFrictionEnergy(Energy):
     has_history = True
 
     def __init__(self, contact: ContactEnergy, clasp: SelfContactFriction) -> None:
-        """Barriers, and what sticks to what."""
+        """Take the contact energy and the friction state."""
         self.contact, self.clasp = contact, clasp
         self.stencils = np.concatenate([contact.stencils, clasp.stencils])
 
@@ -102,7 +102,7 @@ class SelfFrictionEnergy(Energy):
         return self._with(self.contact, self._asked(nodes).clasp.drag_anchors(nodes))
 
     def _with(self, contact: ContactEnergy, clasp: SelfContactFriction) -> "SelfFrictionEnergy":
-        """Another state; the pattern of its Hessian is known where its stencils are the same."""
+        """Return another state; it reuses the pattern of its Hessian if the stencils are the same."""
         other = SelfFrictionEnergy(contact, clasp)
         if np.array_equal(other.stencils, self.stencils):
             other.stencils = self.stencils
@@ -124,7 +124,7 @@ class SelfFrictionEnergy(Energy):
         return pushes, np.where(pushes > 0, 1.0 / np.where(pushes > 0, pushes, 1.0), 0.0)[:, None] * forces
 
     def _felt(self, nodes: Nodes) -> Pairs:
-        """Pairs that are felt."""
+        """Active contact pairs."""
         skin, pairs = self.contact.skin, self.contact.pairs
         return pairs.only(skin.compute_squared_distances(nodes, pairs) < skin.begins(pairs))
 
@@ -147,7 +147,7 @@ class SelfFrictionEnergy(Energy):
 def _drags(
     clasp: SelfContactFriction, nodes: Nodes, some: Int[np.ndarray, " some"], ways: Points
 ) -> Float[np.ndarray, "dofs some"]:
-    """Slopes of the way of some nodes from their points, along directions, by all degrees of freedom."""
+    """Derivatives of the displacements of some nodes from their points, along directions, by all degrees of freedom."""
     columns = np.zeros((*nodes.shape, len(some)))
     rows = np.searchsorted(clasp.touching_nodes, some)
     blocks = clasp.shares[rows][:, :, None] * ways[:, None, :]

@@ -46,7 +46,7 @@ class SparsityPattern:
         return other
 
     def settle(self) -> None:
-        """Find what factorisations need of a pattern of terms that come and go; then it keeps no other pattern."""
+        """Prepare the factorisation of a pattern whose terms come and go; then it keeps no other pattern."""
         if self._base is not None and self._passing:
             _ = self.analysis, self._places
             self._base = None

@@ -1,4 +1,4 @@
-"""`TimeScheme`: how a step in time is made of minimisations."""
+"""`TimeScheme`: time integration as a sequence of minimisations."""
 
 from dataclasses import dataclass
 from math import sqrt

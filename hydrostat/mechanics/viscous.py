@@ -1,4 +1,4 @@
-"""`MaxwellBranches`: the viscous branches of a material; `ViscousEnergy`: what they do to one step in time."""
+"""`MaxwellBranches`: viscous branches of a material; `ViscousEnergy`: their potential in one time step."""
 
 from typing import ClassVar
 
@@ -61,7 +61,7 @@ class ViscousEnergy(Energy):
 
 
 class MaxwellBranches:
-    """Branches of springs behind dashpots beside an elastic body: a transient network (Linder 2011).
+    """Maxwell branches (spring and dashpot in series) parallel to an elastic body: a transient network (Linder 2011).
 
     Each branch stores mu/2 (tr(A C) - dim - ln det(A C)), C = F^T F, in a metric A that follows the body:
     dA/dt = (C^-1 - A) / tau, so its stress is S = mu (A - C^-1), and it loses energy whenever A differs from C^-1. With

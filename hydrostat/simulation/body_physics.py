@@ -1,4 +1,4 @@
-"""`BodyPhysics`: what the physics of a robot has of its body alone, whatever network pulls at it."""
+"""`BodyPhysics`: physics of a robot's body, independent of its cable network."""
 
 from functools import cached_property
 from typing import Any

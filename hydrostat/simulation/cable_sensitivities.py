@@ -12,7 +12,7 @@ from hydrostat.simulation.simulation import Simulation
 
 @dataclass(frozen=True, eq=False)
 class RigSlopes:
-    """Sensitivities of some numbers: a row for each coordinate of each marker asked for, then one for each tension.
+    """Sensitivities of marker coordinates and tensions: a row for each coordinate, then for each tension.
 
     Attributes:
         contractions: derivatives by the contraction of each winch [m/m, N/m].

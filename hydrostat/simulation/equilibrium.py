@@ -95,12 +95,12 @@ class Equilibrium:
         return f"<Equilibrium of {self.robot.name!r}: {contractions}{pulls}; {self.result.reason}>"
 
     def _repr_html_(self) -> str:
-        """The line, what is to be minded, and a picture, for a notebook."""
+        """Summary, warnings and a picture, for a notebook."""
         return html_repr("\n".join([repr(self), *self.warnings]), self.plot())
 
     @property
     def unknowns(self) -> Nodes:
-        """All that energies are functions of [m]: the nodes, then the rows of obstacles that move."""
+        """All unknowns of the energies [m]: the nodes, then the rows of moving obstacles."""
         return self.nodes if self.carried is None else np.concatenate([self.nodes, self.carried])
 
     @property
@@ -133,7 +133,7 @@ def largest_distance(one: Nodes, other: Nodes) -> float:
 
 
 def check_apart(mesh: Mesh, nodes: Nodes) -> None:
-    """Check that a body whose parts cannot pass through each other does not do so where a solve is to begin.
+    """Check that a body with self-contact does not intersect itself at the start of a solve.
 
     Raises:
         InputError: it does; with a place.
@@ -204,7 +204,7 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
 
 
 def _check_metres(robot: Robot, contractions: Vector) -> None:
-    """Refuse what no winch could do, as where millimetres were given."""
+    """Reject contractions that no winch can reach, such as values in millimetres."""
     size = robot.body.mesh.size
     if np.abs(contractions).max(initial=0.0) <= _MOST * size:  # no winch has a lower limit
         return

@@ -1,4 +1,4 @@
-"""`filled_motion`: what a flat robot does once it is filled and its cables are sewn on a face of it."""
+"""`filled_motion`: motion of a flat robot once it is stuffed and its cables are sewn on one side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

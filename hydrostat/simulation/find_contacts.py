@@ -1,4 +1,4 @@
-"""`find_contacts`: where a pose touches itself and obstacles, and with what force."""
+"""`find_contacts`: self-contact and obstacle contact of a pose, with the forces."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

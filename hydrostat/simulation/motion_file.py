@@ -117,7 +117,7 @@ def _write_frame(robot: Robot, motion: Motion, folder: Path, number: int) -> str
 
 
 def _replace_folder(folder: Path, part: Path) -> None:
-    """Put the files of `part` in the place of what was in the folder before."""
+    """Replace the former contents of a folder by the files of `part`."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     for file in part.iterdir():

@@ -51,7 +51,7 @@ def carried_frames(robot: Robot, carried: Points | None) -> dict[str, tuple[Vect
 
 
 def obstacles_in_pose(robot: Robot, carried: Points | None) -> Robot:
-    """The robot with its obstacles where their unknowns say, for pictures; where they stand is not checked anew."""
+    """Return the robot with its obstacles at the positions of their unknowns, for pictures, without checks."""
     frames = carried_frames(robot, carried)
     if not frames:
         return robot

@@ -1,4 +1,4 @@
-"""`RoutePoints`: the points of all cables of a robot, and how they move with their places in the rest shape."""
+"""`RoutePoints`: points of all cables of a robot, and their motion with their rest positions."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -68,7 +68,7 @@ class RoutePoints:
     ) -> tuple[
         Int[np.ndarray, "segments corners"], Float[np.ndarray, "segments corners"], Float[np.ndarray, "segments dim"]
     ]:
-        """Stencils, signed weights and what is fixed in space [m] of the segments that begin at these points."""
+        """Stencils, signed weights and fixed offsets [m] of the segments that begin at these points."""
         weights = np.where(self.world[:, None], 0.0, self.anchors.weights)
         offsets = np.where(self.world[:, None], self.places, 0.0)
         ends, stencils = starts + 1, self.anchors.stencils
@@ -101,7 +101,7 @@ class RoutePoints:
         return np.where(self.world[:, None], 0.0, self._through(field, slopes))
 
     def held_back(self, slopes: Float[np.ndarray, "*rows points dim"]) -> Float[np.ndarray, "*rows points dim"]:
-        """Slopes by the positions at rest, as slopes by the places asked for."""
+        """Convert derivatives by the held rest positions to derivatives by the requested positions."""
         held = np.einsum("pij,...pi->...pj", self.projections, slopes)
         return np.where(self.world[:, None], slopes, held)
 

@@ -223,7 +223,7 @@ class Simulation:
         return sensitivity(self.body, self.assembly, self.cables, pose, **given, response=partial(self.response, pose))
 
     def friction_sensitivities(self, pose: Equilibrium, rows: tuple[np.ndarray, np.ndarray]) -> FrictionSensitivities:
-        """Slopes of numbers of a pose whose cables rub: `rows` are by its nodes, then by tensions; as for `adjoint`."""
+        """Sensitivities of a pose with cable friction: `rows` are by nodes, then by tensions; as for `adjoint`."""
         return friction_sensitivities(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
 
     def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, Stiffness]:
@@ -272,7 +272,7 @@ class Simulation:
         options: StepOptions | None = None,
         pin_shifts: PinShifts | None = None,
     ) -> Motion:
-        """The motion after `dt` [s], while contractions and pins go evenly to where they shall be.
+        """Return the motion after `dt` [s], while contractions and pins move evenly to their final values.
 
         Args:
             motion: state at the start of the step.
@@ -381,7 +381,7 @@ class Simulation:
         return LoadingPath(self.robot, self.solver, self.body.rest_unknowns)
 
     def forces(self, nodes: Nodes, contractions: Vector) -> Vector:
-        """Residual forces dE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""
+        """Residual forces dE/dx [N], (nodes x dim,), on every degree of freedom; 0 at rest."""
         return self.assembly.with_active_terms(nodes).gradient(nodes, contractions)
 
     def make_pose(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> Equilibrium:

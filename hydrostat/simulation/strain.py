@@ -1,4 +1,4 @@
-"""`node_strains`, `node_stresses`: how far a body is stretched in a pose, and how hard."""
+"""`node_strains`, `node_stresses`: stretch and stress of a body in a pose."""
 
 from dataclasses import dataclass
 from functools import lru_cache

@@ -66,7 +66,7 @@ class Bordered:
     """
 
     def __init__(self, simulation: Simulation, begin: Vector, goal: Vector) -> None:
-        """The physics of a robot whose contractions go from `begin` to `goal` [m]."""
+        """Take the physics of a robot and the contractions at both ends of the way, `begin` and `goal` [m]."""
         mesh = simulation.robot.body.mesh
         self._simulation, self._begin, self._way = simulation, begin, goal - begin
         self._size = mesh.size
@@ -89,7 +89,7 @@ class Bordered:
         return float(np.sqrt(self._weight * np.square(move).sum() + rate**2))
 
     def farthest(self, move: Nodes, rate: float) -> float:
-        """Largest way of a node as a share of the body's size, or the change of the share if that is more."""
+        """Largest displacement of a node relative to the body's size, or the change of the share if larger."""
         return max(float(np.linalg.norm(move, axis=1).max()) / self._size, abs(rate))
 
     def correct(

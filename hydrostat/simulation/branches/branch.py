@@ -98,7 +98,7 @@ class Branch:
 
     @property
     def folds(self) -> tuple[float, ...]:
-        """Shares of the way at which the branch turns back."""
+        """Shares of the way at which the branch reverses."""
         return tuple(point.share for point in self.critical if point.kind is CriticalKind.FOLD)
 
     def runs(self) -> list[tuple[slice, bool]]:

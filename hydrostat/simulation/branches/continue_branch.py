@@ -48,7 +48,7 @@ class BranchOptions:
     turn: float = 0.8
 
     def __post_init__(self) -> None:
-        """Refuse what no branch could be followed with."""
+        """Check that all options are within their ranges."""
         for name in ("first_step", "largest_step", "smallest_step", "steps", "distance", "iterations"):
             value = getattr(self, name)
             if not 0 < value < np.inf:

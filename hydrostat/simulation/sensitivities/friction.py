@@ -1,4 +1,4 @@
-"""`friction_sensitivities`: sensitivities of numbers of a pose to all that cables are made of, where these rub."""
+"""`friction_sensitivities`: sensitivities of scalars of a pose to all cable parameters, with cable friction."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""`response`: how nodes move under small forces at an equilibrium."""
+"""`response`: displacement of the nodes under small forces at an equilibrium."""
 
 import numpy as np
 from jaxtyping import Float

@@ -1,4 +1,4 @@
-"""`BatchResult`: equilibria at many contractions, found by several threads; what a sampler or a learner asks for."""
+"""`BatchResult`: equilibria at many contractions, computed by several threads, for sampling and learning."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
@@ -95,7 +95,7 @@ def pose_row(
     slopes: Callable[[Equilibrium], np.ndarray] | None,
     diagnose: Callable[[Equilibrium], Sequence[str]],
 ) -> PoseRow:
-    """Take from a pose what a row holds.
+    """Return the row of a pose.
 
     Args:
         pose: result of the solver.
@@ -162,7 +162,7 @@ def solve_rows(
 
 
 def in_threads(work: Callable[[int], PoseRow], size: int, threads: int, *, pays: bool) -> list[PoseRow]:
-    """Collect what `work` gives for 0 to `size` - 1, by several threads, if that pays; each takes the next when free.
+    """Collect the results of `work` for 0 to `size` - 1, by several threads if that pays.
 
     An error ends its own row alone. Ctrl-C ends all as soon as the rows under way are done.
 

@@ -1,4 +1,4 @@
-"""`diagnose_failure`: what stands in the way of an equilibrium that was not found, in words."""
+"""`diagnose_failure`: explanation of a solve that found no equilibrium."""
 
 from collections.abc import Sequence
 
@@ -44,7 +44,7 @@ def diagnose_failure(
 
 
 def not_converged(result: NewtonResult, reasons: Sequence[str]) -> NotConvergedError:
-    """The error of a solve that stopped early: why, how much force is left over, and what stands in the way."""
+    """Return the error of a solve that stopped early: reason, residual force and diagnosis."""
     return NotConvergedError(
         f"no equilibrium found after {result.iterations} iterations: {result.reason} (residual force "
         f"{result.residual:.2g} N, allowed {result.allowed:.2g} N); {'; '.join(reasons)}",

@@ -104,7 +104,7 @@ class StaticSolver:
         rest: tuple[Nodes, Stiffness],
         start: tuple[Nodes, Vector, Stiffness | None] | None = None,
     ) -> NewtonResult:
-        """Equilibrium at `goal`: at once; failing that in load steps from `start`, then from rest, last by patience.
+        """Equilibrium at `goal`: directly; else in load steps from `start`, then from rest, last with more iterations.
 
         Where the prediction of the first step would crush an element, load steps follow without delay: cut short
         against the whole command, that step would leave cables that pull far too hard on elements next to flat.

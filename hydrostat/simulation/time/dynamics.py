@@ -1,4 +1,4 @@
-"""`Dynamics`: how a robot moves in time."""
+"""`Dynamics`: motion of a robot in time."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -87,7 +87,7 @@ class Dynamics:
         markers: Anchors,
         options: NewtonOptions,
     ) -> None:
-        """The robot's physics at rest; tensions by nodes, contractions and history; its markers; how Newton goes."""
+        """Take the robot's physics at rest, functions for tensions and markers, and the Newton options."""
         material = robot.body.material
         self.robot, self.masses = robot, body.inertias
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
@@ -105,7 +105,7 @@ class Dynamics:
     def motion_at_rest(
         self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector | None
     ) -> Motion:
-        """A motion that begins at `nodes`, with all viscous branches settled there, after what `history` remembers."""
+        """Return a motion that starts at `nodes`, with relaxed viscous branches and the given `history`."""
         nodes = np.concatenate([nodes, self._begin[len(nodes) :]])  # statics has no rows of obstacles on a path
         history = self._statics.history if history is None else history
         still, shape = np.zeros_like(nodes), self.robot.body.mesh.nodes.shape
@@ -120,7 +120,7 @@ class Dynamics:
     def step(
         self, motion: Motion, contractions: Vector, dt: float, options: StepOptions, pin_shifts: PinShifts
     ) -> Motion:
-        """The motion after `dt` [s], while contractions and pins go evenly to where they shall be.
+        """Return the motion after `dt` [s], while contractions and pins move evenly to their final values.
 
         Raises:
             InputError: a step that is not above 0, or a pin that is not there.
@@ -175,7 +175,7 @@ class Dynamics:
     def _advance(
         self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions
     ) -> tuple[Motion, NewtonResult]:
-        """One step, and how its last minimisation ended; if that failed, the motion is not to be used."""
+        """Take one step; return the motion and its last minimisation. If that failed, the motion is invalid."""
         begin = _state(motion)
         end, rates = begin, []
         acceleration = _joined(motion.accelerations, motion, 2)
@@ -207,7 +207,7 @@ class Dynamics:
     def _remembering(
         self, history: Vector, nodes: Nodes, contractions: Vector, shifts: Points, instant: float
     ) -> list[Energy]:
-        """Energies of statics at an instant [s], pins and guides where they are, after what `history` remembers."""
+        """Energies of statics at an instant [s], with pins and guides at their positions, after the given `history`."""
         statics = self._statics.with_history(history, nodes, contractions) if len(history) else self._statics
         energies = list(statics.energies)
         for slot, obstacle in self._guides.items():
