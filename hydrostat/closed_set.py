@@ -1,4 +1,4 @@
-"""`parse_choice`, `make_member`: texts that name one thing of a closed set, such as how a body's volume is measured."""
+"""`parse_choice`, `make_member`: texts that name a member of an enum, such as the measure of a body's volume."""
 
 from enum import StrEnum
 from typing import TypeVar

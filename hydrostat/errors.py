@@ -2,7 +2,7 @@
 
 
 class HydrostatError(Exception):
-    """Base of all errors of hydrostat. Its text is one line: what, where, what is allowed, what to do."""
+    """Base of all errors of hydrostat. Its text is one line: place, problem, allowed values, fix."""
 
 
 class InputError(HydrostatError):

@@ -141,7 +141,7 @@ def printable(text: str) -> str:
 
 @cache
 def unit_factor(unit: str, dimension: Dimension) -> Decimal:
-    """Find how many SI units one `unit` is.
+    """Return the number of SI units in one `unit`.
 
     Raises:
         InputError: the unit is unknown or measures something else.

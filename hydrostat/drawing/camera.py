@@ -17,7 +17,7 @@ FROM_ABOVE = 0.97  # worth of a view from above beside one from the side that sh
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """An eye far away; what is up stands upright in every picture, unless seen from above."""
+    """Orthographic camera; upward stays upright in every picture, unless seen from above."""
 
     axes: Float[np.ndarray, "3 3"]  # unit vectors to the right, up and towards the eye, (3, 3), one row each
     up: Float[np.ndarray, " 3"] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))  # upward direction
@@ -52,7 +52,7 @@ class Camera:
 
     @property
     def sky(self) -> Float[np.ndarray, " 3"]:
-        """The way up as the camera sees it."""
+        """Upward direction as the camera sees it."""
         return self.axes @ self.up
 
     def see(self, points: Spots) -> Spots:
@@ -119,7 +119,7 @@ def along_an_axis(shape: Spots, shown: Spots, ways: Spots, up: Float[np.ndarray,
 
 
 def _nearest_axis(way: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " 3"]:
-    """The one of x, y, z and their opposites that is nearest to a way; z if several are."""
+    """Axis among +-x, +-y, +-z that is nearest to a direction; z if several are."""
     axis = 2 - int(np.argmax(np.round(np.abs(way[::-1]) / np.linalg.norm(way), 9)))
     return np.sign(way[axis]) * np.eye(3)[axis]
 

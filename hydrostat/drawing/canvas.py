@@ -28,7 +28,7 @@ class CanvasFrame:
 
     @classmethod
     def fit(cls, box: Float[np.ndarray, "2 2"], room: Box) -> Self:
-        """Fit a thing into a room, as large as may be, in its middle; `box`: lowest and highest place of the thing."""
+        """Fit an object into a room, centered and as large as possible; `box`: its lowest and highest coordinates."""
         left, top, right, bottom = room
         wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
         scale = min((right - left) / wide, (bottom - top) / high)
@@ -36,11 +36,11 @@ class CanvasFrame:
         return cls(scale, (left + right) / 2 - scale * middle_x, (top + bottom) / 2 + scale * middle_y)
 
     def on(self, place: Sequence[float] | np.ndarray) -> Spot:
-        """Place on the canvas [mm] of a place of the thing."""
+        """Position on the canvas [mm] of a point of the object."""
         return self.left + self.scale * float(place[0]), self.base - self.scale * float(place[1])
 
     def way(self, places: Iterable[Sequence[float] | np.ndarray]) -> list[Spot]:
-        """Places on the canvas [mm] of places of the thing."""
+        """Positions on the canvas [mm] of points of the object."""
         return [self.on(place) for place in places]
 
 
@@ -152,7 +152,7 @@ def fit_height(box: Float[np.ndarray, "2 2"], width: float, height: float) -> fl
 
 
 def text_size(words: str, size: float) -> tuple[float, float]:
-    """About how wide and high words of a size [pt] are [mm]."""
+    """Approximate width and height [mm] of a text of a size [pt]."""
     return 0.5 * size * POINT * (len(words) + words.count("W")), 0.75 * size * POINT
 
 

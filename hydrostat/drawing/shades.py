@@ -1,4 +1,4 @@
-"""A shaded picture: how much of the sky each place sees, and its color by light, hatching and lines."""
+"""A shaded picture: the share of the sky that each point sees, and its color by light, hatching and lines."""
 
 import numpy as np
 from jaxtyping import Float

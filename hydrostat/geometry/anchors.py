@@ -1,4 +1,4 @@
-"""`Anchors`: points stuck to the material of a mesh; and how far points are from its boundary."""
+"""`Anchors`: points attached to the material of a mesh; distances of points from its boundary."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -106,7 +106,7 @@ def _firsts(rising: Int[np.ndarray, " pairs"]) -> Bool[np.ndarray, " pairs"]:
 
 
 def _in_boxes(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " pairs"], Int[np.ndarray, " pairs"]]:
-    """Every pair of a point and an element in whose box it lies."""
+    """Pairs of a point and an element whose box contains it."""
     low, high = mesh.boxes
     (corner, size, counts), starts, members = mesh.cells
     place = np.clip(np.floor((points - corner) / size), 0, counts - 1).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Closed surfaces of what is inside: where a field is negative, by marching cubes with exact crossings."""
+"""Closed surfaces of the region where a field is negative, by marching cubes with exact crossings."""
 
 from collections.abc import Callable
 
@@ -134,7 +134,7 @@ def _inside_by_blocks(field: Field, settled: Settled, grid: _Grid) -> Bool[np.nd
 def _crossed_edges(
     inside: Bool[np.ndarray, " points"], grid: _Grid
 ) -> tuple[Int[np.ndarray, " vertices"], Int[np.ndarray, " vertices"], Int[np.ndarray, "triangles 3"]]:
-    """Ends of every grid edge with a crossing, and how these join: by marching cubes on -1 and 1, met mid-edge."""
+    """Ends of every grid edge with a crossing, and their connections: marching cubes on -1 and 1, met mid-edge."""
     import igl
 
     places = grid.indices(np.arange(grid.points)).astype(float)
@@ -147,7 +147,7 @@ def _crossed_edges(
 def _crossings(
     field: Field, start: Points, end: Points, start_inside: Bool[np.ndarray, " points"], accuracy: float
 ) -> Vector:
-    """Find where the field changes its sign from start to end, as a share of the way.
+    """Find the sign change of the field from start to end, as a share of the distance.
 
     The false position and bisection take turns: the first is quick on smooth fields, the second cannot be slowed by
     a jump, at which both are bisections.
@@ -174,6 +174,6 @@ def _crossings(
 
 
 def _zero(low: Vector, high: Vector) -> Vector:
-    """Zero of the straight line from a value below or at 0 to one above or at 0, as a share of the way."""
+    """Zero of the line from a value at most 0 to one at least 0, as a share of the distance."""
     span = high - low
     return np.where(span > 0.0, -low / np.where(span > 0.0, span, 1.0), 0.5)

@@ -55,7 +55,7 @@ class Outline:
 
 
 def fault(polygon: Polygon) -> tuple[str, tuple[float, float]] | None:
-    """Find what keeps a polygon from being a body, in words, and where; None if nothing does."""
+    """Describe the fault that keeps a polygon from being a body, and its position; None if there is none."""
     if polygon.is_valid and polygon.area > 0.0:
         return None
     explanation = explain_validity(polygon)
@@ -69,7 +69,7 @@ def fault(polygon: Polygon) -> tuple[str, tuple[float, float]] | None:
 
 
 def _ring(points: Ring, *, counter_clockwise: bool) -> Ring:
-    """A read-only copy of a ring, turned the asked way round, no point repeated in a row."""
+    """Read-only copy of a ring with the required orientation and without repeated points."""
     ring = np.array(points, dtype=float)
     if ring.ndim != 2 or ring.shape[1] != 2 or not np.isfinite(ring).all():
         raise OutlineError("an outline needs finite points in the plane, (points, 2)")
@@ -103,7 +103,7 @@ class Curve:
 
     @property
     def length(self) -> float:
-        """Length all the way round."""
+        """Total length of the closed curve."""
         return float(self.stations[-1])
 
     def at(self, stations: Vector) -> Points:

@@ -1,4 +1,4 @@
-"""`Shell`: the closed boundary of a body, asked how far away points are."""
+"""`Shell`: closed boundary of a body, for distance queries."""
 
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -145,7 +145,7 @@ class Shell:
 
 
 def shell_field(shell: Shell) -> DistanceField:
-    """Distance from what a closed shell encloses [m]; far away, less than it by up to a quarter of the shell's size."""
+    """Signed distance from a closed shell [m]; far away it may be too small by up to a quarter of the shell's size."""
     own = Shell(shell.nodes, shell.facets)
     return DistanceField(partial(_from_shell, own), partial(_shell_values, own))
 
@@ -209,7 +209,7 @@ def outline_shell(outline: Outline) -> Shell:
 
 
 def _in_space(points: Points) -> Float[np.ndarray, "points 3"]:
-    """Places of the plane at height 0: the tree knows space only, but segments as well as triangles."""
+    """Points of the plane at height 0: the tree is 3D only, but takes segments as well as triangles."""
     return np.ascontiguousarray(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), dtype=float)
 
 

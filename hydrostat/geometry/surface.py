@@ -1,4 +1,4 @@
-"""`Surface`: triangles in space, as a scan or a CAD model gives them; `Solid`: what a closed one encloses."""
+"""`Surface`: triangles in space, as from a scan or a CAD model; `Solid`: region enclosed by a closed surface."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,7 +35,7 @@ class Surface:
 
     @cached_property
     def box(self) -> Float[np.ndarray, "2 3"]:
-        """Lowest and highest coordinates of what the triangles use [m]."""
+        """Lowest and highest coordinates of the vertices in use [m]."""
         corners = self.vertices[np.unique(self.triangles)]
         return np.array([corners.min(axis=0), corners.max(axis=0)])
 
@@ -97,7 +97,7 @@ class Solid:
     surface: Surface  # closed, oriented outward
 
     def __getstate__(self) -> dict[str, Any]:
-        """State that another process is sent: trees cannot be, and are made again where they are asked for."""
+        """Return the state that is sent to another process: without the trees, which are rebuilt there."""
         return {"surface": self.surface}
 
     def winding(self, points: Points) -> Vector:

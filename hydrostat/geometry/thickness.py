@@ -1,4 +1,4 @@
-"""`measure_thickness`: how thick a body is, everywhere on its boundary, and how many elements that is."""
+"""`measure_thickness`: thickness of a body everywhere on its boundary, and the number of elements across."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""`pull_bands`: how the force of a pull-out changes with what nobody knows well."""
+"""`pull_bands`: sensitivity of the pull-out force to uncertain parameters."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ def pull_bands(
     *,
     tell: Callable[[str, int, int], None] | None = None,
 ) -> tuple[PullCase, ...]:
-    """Pull with friction, stiffness and place changed, one at a time; and without friction, to see what cages.
+    """Pull with friction, stiffness and position varied one at a time, and without friction, for the cage alone.
 
     Args:
         robot: robot that grasps the object.

@@ -1,4 +1,4 @@
-"""`Limits`: how far, how fast and how hard winches may pull."""
+"""`Limits`: limits on contraction, rate and tension of winches."""
 
 # Of the thesis (docs/thesis.md): E18
 

@@ -41,7 +41,7 @@ class LinearizedPose:
     spread: Float[np.ndarray, "winches channels"]
 
     def towards(self, targets: Mapping[str, Point]) -> Vector:
-        """Contractions of the winches [m] on the way to targets of the same markers [m] (InputError: of others)."""
+        """Contractions of the winches [m] towards targets of the same markers [m] (InputError: other markers)."""
         if targets.keys() != self.targets.keys():
             raise InputError(f"targets must be of the markers of the last update: {', '.join(self.targets)}")
         moved = np.concatenate([np.subtract(self.targets[name], targets[name]) for name in self.targets])

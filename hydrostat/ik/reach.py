@@ -99,7 +99,7 @@ def _limits(robot: Robot) -> tuple[Vector, Vector]:
 
 
 def _tiles(winches: int, count: int) -> tuple[Float[np.ndarray, "poses winches"], float]:
-    """Places of poses in the ranges of all winches, and half the width of what each stands for, as shares of these."""
+    """Sample points in the ranges of all winches, and half the width of each point's tile, as shares of these."""
     if winches > _TILED:
         from scipy.stats import qmc
 

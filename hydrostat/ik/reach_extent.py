@@ -1,4 +1,4 @@
-"""`reach_extent`: how far markers can be brought in every direction, to first order at one pose."""
+"""`reach_extent`: extent of the marker workspace in every direction, to first order at one pose."""
 
 import numpy as np
 from jaxtyping import Float

@@ -43,7 +43,7 @@ class ContactSurface:
         return squared
 
     def begins(self, pairs: Pairs) -> Vector:
-        """Squared distance [m^2] at which each pair becomes active: below half of its rest distance."""
+        """Squared distance [m^2] at which each pair becomes active, below half its rest distance: none is at rest."""
         return np.minimum(self.distance**2, _REST * self.compute_squared_distances(self.rest, pairs))
 
     def weights(self, pairs: Pairs, begins: Vector) -> Vector:

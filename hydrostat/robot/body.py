@@ -1,4 +1,4 @@
-"""`Body`: the soft part of a robot, its file and its mesh, and how volumetric locking is avoided."""
+"""`Body`: the soft part of a robot, its file, its mesh and its treatment of volumetric locking."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -28,7 +28,7 @@ class Source(StrEnum):
 
 
 class Volume(StrEnum):
-    """Way to measure the change of volume: in each element, or averaged over patches of elements (a kind of F-bar).
+    """Measure of volume change: in each element, or averaged over patches of elements (a kind of F-bar).
 
     Linear elements are too stiff when the material is nearly incompressible (volumetric locking); patches help.
     """

@@ -1,4 +1,4 @@
-"""Cache of bodies: what reading, healing and meshing a file gave, kept between commands.
+"""Cache of bodies: results of reading, healing and meshing a file, kept between commands.
 
 An entry is a file in the user's cache folder, named by a hash of all that its content depends on: the bytes of the
 drawing or scan, the numbers asked for, the code that meshes, and the versions of the libraries it calls. Entries are

@@ -1,4 +1,4 @@
-"""`ClosedMesh`: a rigid thing of any shape, from a file."""
+"""`ClosedMesh`: rigid object of any shape, from a file."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -38,7 +38,7 @@ class ClosedMesh:
         return replace(self, surface=surface)
 
     def masses(self) -> tuple[float, Vector, Points]:
-        """Volume [m^3], middle [m], and mean products of the coordinates of what it encloses about its middle [m^2]."""
+        """Volume [m^3], center [m], and mean products of the coordinates of the interior about its center [m^2]."""
         middle = self.surface.box.mean(axis=0)
         corners = self.surface.vertices[self.surface.triangles] - middle
         volumes = np.linalg.det(corners) / 6
@@ -50,7 +50,7 @@ class ClosedMesh:
 
 
 def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
-    """Read a thing from a surface file; a coordinate counts `unit` metres.
+    """Read an object from a surface file whose coordinates are in `unit` metres.
 
     Raises:
         InputError: no surface, an open one, one that is inside out or runs through itself, or too many triangles.

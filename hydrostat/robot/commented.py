@@ -1,4 +1,4 @@
-"""`commented_text`: a new robot.toml that tells a person what its tables are for, as those of the gallery do."""
+"""`commented_text`: a new robot.toml with comments on the purpose of its tables, like those of the gallery."""
 
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.write import robot_text

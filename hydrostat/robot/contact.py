@@ -1,4 +1,4 @@
-"""`Contact` and `Obstacle`: that a body does not pass through itself, nor through what stands beside it."""
+"""`Contact` and `Obstacle`: contact of a body with itself and with objects next to it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -144,7 +144,7 @@ class Obstacle:
             before = instant
 
     def spine(self) -> Points:
-        """Points within it, (points, dim): along the way from `at` to `to`; none of a plane, which has no end [m]."""
+        """Points inside it [m], (points, dim): along the line from `at` to `to`; none for a plane, which has no end."""
         at = np.array(self.at)
         if self.shape == ObstacleShape.PLANE:
             return np.zeros((0, len(at)))

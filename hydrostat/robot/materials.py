@@ -1,4 +1,4 @@
-"""`Material`, and the table of those known by name, each with where its numbers come from.
+"""`Material`, and the table of named materials, each with its source.
 
 Rubbers are given by their 100 % modulus, as data sheets are: Young's modulus is such that a Neo-Hookean material has
 that stress at twice its length. Foams are given by what is known of them, which is little. docs/materials.md is printed
@@ -23,7 +23,7 @@ MOST_BRANCHES = 10  # a material has at most this many branches
 
 @dataclass(frozen=True, kw_only=True)
 class Relaxation:
-    """A Maxwell branch, one term of a Prony series: a spring behind a dashpot, beside the elastic material.
+    """Maxwell branch, one term of a Prony series: spring and dashpot in series, parallel to the elastic material.
 
     After a sudden shear the branch carries modulus * exp(-t / time) of its stress, so the material begins stiffer by
     `modulus` and settles to the elastic material alone.

@@ -1,4 +1,4 @@
-"""`Robot`: all that is known of one robot, checked when it is made."""
+"""`Robot`: complete description of a robot, checked when it is created."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -115,7 +115,7 @@ class Robot:
 
     @property
     def contact_distance(self) -> float:
-        """Distance at which parts that touch, and obstacles, begin to be felt [m]."""
+        """Distance at which contact forces between parts, and with obstacles, start [m]."""
         given = None if self.contact is None else self.contact.distance
         return DISTANCE * self.body.mesh.size if given is None else given
 
@@ -178,7 +178,7 @@ class Robot:
         return html_repr(repr(self), draw_record("rest", self))
 
     def _check_kinds(self) -> None:
-        """Refuse parts of another kind, before they are asked for anything."""
+        """Reject parts of a wrong type."""
         check_type(self.body, Body, "body must be a Body, as that of another robot")
         for what, kind in _PARTS.items():
             check_type(getattr(self, what), (tuple, list), f"{what} must be several, such as () for none")
@@ -310,7 +310,7 @@ class Robot:
             )
 
     def _check_inside(self, named: Sequence[tuple[str, Point]]) -> None:
-        """Refuse points outside the body; all at once, as one search for all is far quicker than one for each."""
+        """Reject points outside the body; one search for all points is far quicker than one for each."""
         if not named:
             return
         distances = self.body.distances(np.array([point for _, point in named]))

@@ -1,4 +1,4 @@
-"""The form of robot.toml: its tables, keys and units, as pydantic models; what is wrong with a file, in our words."""
+"""Schema of robot.toml: its tables, keys and units, as pydantic models, with readable error messages."""
 
 from collections.abc import Callable
 from decimal import Decimal
@@ -99,7 +99,7 @@ Pair = Annotated[list[Annotated[int, Strict()]], Field(min_length=2, max_length=
 
 
 class TomlTable(BaseModel):
-    """A table of the file; a key that it does not know is an error."""
+    """Table of the file; an unknown key is an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -115,7 +115,7 @@ Branches = Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)]
 
 
 class NamedMaterialTable(TomlTable):
-    """A material known by name, with its viscosity."""
+    """Material by name, with its viscosity."""
 
     name: Text
     viscosity: Viscosity | None = None
@@ -315,7 +315,7 @@ _SENTENCES = {
 
 
 def first_complaint(error: ValidationError, form: type[TomlTable] = RobotTable) -> tuple[str, str]:
-    """Key such as cable[1].points[0], and what is wrong with it; unknown keys first, for they explain missing ones."""
+    """Return the key, such as cable[1].points[0], and the error; unknown keys first, as they explain missing ones."""
     errors = error.errors()
     worst: Any = next((entry for entry in errors if entry["type"] == "extra_forbidden"), errors[0])
     location = tuple(step for step in worst["loc"] if not str(step).startswith("<"))

@@ -27,7 +27,7 @@ SHORTEST, LONGEST = 0.002, 20.0  # bodies are as long [m]; what is not was proba
 
 @dataclass(frozen=True, eq=False)
 class SurfaceSketch:
-    """A robot from a surface, and how that was healed."""
+    """Robot created from a surface, with the report of its healing."""
 
     robot: Robot  # robot whose body file is the input if that was clean, else the healed surface as PLY
     before: Surface  # surface before healing
@@ -194,13 +194,13 @@ def _hold(mesh: Mesh) -> Pin:
 
 @dataclass(frozen=True, eq=False)
 class _Limb:
-    """The longest way through a body from where it is held."""
+    """Longest path through a body from where it is held."""
 
     away: Vector  # distance of each node from there along edges, as a share of the longest one
     path: Int[np.ndarray, " path"]  # nodes on the longest path, from its end
 
     def part(self, mesh: Mesh, share: float) -> Bool[np.ndarray, " elements"]:
-        """The elements across the limb at a share of its length: those that hang together with the way there."""
+        """Elements across the limb at a share of its length that are connected to the path there."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components  # Imported here: not every command needs it.
 

@@ -118,7 +118,7 @@ _KEY = re.compile(r"(\w+)(?:\[(\d+)\])?(?:\.(\w+))?(?:\[\d+\])*(?:\.(\w+))?(?:\[
 
 
 def find_line(text: str, key: str) -> int | None:
-    """Line of a key such as cable[1].points[0], as near as headers and names of keys tell; None if it stands nowhere.
+    """Find the line of a key such as cable[1].points[0], as near as headers and key names allow; None if absent.
 
     A key that is missing from its table stands at the table's header.
     """

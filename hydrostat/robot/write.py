@@ -52,7 +52,7 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
 
 
 def with_values(text: str, *, name: str | None = None, element_size: float | None = None) -> str:
-    """The text of a robot.toml with another name or element size [m], its comments kept; None leaves what is there."""
+    """Return the text of a robot.toml with another name or element size [m], comments kept; None keeps a value."""
     import tomlkit
 
     document = tomlkit.parse(text)

@@ -74,7 +74,7 @@ _SIZES = MappingProxyType({"index": 1.0, "middle": 1.0, "ring": 0.95, "little": 
 
 @dataclass(frozen=True, kw_only=True)
 class HandPosture:
-    """Way in which a hand holds its fingers."""
+    """Posture of the fingers of a hand."""
 
     # angle of each finger in the plane of the palm, towards the thumb [degrees]
     fans: tuple[float, float, float, float]

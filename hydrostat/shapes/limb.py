@@ -44,7 +44,7 @@ class Limb:
         return self.spine[-1] + self.caps[1] * self._directions[-1]
 
     def at(self, share: float, across: float = 0.0, up: float = 0.0) -> tuple[float, float, float]:
-        """A place in the limb [m]: a share of the way along the spine from its root, and offsets from there.
+        """Point in the limb [m]: a share of the spine from its root, and offsets from there.
 
         `across` counts half breadths, `up` half depths towards the back, negative towards the belly.
         """
@@ -62,7 +62,7 @@ class Limb:
         return float(self._stations_at(segments, shares)[0] / self.length)
 
     def distance(self, points: Points) -> Vector:
-        """About how far points are outside the limb [m]; nearly right close to its surface if it tapers gently."""
+        """Approximate signed distance from the limb [m]; accurate close to its surface if it tapers gently."""
         segments, shares = self._feet(points)
         stations = self._stations_at(segments, shares)
         middles = np.stack([np.interp(stations, self.stations, column) for column in self.spine.T], axis=1)

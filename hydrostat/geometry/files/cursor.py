@@ -1,4 +1,4 @@
-"""`Cursor`: a way through the bytes of a mesh file, on which no count is believed before the bytes for it are there."""
+"""`Cursor`: reader of the bytes of a mesh file, which trusts no count before the bytes for it are present."""
 
 import re
 from array import array
@@ -28,7 +28,7 @@ _WORD = re.compile(rb"\S+")
 
 
 def whole_numbers(values: np.ndarray, kind: str = "i8") -> np.ndarray:
-    """Numbers as whole ones of a type; what is none of these becomes the largest, which no mesh has as an index."""
+    """Convert to integers of a type; a number that is none becomes the largest, which is no valid index."""
     if values.dtype.kind == "f":
         least, most = np.iinfo(kind).min, min(np.iinfo(kind).max, 2**62)
         values = np.where((values >= least) & (values <= most), values, float(most))
@@ -119,7 +119,7 @@ class Cursor:
         return [], end
 
     def all_numbers(self, end: int, kind: str) -> np.ndarray:
-        """All numbers up to a place in a file of text (InputError: there is something else)."""
+        """Read all numbers up to a position in a text file (InputError: there is something else)."""
         part = Cursor(self.content[self.at : end], self.name)
         self.at = end
         return part.numbers(sum(1 for _ in _WORD.finditer(part.content)), kind)

@@ -87,7 +87,7 @@ def body_and_marks(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
 
 
 def drawn_picture(drawing: Drawing) -> Drawing:
-    """A drawing whose holes are drawn on the body instead."""
+    """Return the drawing with its holes as lines on the body instead."""
     outline, *_ = drawing.outline.rings
     whole = Outline(outline)
     rings = [np.concatenate([ring, ring[:1]]) for ring in drawing.outline.rings[1:]]

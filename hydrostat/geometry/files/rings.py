@@ -1,4 +1,4 @@
-"""Lines of any kind of drawing, joined to rings: which are the body, which its holes, on what page."""
+"""Lines of any kind of drawing, joined to rings and sorted into the body, its holes and its page."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -41,7 +41,7 @@ class Page:
 
 
 def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | None) -> Page:
-    """The page whose origin is the middle of the box of an outer ring in the drawing's units.
+    """Page whose origin is the center of the box of an outer ring in the drawing's units.
 
     One of its units is so long along x and y [m], y negative where the drawing counts it downwards, unless the longest
     side of the box is to be `size` [m].
@@ -56,7 +56,7 @@ def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | N
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """The outline of a drawing or picture, and in words what was done to get it."""
+    """Outline of a drawing or picture, with notes on how it was obtained."""
 
     outline: Outline  # outline of the body [m]
     page: Page  # meaning of the drawing's own coordinates
@@ -196,7 +196,7 @@ _Ends = Int[np.ndarray, "lines 2"]
 
 
 def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
-    """Join open lines of finite points at their ends, whichever way each runs; return each with True if it is closed.
+    """Join open lines of finite points at their ends, in either direction; return each with True if it is closed.
 
     Ends that are a millionth of the drawing apart are one; a free end and the free end nearest to it are one when they
     are a thousandth apart or less. A line drawn twice counts once. Lines with a free end that lead nowhere stay open.
@@ -256,13 +256,13 @@ def _unrepeated(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarray
 
 
 def _middle(line: Ring) -> Float[np.ndarray, " 2"]:
-    """The place half way along a line."""
+    """Point half way along a line."""
     lengths = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
     return np.array([np.interp(0.5 * lengths[-1], lengths, line[:, axis]) for axis in range(2)])
 
 
 def _dead_ends(ends: _Ends) -> np.ndarray:
-    """Find the lines that are on no way from a place back to itself: (lines,) of bool."""
+    """Mask of the lines that are on no closed path, (lines,)."""
     at = _lines_at(ends, np.arange(len(ends)))
     degree = {here: len(lines) for here, lines in at.items()}
     dead = np.zeros(len(ends), dtype=bool)

@@ -1,4 +1,4 @@
-"""`Silhouette`: the one body in a picture, told from plain ground by `Contrast`, as rings of pixels' coordinates."""
+"""`Silhouette`: the one body in a picture, separated from plain ground by `Contrast`, as rings in pixel coordinates."""
 
 from dataclasses import dataclass
 
@@ -62,7 +62,7 @@ def _ground(
     like: Bool[np.ndarray, "rows columns"],
     first: Float[np.ndarray, "... 3"],
 ) -> tuple[Float[np.ndarray, "rows columns 3"], float]:
-    """A quadratic colour through the pixels that are like the ground, and how far 95 % of them are from it at most."""
+    """Quadratic color of the ground, fitted to its pixels, and the distance within which 95 % of them lie."""
     rows, columns = pixels.shape[:2]
     y, x = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-1, 1, columns), indexing="ij")
     where = np.flatnonzero(like)
@@ -207,7 +207,7 @@ def _parts(mask: _Mask, *, corners: bool) -> Int[np.ndarray, "rows columns"]:
 
 
 def _depth(mask: _Mask) -> Field:
-    """Distance [pixels] of each pixel of a mask from what is outside it."""
+    """Distance [pixels] of each pixel of a mask from the outside."""
     return np.asarray(distance_transform_edt(mask), dtype=float)
 
 
@@ -257,7 +257,7 @@ def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[PixelP
 
 
 def _specks(mask: _Mask, body: int, name: str) -> tuple[PixelPatch, ...]:
-    """Parts beside the body; refused unless all are small."""
+    """Parts outside the body; an error unless all are small."""
     _, patches = _patches(mask)
     second = max(patches, key=lambda patch: patch.area, default=None)
     if second is not None and second.area > _SECOND * body:

@@ -1,4 +1,4 @@
-"""`read_stranger`: the bytes of a file whose size is known, and not too much, before any is read."""
+"""`read_stranger`: bytes of an untrusted file, whose size is checked before it is read."""
 
 import stat
 from pathlib import Path

@@ -69,7 +69,7 @@ def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types:
 
 
 def _head(cursor: Cursor) -> None:
-    """The first lines, which say how the rest is written."""
+    """Read the first lines, which give the format of the rest."""
     first, _, how, dataset = (cursor.line(blank=True) for _ in range(4))
     if not (first or b"").startswith(b"# vtk DataFile Version"):
         raise cursor.make_damage_error("does not begin like a VTK file")

@@ -31,7 +31,7 @@ _APPENDED = re.compile(rb"<AppendedData([^>]{0,1000})>\s*_")
 
 @dataclass
 class _Array:
-    """A DataArray: what its tag says, and the text in it."""
+    """DataArray: attributes of its tag, and its text."""
 
     attributes: dict[str, str]
     text: list[str] = field(default_factory=list)
@@ -74,7 +74,7 @@ def read_vtu(content: bytes, name: str) -> Cells:
 
 
 def _parse(content: bytes, name: str) -> _GridText:
-    """Walk through the XML and keep the arrays that matter; refuse what is broken, deep, or declares entities."""
+    """Parse the XML and keep the relevant arrays; reject XML that is broken, deep, or declares entities."""
     grid, path = _GridText(), []
     now: _Array | None = None
 
@@ -116,7 +116,7 @@ def _parse(content: bytes, name: str) -> _GridText:
 
 
 class _Reader:
-    """Reader of the arrays of a file, which knows how they are written."""
+    """Reader of the arrays of a file in their encoding."""
 
     def __init__(self, attributes: dict[str, str], appended: bytes, encoding: str, name: str) -> None:
         self.name, self.appended, self.encoding = name, appended, encoding
@@ -181,7 +181,7 @@ class _Reader:
         return b"".join(result)
 
     def _cut(self, source: bytes, encoding: str, start: int, count: int) -> bytes:
-        """Some bytes of what is encoded (ValueError: there are not as many)."""
+        """Return some of the encoded bytes (ValueError: there are not as many)."""
         end = start + count
         if encoding == "raw":
             piece = source[start:end]

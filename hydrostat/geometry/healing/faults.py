@@ -167,7 +167,7 @@ def describe_faults(
     shells: Shells,
     slivers: int,
 ) -> tuple[str, ...]:
-    """Describe what was found in a surface, a line each.
+    """Describe the faults found in a surface, a line each.
 
     The surface is turned one way already: `flipped` triangles looked another way than most of their patch; `crossing`
     are pairs of triangles.

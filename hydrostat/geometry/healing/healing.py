@@ -1,4 +1,4 @@
-"""`Healing`: a closed surface, and the report of how it came to be."""
+"""`Healing`: a closed surface, and the report of the repairs that produced it."""
 
 import json
 from collections.abc import Mapping

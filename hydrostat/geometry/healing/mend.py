@@ -1,4 +1,4 @@
-"""Mending along edges: `Sides` tells how triangles meet; what is one is joined, turned one way, small holes closed."""
+"""Repairs along edges, from `Sides`: equal vertices are merged, triangles oriented, small holes closed."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -54,7 +54,7 @@ class Sides:
 
 
 def members_of(label: Int[np.ndarray, " some"]) -> list[Int[np.ndarray, " _"]]:
-    """Numbers of what has each label, for labels from 0 on that all occur."""
+    """Indices of the members of each label, for labels from 0 on that all occur."""
     return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
 
 
@@ -71,7 +71,7 @@ NEAR = 1e-6  # vertices nearer to each other than this part of the surface's siz
 
 @dataclass(frozen=True, eq=False)
 class Welded:
-    """A surface whose triangles have vertices in common, and none of which stands there twice."""
+    """Surface with shared vertices and without duplicates."""
 
     surface: Surface  # resulting surface, its vertices in the order of the input
     merged: int  # number of merged duplicate vertices

@@ -22,7 +22,7 @@ _LEAST_BEND = 0.35
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Wanted distance of nodes at any place, in units of the element size; 1 far from what is fine."""
+    """Wanted distance of nodes at any point, in units of the element size; 1 away from fine regions."""
 
     places: Float[np.ndarray, "places 2"]  # positions with a finer spacing
     values: Float[np.ndarray, " places"]  # spacing at these positions
@@ -147,7 +147,7 @@ def _refuse_thin(places: Points, neck: Vector, element_size: float) -> None:
 
 
 def _refuse_long(outline: Outline, rim: float, element_size: float) -> None:
-    """Refuse before long work what is thin or winding all over; the rim is as many elements long."""
+    """Reject shapes with a rim too long in elements, before long work."""
     width = 2 * outline.area / (rim * element_size)
     if width < FLOOR * element_size:
         raise OutlineError(

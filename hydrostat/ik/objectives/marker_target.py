@@ -93,7 +93,7 @@ class MarkerResidual(Residual):
         weights: Vector,
         held: Bool[np.ndarray, "markers dim"],
     ) -> None:
-        """Markers by name, where they are stuck, where they should go, how much each counts, along which axes."""
+        """Take the names of markers, their anchors, targets, weights and constrained axes."""
         self.names, self.anchors, self.goals, self.held = tuple(names), anchors, goals, held
         self._scales = weights[:, None] * held
         self._counts = weights > 0

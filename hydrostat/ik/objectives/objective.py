@@ -1,4 +1,4 @@
-"""`Objective`: the contract of every term of what inverse kinematics minimises; what is checked of the given."""
+"""`Objective`: contract of all terms of inverse kinematics, and checks of their arguments."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -76,7 +76,7 @@ class Objective(ABC):
 
     @abstractmethod
     def bind(self, simulation: Simulation) -> Residual:
-        """The wish on this robot (InputError: it names what the robot does not have)."""
+        """Return the residual on this robot (InputError: it names parts that the robot does not have)."""
 
 
 def checked_objectives(given: object) -> tuple[Objective, ...]:
@@ -115,7 +115,7 @@ def posture_of(
 
 
 def winch_to_cable_matrix(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
-    """B: what a cable takes in when its winch takes in 1 m; 0 for other winches."""
+    """B: contraction of each cable per metre of its winch's contraction; 0 for other winches."""
     cables, winches = simulation.cables, np.arange(len(simulation.robot.winches))
     return np.where(cables.winches[:, None] == winches, cables.ratios[:, None], 0.0)
 
@@ -170,7 +170,7 @@ def numbers(given: object) -> Float[np.ndarray, "..."] | None:
 
 
 def describe(given: object) -> str:
-    """Show what is given in an error of one line: a number, a short text, or its kind."""
+    """Describe a value in an error of one line: a number, a short text, or its type."""
     found = numbers(given)
     if found is not None and found.ndim == 0:
         return f"{found:g}"

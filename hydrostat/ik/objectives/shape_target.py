@@ -38,7 +38,7 @@ from hydrostat.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True)
 class ShapeTarget(Objective):
-    """The pose in which the body's boundary lies on a shape, measured both ways.
+    """Target shape for the body's boundary, by distances in both directions.
 
     1/2 (mean of d^2 over the boundary's nodes + mean of e^2 over places spread evenly over the shape): d is how far a
     node is from the shape, e how far a place of the shape is from the body. With d alone a finger may hide in the palm,
@@ -130,7 +130,7 @@ class _Shape(Residual):
         return (self._weight * self._roots)[:, None] * np.concatenate([nodes, places])
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
-        """Root of the mean square distance between the body's boundary and the shape, of both ways [m]."""
+        """Root mean square distance between the body's boundary and the shape, in both directions [m]."""
         return {self.name: float(np.linalg.norm(self._distances(posture)))} if self._weight > 0 else {}
 
     def _distances(self, posture: EquilibriumState) -> Rows:
@@ -138,7 +138,7 @@ class _Shape(Residual):
         return self._roots * np.concatenate([shape.distances, body.distances])
 
     def _nearest(self, posture: EquilibriumState) -> tuple[Nearest, Nearest]:
-        """From the boundary's nodes to the shape, and from its places to the body; kept for the posture asked last."""
+        """Nearest points from the boundary to the shape, and from its samples to the body; the last are cached."""
         nodes = posture.nodes
         if self._last is None or self._last[0] is not nodes:
             body = self._body.with_nodes(nodes)

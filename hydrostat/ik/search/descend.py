@@ -155,7 +155,7 @@ class _TrustRegionDescent:
         return self.curvature.doubt()
 
     def _resize(self, ratio: float, step: Vector) -> None:
-        """The trust radius after a step that gained `ratio` times what it promised."""
+        """Update the trust radius after a step with a given ratio of actual to predicted decrease."""
         used = float((np.abs(step - self.state.values) / self.problem.bounds.span).max(initial=0.0))
         self.radius = min(_next_radius(self.radius, ratio, used), self.problem.options.largest_step)
 
@@ -196,7 +196,7 @@ _SMALLEST_RADIUS = 1e-7  # steps of less than this fraction of the range are not
 
 
 def _next_radius(radius: float, ratio: float, used: float) -> float:
-    """Trust radius after a step that gained `ratio` times what it promised and used `used` of the range."""
+    """Trust radius after a step with this ratio of actual to predicted decrease that used `used` of the range."""
     if ratio < 0.25:
         return 0.25 * min(radius, max(used, 1e-12))
     return 2 * radius if ratio > 0.75 and used > 0.9 * radius else radius

@@ -1,4 +1,4 @@
-"""`InverseSearch`: from state to state of an inverse problem, by trust-region steps; `reached_pose`: what it found."""
+"""`InverseSearch`: states of an inverse problem, connected by trust-region steps; `reached_pose`: its result."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ from hydrostat.simulation import Equilibrium
 
 
 class InverseSearch:
-    """Equilibria on the way to the solution of a problem; `solves` counts those that were approached.
+    """Equilibria along the search for a solution; `solves` counts the equilibria solved for.
 
     With an accuracy [m] nodes may be so far from equilibrium. Where physics remember the way, as cables that rub do,
     each state is reached straight from the pose `origin`, or from rest if there is none: all contractions change in
@@ -64,7 +64,7 @@ class InverseSearch:
         return self.problem.state(values, self._result(_begun(solved)))
 
     def _begin_where(self, values: Vector, pose: Equilibrium) -> InverseState:
-        """The state of a pose if that is where ways begin, else where the way to its contractions ends."""
+        """Return the state of a pose if loading paths start there, else that at the end of the path to it."""
         simulation = self.problem.simulation
         origin = self._origin or simulation.rest
         contractions = self.problem.bounds.spread @ values
@@ -74,7 +74,7 @@ class InverseSearch:
         return self._idled(self.problem.state(values, replace(pose.result, stiffness=stiffness), pose.history))
 
     def _travelled(self, values: Vector) -> InverseState | None:
-        """The state at the end of the straight way to contractions of the channels [m]; None if it breaks off."""
+        """State at the end of the straight path to contractions of the channels [m]; None if it cannot be followed."""
         simulation = self.problem.simulation
         pose = simulation.solve(self.problem.bounds.spread @ values, start=self._origin, strict=False)
         if not _sound(pose.result) or pose.result.stiffness is None:
@@ -92,12 +92,12 @@ class InverseSearch:
         return self.problem.state(values, result, history, whole=False)
 
     def _idled(self, state: InverseState) -> InverseState:
-        """The state with slack channels where they should be, at the end of the way to these contractions."""
+        """State with slack channels at their preferred positions, at the end of the path to these contractions."""
         idle = self.problem.idle(state)
         return state if idle is state else self._travelled(idle.values) or state
 
     def jump(self, values: Vector) -> InverseState | None:
-        """The state to which contractions of the channels [m] lead at once from rest; None if that is none."""
+        """State reached directly from rest by contractions of the channels [m]; None without an equilibrium."""
         self.solves += 1
         simulation = self.problem.simulation
         if self._remembers:
@@ -181,7 +181,7 @@ class InverseSearch:
         return replace(pose.result, stiffness=stiffness, residual=residual, stable=stiffness.definite)
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> InverseState | None:
-        """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
+        """Solve by Newton's method alone; a longer solve is better done in smaller steps."""
         if self._remembers:
             found = self._travelled(values)
             return found and self._idled(found)
@@ -286,7 +286,7 @@ class Descent:
 
 
 def reached_pose(search: InverseSearch, found: Descent, target: PoseTarget | None) -> IKResult:
-    """Pose that was found, with how near it is to an optimum and the limits that hold."""
+    """Return the result of a search, with its optimality and the active limits."""
     state, problem = found.state, search.problem
     pose = problem.simulation.make_pose(problem.bounds.spread @ state.values, state.result, state.history)
     return IKResult(

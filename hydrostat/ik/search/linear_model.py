@@ -1,4 +1,4 @@
-"""`LinearModel`: what contractions do near a state, where cables may be slack."""
+"""`LinearModel`: first-order effect of contractions near a state, with slack cables."""
 
 from copy import copy
 from dataclasses import dataclass
@@ -90,7 +90,7 @@ class LinearModel:
         self.range = bounds.span
 
     def best(self, effort: Vector, radius: float, curvature: np.ndarray | None = None) -> tuple[Vector, float]:
-        """The step of the channels [m] of least residual and effort, and by how much it lowers half their squares.
+        """Step of the channels [m] that minimizes residual and effort, and the decrease of half their squares.
 
         Where no step keeps the limits on tension, it goes as far towards them as it can. The effort is the residual
         that a tension of each cable is worth [m/N], the radius the largest step as a share of each range, the curvature

@@ -1,4 +1,4 @@
-"""`InverseProblem`: what inverse kinematics sees of a state, and the step that its linear model promises."""
+"""`InverseProblem`: residuals of inverse kinematics in a state, and the step of its linear model."""
 
 # Of the thesis (docs/thesis.md): M7, E18
 
@@ -107,7 +107,7 @@ class InverseProblem:
         *,
         ready: bool = False,
     ) -> None:
-        """State what is sought; if `ready`, slack cables are kept just short of taut, so that they can join at once.
+        """State the problem; if `ready`, slack cables are kept just short of taut, so they can act without delay.
 
         A robot without cables, or physics beside the cables that remember the way, is an InputError.
         """
@@ -142,7 +142,7 @@ class InverseProblem:
     def state(
         self, values: Vector, result: NewtonResult, history: Vector | None = None, *, whole: bool = True
     ) -> InverseState:
-        """State of nodes near equilibrium: what the terms see where these come to rest, to first order.
+        """State of nodes near equilibrium: residuals where they come to rest, to first order.
 
         Where the way there counts, it has left `history`, and the nodes rest already; `whole` tells whether all of it
         was followed.
@@ -168,7 +168,7 @@ class InverseProblem:
         )
 
     def idle(self, state: InverseState) -> InverseState:
-        """State whose slack channels went where terms want them, or else towards rest or taut; no node moves."""
+        """Move slack channels to where terms want them, or else towards rest or taut; no node moves."""
         gaps = channels(self.simulation.cables, state.posture, state.values, self.bounds).gaps
         slack = (gaps > 0) & np.isfinite(gaps)
         if not slack.any():
@@ -211,7 +211,7 @@ class InverseProblem:
         return LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
 
     def slope(self, state: InverseState, weight: float) -> float:
-        """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
+        """Steepest decrease of the residual norm along a channel that can move that way [m/m]."""
         return self.linear(state).slope(weight * self.worth)
 
     def redundant(self, state: InverseState) -> bool:

@@ -1,4 +1,4 @@
-"""`Keyframe`: a pose to be taken on the way, and the search for its contractions; what is checked of given poses."""
+"""`Keyframe`: target of a trajectory at an instant; the search for its contractions; checks of given poses."""
 
 # Of the thesis (docs/thesis.md): R58
 
@@ -81,7 +81,7 @@ def as_keyframes(given: Sequence[Key]) -> list[Keyframe]:
 
 
 def _as_keyframe(number: int, given: Key) -> Keyframe:
-    """A keyframe whose parts are of the right kind; scripts are not checked for types."""
+    """Convert to a keyframe and check the types of its parts."""
     key = given
     if isinstance(key, tuple):
         if len(key) != 2:
@@ -183,7 +183,7 @@ _TELL = 1e-5  # and by this share of the body's size
 
 
 def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Equilibrium) -> None:
-    """Refuse a pose that inverse kinematics would not have found; its tensions are told in the report instead.
+    """Reject a pose that inverse kinematics could not have found; its tensions are part of the report instead.
 
     Raises:
         InputError: a pose of another robot, a contraction out of its range, or equal winches that are not equal.

@@ -57,7 +57,7 @@ def follow(
 def _go(
     simulation: Simulation, pose: Equilibrium, goal: Vector, jump: float, halvings: int
 ) -> tuple[Equilibrium, float]:
-    """The pose at other contractions, and the largest distance from a prediction on the way [m].
+    """Pose at other contractions, and the largest distance from a prediction on the path [m].
 
     It is 0 where every step was taken; else it is a snap if it is more than `jump`.
     """

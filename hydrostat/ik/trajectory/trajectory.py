@@ -125,7 +125,7 @@ class Trajectory:
         return ContractionProfile(times=self.times, values=self.contractions)
 
     def lines(self) -> list[str]:
-        """A plain report: keyframes, what is used of the limits, what holds and what does not."""
+        """Report as lines of text: keyframes, used share of the limits, and violated limits."""
         lines = [line for key in self.keyframes for line in key.lines()]
         lines.append(f"{self.seconds:.2f} s in total, {len(self.times)} samples; path {self.path}")
         if self.winches:

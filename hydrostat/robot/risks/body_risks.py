@@ -100,7 +100,7 @@ def _slivers(mesh: Mesh) -> Iterator[str]:
 
 
 def _unlike(body: Body) -> Iterator[str]:
-    """Find what of a surface its mesh does not follow, for all that it got finer elements there."""
+    """Find parts of a surface that its mesh does not follow in spite of finer elements there."""
     if body.healing is None or body.element_size is None:
         return
     surface = body.healing.surface

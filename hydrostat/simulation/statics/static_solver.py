@@ -104,7 +104,7 @@ class StaticSolver:
         rest: tuple[Nodes, Stiffness],
         start: tuple[Nodes, Vector, Stiffness | None] | None = None,
     ) -> NewtonResult:
-        """Equilibrium at `goal`: directly; else in load steps from `start`, then from rest, last with more iterations.
+        """Equilibrium at `goal`: directly; else in load steps from `start`, then from rest with the dead loads.
 
         Where the prediction of the first step would crush an element, load steps follow without delay: cut short
         against the whole command, that step would leave cables that pull far too hard on elements next to flat.
@@ -134,7 +134,7 @@ class StaticSolver:
         return time.monotonic() >= self.options.deadline
 
     def _judged(self, result: NewtonResult, goal: Vector) -> NewtonResult:
-        """A failure on the way, by what is left over at `goal`."""
+        """Result of a failed solve, with residual and energy at `goal`."""
         assembly = self.assembly.with_active_terms(result.nodes)
         return replace(
             result,
