@@ -19,7 +19,7 @@ def check_type(given: object, kind: type | tuple[type, ...], wanted: str) -> Non
 
 
 def path_of(given: object, wanted: str) -> Path:
-    """A path that was given as a text or a path (InputError: as for `check_type`)."""
+    """Convert a text or a path to a path (InputError: as for `check_type`)."""
     if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
         raise InputError(f"{wanted}, not {given!r:.60}")
     return Path(given)

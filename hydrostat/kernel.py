@@ -14,7 +14,7 @@ INTERFACE = 6
 
 
 def _load() -> Any:
-    """The compiled core (InputError: it is missing, of another version, or HYDROSTAT_LEVEL is wrong)."""
+    """Load the compiled core (InputError: it is missing, of another version, or HYDROSTAT_LEVEL is wrong)."""
     try:
         core = import_module("hydrostat._native")
     except ModuleNotFoundError:

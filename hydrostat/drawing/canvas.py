@@ -46,7 +46,7 @@ class CanvasFrame:
 
 @dataclass
 class Canvas:
-    """A picture that is drawn from back to front."""
+    """Picture that is drawn from back to front."""
 
     width: float  # [mm]
     height: float  # [mm]
@@ -54,7 +54,7 @@ class Canvas:
 
     @property
     def svg(self) -> str:
-        """The picture so far."""
+        """Picture so far."""
         return tag(
             "svg",
             self._parts,
@@ -91,12 +91,12 @@ class Canvas:
             self._parts.append(shape("path", d=drawn, fill=_ink(grey), fill_rule="evenodd"))
 
     def box(self, box: Box, *, grey: float) -> None:
-        """A filled rectangle."""
+        """Draw a filled rectangle."""
         left, top, right, bottom = box
         self.fill([[(left, top), (right, top), (right, bottom), (left, bottom)]], grey=grey)
 
     def disc(self, at: Spot, radius: float, *, grey: float = 1.0, edge: float = THIN) -> None:
-        """A round spot with a black edge of some width [mm]; 0 for none."""
+        """Draw a disc with a black edge of some width [mm]; 0 for none."""
         x, y, r = (number(value, 2) for value in (*at, radius))
         stroke = {"stroke": "black", "stroke_width": f"{edge:g}"} if edge else {}
         self._parts.append(shape("circle", cx=x, cy=y, r=r, fill=_ink(grey), **stroke))
@@ -129,7 +129,7 @@ class Canvas:
         self.text(at, words, size=size, bold=True, grey=1.0 if dark else 0.0)
 
     def arrow(self, start: Spot, end: Spot, *, width: float = THICK, head: float = 2.2) -> None:
-        """A straight arrow with a filled head."""
+        """Draw a straight arrow with a filled head."""
         way = np.subtract(end, start)
         way = way / max(float(np.hypot(*way)), 1e-9)
         aside, foot = np.array([-way[1], way[0]]), np.array(end) - head * way
@@ -138,7 +138,7 @@ class Canvas:
         self.fill([[_spot(corner) for corner in corners]], grey=0.0)
 
     def drawing(self, drawing: LineDrawing, frame: CanvasFrame) -> None:
-        """The lines and tones of solids."""
+        """Draw the lines and tones of solids."""
         for grey, rings in drawing.tones:
             self.fill([frame.way(ring) for ring in rings], grey=grey)
         self.line([frame.way(way) for way in drawing.lines], width=THIN)

@@ -16,7 +16,7 @@ _RIM = 4  # pixels of nothing round the picture
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DepthBuffer:
-    """A picture of depths (z-buffer)."""
+    """Picture of depths (z-buffer)."""
 
     low: Float[np.ndarray, " 2"]  # place of the middle of pixel [0, 0] as seen: to the right, up [mm]
     pixel: float  # side of a pixel [mm]
@@ -32,7 +32,7 @@ class DepthBuffer:
         *,
         pixels: int,
     ) -> Self:
-        """The buffer of triangles seen [mm] from both sides, with room round it and pixels along its longer side."""
+        """Buffer of triangles seen [mm] from both sides, with room round it and pixels along its longer side."""
         low, high = corners[:, :, :2].min(axis=(0, 1)), corners[:, :, :2].max(axis=(0, 1))
         pixel = max(float((high - low).max()) / pixels, 1e-9)
         low = low - _RIM * pixel
@@ -50,7 +50,7 @@ class DepthBuffer:
         *,
         inside: bool,
     ) -> Self:
-        """The buffer of rows and columns of a pixel's size [mm] whose pixel [0, 0] has its middle at `low` [mm].
+        """Buffer of rows and columns of a pixel's size [mm] whose pixel [0, 0] has its middle at `low` [mm].
 
         The inside of triangles, where they turn clockwise, is seen too if asked for.
         """

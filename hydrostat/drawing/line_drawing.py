@@ -48,7 +48,7 @@ class LineDrawing:
         return np.array([ways.min(axis=0), ways.max(axis=0)])
 
     def seen_of(self, way: Float[np.ndarray, "points 3"]) -> tuple[Polyline, ...]:
-        """The parts of a line in space [mm] that nothing hides."""
+        """Parts of a line in space [mm] that nothing hides."""
         seen = self.camera.see(way)
         ahead, behind = _visible(np.stack([seen[:-1], seen[1:]], axis=1), self.buffer)
         return (*ahead, *behind)
@@ -101,7 +101,7 @@ def line_drawing(solids: Sequence[DrawnSolid], camera: Camera, *, soft: float = 
 
 
 def _visible(segments: Segments, buffer: DepthBuffer) -> tuple[tuple[Polyline, ...], tuple[Polyline, ...]]:
-    """The parts of lines that are seen, those with a jump of depth behind them first."""
+    """Parts of lines that are seen, those with a jump of depth behind them first."""
     lengths = np.linalg.norm(segments[:, 1, :2] - segments[:, 0, :2], axis=1)
     steps = np.maximum(np.ceil(2 * lengths / buffer.pixel).astype(int), 1)
     owner = np.repeat(np.arange(len(segments)), steps)

@@ -85,7 +85,7 @@ def _spans(corners: Float[np.ndarray, "simplices corners dim"]) -> Float[np.ndar
 
 
 def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Float[np.ndarray, "points corners"]]:
-    """The element in which each point lies deepest, and its barycentric weights there; -1 and 0 where it is in none."""
+    """Element in which each point lies deepest, and its barycentric weights there; -1 and 0 where it is in none."""
     asked, elements = _in_boxes(mesh, points)
     shifts = points[asked] - mesh.nodes[mesh.elements[elements, 0]]
     local = np.einsum("pij,pj->pi", mesh.inverse_spans[elements], shifts)

@@ -90,7 +90,7 @@ class _Grid:
         return self.origin + self.spacing * self.indices(numbers)
 
     def clip(self, field: Field, points: Points) -> Vector:
-        """The field at points [m] within the box, and 1 beyond it."""
+        """Field at points [m] within the box, and 1 beyond it."""
         values = np.ones(len(points))
         within = np.flatnonzero(((points >= self.box[0]) & (points <= self.box[1])).all(axis=1))
         for start in range(0, len(within), _CHUNK):

@@ -135,7 +135,7 @@ class Mesh:
 
     @cached_property
     def boundary_elements(self) -> Int[np.ndarray, " facets"]:
-        """The element that each facet of `boundary` belongs to."""
+        """Element that each facet of `boundary` belongs to."""
         return self._outer_facets[1]
 
     @cached_property

@@ -40,7 +40,7 @@ class Outline:
 
     @property
     def rings(self) -> tuple[Ring, ...]:
-        """The outer ring, then the holes [m]; the body lies to the left of each."""
+        """Outer ring, then the holes [m]; the body lies to the left of each."""
         return (self.exterior, *self.holes)
 
     @property
@@ -87,13 +87,13 @@ Stations = Float[np.ndarray, " _"]  # arc lengths, or values at them
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A closed polyline with a station [same unit as its points] for each place on it."""
+    """Closed polyline with a station [same unit as its points] for each place on it."""
 
     corners: Points  # (corners, 2), first point not repeated
 
     @cached_property
     def closed_corners(self) -> Points:
-        """The corners with the first one repeated at the end."""
+        """Corners with the first one repeated at the end."""
         return np.concatenate([self.corners, self.corners[:1]])
 
     @cached_property
@@ -139,7 +139,7 @@ class Curve:
 
     @cached_property
     def _unrolled_corners(self) -> Points:
-        """The corners three times round, each where its station is."""
+        """Corners three times round, each where its station is."""
         return self.at(self._unrolled)
 
     def sagitta(self, start: float, end: float) -> float:

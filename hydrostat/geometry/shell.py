@@ -29,7 +29,7 @@ class Nearest:
 
 
 class Shell:
-    """A closed boundary: segments in the plane with the body to their left, triangles in space seen from outside.
+    """Closed boundary: segments in the plane with the body to their left, triangles in space seen from outside.
 
     Whether a point whose nearest place is a corner or an edge lies inside is told by the mean normal there, weighted by
     angles (Baerentzen 2005).
@@ -78,7 +78,7 @@ class Shell:
         return np.linalg.norm(self._crosses, axis=1) / (self.facets.shape[1] - 1)
 
     def nearest(self, points: Points) -> Nearest:
-        """The place of the shell nearest to each point (ValueError: nodes or points that are not finite)."""
+        """Place of the shell nearest to each point (ValueError: nodes or points that are not finite)."""
         if not (np.isfinite(self.nodes).all() and np.isfinite(points).all()):
             raise ValueError("a distance needs finite places")
         _, found, places = self._tree.squared_distance(_in_space(self.nodes), self.facets, _in_space(points))
@@ -201,7 +201,7 @@ _TOUCHING = 1e-12
 
 
 def outline_shell(outline: Outline) -> Shell:
-    """The rings of an outline."""
+    """Rings of an outline."""
     counts = [len(ring) for ring in outline.rings]
     starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
     ends = [np.roll(np.arange(start, start + count), -1) for start, count in zip(starts, counts, strict=True)]

@@ -84,12 +84,12 @@ class PullOut:
 
     @property
     def peak(self) -> float:
-        """The largest force [N]."""
+        """Largest force [N]."""
         return float(self.forces.max())
 
     @property
     def work(self) -> float:
-        """The most work that the pull has done at any place [J]: without friction, the energy to escape."""
+        """Largest work done by the pull up to any position [J]: without friction, the energy to escape."""
         done = 0.5 * (self.forces[1:] + self.forces[:-1]) * np.diff(self.moved)
         return float(np.cumsum(done).max(initial=0.0))
 

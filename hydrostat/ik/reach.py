@@ -94,7 +94,7 @@ def find_reach(
 
 
 def _limits(robot: Robot) -> tuple[Vector, Vector]:
-    """The least and the most that each winch takes in [m]."""
+    """Minimum and maximum contraction of each winch [m]."""
     return np.array([-winch.release for winch in robot.winches]), np.array([winch.travel for winch in robot.winches])
 
 

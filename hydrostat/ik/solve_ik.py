@@ -153,7 +153,7 @@ def wishes(target: PoseTarget | None, objectives: Sequence[Objective]) -> list[O
 
 
 def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, InverseState], Descent]) -> Descent:
-    """The best of several beginnings; the first that reaches its goal."""
+    """Best of several beginnings; the first that reaches its goal."""
     if found.reason in _ENDS or not found.state.errors:
         return found
     spent = found.iterations

@@ -213,7 +213,7 @@ class Assembly:
     def stiffness(
         self, nodes: Nodes, controls: Vector, *, projection: float = 0.0, shift: float = 0.0, damping: float = 0.0
     ) -> Stiffness:
-        """The whole of d2E/dx2, ready to be solved with.
+        """Whole Hessian d2E/dx2, factorised.
 
         `projection` is as in `hessian`; `damping` [N/m] is added to the diagonal, as is `shift`, a share of its largest
         entry.

@@ -316,7 +316,7 @@ class FrictionCableEnergy(Energy):
 
     @property
     def spans(self) -> CableEnergy:
-        """The spans as cables of their own, as if nothing slipped."""
+        """Spans as cables of their own, as if nothing slipped."""
         return self._spans
 
     @property

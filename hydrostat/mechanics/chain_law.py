@@ -58,7 +58,7 @@ class ChainLaw(TensionLaw):
         return self._joined(super().tangent(self._own(elongation, slips)), slips != 0)[0]
 
     def springs(self, elongation: Vector) -> tuple[Int[np.ndarray, " spans"], Vector]:
-        """The spring that each span belongs to, -1 where it is slack, and dT/ds of each [N/m].
+        """Spring that each span belongs to, -1 where it is slack, and dT/ds of each [N/m].
 
         Spans are one spring, in series, between points where cable sticks.
         """
@@ -95,7 +95,7 @@ class ChainLaw(TensionLaw):
     def _series(
         self, springs: Vector, slipping: Bool[np.ndarray, " spans"]
     ) -> tuple[Int[np.ndarray, " spans"], Vector]:
-        """The group of each span that points that slip join, and dT/ds of each group; 0 where a span is slack."""
+        """Group of each span that points that slip join, and dT/ds of each group; 0 where a span is slack."""
         group = np.cumsum(~slipping) - 1
         weakest = np.minimum.reduceat(springs, np.flatnonzero(~slipping)) if len(springs) else springs
         soft = np.bincount(group, 1.0 / np.maximum(springs, 1e-12 * self.stiffness))

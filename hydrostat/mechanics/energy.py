@@ -97,7 +97,7 @@ class ContactForces(NamedTuple):
 
 
 class Energy(ABC):
-    """A sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
+    """Sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
     A control is what an actuator commands: the contraction of a winch [m], the tension of a muscle fibre [N].
     A new energy needs value, gradient and Hessian to be assembled and minimised, and is given to a `Simulation` in a

@@ -202,7 +202,7 @@ class SuperLUFactors:
         return self._lu.solve(np.ascontiguousarray(right))
 
     def reduce(self, right: np.ndarray) -> np.ndarray:
-        """The right-hand sides themselves: SuperLU solves no half that is symmetric."""
+        """Right-hand sides themselves: SuperLU solves no half that is symmetric."""
         return right
 
     def inner(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:

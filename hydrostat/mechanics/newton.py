@@ -205,7 +205,7 @@ class _EnergyDescent:
         return stiffness if stiffness.definite else None
 
     def _definite_hessian(self, place: _Iterate) -> Stiffness | None:
-        """The Hessian, or a definite matrix in its place where it is not definite.
+        """Hessian, or a definite matrix in its place where it is not definite.
 
         Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
         drops the whole effect of compression, and Newton creeps for hundreds of steps. So only a share of what is
@@ -230,7 +230,7 @@ class _EnergyDescent:
         return None
 
     def _search(self, place: _Iterate, step: Vector) -> _Iterate | None:
-        """The next place; None if no length of the step lowers the energy.
+        """Next place; None if no length of the step lowers the energy.
 
         Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
         """
@@ -281,7 +281,7 @@ class _EnergyDescent:
         return -stiffness.solve(place.gradient)
 
     def _extrapolate(self, place: _Iterate, step: Vector, trial: _Trial) -> _Trial:
-        """A projected Hessian is too stiff, so its step is too short: doubled as long as the energy falls."""
+        """Double a step while the energy falls: a projected Hessian is too stiff, so its step is too short."""
         length = 2.0
         while True:
             longer = self._try(place, length * step)
@@ -291,7 +291,7 @@ class _EnergyDescent:
             length *= 2.0
 
     def _leave_saddle(self, place: _Iterate) -> _Iterate | None:
-        """A place of lower energy along a falling mode; None at a minimum, or where none is found."""
+        """Place of lower energy along a falling mode; None at a minimum, or where none is found."""
         if self.saddles == _SADDLES or self.options.tolerance > _SHARP:
             return None
         stiffness = self._stiffness(place)
@@ -310,7 +310,7 @@ class _EnergyDescent:
         return self._evaluate(*lowest[:4])
 
     def _stiffness(self, place: _Iterate) -> Stiffness:
-        """The Hessian at the end."""
+        """Hessian at the end."""
         if self.last is None or not self.sharp:
             self.last, self.sharp = place.assembly.stiffness(place.nodes, self.controls), True
         return self.last

@@ -50,7 +50,7 @@ class ObstacleFriction:
         )
 
     def only(self, some: np.ndarray) -> "ObstacleFriction":
-        """The springs of some samples."""
+        """Springs of some samples."""
         parts = (self.springs, self.anchors, self.normals, self.limits)
         springs, anchors, normals, limits = (part[some] for part in parts)
         return ObstacleFriction(

@@ -54,7 +54,7 @@ class RigidEnergy(Energy):
     convex: ClassVar[bool] = False
 
     def __init__(self, carriage: RigidBodyDofs, stiffness: float) -> None:
-        """The axes of a carriage are held by a stiffness [J]."""
+        """Take the unknowns of a body and the stiffness that holds its axes [J]."""
         self.carriage, self.stiffness = carriage, stiffness
         self.stencils = carriage.rows[None, 1:]
 

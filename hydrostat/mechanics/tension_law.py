@@ -46,7 +46,7 @@ class TensionLaw:
         return found
 
     def elongation(self, tension: Vector) -> Vector:
-        """The elongation [m] at which a taut cable has this tension > 0 [N]."""
+        """Elongation [m] at which a taut cable has this tension > 0 [N]."""
         k, eps = self.stiffness, self.smoothing
         share = np.maximum(tension, 0.0) / k
         return np.where(share > eps, share + eps, 2 * np.sqrt(eps * share))

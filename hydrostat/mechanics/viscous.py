@@ -55,7 +55,7 @@ class ViscousEnergy(Energy):
         return self._solid.projected_hessian(self._apart(nodes), controls, share)
 
     def _apart(self, nodes: Nodes) -> Float[np.ndarray, "apart dim"]:
-        """The corners of each element for themselves."""
+        """Corners of each element for themselves."""
         corners = nodes[self.stencils]
         return (corners - corners[:, :1]).reshape(-1, nodes.shape[1])
 
@@ -105,7 +105,7 @@ class MaxwellBranches:
         return float((self.viscosities / (self.times + step)).sum())
 
     def energy(self, metrics: Metrics, step: float) -> ViscousEnergy:
-        """The potential of an implicit step [s] from these metrics."""
+        """Potential of an implicit step [s] from these metrics."""
         weights = self.viscosities / (self.times + step)
         mean = np.tensordot(weights / weights.sum(), metrics, axes=1)
         return ViscousEnergy(

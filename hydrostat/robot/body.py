@@ -39,7 +39,7 @@ class Volume(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """A meshed body. Two bodies are equal when they come from the same file and numbers.
+    """Meshed body. Two bodies are equal when they come from the same file and numbers.
 
     A text stands for the source, the material or the volume of that name.
 

@@ -148,6 +148,6 @@ def _numbers(cables: Sequence[Cable]) -> list[int]:
 
 
 def _usual_name(winch: str, number: int) -> str:
-    """The winch's name and a number, no longer than a name may be."""
+    """Winch's name and a number, no longer than a name may be."""
     tail = f" {number}"
     return winch[: LONGEST_NAME - len(tail)] + tail

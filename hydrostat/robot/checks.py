@@ -46,7 +46,7 @@ LONGEST_NAME = 60  # a name has at most this many characters
 
 
 def check_name(name: str) -> str:
-    """The name itself.
+    """Check a name and return it.
 
     Raises InputError: it is empty, too long, has another character than letters (of any language), digits, space and .
     _ -, or begins with none of the first two.

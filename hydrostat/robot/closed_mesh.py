@@ -15,7 +15,7 @@ MOST_TRIANGLES = 20_000
 
 @dataclass(frozen=True)
 class ClosedMesh:
-    """A closed surface in space and the file that it came from.
+    """Closed surface in space and the file that it came from.
 
     Attributes:
         file: name of the file.

@@ -6,7 +6,7 @@ from hydrostat.units import printable
 
 
 def commented_text(robot: Robot, source: str) -> str:
-    """The text of robot.toml with a comment before the first table of each kind.
+    """Text of robot.toml with a comment before the first table of each kind.
 
     Args:
         robot: newly created robot.

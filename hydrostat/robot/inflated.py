@@ -17,7 +17,7 @@ from hydrostat.robot.sewn import side_name
 
 
 def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size: float | None = None) -> Robot:
-    """The robot in space that a flat one becomes: its outline blown up to its thickness, cables on a face of it.
+    """Return the 3D robot of a flat one: its outline inflated to its thickness, its cables on one side.
 
     Winches and markers stay in the plane z = 0; so a cable leaves its winch inside the body and comes to the skin at
     its first via point. A pair is two cables of one winch, each as stiff as the one that is drawn. Poses get z = 0.
@@ -77,7 +77,7 @@ def _skin(body: Body, places: Points, side: float) -> Vector:
 
 
 def _lifted(cable: Cable, face: Face, body: Body) -> Iterator[Cable]:
-    """A cable on its face, all but its first point, which is its winch's; twice for pairs."""
+    """Cable on its face, all but its first point, which is its winch's; twice for pairs."""
     points = np.array(cable.points)
     for name, side in _HEIGHTS[face]:
         lift = _skin(body, points, side)

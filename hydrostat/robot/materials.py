@@ -41,7 +41,7 @@ class Relaxation:
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """An isotropic material: elastic, and optionally viscous.
+    """Isotropic material: elastic, and optionally viscous.
 
     Attributes:
         young: Young's modulus [Pa].
@@ -124,7 +124,7 @@ def young_of_rubber(stress: float) -> float:
 
 
 def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measured: float) -> Material:
-    """A castable silicone: specific gravity, 100 % modulus [psi], elongation at break [%], a second opinion [kPa]."""
+    """Castable silicone: specific gravity, 100 % modulus [psi], elongation at break [%], a second opinion [kPa]."""
     stress = modulus * PSI
     return Material(
         name=name,
@@ -144,7 +144,7 @@ def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measu
 
 
 def _castable_foam(numeral: str, pounds: int, source: str, young: float, note: str) -> Material:
-    """A castable foam of the FlexFoam-iT! series, named after its density in pounds per cubic foot."""
+    """Castable foam of the FlexFoam-iT! series, named after its density in pounds per cubic foot."""
     return Material(
         name=f"flexfoam-it {numeral}",
         young=young,
@@ -158,7 +158,7 @@ def _castable_foam(numeral: str, pounds: int, source: str, young: float, note: s
 
 
 def _lattice(solid: Material, share: float) -> Material:
-    """A printed gyroid that fills a share of its volume: stiffness falls with the square of density (open cells)."""
+    """Printed gyroid that fills a share of its volume: stiffness falls with the square of density (open cells)."""
     return Material(
         name=f"{solid.name} gyroid {100 * share:.0f}%",
         young=solid.young * share**2,

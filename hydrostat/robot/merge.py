@@ -123,7 +123,7 @@ _TOP = ("name", "length_unit", "gravity", "face")
 
 
 def merged_text(text: str, robot: Robot) -> str:
-    """The text of a robot.toml that describes a robot, as near as can be to a text that described another state of it.
+    """Text of a robot.toml that describes a robot, as near as can be to a text that described another state of it.
 
     Comments, order and form of all that did not change stay, and tables that are no longer wanted go with their own
     comments (`lost_comments` tells which). A text that is no robot.toml is replaced.
@@ -139,7 +139,7 @@ def merged_text(text: str, robot: Robot) -> str:
 
 
 def lost_comments(before: str, after: str) -> list[str]:
-    """The comments of one text that another no longer has, in order."""
+    """Comments of one text that another no longer has, in order."""
     kept = comments(after)
     lost = []
     for comment in comments(before):
@@ -253,7 +253,7 @@ def _kept(before: Sequence[TomlBlock], blocks: Sequence[tuple[TomlBlock, int] | 
 
 
 def _remarks(free: str) -> str:
-    """The comments that stood apart before a table that is gone."""
+    """Comments that stood apart before a table that is gone."""
     return free if "#" in free else ""
 
 

@@ -95,11 +95,11 @@ class Robot:
         self._check_cables()
 
     def winch(self, name: str) -> Winch:
-        """The winch of this name (InputError: there is none)."""
+        """Return the winch of this name (InputError: there is none)."""
         return _named("winch", "winches", self.winches, name)
 
     def cable(self, name: str) -> Cable:
-        """The cable of this name (InputError: there is none)."""
+        """Return the cable of this name (InputError: there is none)."""
         return _named("cable", "cables", self.cables, name)
 
     @property
@@ -108,7 +108,7 @@ class Robot:
         return given_names(self.cables)
 
     def pose(self, name: str) -> PoseTarget:
-        """The pose of this name (InputError: there is none)."""
+        """Return the target pose of this name (InputError: there is none)."""
         if name not in self.poses:
             raise InputError(f'unknown pose "{name}". {_choices("poses", list(self.poses))}')
         return self.poses[name]
@@ -174,7 +174,7 @@ class Robot:
         )
 
     def _repr_html_(self) -> str:
-        """The robot at rest, for a notebook."""
+        """Robot at rest, for a notebook."""
         return html_repr(repr(self), draw_record("rest", self))
 
     def _check_kinds(self) -> None:
@@ -320,7 +320,7 @@ class Robot:
                 raise InputError(f"{key} = {self._text(point)} {out}; move it inside")
 
     def _text(self, value: Point | float) -> str:
-        """A point or length in the unit of the file, to four digits."""
+        """Point or length in the unit of the file, to four digits."""
         scale = float(units.unit_factor(self.length_unit, units.LENGTH))
         if isinstance(value, tuple):
             return "[" + ", ".join(f"{coordinate / scale:.4g}" for coordinate in value) + "]"

@@ -17,7 +17,7 @@ LEAST, MOST = 0.01, 100.0
 
 
 def scaled_robot(robot: Robot, factor: float) -> Robot:
-    """The robot with every length so many times as long: body, elements, thickness, pins, winches, cables, obstacles.
+    """Scale every length of a robot: body, elements, thickness, pins, winches, cables, obstacles.
 
     Also markers, targets of poses, spools, travel, release, slack and the distance of contact. Materials, stiffnesses,
     friction and masses stay: they are those of what is bought.

@@ -46,7 +46,7 @@ def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
 
 
 def _number(value: object) -> Decimal:
-    """A bare number; tomllib hands over int or Decimal."""
+    """Bare number; tomllib hands over int or Decimal."""
     if isinstance(value, bool) or not isinstance(value, int | Decimal):
         raise ValueError(f"{quote(value)} is not a number")
     if isinstance(value, Decimal) and not value.is_finite():
@@ -105,7 +105,7 @@ class TomlTable(BaseModel):
 
 
 class RelaxationTable(TomlTable):
-    """A Maxwell branch."""
+    """Maxwell branch."""
 
     modulus: Pressure
     time: Time
@@ -123,7 +123,7 @@ class NamedMaterialTable(TomlTable):
 
 
 class MaterialTable(TomlTable):
-    """A material by its numbers."""
+    """Material by its numbers."""
 
     young: Pressure
     poisson: Number
@@ -222,7 +222,7 @@ class ContactTable(TomlTable):
 
 
 class KeyframeTable(TomlTable):
-    """An entry of path of [[obstacle]]."""
+    """Entry of path of [[obstacle]]."""
 
     time: Time
     at: Coordinates
@@ -244,7 +244,7 @@ class ObstacleTable(TomlTable):
 
 
 class RobotTable(TomlTable):
-    """The whole file."""
+    """All tables of robot.toml."""
 
     format: Annotated[int, BeforeValidator(_format)]
     name: Name

@@ -9,7 +9,7 @@ from hydrostat.robot.robot import Robot
 
 
 def sewn_robot(robot: Robot) -> Robot:
-    """The flat robot with each cable as often as it is sewn: in pairs all those of the front, then all of the back.
+    """Return the flat robot with each cable as often as it is sewn: in pairs, all front cables, then all back ones.
 
     Both of a pair are as stiff as the one that is drawn. A robot whose cables are no pairs is given back as it is.
     """

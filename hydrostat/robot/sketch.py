@@ -83,7 +83,7 @@ def _element_size(outline: Outline, nodes: int | None) -> float:
 
 
 def _round(length: float) -> float:
-    """A length rounded to half a millimetre, at least that."""
+    """Length rounded to half a millimetre, at least that."""
     return max(round(length * 2000), 1) / 2000
 
 

@@ -144,7 +144,7 @@ _SPOOL, _LEAST_SPOOL = 0.006, 0.002
 
 
 def _first_robot(body: Body, name: str) -> Robot:
-    """A body with first boundary conditions (a pin) and one tendon: a cable along its longest limb, a marker.
+    """Body with first boundary conditions (a pin) and one tendon: a cable along its longest limb, a marker.
 
     It is held at the stouter end of its longest side, or, if both ends are slender as of a starfish, round its deepest
     point. The limb is the longest way through the body from there; the cable lies on one side of it.
@@ -176,7 +176,7 @@ def _first_robot(body: Body, name: str) -> Robot:
 
 
 def _hold(mesh: Mesh) -> Pin:
-    """A box about the stouter end, or a ball about the deepest node."""
+    """Box about the stouter end, or a ball about the deepest node."""
     low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
     axis = int(np.argmax(high - low))
     along = (mesh.nodes[mesh.elements].mean(axis=1)[:, axis] - low[axis]) / (high[axis] - low[axis])
@@ -246,21 +246,21 @@ def _limb(mesh: Mesh, held: Bool[np.ndarray, " nodes"]) -> _Limb:
 
 
 def _side(mesh: Mesh, arm: Vector) -> Vector:
-    """The axis across an arm along which the body is thinnest, so that it bends easily."""
+    """Axis across an arm along which the body is thinnest, so that it bends easily."""
     spread = np.var(mesh.nodes, axis=0)
     spread[int(np.argmax(np.abs(arm)))] = np.inf
     return np.eye(3)[int(np.argmin(spread))]
 
 
 def _smoothed(points: Points) -> Points:
-    """A line without its zigzag, which is that of the elements; its ends stay."""
+    """Line without its zigzag, which is that of the elements; its ends stay."""
     for _ in range(_SMOOTHINGS):
         points = np.concatenate([points[:1], (points[:-2] + 2 * points[1:-1] + points[2:]) / 4, points[-1:]])
     return points
 
 
 def _covered(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
-    """A place off the middle of a limb towards its skin, in the solid, as far as there is cover, or else the best."""
+    """Place off the middle of a limb towards its skin, in the solid, as far as there is cover, or else the best."""
     places = middle + np.multiply.outer(_OFFS, way)
     found = locate(mesh, np.concatenate([places, middle[None]]))
     places = np.concatenate([places, mesh.nodes[found.stencils[-1:]].mean(axis=1)])
@@ -278,5 +278,5 @@ def _spaced(points: list[Vector]) -> Points:
 
 
 def _point(place: Float[np.ndarray, " 3"]) -> Point:
-    """A place rounded to a hundredth of a millimetre."""
+    """Place rounded to a hundredth of a millimetre."""
     return tuple(round(float(value), 5) for value in place)

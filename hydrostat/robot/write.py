@@ -89,7 +89,7 @@ def _files(robot: Robot) -> dict[str, bytes]:
 
 
 def robot_text(robot: Robot) -> str:
-    """The robot as the text of robot.toml."""
+    """Write the robot as the text of robot.toml."""
     import tomlkit
 
     writer = _Writer(robot)
@@ -134,7 +134,7 @@ class _Writer:
         self.unit = robot.length_unit
 
     def number(self, value: float) -> Any:
-        """A bare number that reads back to the very same length [m]."""
+        """Bare number that reads back to the very same length [m]."""
         text = units.plain(units.scale_down(value, self.unit, units.LENGTH))
         return self._toml.value(text)
 
@@ -157,7 +157,7 @@ class _Writer:
         return {str(body.source): body.file, **_lengths(lengths), **given}
 
     def material(self, material: Material) -> Any:
-        """A name of the table, or an inline table of the name or the numbers, then the viscosity."""
+        """Name of the table, or an inline table of the name or the numbers, then the viscosity."""
         if MATERIALS.get(material.name) == material:
             return material.name
         table = self._toml.inline_table()
@@ -183,7 +183,7 @@ class _Writer:
         return self._array(tables)
 
     def gravity(self, gravity: tuple[float, ...]) -> Any:
-        """A direction such as "-y", or one acceleration for each axis."""
+        """Direction such as "-y", or one acceleration for each axis."""
         return direction_of(gravity) or [units.format_quantity(value, units.ACCELERATION) for value in gravity]
 
     def contact(self, contact: Contact) -> Any:

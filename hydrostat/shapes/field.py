@@ -105,7 +105,7 @@ def intersection(*fields: Field, blend: float = 0.0) -> Field:
 
 
 def place_field(field: Field, *, turn: Float[np.ndarray, "3 3"], shift: Place = (0.0, 0.0, 0.0)) -> Field:
-    """A field turned about the origin by a rotation matrix and then shifted [m]."""
+    """Field turned about the origin by a rotation matrix and then shifted [m]."""
     moved = np.array(shift, dtype=float)
     return lambda points: field((points - moved) @ turn)
 
@@ -118,7 +118,7 @@ def turn_about(axis: Place, degrees: float) -> Float[np.ndarray, "3 3"]:
 
 
 def _lower(one: Vector, two: Vector, blend: float) -> Vector:
-    """The lower of two, with a parabola between where they are nearer than the blend; its slopes add up to one."""
+    """Lower of two, with a parabola between where they are nearer than the blend; its slopes add up to one."""
     if blend == 0:
         return np.minimum(one, two)
     near = np.maximum(blend - np.abs(one - two), 0.0)

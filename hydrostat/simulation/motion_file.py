@@ -83,7 +83,7 @@ def write_motion(
 
 
 def _until_stopped(motions: Iterable[Motion]) -> Iterator[Motion | NotConvergedError]:
-    """The motions, and the error that ended them in place of being raised."""
+    """Motions, and the error that ended them in place of being raised."""
     try:
         yield from motions
     except NotConvergedError as error:

@@ -61,7 +61,7 @@ def obstacles_in_pose(robot: Robot, carried: Points | None) -> Robot:
 
 
 def with_obstacles(robot: Robot, obstacles: Sequence[Obstacle]) -> Robot:
-    """The robot with other obstacles, for pictures: where they stand is not checked."""
+    """Return the robot with other obstacles, for pictures, without checks of their positions."""
     other = copy(robot)
     object.__setattr__(other, "obstacles", tuple(obstacles))
     return other

@@ -119,7 +119,7 @@ class RoutePoints:
         return total
 
     def by_cable(self, rows: Points) -> tuple[RouteSlopes, ...]:
-        """The rows of each cable."""
+        """Split rows by cable."""
         return tuple(np.split(rows, np.cumsum(self.counts)[:-1])) if self.counts else ()
 
     def _through(
@@ -131,7 +131,7 @@ class RoutePoints:
 
 
 def route_points(robot: Robot) -> RoutePoints:
-    """The points of all cables of a robot."""
+    """Points of all cables of a robot."""
     mesh, cables = robot.body.mesh, robot.cables
     counts = tuple(len(cable.points) for cable in cables)
     first = np.cumsum([0, *counts])[:-1]

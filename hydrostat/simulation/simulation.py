@@ -252,7 +252,7 @@ class Simulation:
         )
 
     def motion_at_rest(self, pose: Equilibrium | None = None, *, velocities: Nodes | None = None) -> Motion:
-        """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
+        """Return a motion that starts in a pose, by default the rest pose, with relaxed viscous branches.
 
         Args:
             pose: initial nodes and contractions.
@@ -297,7 +297,7 @@ class Simulation:
         start: Motion | None = None,
         options: StepOptions | None = None,
     ) -> Iterator[Motion]:
-        """The motion under contractions in time: its start, then each step as it is found.
+        """Yield the motion under a contraction profile: its start, then each step.
 
         Args:
             profile: the contractions; its time is that of the motion.
@@ -349,18 +349,18 @@ class Simulation:
         return stiffness
 
     def stiffness_of(self, pose: Equilibrium) -> Stiffness | None:
-        """The Hessian that a pose of this simulation brings along; None if it brings none, or its nodes were moved."""
+        """Hessian kept with a pose of this simulation; None if it has none, or its nodes were moved."""
         known = pose.result.stiffness
         return known if known is not None and pose.is_unmodified and known.token is self.assembly.token else None
 
     @cached_property
     def rest(self) -> Equilibrium:
-        """The pose without contractions: where gravity leaves the body (NotConvergedError: as for `solve`)."""
+        """Pose without contractions, under gravity (NotConvergedError: as for `solve`)."""
         return self.solve(np.zeros(len(self.robot.winches)))
 
     @cached_property
     def rest_stiffness(self) -> Stiffness:
-        """The Hessian at the nodes' rest positions."""
+        """Hessian at the nodes' rest positions."""
         nodes, idle = self.body.rest_unknowns, np.zeros(len(self.robot.winches))
         if self._more:
             return self.assembly.with_active_terms(nodes).stiffness(nodes, idle)

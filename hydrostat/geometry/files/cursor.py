@@ -56,7 +56,7 @@ class Cursor:
         self.at, self.text, self.order = 0, True, "<"
 
     def line(self, *, blank: bool = False) -> bytes | None:
-        """The next line with anything in it, or the very next; None at the end."""
+        """Next line with anything in it, or the very next; None at the end."""
         if not blank:
             self.at = _BLANK.match(self.content, self.at).end()  # pyright: ignore[reportOptionalMemberAccess]
         if self.at >= len(self.content):
@@ -74,7 +74,7 @@ class Cursor:
         self.at = place + len(mark)
 
     def numbers(self, count: int, kind: str) -> np.ndarray:
-        """The next numbers, of a kind given by NumPy's code without order; InputError if there are fewer, or others."""
+        """Next numbers, of a kind given by NumPy's code without order; InputError if there are fewer, or others."""
         dtype = np.dtype(self.order + kind)
         room = (len(self.content) - self.at + 1) // 2 if self.text else (len(self.content) - self.at) // dtype.itemsize
         if not 0 <= count <= room:
@@ -87,7 +87,7 @@ class Cursor:
         return values.astype(kind) if dtype.kind == "f" else whole_numbers(values, kind)
 
     def _words(self, count: int) -> array:
-        """The next numbers of text."""
+        """Next numbers of text."""
         values = array("d")
         while len(values) < count:
             need = count - len(values)
@@ -125,5 +125,5 @@ class Cursor:
         return part.numbers(sum(1 for _ in _WORD.finditer(part.content)), kind)
 
     def make_damage_error(self, what: str) -> InputError:
-        """The error for this file, which is not as it should be."""
+        """Return the error for this damaged file."""
         return make_damage_error(self.name, what)

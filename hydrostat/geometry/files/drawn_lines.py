@@ -34,7 +34,7 @@ def drawing_of(
     page: Callable[[Ring], Page],
     notes: tuple[str, ...] = (),
 ) -> Drawing:
-    """The drawing that closed rings and open lines make, in its units.
+    """Drawing that closed rings and open lines make, in its units.
 
     Args:
         lines: the rings and the open lines, of `closed_rings`.
@@ -66,7 +66,7 @@ def drawing_of(
 
 
 def body_and_marks(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
-    """The largest ring, and all others, which are drawn on the body and may cross or lie in one another.
+    """Largest ring, and all others, which are drawn on the body and may cross or lie in one another.
 
     Raises:
         OutlineError: the largest ring crosses itself, or a ring lies outside it.
@@ -95,7 +95,7 @@ def drawn_picture(drawing: Drawing) -> Drawing:
 
 
 def holes_told(outline: Outline) -> tuple[str, ...]:
-    """A note on the holes of a body: where drawings have an eye, they would go through it."""
+    """Note on the holes of a body: where drawings have an eye, they would go through it."""
     holes = outline.rings[1:]
     if not holes:
         return ()
@@ -112,7 +112,7 @@ def _extent(line: Ring) -> float:
 
 
 def marks_on(outline: Outline, lines: Iterable[Ring]) -> tuple[Ring, ...]:
-    """The parts of lines [m] that lie on a body; each is cut where it leaves it."""
+    """Parts of lines [m] that lie on a body; each is cut where it leaves it."""
     kept: list[Ring] = []
     for line in lines:
         if len(line) > 1 and _extent(line) > 0.0:

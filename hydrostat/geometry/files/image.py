@@ -90,7 +90,7 @@ def _too_large(name: str, pixels: str) -> OutlineError:
 
 
 def _plain(image: "Image", step: int) -> Float[np.ndarray, "rows columns 4"]:
-    """The pixels of any mode of image as red, green, blue and opacity, averaged over squares of `step`."""
+    """Pixels of any mode of image as red, green, blue and opacity, averaged over squares of `step`."""
     from PIL import Image
 
     if image.mode.startswith(("I", "F")):

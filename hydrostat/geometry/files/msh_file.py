@@ -73,7 +73,7 @@ def _head(cursor: Cursor) -> bool:
 
 
 def _count(cursor: Cursor) -> int:
-    """The number that stands alone in a line."""
+    """Number that stands alone in a line."""
     try:
         return int(cursor.line() or b"")
     except ValueError:

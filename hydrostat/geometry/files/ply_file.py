@@ -237,7 +237,7 @@ def _faces(
 
 
 def write_ply(surface: Surface) -> bytes:
-    """A surface as binary PLY: float32 coordinates in millimetres, the same bytes for the same surface."""
+    """Surface as binary PLY: float32 coordinates in millimetres, the same bytes for the same surface."""
     head = (
         "ply\nformat binary_little_endian 1.0\ncomment millimetres\n"
         f"element vertex {len(surface.vertices)}\nproperty float x\nproperty float y\nproperty float z\n"

@@ -162,14 +162,14 @@ def _length(text: str | None) -> tuple[float, str] | None:
 
 
 def _sheet(root: ElementTree.Element) -> tuple[float, float, float, float] | None:
-    """The page in user units: the viewBox, or width and height from the origin."""
+    """Page in user units: the viewBox, or width and height from the origin."""
     width, height = (_length(root.get(key)) for key in ("width", "height"))
     pixels = (0.0, 0.0, _pixels(width), _pixels(height)) if width and height else None
     return _box(root.get("viewBox", "")) or pixels
 
 
 def _pixels(length: tuple[float, str]) -> float:
-    """A length in pixels."""
+    """Length in pixels."""
     return length[0] * _METRES.get(length[1], _PIXEL) / _PIXEL
 
 

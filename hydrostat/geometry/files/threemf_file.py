@@ -26,7 +26,7 @@ _Key = tuple[str, str]  # an object: the part of the archive that it stands in, 
 
 @dataclass
 class _Object:
-    """A mesh, or other objects put together, or both."""
+    """Mesh, or other objects put together, or both."""
 
     places: array = field(default_factory=lambda: array("d"))
     corners: array = field(default_factory=lambda: array("q"))
@@ -64,7 +64,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _read_archive(archive: ZipFile, name: str) -> _Model:
-    """The root model of an archive, and the parts that it names."""
+    """Root model of an archive, and the parts that it names."""
     model = _Model()
     root = _root(archive, name)
     waiting, done, left = [root], set(), MOST_TEXT_BYTES
@@ -170,7 +170,7 @@ def _read_xml(text: bytes, part: str, model: _Model, *, root: bool, name: str) -
 
 
 def _placed(attributes: dict[str, str], part: str, model: _Model) -> tuple[_Key, np.ndarray]:
-    """An object and where it goes: four rows of three, for row vectors."""
+    """Object and where it goes: four rows of three, for row vectors."""
     path = next((text for key, text in attributes.items() if key.rpartition("}")[2] == "path"), "").lstrip("/")
     if path:
         model.others.add(path)

@@ -49,7 +49,7 @@ def read_vtk(content: bytes, name: str) -> Cells:
 
 
 def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types: np.ndarray, name: str) -> Cells:
-    """The simplices among cells, each of one of VTK's types; InputError, with the file's name, where these do not fit.
+    """Simplices among cells, each of one of VTK's types; InputError, with the file's name, where these do not fit.
 
     Corners are indices of points, of all cells one after the other; `starts` tells where those of each cell begin, and
     where the last ends.

@@ -221,7 +221,7 @@ def write_vtu(mesh: Mesh, nodes: Nodes, point_data: Mapping[str, np.ndarray]) ->
 
 
 def _data_array(name: str, values: np.ndarray) -> str:
-    """An array as an XML element: blocks packed one by one behind their number and sizes, in base64."""
+    """Array as an XML element: blocks packed one by one behind their number and sizes, in base64."""
     if values.ndim == 2 and values.shape[1] == 2:
         values = np.pad(values, ((0, 0), (0, 1)))
     kind = _NAMES[values.dtype.str[1:]]

@@ -142,7 +142,7 @@ SLIVER = 1e-3  # a triangle lower than this share of its longest side is a slive
 
 
 def pieces_of(shells: Shells) -> tuple[Piece, ...]:
-    """The parts of a surface that are neither body nor cavity."""
+    """Parts of a surface that are neither body nor cavity."""
     counts = np.bincount(shells.label)
     return tuple(
         Piece.of_box(shells.boxes[part], int(counts[part]), role.value)

@@ -153,7 +153,7 @@ def _made_anew(
     removed: tuple[Piece, ...],
     want: float,
 ) -> Healing:
-    """The body by its winding number."""
+    """Body by its winding number."""
     made = remake(kept, shells.boxes[shells.of_role(Role.CAVITY)], want)
     off = deviation(kept, made.surface, made.spacing)
     if off.patched > _MOST_PATCHED:

@@ -89,7 +89,7 @@ def _allowed_spacing(surface: Surface, resolution: float) -> float:
 
 
 def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacing: float) -> Remade:
-    """The largest part of a contour with its cavities; small parts are removed, pockets of air filled."""
+    """Largest part of a contour with its cavities; small parts are removed, pockets of air filled."""
     sides = sides_of(made.triangles)
     label = sides.groups(sides.counts > 1)
     inside = made.vertices[made.triangles[:, 0]] - made.box.mean(axis=0)

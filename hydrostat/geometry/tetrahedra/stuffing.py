@@ -116,7 +116,7 @@ def bisect(nodes: Nodes, elements: Elements, chosen: Bool[np.ndarray, " elements
 
 
 def _longest(nodes: Nodes, every: Edges, which: Int[np.ndarray, "elements 6"]) -> Int[np.ndarray, " elements"]:
-    """The longest edge of each tetrahedron; of equals, the same for all that have them."""
+    """Longest edge of each tetrahedron; of equals, the same for all that have them."""
     lengths = np.linalg.norm(nodes[every[:, 1]] - nodes[every[:, 0]], axis=1)
     order = np.lexsort((np.arange(len(every)), np.round(lengths / lengths.max(), 9)))
     rank = np.empty(len(every), dtype=np.int64)
@@ -191,12 +191,12 @@ def _edge_crossings(
 def _cut(
     solid: Solid, nodes: Nodes, elements: Elements, sides: Int[np.ndarray, " nodes"], edges: Edges, cuts: Places
 ) -> tuple[Places, Tetrahedra]:
-    """The parts of all tetrahedra inside: whole ones, corners, wedges."""
+    """Parts of all tetrahedra inside: whole ones, corners, wedges."""
     count = len(nodes)
     keys = edges[:, 0] * count + edges[:, 1]
 
     def cut(inner: Numbers, outer: Numbers) -> Numbers:
-        """The node of the cut between two nodes; a node that is on the surface is its own."""
+        """Node of the cut between two nodes; a node that is on the surface is its own."""
         low, high = np.minimum(inner, outer), np.maximum(inner, outer)
         found = count + np.searchsorted(keys, low * count + high)
         return np.where(sides[outer] == 0, outer, found)

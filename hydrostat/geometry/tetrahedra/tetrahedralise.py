@@ -139,7 +139,7 @@ def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float
 
 
 def _advice(surface: Surface, element_size: float) -> str:
-    """The end of a complaint, with a size that a body as thick as this on average can be filled with."""
+    """End of a complaint, with a size that a body as thick as this on average can be filled with."""
     size = min(2 * surface.volume / surface.area, _ADVICE * element_size)
     return f"elements of {1e3 * element_size:.4g} mm; take {1e3 * size:.2g} mm or less"
 

@@ -41,7 +41,7 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class CurveSamples:
-    """The rings of an outline, finely and evenly sampled, in units of the element size."""
+    """Rings of an outline, finely and evenly sampled, in units of the element size."""
 
     places: Float[np.ndarray, "samples 2"]  # (samples, 2)
     inward: Float[np.ndarray, "samples 2"]  # unit normals into the body, (samples, 2)

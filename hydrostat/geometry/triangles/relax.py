@@ -83,7 +83,7 @@ def _energy(points: Points, triangles: Elements, power: float) -> tuple[float, P
 
 
 def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft:
-    """The draft moved at fixed triangles, its boundary nodes only if they may slide."""
+    """Draft moved at fixed triangles, its boundary nodes only if they may slide."""
     from scipy.optimize import minimize  # Imported here: bodies in space are read sooner.
 
     slides = ~np.concatenate([part.fixed for part in draft.divisions]) & slide
@@ -133,7 +133,7 @@ def repair(draft: Draft) -> Draft:
 
 
 def _widest(draft: Draft) -> Draft:
-    """The first change that is good enough, or else the best one."""
+    """First change that is good enough, or else the best one."""
     best = draft
     for changed in _changes(draft):
         if sound(changed):

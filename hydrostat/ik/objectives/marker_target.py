@@ -44,7 +44,7 @@ class MarkerTarget(Objective):
     free: Mapping[str, str] = field(default_factory=dict)
 
     def bind(self, simulation: Simulation) -> Residual:
-        """The goal on this robot.
+        """Return the residual on this robot.
 
         Raises:
             InputError: no targets, a marker that it does not have, a target that is no place in the body's space, not

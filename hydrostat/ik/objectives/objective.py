@@ -53,7 +53,7 @@ class StateJacobian:
 
 
 class Residual(ABC):
-    """An objective on one robot: 1/2 |residual|^2, a residual in metres.
+    """Objective on one robot: 1/2 |residual|^2, a residual in metres.
 
     `hydrostat.testing.check_objective` tells whether a term is right.
     """
@@ -182,7 +182,7 @@ def describe(given: object) -> str:
 
 
 def not_negative(what: str, given: object) -> float:
-    """A number of 0 or more (InputError: it is anything else)."""
+    """Return a number of 0 or more (InputError: it is anything else)."""
     found = numbers(given)
     if found is None or found.ndim or not 0 <= found < np.inf:
         raise InputError(f"{what} must be 0 or more, not {describe(given)}")
@@ -190,7 +190,7 @@ def not_negative(what: str, given: object) -> float:
 
 
 def above_zero(what: str, given: object, *, unit: str = "") -> float:
-    """A number above 0; infinity is one (InputError: it is anything else)."""
+    """Return a number above 0, infinity included (InputError: it is anything else)."""
     found = numbers(given)
     if found is None or found.ndim or not found > 0:
         raise InputError(f"{what} must be a number above 0{unit and ' '}{unit}, not {describe(given)}")
@@ -205,7 +205,7 @@ def by_name(what: str, given: object, example: str) -> Mapping[str, Any]:
 
 
 def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"] | None = None) -> Vector:
-    """A place to go for a part of a body at rest [m], which counts along the axes that are held, or along all.
+    """Place to go for a part of a body at rest [m], which counts along the axes that are held, or along all.
 
     What is no place, of another dimension, not finite, or so far away that it cannot be in metres, is an InputError.
     """

@@ -61,7 +61,7 @@ class ShapeTarget(Objective):
     samples: int | None = None
 
     def bind(self, simulation: Simulation) -> Residual:
-        """The goal on this robot.
+        """Return the residual on this robot.
 
         Raises:
             InputError: not exactly one shape, one of another dimension than the body, far larger or smaller than it, or
@@ -110,7 +110,7 @@ _LARGEST = 10.0  # a body does not get so many times longer or shorter
 
 
 class _Shape(Residual):
-    """A shape goal on one robot: signed distances, positive outside, each times the root of its share."""
+    """Shape goal on one robot: signed distances, positive outside, each times the root of its share."""
 
     def __init__(self, name: str, target: Shell, places: Points, mesh: Mesh, weight: float) -> None:
         """Take the name of the error, the shape, sample points on it, the body, and the weight."""
@@ -194,7 +194,7 @@ def _check(name: str, shell: Shell, mesh: Mesh) -> None:
 
 
 def load_target_outline(robot: Robot, drawing: Path | str) -> Outline:
-    """The outline of a pose in the coordinates of the robot, for `ShapeTarget`.
+    """Outline of a pose in the coordinates of the robot, for `ShapeTarget`.
 
     Copy the drawing or picture of the body, and bend what is on it; the page must stay as it is. Read by itself, a
     drawing would be put into the middle of its own bounding box, and the pose would no longer be where it was drawn.

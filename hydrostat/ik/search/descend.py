@@ -13,7 +13,7 @@ Square = Float[np.ndarray, "channels channels"]
 
 
 class Curvature:
-    """An estimate of sum r_i d2r_i, which counts where a target is out of reach (Dennis, Gay and Welsch 1981).
+    """Estimate of sum r_i d2r_i, which counts where a target is out of reach (Dennis, Gay and Welsch 1981).
 
     It follows from how the slopes of the residual change along a step. It is used only while it tells the objective
     better than Gauss-Newton alone does and that falls slowly, and forgotten when a cable becomes taut or slack.
@@ -25,7 +25,7 @@ class Curvature:
 
     @property
     def matrix(self) -> Square | None:
-        """The estimate, if it is to be used."""
+        """Estimate, if it is to be used."""
         return self._matrix if self._trusted else None
 
     def doubt(self) -> bool:
@@ -55,7 +55,7 @@ class Curvature:
 
 
 def _updated(known: Square, step: np.ndarray, change: np.ndarray, total: np.ndarray) -> Square:
-    """The least change of an estimate, scaled down if too large, that makes it true along a step of the channels.
+    """Least change of an estimate, scaled down if too large, that makes it true along a step of the channels.
 
     The estimate times the step should be `change`; `total` is the change of the whole gradient.
     """
@@ -176,7 +176,7 @@ class _TrustRegionDescent:
         return True
 
     def _end(self, reason: IKStatus, iterations: int) -> Descent:
-        """The state if it rests within its limits, else the last one that did."""
+        """State if it rests within its limits, else the last one that did."""
         if not self._sharpen() or self.state.excess > EXCESS:
             self.state = self.rested or self.state
         if self._reached():

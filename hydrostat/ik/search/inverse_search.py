@@ -46,7 +46,7 @@ class InverseSearch:
             self.patience.tell(self.steps, float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0)
 
     def begin(self, start: Equilibrium | None) -> InverseState:
-        """The state of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
+        """State of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
         pose = start or self.problem.simulation.rest
         self.problem.simulation.check_start(pose)
         values = self.problem.bounds.channel(pose.contractions)
@@ -107,7 +107,7 @@ class InverseSearch:
         return self._relaxed(values, self._result(simulation.rest))
 
     def approach(self, state: InverseState, values: Vector) -> InverseState | None:
-        """The state at other contractions, near enough to equilibrium to go on; None if no stable one is found."""
+        """State at other contractions, near enough to equilibrium to continue; None if no stable one is found."""
         self.solves += 1
         if self._remembers:
             near = self._reached_at_once(state.result, values)
@@ -131,12 +131,12 @@ class InverseSearch:
         return self._relaxed(values, state.result)
 
     def follow(self, state: InverseState, values: Vector) -> InverseState | None:
-        """The state at other contractions, at equilibrium; None if Newton alone does not find it."""
+        """State at other contractions, at equilibrium; None if Newton alone does not find it."""
         self.solves += 1
         return self._relaxed(values, state.result)
 
     def adopt_state(self, state: InverseState) -> InverseState:
-        """A state of another search of the same robot, in the eyes of this one."""
+        """Return a state of another search of the same robot as a state of this one."""
         history = state.history if self._remembers else None
         return self.problem.idle(self.problem.state(state.values, state.result, history))
 
@@ -158,7 +158,7 @@ class InverseSearch:
         return self.problem.state(state.values, result) if _sound(result) else None
 
     def drop_slack(self, state: InverseState) -> InverseState:
-        """The state with channels that hardly pull let go, if the goals stay reached."""
+        """Release channels with hardly any tension, if the goals stay reached."""
         cables, posture = self.problem.simulation.cables, state.posture
         places = channels(cables, posture, state.values, self.problem.bounds)
         pulls = posture.tensions[places.first]
@@ -206,7 +206,7 @@ def _sound(result: NewtonResult) -> bool:
 
 
 def _begun(pose: Equilibrium) -> Equilibrium:
-    """The pose, if a search can begin from it."""
+    """Pose, if a search can begin from it."""
     if not _sound(pose.result):
         raise NotConvergedError(
             f"inverse kinematics finds no stable equilibrium to begin from: {pose.result.reason}; give a start",

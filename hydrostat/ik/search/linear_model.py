@@ -135,7 +135,7 @@ class LinearModel:
         return bool(((self.places.gaps > 0) == (other.places.gaps > 0)).all())
 
     def slope(self, effort: Vector) -> float:
-        """The steepest fall of the length of residual and effort along a channel, as far as the limits allow [m/m].
+        """Steepest fall of the length of residual and effort along a channel, as far as the limits allow [m/m].
 
         Multipliers of the limits that hold are those that leave least of the gradient; 0 at an optimum (Karush, Kuhn
         and Tucker).
@@ -207,7 +207,7 @@ def least_squares(
     limits: Float[np.ndarray, "limits size"],
     room: Float[np.ndarray, " limits"],
 ) -> Float[np.ndarray, " size"] | None:
-    """The x that minimises |matrix x - right| with limits x <= room; None if nothing is within the limits.
+    """Minimise |matrix x - right| with limits x <= room; None if no x is within the limits.
 
     By a QR factorisation it becomes the problem of the least distance, and that one of nonnegative least squares
     (Lawson and Hanson 1974, chapter 23). `matrix` must have full column rank.
@@ -226,7 +226,7 @@ def least_squares(
 def _least_distance(
     rows: Float[np.ndarray, "limits size"], room: Float[np.ndarray, " limits"]
 ) -> Float[np.ndarray, " size"] | None:
-    """The shortest z with rows z <= room."""
+    """Shortest z with rows z <= room."""
     lengths = np.linalg.norm(rows, axis=1)
     some = lengths > 0
     if (room[~some] < 0).any():

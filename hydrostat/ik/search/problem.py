@@ -83,7 +83,7 @@ class InverseState:
 
     @property
     def error(self) -> float:
-        """The largest error that is left of a goal [m]; infinite without goals."""
+        """Largest remaining error of a goal [m]; infinite without goals."""
         return max(self.errors.values(), default=np.inf)
 
 

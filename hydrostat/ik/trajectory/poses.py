@@ -28,7 +28,7 @@ def follow(
     jump: float,
     tell: Tell | None = None,
 ) -> tuple[tuple[Equilibrium, ...], tuple[BranchJump, ...]]:
-    """The equilibria at contractions [m] in time [s], each continued from the one before, and where they snap (E20).
+    """Equilibria at contractions [m] in time [s], each continued from the one before, and where they snap (E20).
 
     A step is taken when the nodes come to rest where the predictor x + dx/da da has put them, within `jump` [m]; else
     it is halved. On a branch the distance falls with the square of the step, where a cable becomes taut with the step

@@ -48,7 +48,7 @@ class KeyPose:
         return float(np.sqrt(np.mean(np.square(list(self.errors.values()))))) if self.errors else 0.0
 
     def lines(self) -> list[str]:
-        """A plain report."""
+        """Plain report."""
         head = f"{self.time:.2f} s {self.name}: "
         head += f"marker error {1e3 * self.rms_error:.2f} mm rms" if self.errors else "as given"
         if self.pose.markers:
@@ -121,7 +121,7 @@ class Trajectory:
         return np.array([pose.tensions for pose in self.poses])
 
     def profile(self) -> ContractionProfile:
-        """The contractions for `Simulation.play` and for motors: along lines from sample to sample."""
+        """Contractions for `Simulation.play` and for motors, linear from sample to sample."""
         return ContractionProfile(times=self.times, values=self.contractions)
 
     def lines(self) -> list[str]:
@@ -178,7 +178,7 @@ def path_deviation(markers: Mapping[str, Float[np.ndarray, "samples dim"]]) -> f
 
 
 def legs_of(indices: list[int]) -> list[slice]:
-    """The samples of each leg, both ends included."""
+    """Samples of each leg, both ends included."""
     return [slice(first, last + 1) for first, last in pairwise(indices)]
 
 

@@ -63,7 +63,7 @@ def _flat_angles(mesh: Mesh) -> Iterator[str]:
 
 
 def _crossing(mesh: Mesh) -> Iterator[str]:
-    """A body that passes through itself, or touches itself, before it moves."""
+    """Body that passes through itself, or touches itself, before it moves."""
     found = find_crossings(mesh, mesh.nodes)
     if len(found):
         where = place(found.places[0])

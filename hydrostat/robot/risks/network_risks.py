@@ -112,7 +112,7 @@ def _points_in_body(robot: Robot, cable: Cable) -> Points:
 
 
 def _sampled(points: Points) -> Float[np.ndarray, "places dim"]:
-    """The points and places between them, at most `_STEP` apart, with `_MOST_STEPS` on a segment at most."""
+    """Points and places between them, at most `_STEP` apart, with `_MOST_STEPS` on a segment at most."""
     places = [points[:1]]
     for start, end in pairwise(points):
         steps = min(int(np.ceil(np.linalg.norm(end - start) / _STEP)), _MOST_STEPS)

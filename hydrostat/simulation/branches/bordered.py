@@ -24,7 +24,7 @@ class Tangent:
 
 @dataclass(frozen=True, eq=False)
 class PathPoint:
-    """An equilibrium on a branch.
+    """Equilibrium on a branch.
 
     Attributes:
         nodes: node positions [m].
@@ -102,7 +102,7 @@ class Bordered:
         iterations: int = 20,
         before: Tangent | None = None,
     ) -> PathPoint | None:
-        """The equilibrium in the plane through a place, across a direction; None if it is not within reach.
+        """Equilibrium in the plane through a place, across a direction; None if it is not within reach.
 
         Args:
             nodes: positions to begin at [m].
@@ -145,7 +145,7 @@ class Bordered:
     def _place(
         self, nodes: Nodes, share: float, stiffness: Stiffness, tangent: Tangent, distance: float, iterations: int
     ) -> PathPoint | None:
-        """An equilibrium with its forces; None if there is none."""
+        """Equilibrium with its forces; None if there is none."""
         controls = self.controls(share)
         allowed = self._simulation.solver.force_tolerance(nodes, controls)
         residual = float(np.abs(self._simulation.forces(nodes, controls)).max())

@@ -130,7 +130,7 @@ class _Follower:
         return self._branch(reason)
 
     def _begin(self, nodes: Nodes) -> PathPoint:
-        """The start as a place on the branch, in the direction of growing share."""
+        """Start as a place on the branch, in the direction of growing share."""
         still = Tangent(np.zeros(nodes.size), 1.0)
         place = self.system.correct(nodes, 0.0, still)
         if place is None or not place.distance < _SAME:
@@ -138,7 +138,7 @@ class _Follower:
         return place if place.tangent.rate > 0 else place.reverse_direction()
 
     def _step(self, place: PathPoint, step: float) -> PathPoint | None:
-        """The equilibrium one step on; None if it is not where it was predicted."""
+        """Equilibrium one step on; None if it is not where it was predicted."""
         trial = self._raw_step(place, step)
         if trial is None or self.system.dot(place.tangent, trial.tangent) < self.options.turn:
             return None
@@ -187,7 +187,7 @@ class _Follower:
         return BranchReason.ARRIVED if share == 1.0 else BranchReason.BACK
 
     def _find_critical(self, place: PathPoint, trial: PathPoint, step: float) -> tuple[CriticalKind, PathPoint] | None:
-        """A fold where the share turns back, else a bifurcation where stability changes."""
+        """Fold where the share turns back, else a bifurcation where stability changes."""
         if place.tangent.rate * trial.tangent.rate < 0:
             return CriticalKind.FOLD, self._find_fold(place, trial, step)
         if place.stiffness.definite != trial.stiffness.definite:
@@ -239,7 +239,7 @@ class _Follower:
 
 
 def _solved(simulation: Simulation, controls: Callable[[float], Vector], place: PathPoint) -> Equilibrium:
-    """A place on a branch as a pose like any other."""
+    """Place on a branch as a pose like any other."""
     contractions = controls(place.share)
     positions = simulation.marker_anchors.positions(place.nodes)
     energy = simulation.assembly.value(place.nodes, contractions)

@@ -75,7 +75,7 @@ class Multistability:
         return max(self.spread.items(), key=lambda item: item[1])
 
     def lines(self) -> list[str]:
-        """A plain report."""
+        """Report as lines of text."""
         if not self.poses:
             lines = ["no pose found"]
         elif self.unique:

@@ -84,7 +84,7 @@ def _in_turn(kinds: list[Iterator[Approach]]) -> Iterator[Approach]:
 
 
 def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
-    """The winches that move, one after the other: in all orders if they are few, else in random ones."""
+    """Winches that move, one after the other: in all orders if they are few, else in random ones."""
     moved = [int(winch) for winch in np.flatnonzero(goal)]
     if len(moved) < 2:
         return

@@ -98,7 +98,7 @@ class LoadingPath:
         )
 
     def _advance(self, state: _PathState, goal: Vector, halvings: int = 0) -> _PathState:
-        """The next equilibrium: by half increments where it is not found, and by sliding where these fail too."""
+        """Next equilibrium: by half increments where it is not found, and by sliding where these fail too."""
         found = self._solve(state, goal)
         if found.arrived or _late(found) or (goal == state.contractions).all():
             return found
@@ -154,7 +154,7 @@ def _stiffness(state: _PathState) -> Stiffness | None:
 
 
 def _counted(state: _PathState, iterations: int) -> _PathState:
-    """The state with another count of iterations."""
+    """State with another count of iterations."""
     assert state.result is not None
     return replace(state, result=replace(state.result, iterations=iterations))
 

@@ -156,7 +156,7 @@ class Dynamics:
     def play(
         self, profile: ContractionProfile, seconds: float, dt: float, start: Motion, options: StepOptions
     ) -> Iterator[Motion]:
-        """The motion under contractions in time: its start, then each step as it is found.
+        """Yield the motion under a contraction profile: its start, then each step.
 
         Raises:
             InputError: a duration or a time step that is not above 0.
