@@ -46,7 +46,7 @@ def crosses(robot: Robot, nodes: Nodes) -> bool:
 def gaps(energy: ContactEnergy, nodes: Nodes) -> np.ndarray:
     """Gap of each pair that is felt, as a share of the distance at which it is."""
     near = energy.with_active_terms(nodes)
-    squared, begins = energy.skin.squared(nodes, near.pairs), energy.skin.begins(near.pairs)
+    squared, begins = energy.skin.compute_squared_distances(nodes, near.pairs), energy.skin.begins(near.pairs)
     return np.sqrt(squared / begins)[squared < begins]
 
 

@@ -1,4 +1,4 @@
-"""`parse_choice`, `make_member`: texts that name one thing of a closed set, such as how a body's volume is measured."""
+"""`parse_choice`, `make_member`: texts that name a member of an enum, such as the measure of a body's volume."""
 
 from enum import StrEnum
 from typing import TypeVar
@@ -27,13 +27,13 @@ def parse_choice(kind: type[_Member], given: object, *, what: str) -> _Member:
 
 
 def make_member(record: object, field: str, kind: type[StrEnum], *, what: str = "") -> None:
-    """Put in place of the text in a field of a frozen record the member that it names.
+    """Replace the text in a field of a frozen record by the enum member that it names.
 
     Args:
         record: a frozen dataclass in its `__post_init__`.
         field: name of the field.
         kind: the closed set.
-        what: that is wrong, if the name of the field does not say it.
+        what: name of the value in errors, if the name of the field does not say it.
 
     Raises:
         InputError: the text names none.

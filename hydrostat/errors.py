@@ -2,23 +2,23 @@
 
 
 class HydrostatError(Exception):
-    """Base of all errors of hydrostat. Its text is one line: what, where, what is allowed, what to do."""
+    """Base of all errors of hydrostat. Its text is one line: place, problem, allowed values, fix."""
 
 
 class InputError(HydrostatError):
-    """The input is wrong: a file, a key, a value or an argument."""
+    """Wrong input: a file, a key, a value or an argument."""
 
 
 class OutlineError(InputError):
-    """An outline cannot be a body: it is open, crosses itself, is empty or too thin."""
+    """Outline that cannot be a body: it is open, crosses itself, is empty or too thin."""
 
 
 class SurfaceError(InputError):
-    """A surface cannot be a body: it encloses nothing, is too thin for its elements, or is no surface at all."""
+    """Surface that cannot be a body: it encloses nothing, is too thin for its elements, or is no surface at all."""
 
 
 class NotConvergedError(HydrostatError):
-    """A solver stopped before it reached its tolerance.
+    """Solver that stopped before it reached its tolerance.
 
     Attributes:
         result: result of the solver, with its stop reason and the best point found.

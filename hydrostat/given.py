@@ -7,11 +7,11 @@ from hydrostat.errors import InputError
 
 
 def check_type(given: object, kind: type | tuple[type, ...], wanted: str) -> None:
-    """Refuse a thing of another kind.
+    """Raise an error unless a value has the required type.
 
     Args:
-        given: what was given.
-        kind: that it must be of.
+        given: value to check.
+        kind: required type.
         wanted: the sentence before ", not ...", such as "a kit is made of a Robot".
     """
     if not isinstance(given, kind):
@@ -19,7 +19,7 @@ def check_type(given: object, kind: type | tuple[type, ...], wanted: str) -> Non
 
 
 def path_of(given: object, wanted: str) -> Path:
-    """A path that was given as a text or a path (InputError: as for `check_type`)."""
+    """Convert a text or a path to a path (InputError: as for `check_type`)."""
     if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
         raise InputError(f"{wanted}, not {given!r:.60}")
     return Path(given)

@@ -1,4 +1,4 @@
-"""The compiled core (folder native/): `native`, its functions on plain arrays; and how many threads it may use.
+"""The compiled core (folder native/): `native`, its functions on plain arrays, and its number of threads.
 
 `HYDROSTAT_LEVEL` (base, v3 or v4) picks a lower set of vector instructions than the processor has.
 """
@@ -14,7 +14,7 @@ INTERFACE = 6
 
 
 def _load() -> Any:
-    """The compiled core (InputError: it is missing, of another version, or HYDROSTAT_LEVEL is wrong)."""
+    """Load the compiled core (InputError: it is missing, of another version, or HYDROSTAT_LEVEL is wrong)."""
     try:
         core = import_module("hydrostat._native")
     except ModuleNotFoundError:

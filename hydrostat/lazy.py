@@ -28,7 +28,7 @@ def use_later(module: str, name: str) -> Callable[..., Any]:
 
 
 class _LazyPackage(ModuleType):
-    """A package whose public names are found when they are asked for."""
+    """Package that loads its public names on first access."""
 
     __all__: list[str]
 

@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 
 @dataclass(frozen=True)
 class Dimension:
-    """A physical dimension that a user may write as text.
+    """Physical dimension that a user may write as text.
 
     Attributes:
         name: name used in error messages.
@@ -98,7 +98,7 @@ def scale_up(number: Decimal, unit: str, dimension: Dimension) -> float:
 
 
 def scale_down(value: float, unit: str, dimension: Dimension) -> Decimal:
-    """The shortest decimal number that `scale_up` reads back from `unit` to the very same value."""
+    """Shortest decimal number that `scale_up` reads back from `unit` to the very same value."""
     factor = unit_factor(unit, dimension)
     exact = Decimal(float(value)) / factor
     for digits in range(15, 19):
@@ -109,7 +109,7 @@ def scale_down(value: float, unit: str, dimension: Dimension) -> Decimal:
 
 
 def plain(number: Decimal) -> str:
-    """A decimal number without trailing zeros, zero without a sign, with an exponent only if it would be very long."""
+    """Decimal number without trailing zeros, zero without a sign, with an exponent only if it would be very long."""
     if not number:
         return "0"
     if not -12 <= number.adjusted() <= 24:
@@ -119,7 +119,7 @@ def plain(number: Decimal) -> str:
 
 
 def quote(value: object) -> str:
-    """A user's value as an error shows it: on one line, and cut when long."""
+    """User's value as an error shows it: on one line, and cut when long."""
     if isinstance(value, list):
         return "a list"
     if isinstance(value, dict):
@@ -141,7 +141,7 @@ def printable(text: str) -> str:
 
 @cache
 def unit_factor(unit: str, dimension: Dimension) -> Decimal:
-    """Find how many SI units one `unit` is.
+    """Return the number of SI units in one `unit`.
 
     Raises:
         InputError: the unit is unknown or measures something else.
@@ -179,6 +179,6 @@ def _si(number: Decimal, factor: Decimal) -> float:
 
 
 def plural(number: int, noun: str) -> str:
-    """A number with its noun: "1 winch", "2 winches"."""
+    """Number with its noun: "1 winch", "2 winches"."""
     plural = noun + ("es" if noun.endswith("ch") else "s")
     return f"{number} {noun if number == 1 else plural}"

@@ -1,10 +1,12 @@
 """What keeps the house legible: sizes, names and first words. Oracle: the syntax tree of each file."""
 
 import ast
+import inspect
 import re
 from collections import Counter
 from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -39,6 +41,14 @@ MANY_PARAMETERS = {
     "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "what `solve_ik` takes, and what is of time",
 }
 """What may be larger, with the reason."""
+
+PLAIN_ROOMS = {"", "drawing", "geometry", "grasp", "ik", "mechanics", "robot", "shapes", "simulation"}
+"""Rooms in which no docstring begins with a question word or a fragment; "" for the modules outside rooms."""
+HEADLESS = re.compile(r"(What|How|Whether|Where|Which|Of|That|As)\b")
+PARTICIPLE = re.compile(
+    r"(?!(feed|need|seed|speed)$)[a-z]+ed|found|held|made|told|seen|felt|given|taken|begun|kept|chosen"
+)
+FRAGMENT = re.compile(r"(what|how|whether|where|which|whose|of|that|as)\b")
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -129,6 +139,58 @@ def fragments(texts: dict[str, str]) -> list[str]:
     return found
 
 
+def docstrings(tree: ast.Module) -> Iterator[str]:
+    """Docstrings of a module, its classes and functions, also private ones, and the texts below its fields."""
+    for node in ast.walk(tree):
+        if isinstance(node, Function | ast.ClassDef | ast.Module):
+            yield ast.get_docstring(node) or ""
+        body = getattr(node, "body", None)
+        for before, after in pairwise(body) if isinstance(body, list) else ():
+            if isinstance(before, ast.Assign | ast.AnnAssign) and isinstance(after, ast.Expr):
+                text = after.value.value if isinstance(after.value, ast.Constant) else ""
+                yield inspect.cleandoc(text) if isinstance(text, str) else ""
+
+
+def half_entries(docstring: str) -> list[str]:
+    """Entries of the lists of attributes and arguments that begin with a question word or a fragment."""
+    found, section = [], ""
+    for line in docstring.splitlines():
+        if heading := re.fullmatch(r"(\w+):", line):
+            section = heading[1]
+        entry = re.fullmatch(r"    (\w+): (.+)", line)
+        if section in {"Attributes", "Args"} and entry and FRAGMENT.match(entry[2]):
+            found.append(line.strip())
+    return found
+
+
+def headless(texts: dict[str, str], rooms: set[str]) -> list[str]:
+    """First lines and entries of docstrings of some rooms that begin with a question word or a fragment."""
+    found = []
+    for path, text in texts.items():
+        folders = path.split("/")[1:-1]
+        if (folders[0] if folders else "") not in rooms:
+            continue
+        for docstring in docstrings(syntax(text)):
+            first = docstring.split("\n")[0]
+            found += [f"{path}: {line}" for line in [first] * bool(HEADLESS.match(first)) + half_entries(docstring)]
+    return found
+
+
+def participles(texts: dict[str, str], rooms: set[str]) -> list[str]:
+    """Public functions and methods of some rooms named by one bare participle; properties may be states."""
+    found = []
+    for path, text in texts.items():
+        folders = path.split("/")[1:-1]
+        if (folders[0] if folders else "") not in rooms:
+            continue
+        classes = [node for node in syntax(text).body if isinstance(node, ast.ClassDef) and node.name[0] != "_"]
+        for function in [node for owner in [syntax(text), *classes] for node in owner.body]:
+            if isinstance(function, Function) and PARTICIPLE.fullmatch(function.name):
+                state = any("property" in ast.unparse(decorator) for decorator in function.decorator_list)
+                found += [f"{path}: {function.name}"] * (not state)
+    return found
+
+
 def asks_for_energies(texts: dict[str, str], energies: set[str]) -> list[str]:
     """Places outside mechanics that ask what kind of energy one is."""
     found = []
@@ -181,6 +243,16 @@ def test_first_lines_stand_alone(texts: dict[str, str]) -> None:
     assert fragments(texts) == []
 
 
+def test_docstrings_begin_with_a_verb_or_a_noun(texts: dict[str, str]) -> None:
+    """In the rooms that are done; the others follow."""
+    assert headless(texts, PLAIN_ROOMS) == []
+
+
+def test_functions_have_a_verb(texts: dict[str, str]) -> None:
+    """In the rooms that are done; the others follow."""
+    assert participles(texts, PLAIN_ROOMS) == []
+
+
 def test_only_mechanics_asks_what_an_energy_is(texts: dict[str, str]) -> None:
     known = energies(texts)
     assert len(known) > 8
@@ -197,6 +269,14 @@ def test_the_checks_can_fail() -> None:
     assert twice({"p": "class A: pass\nclass B: pass", "q": "class A: pass"}) == ["A"]
     told = '"""As told."""\ndef f(): "That is it."\ndef _g(): "Of g."\ndef h(): "Assembly of h."\n'
     assert fragments({"p": told}) == ["p: As told.", "p: That is it."]
+    asking = 'class A:\n    """Ok.\n\n    Attributes:\n        x: of y.\n        z: a thing of y.\n    """\n'
+    asking += '\n    def _f(): "How."\n\n\nX = 1\n"""Where."""\nY = 1\n"""Whereabouts."""\n'
+    assert headless({"h/a/b.py": asking}, {""}) == []
+    assert sorted(headless({"h/a/b.py": asking}, {"a"})) == ["h/a/b.py: How.", "h/a/b.py: Where.", "h/a/b.py: x: of y."]
+    assert headless({"h/b.py": '"""What."""'}, {""}) == ["h/b.py: What."]
+    named = "def moved():\n    def turned(): ...\ndef move(): ...\nclass _B:\n    def held(self): ...\n"
+    named += "class A:\n    @property\n    def closed(self): ...\n    def found(self): ...\n    def seed(self): ...\n"
+    assert participles({"h/b.py": named, "h/a/b.py": named}, {"a"}) == ["h/a/b.py: moved", "h/a/b.py: found"]
     made = "class Energy: ...\nclass Spring(Energy): ...\nclass Stiff(Spring): ...\nclass Other: ..."
     assert energies({"p": made}) == {"Energy", "Spring", "Stiff"}
     asking = "isinstance(a, Other)\nisinstance(a, Stiff | Other)\n"

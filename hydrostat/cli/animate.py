@@ -98,7 +98,7 @@ def _stops(simulation: "Simulation", names: list[str], tell: Callable[[str, int,
         reached.append(solve_ik(simulation, simulation.robot.pose(pose)))
         tell("solving poses", index + 1, len(names))
     for found in reached:
-        print(f"{found.wanted.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.status}")
+        print(f"{found.pose_target.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.status}")
     return pose_stops(reached)
 
 

@@ -30,7 +30,7 @@ def check(
 
     Example: hydrostat check examples/starfish --thorough
     """
-    from hydrostat.robot import face_words
+    from hydrostat.robot import describe_cable_side
 
     found = read_robot(robot)
     mesh = found.body.mesh
@@ -41,7 +41,7 @@ def check(
     parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}
     counts = ", ".join(plural(len(entries), noun) for noun, entries in parts.items())
     print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
-    if words := face_words(found):
+    if words := describe_cable_side(found):
         print(f"cables: {words}")
     if found.cables:
         from hydrostat.design import build_effort
@@ -122,9 +122,9 @@ _LARGE = 5000  # nodes of a body from which on even the fewest poses take long
 def _print_out_of_plane(robot: "Robot") -> None:
     """Print the out-of-plane displacement of a stuffed flat robot with its cables as routed, if quickly computed."""
     from hydrostat.errors import NotConvergedError
-    from hydrostat.simulation import filled_motion, quickly_filled
+    from hydrostat.simulation import filled_motion, is_filled_motion_fast
 
-    if not quickly_filled(robot, len(robot.poses)):
+    if not is_filled_motion_fast(robot, len(robot.poses)):
         if robot.body.outline is not None and robot.poses:
             print("3D effect when stuffed: not computed (slow). Run hydrostat check --filled")
         return

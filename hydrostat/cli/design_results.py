@@ -80,7 +80,7 @@ def print_poses(network: "Network", seconds: float) -> None:
     from hydrostat.design import build_effort, rest_error
     from hydrostat.geometry import find_crossings
     from hydrostat.ik import unconstrained_motion
-    from hydrostat.robot import face_words
+    from hydrostat.robot import describe_cable_side
     from hydrostat.units import plural
 
     robot = network.robot
@@ -93,16 +93,16 @@ def print_poses(network: "Network", seconds: float) -> None:
     Console(markup=False).print(table)
     for reached in network.reached:
         if words := str(find_crossings(robot.body.mesh, reached.pose.nodes)):
-            print(f"{reached.wanted.name}: {words}")
+            print(f"{reached.pose_target.name}: {words}")
         if words := unconstrained_motion(reached):
-            print(f"{reached.wanted.name}: {words}")
+            print(f"{reached.pose_target.name}: {words}")
     print(
         f"model error {1e3 * network.rms_error:.2f} mm rms (at rest {1e3 * rest_error(network):.2f} mm), "
         f"expected as-built error {1e3 * network.built:.2f} mm "
         f"({plural(network.tried, 'candidate')}, {seconds:.1f} s)"
     )
     print(f"build: {build_effort(robot, network.reached)}")
-    if words := face_words(robot):
+    if words := describe_cable_side(robot):
         print(f"cables: {words}")
     _print_filled(network)
     _print_findings(network)
@@ -136,7 +136,7 @@ def _print_filled(network: "Network") -> None:
     for reached in filled.reached:
         taken = zip(network.robot.winches, reached.pose.contractions, strict=True)
         own = ", ".join(f"{winch.name} {1e3 * value:z.1f} mm" for winch, value in taken)
-        print(f"  {reached.wanted.name}: {1e3 * reached.rms_error:.2f} mm, {own}")
+        print(f"  {reached.pose_target.name}: {1e3 * reached.rms_error:.2f} mm, {own}")
 
 
 def print_front(network: "Network") -> None:
@@ -161,7 +161,7 @@ def _pose_row(robot: "Robot", reached: "IKResult") -> tuple[str, ...]:
     worst = max(reached.errors, key=lambda name: reached.errors[name])
     taken = zip(robot.winches, reached.pose.contractions, strict=True)
     return (
-        reached.wanted.name,
+        reached.pose_target.name,
         f"{1e3 * reached.rms_error:.2f} mm",
         f"{worst} {1e3 * reached.errors[worst]:.1f} mm",
         ", ".join(f"{winch.name} {1e3 * value:z.1f} mm" for winch, value in taken),

@@ -76,12 +76,12 @@ def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
     A new folder is renamed as a whole. In one that exists each file takes the place of the one of its name, and others
     stay, but for folders of earlier results that match the pattern `stale`.
     """
-    from hydrostat.robot import unfinished
+    from hydrostat.robot import temporary_path
 
     out = out.resolve()
     beside = out if out.exists() else out.parent
     beside.mkdir(parents=True, exist_ok=True)
-    part = unfinished(beside / out.name)
+    part = temporary_path(beside / out.name)
     shutil.rmtree(part, ignore_errors=True)
     part.mkdir()
     try:

@@ -133,13 +133,13 @@ def _length(key: str, text: str | None) -> float | None:
 @contextmanager
 def _made_whole(name: Path) -> Iterator[Path]:
     """A folder to fill beside where it will stand; it gets its name when all is well, else it is gone."""
-    from hydrostat.robot import clear_unfinished, unfinished
+    from hydrostat.robot import clear_unfinished, temporary_path
 
     made = [parent for parent in name.resolve().parents if not parent.exists()]
     try:
         name.resolve().parent.mkdir(parents=True, exist_ok=True)
         clear_unfinished(name.resolve().parent)
-        folder = unfinished(name.resolve())
+        folder = temporary_path(name.resolve())
         rmtree(folder, ignore_errors=True)
         folder.mkdir()
     except OSError as error:

@@ -92,7 +92,7 @@ def expected_error(simulation: Simulation, reached: Sequence[IKResult], uncertai
     names = [marker.name for marker in simulation.robot.markers]
     squares = []
     for one in reached:
-        targets = one.wanted.targets
+        targets = one.pose_target.targets
         markers = [names.index(name) for name in targets]
         try:
             slopes = cable_sensitivities(simulation, one.pose, markers)

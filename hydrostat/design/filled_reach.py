@@ -52,7 +52,7 @@ def filled_reach(robot: Robot, reached: Sequence[IKResult], *, tension: float, f
     limits, once = Limits(tension=tension), IKOptions(restarts=0)
     found, squares = [], []
     for flat in reached:
-        pose = raised(flat.wanted)
+        pose = raised(flat.pose_target)
         start = simulation.solve(flat.pose.contractions)
         squares += [float(np.sum((start.markers[name] - place) ** 2)) for name, place in pose.targets.items()]
         found.append(solve_ik(simulation, pose, limits=limits, options=once).without_factors())

@@ -22,7 +22,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error_at_rest": rest_error(network),
         "craft": build_effort(robot, network.reached).as_values,
         "tension_limit": network.constraints.tension_limit,
-        "poses": {pose.wanted.name: _reached(robot, pose) for pose in network.reached},
+        "poses": {pose.pose_target.name: _reached(robot, pose) for pose in network.reached},
         "winches": _winches(robot),
         "cables": _cables(robot),
         **_trace(network.trace),
@@ -42,7 +42,7 @@ def rest_error(network: Network) -> float:
     """Root of the mean squared marker error over all poses if nothing moved [m]."""
     places = {marker.name: np.array(marker.at) for marker in network.robot.markers}
     squares = [
-        np.mean([np.sum((places[name] - goal) ** 2) for name, goal in pose.wanted.targets.items()])
+        np.mean([np.sum((places[name] - goal) ** 2) for name, goal in pose.pose_target.targets.items()])
         for pose in network.reached
     ]
     return float(np.sqrt(np.mean(squares)))
@@ -102,7 +102,7 @@ def _filled(network: Network) -> dict[str, Any]:
     if filled is None:
         return {}
     poses = {
-        pose.wanted.name: {
+        pose.pose_target.name: {
             "rms_error": pose.rms_error,
             "contractions": dict(
                 zip((winch.name for winch in network.robot.winches), map(float, pose.pose.contractions), strict=True)
@@ -122,7 +122,7 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "rms_error": other.rms_error,
         "rms_error_as_built": other.built,
         "craft": build_effort(other.robot, other.reached).as_values,
-        "poses": {pose.wanted.name: pose.rms_error for pose in other.reached},
+        "poses": {pose.pose_target.name: pose.rms_error for pose in other.reached},
         "robot": robot_hash(other.robot),
     }
 

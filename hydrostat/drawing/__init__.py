@@ -16,7 +16,7 @@ if TYPE_CHECKING:
         CanvasFrame,
         Spot,
         balloon_radius,
-        snug,
+        fit_height,
         text_size,
     )
     from hydrostat.drawing.creases import smooth_normals
@@ -87,6 +87,7 @@ __all__ = [
     "along_an_axis",
     "balloon_radius",
     "channels",
+    "fit_height",
     "level_rings",
     "line_drawing",
     "mix",
@@ -97,7 +98,6 @@ __all__ = [
     "shape",
     "silhouette",
     "smooth_normals",
-    "snug",
     "tag",
     "text_size",
     "three_quarter",

@@ -17,14 +17,14 @@ FROM_ABOVE = 0.97  # worth of a view from above beside one from the side that sh
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """An eye far away; what is up stands upright in every picture, unless seen from above."""
+    """Orthographic camera; upward stays upright in every picture, unless seen from above."""
 
     axes: Float[np.ndarray, "3 3"]  # unit vectors to the right, up and towards the eye, (3, 3), one row each
     up: Float[np.ndarray, " 3"] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))  # upward direction
 
     @classmethod
     def towards(cls, eye: Float[np.ndarray, " 3"], *, up: Float[np.ndarray, " 3"] | None = None) -> Self:
-        """A camera in the direction `eye` from the body; `up` is up, or z, with x to the right seen from there."""
+        """Camera in the direction `eye` from the body; `up` is up, or z, with x to the right seen from there."""
         turn = upright(np.array([0.0, 0.0, 1.0]) if up is None else up)
         near = turn @ eye / np.linalg.norm(eye)
         right = np.array([-near[1], near[0], 0.0])
@@ -33,7 +33,7 @@ class Camera:
 
     @classmethod
     def at(cls, azimuth: float, elevation: float, *, up: Float[np.ndarray, " 3"] | None = None) -> Self:
-        """A camera in a compass direction, x towards y, over the horizon [degrees]; z, or `up`, is upright."""
+        """Camera in a compass direction, x towards y, over the horizon [degrees]; z, or `up`, is upright."""
         turn, rise = np.radians([azimuth, elevation])
         near = np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
         right = np.array([-np.sin(turn), np.cos(turn), 0.0])
@@ -47,12 +47,12 @@ class Camera:
 
     @classmethod
     def isometric(cls) -> Self:
-        """The camera that sees all three axes equally short: a cube is a regular hexagon."""
+        """Camera that sees all three axes equally short: a cube is a regular hexagon."""
         return cls.at(-45.0, float(np.degrees(np.arctan(np.sqrt(0.5)))))
 
     @property
     def sky(self) -> Float[np.ndarray, " 3"]:
-        """The way up as the camera sees it."""
+        """Upward direction as the camera sees it."""
         return self.axes @ self.up
 
     def see(self, points: Spots) -> Spots:
@@ -61,7 +61,7 @@ class Camera:
 
 
 def upright(up: Float[np.ndarray, " 3"]) -> Float[np.ndarray, "3 3"]:
-    """The shortest turn that makes `up` point along z, as a matrix; about x where it is straight down."""
+    """Shortest turn that makes `up` point along z, as a matrix; about x where it is straight down."""
     way = up / np.linalg.norm(up)
     if way[2] < -1 + 1e-9:
         return np.diag([1.0, -1.0, -1.0])
@@ -73,7 +73,7 @@ def upright(up: Float[np.ndarray, " 3"]) -> Float[np.ndarray, "3 3"]:
 def three_quarter(
     shape: Spots, shown: Spots, up: Float[np.ndarray, " 3"] | None = None, asked: Spots | None = None
 ) -> Camera:
-    """The camera that shows the length of a body, some of its depth, and that side of it where most is to be seen.
+    """Camera that shows the length of a body, some of its depth, and the side with the most visible detail.
 
     The shape is points all over the body at rest [m]; winches, cable points and markers are shown [m], if any; `up` is
     z if left out. Points that are asked to move so far [m] rather come towards the eye than go away from it.
@@ -95,7 +95,7 @@ def three_quarter(
 
 
 def along_an_axis(shape: Spots, shown: Spots, ways: Spots, up: Float[np.ndarray, " 3"] | None = None) -> Camera:
-    """The camera along x, y or z that shows most of the body and of where its points go.
+    """Camera along x, y or z that shows most of the body and of the paths of its points.
 
     The shape is points all over the body [m]; winches, cable points and markers that are shown [m], if any, decide from
     which side; ways are how points of the body move [m]. Of x, y and z, whichever is nearest to `up`, z if left out,
@@ -119,7 +119,7 @@ def along_an_axis(shape: Spots, shown: Spots, ways: Spots, up: Float[np.ndarray,
 
 
 def _nearest_axis(way: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " 3"]:
-    """The one of x, y, z and their opposites that is nearest to a way; z if several are."""
+    """Axis among +-x, +-y, +-z that is nearest to a direction; z if several are."""
     axis = 2 - int(np.argmax(np.round(np.abs(way[::-1]) / np.linalg.norm(way), 9)))
     return np.sign(way[axis]) * np.eye(3)[axis]
 

@@ -28,7 +28,7 @@ class CanvasFrame:
 
     @classmethod
     def fit(cls, box: Float[np.ndarray, "2 2"], room: Box) -> Self:
-        """Fit a thing into a room, as large as may be, in its middle; `box`: lowest and highest place of the thing."""
+        """Fit an object into a room, centered and as large as possible; `box`: its lowest and highest coordinates."""
         left, top, right, bottom = room
         wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
         scale = min((right - left) / wide, (bottom - top) / high)
@@ -36,17 +36,17 @@ class CanvasFrame:
         return cls(scale, (left + right) / 2 - scale * middle_x, (top + bottom) / 2 + scale * middle_y)
 
     def on(self, place: Sequence[float] | np.ndarray) -> Spot:
-        """Place on the canvas [mm] of a place of the thing."""
+        """Position on the canvas [mm] of a point of the object."""
         return self.left + self.scale * float(place[0]), self.base - self.scale * float(place[1])
 
     def way(self, places: Iterable[Sequence[float] | np.ndarray]) -> list[Spot]:
-        """Places on the canvas [mm] of places of the thing."""
+        """Positions on the canvas [mm] of points of the object."""
         return [self.on(place) for place in places]
 
 
 @dataclass
 class Canvas:
-    """A picture that is drawn from back to front."""
+    """Picture that is drawn from back to front."""
 
     width: float  # [mm]
     height: float  # [mm]
@@ -54,7 +54,7 @@ class Canvas:
 
     @property
     def svg(self) -> str:
-        """The picture so far."""
+        """Picture so far."""
         return tag(
             "svg",
             self._parts,
@@ -91,12 +91,12 @@ class Canvas:
             self._parts.append(shape("path", d=drawn, fill=_ink(grey), fill_rule="evenodd"))
 
     def box(self, box: Box, *, grey: float) -> None:
-        """A filled rectangle."""
+        """Draw a filled rectangle."""
         left, top, right, bottom = box
         self.fill([[(left, top), (right, top), (right, bottom), (left, bottom)]], grey=grey)
 
     def disc(self, at: Spot, radius: float, *, grey: float = 1.0, edge: float = THIN) -> None:
-        """A round spot with a black edge of some width [mm]; 0 for none."""
+        """Draw a disc with a black edge of some width [mm]; 0 for none."""
         x, y, r = (number(value, 2) for value in (*at, radius))
         stroke = {"stroke": "black", "stroke_width": f"{edge:g}"} if edge else {}
         self._parts.append(shape("circle", cx=x, cy=y, r=r, fill=_ink(grey), **stroke))
@@ -129,7 +129,7 @@ class Canvas:
         self.text(at, words, size=size, bold=True, grey=1.0 if dark else 0.0)
 
     def arrow(self, start: Spot, end: Spot, *, width: float = THICK, head: float = 2.2) -> None:
-        """A straight arrow with a filled head."""
+        """Draw a straight arrow with a filled head."""
         way = np.subtract(end, start)
         way = way / max(float(np.hypot(*way)), 1e-9)
         aside, foot = np.array([-way[1], way[0]]), np.array(end) - head * way
@@ -138,21 +138,21 @@ class Canvas:
         self.fill([[_spot(corner) for corner in corners]], grey=0.0)
 
     def drawing(self, drawing: LineDrawing, frame: CanvasFrame) -> None:
-        """The lines and tones of solids."""
+        """Draw the lines and tones of solids."""
         for grey, rings in drawing.tones:
             self.fill([frame.way(ring) for ring in rings], grey=grey)
         self.line([frame.way(way) for way in drawing.lines], width=THIN)
         self.line([frame.way(way) for way in drawing.outlines], width=MIDDLE)
 
 
-def snug(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
+def fit_height(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
     """Height of a drawing scaled to the largest size that fits a width and a height [mm]."""
     wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
     return min(height, width * high / wide)
 
 
 def text_size(words: str, size: float) -> tuple[float, float]:
-    """About how wide and high words of a size [pt] are [mm]."""
+    """Approximate width and height [mm] of a text of a size [pt]."""
     return 0.5 * size * POINT * (len(words) + words.count("W")), 0.75 * size * POINT
 
 

@@ -87,7 +87,7 @@ def smooth_normals(
 def _crosses(
     corners: Float[np.ndarray, "triangles 3 3"],
 ) -> tuple[Float[np.ndarray, "triangles 3"], Float[np.ndarray, " triangles"]]:
-    """Vectors across triangles, and how long these are: twice the areas."""
+    """Cross products of the triangles' sides, and their lengths: twice the areas."""
     one, two, three = (corners[:, corner] for corner in range(3))
     crosses = np.cross(two - one, three - one)
     return crosses, np.linalg.norm(crosses, axis=1)

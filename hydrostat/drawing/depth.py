@@ -1,4 +1,4 @@
-"""`DepthBuffer`: what is nearest to the eye at each pixel, by which a picture knows what is hidden."""
+"""`DepthBuffer`: the nearest surface at each pixel, for hidden-surface removal."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +16,7 @@ _RIM = 4  # pixels of nothing round the picture
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DepthBuffer:
-    """A picture of depths (z-buffer)."""
+    """Picture of depths (z-buffer)."""
 
     low: Float[np.ndarray, " 2"]  # place of the middle of pixel [0, 0] as seen: to the right, up [mm]
     pixel: float  # side of a pixel [mm]
@@ -32,7 +32,7 @@ class DepthBuffer:
         *,
         pixels: int,
     ) -> Self:
-        """The buffer of triangles seen [mm] from both sides, with room round it and pixels along its longer side."""
+        """Buffer of triangles seen [mm] from both sides, with room round it and pixels along its longer side."""
         low, high = corners[:, :, :2].min(axis=(0, 1)), corners[:, :, :2].max(axis=(0, 1))
         pixel = max(float((high - low).max()) / pixels, 1e-9)
         low = low - _RIM * pixel
@@ -50,7 +50,7 @@ class DepthBuffer:
         *,
         inside: bool,
     ) -> Self:
-        """The buffer of rows and columns of a pixel's size [mm] whose pixel [0, 0] has its middle at `low` [mm].
+        """Buffer of rows and columns of a pixel's size [mm] whose pixel [0, 0] has its middle at `low` [mm].
 
         The inside of triangles, where they turn clockwise, is seen too if asked for.
         """
@@ -62,7 +62,7 @@ class DepthBuffer:
         return cls(low=low, pixel=pixel, depth=depth, shown=shown, owner=owner)
 
     def coarser(self, step: int) -> "DepthBuffer":
-        """The buffer of larger pixels, `step` times as large, each with what is seen near its middle."""
+        """Return the buffer of pixels `step` times as large, each with the surface near its center."""
         near = slice(step // 2, None, step), slice(step // 2, None, step)
         parts = {name: getattr(self, name)[near].copy() for name in ("depth", "shown", "owner")}
         return DepthBuffer(low=self.low + (step - 1) / 2 * self.pixel, pixel=step * self.pixel, **parts)
@@ -81,7 +81,7 @@ class DepthBuffer:
         return spots[:, 2] - deepest[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
 
     def rings(self, field: Float[np.ndarray, "rows columns"], level: float, *, tolerance: float) -> list[Polyline]:
-        """Closed lines at a level of something known at each pixel [mm], smooth to a tolerance [pixels]."""
+        """Closed level lines of a value given at each pixel [mm], smooth to a tolerance [pixels]."""
         return [self.low + self.pixel * ring for ring in level_rings(field, level, tolerance=tolerance)]
 
 

@@ -1,4 +1,4 @@
-"""`line_drawing`: solids as lines, what is hidden removed, with light grey on sides turned from the lamp."""
+"""`line_drawing`: solids as lines without hidden parts, with light grey on sides turned from the lamp."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -43,18 +43,18 @@ class LineDrawing:
 
     @cached_property
     def box(self) -> Float[np.ndarray, "2 2"]:
-        """Lowest and highest place of what is drawn [mm]."""
+        """Lowest and highest coordinates of the drawing [mm]."""
         ways = np.concatenate([*self.outlines, *self.lines])
         return np.array([ways.min(axis=0), ways.max(axis=0)])
 
     def seen_of(self, way: Float[np.ndarray, "points 3"]) -> tuple[Polyline, ...]:
-        """The parts of a line in space [mm] that nothing hides."""
+        """Parts of a line in space [mm] that nothing hides."""
         seen = self.camera.see(way)
         ahead, behind = _visible(np.stack([seen[:-1], seen[1:]], axis=1), self.buffer)
         return (*ahead, *behind)
 
     def spot_on(self, solid: int) -> Float[np.ndarray, " 2"] | None:
-        """A place well inside what is seen of a solid [mm]; None if all of it is hidden."""
+        """Point well inside the visible part of a solid [mm]; None if all of it is hidden."""
         from scipy.ndimage import distance_transform_edt
 
         mask = (self.buffer.owner >= 0) & (self.solid_of[self.buffer.owner] == solid)
@@ -68,7 +68,7 @@ class LineDrawing:
         )
 
     def rings_of(self, solid: int, chosen: Bool[np.ndarray, " triangles"]) -> list[Polyline]:
-        """Rings round what is seen of some triangles of a solid [mm]."""
+        """Rings around the visible part of some triangles of a solid [mm]."""
         from scipy.ndimage import gaussian_filter
 
         wanted = (self.solid_of == solid) & chosen[np.minimum(self.source, len(chosen) - 1)]
@@ -101,7 +101,7 @@ def line_drawing(solids: Sequence[DrawnSolid], camera: Camera, *, soft: float = 
 
 
 def _visible(segments: Segments, buffer: DepthBuffer) -> tuple[tuple[Polyline, ...], tuple[Polyline, ...]]:
-    """The parts of lines that are seen, those with a jump of depth behind them first."""
+    """Parts of lines that are seen, those with a jump of depth behind them first."""
     lengths = np.linalg.norm(segments[:, 1, :2] - segments[:, 0, :2], axis=1)
     steps = np.maximum(np.ceil(2 * lengths / buffer.pixel).astype(int), 1)
     owner = np.repeat(np.arange(len(segments)), steps)
@@ -137,7 +137,7 @@ def _joined(
 
 
 def _tones(buffer: DepthBuffer, soft: float) -> tuple[tuple[float, tuple[Polyline, ...]], ...]:
-    """Rings round what is darker than each shade."""
+    """Rings around the regions darker than each shade."""
     from scipy.ndimage import gaussian_filter
 
     dark = np.where(buffer.owner >= 0, 1.0 - buffer.shown[..., 0], 0.0)

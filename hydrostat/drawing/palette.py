@@ -41,19 +41,19 @@ class Named(Protocol):
 
 
 def winch_colours(winches: Iterable[Named]) -> dict[str, str]:
-    """The colour of each of a robot's winches, by name; darker ones from the ninth on, and again from the 17th."""
+    """Colour of each of a robot's winches, by name; darker ones from the ninth on, and again from the 17th."""
     count = len(WINCHES)
     colours = [*WINCHES, *(mix(colour, INK, 0.55) for colour in WINCHES)]
     return {winch.name: colours[index % (2 * count)] for index, winch in enumerate(winches)}
 
 
 def pose_colours(names: Iterable[str]) -> dict[str, str]:
-    """The colour of each of a robot's poses: those of winches from the end, as few robots have so many."""
+    """Color of each of a robot's poses: the winch colors in reverse, as few robots have that many winches."""
     return {name: WINCHES[-1 - index % len(WINCHES)] for index, name in enumerate(names)}
 
 
 def mix(colour: str, other: str, share: float) -> str:
-    """A colour with a share, 0 to 1, of another."""
+    """Colour with a share, 0 to 1, of another."""
     pairs = zip(channels(colour), channels(other), strict=True)
     return "#" + "".join(f"{round((1 - share) * first + share * second):02x}" for first, second in pairs)
 

@@ -20,7 +20,7 @@ RAMP = ((0.0, SHADE), (0.30, SEAM), (0.52, mix(SEAM, FELT, 0.62)), (0.74, FELT),
 
 @dataclass(frozen=True, eq=False)
 class Render:
-    """An image of a body."""
+    """Image of a body."""
 
     colours: Float[np.ndarray, "height width 4"]  # red, green, blue, cover, 0 to 1; the lowest row first
     buffer: DepthBuffer  # depth of the surface at each pixel
@@ -38,7 +38,7 @@ class Render:
         return np.maximum(-self.buffer.behind(spots), 0.0)
 
     def rings(self) -> list[Polyline]:
-        """The silhouette as rings [mm], the widest first."""
+        """Silhouette as rings [mm], the widest first."""
         rings = [ring[:-1] for ring in self.buffer.rings(self.colours[..., 3], 0.5, tolerance=0.15)]
         return sorted(rings, key=lambda ring: float(np.prod(np.ptp(ring, axis=0))), reverse=True)
 
@@ -63,7 +63,7 @@ def render(
         held: 1 at nodes that are held and 0 elsewhere; they are hatched.
         up: the way up as the camera sees it, from where the sky shines; up in the picture if left out.
         pale: fades the felt behind what lies on it, 0 to 1.
-        lines: how strongly the edges of the mesh are drawn, 0 to 1.
+        lines: strength of the mesh edges, 0 to 1.
         point: millimetres that a point (1/72 inch) shows, which sizes lines.
     """
     fine, corners = pixel / FINER, spots[facets]
@@ -124,7 +124,7 @@ def _table(pale: float) -> Float[np.ndarray, "256 3"]:
 
 
 def _smooth(image: np.ndarray) -> np.ndarray:
-    """An image with its grain evened out."""
+    """Image with its grain evened out."""
     for axis in (0, 1):
         padded = np.pad(image, [(2, 2) if axis == side else (0, 0) for side in (0, 1)], mode="edge")
         count = image.shape[axis]

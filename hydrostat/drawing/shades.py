@@ -1,4 +1,4 @@
-"""A shaded picture: how much of the sky each place sees, and its color by light, hatching and lines."""
+"""A shaded picture: the share of the sky that each point sees, and its color by light, hatching and lines."""
 
 import numpy as np
 from jaxtyping import Float
@@ -34,7 +34,7 @@ def paint(
     """Red, green, blue and cover of an image, 0 to 1, from the samples within its pixels.
 
     Args:
-        depth: of each sample towards the eye [samples].
+        depth: depth of each sample towards the eye [samples].
         shown: normal and whether it is held, of each sample, then its distances to the three sides of its facet in
             samples, if edges of the mesh are drawn: 4 or 7 values.
         sky: share of the sky that each pixel sees.

@@ -24,12 +24,12 @@ def safe(content: object) -> Html:
 
 
 def tag(name: str, *content: object, **attributes: object) -> Html:
-    """An element. In the names of attributes a last underscore is dropped, others become hyphens; None is left out."""
+    """Element. In the names of attributes a last underscore is dropped, others become hyphens; None is left out."""
     return Html(f"<{name}{_pairs(attributes)}>{safe(list(content))}</{name}>")
 
 
 def shape(name: str, **attributes: object) -> Html:
-    """An element of a drawing without content, with attributes as those of `tag`."""
+    """Element of a drawing without content, with attributes as those of `tag`."""
     return Html(f"<{name}{_pairs(attributes)}/>")
 
 
@@ -42,7 +42,7 @@ def _pairs(attributes: dict[str, object]) -> str:
 
 
 def number(value: float, digits: int) -> str:
-    """A number with at most so many digits after the point, one or more, without a minus before nought."""
+    """Number with at most so many digits after the point, one or more, without a minus before nought."""
     return f"{round(value, digits) + 0.0:.{digits}f}".rstrip("0").rstrip(".")
 
 

@@ -21,7 +21,7 @@ from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
-from hydrostat.robot import Face, Robot, face_words, sewn_robot
+from hydrostat.robot import Face, Robot, describe_cable_side, sewn_robot
 from hydrostat.units import plural
 
 Progress = Callable[[str, int, int], None]  # told the stage, how much of it is done, and how much there is
@@ -206,7 +206,7 @@ def _cable_summary(plan: KitPlan) -> tuple[str, ...]:
     robot = plan.drawn
     if robot.face is None or not plan.robot.cables:
         return ()
-    words = face_words(robot) if plan.method is Method.PLUSH else Face.MIDDLE.words
+    words = describe_cable_side(robot) if plan.method is Method.PLUSH else Face.MIDDLE.words
     return (f"Cables: {len(plan.robot.cables)}, {words}",)
 
 

@@ -1,4 +1,4 @@
-"""`Anchors`: points stuck to the material of a mesh; and how far points are from its boundary."""
+"""`Anchors`: points attached to the material of a mesh; distances of points from its boundary."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class Anchors:
         entries = (self.weights.ravel(), (rows, self.stencils.ravel()))
         return csr_array(entries, shape=(len(self.stencils), node_count))
 
-    def chosen(self, points: Int[np.ndarray, " chosen"] | Sequence[int]) -> "Anchors":
+    def select_points(self, points: Int[np.ndarray, " select_points"] | Sequence[int]) -> "Anchors":
         """Some of them, by number."""
         which = np.asarray(points, dtype=np.int64)
         return Anchors(self.stencils[which], self.weights[which], self.distances[which])
@@ -85,7 +85,7 @@ def _spans(corners: Float[np.ndarray, "simplices corners dim"]) -> Float[np.ndar
 
 
 def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Float[np.ndarray, "points corners"]]:
-    """The element in which each point lies deepest, and its barycentric weights there; -1 and 0 where it is in none."""
+    """Element in which each point lies deepest, and its barycentric weights there; -1 and 0 where it is in none."""
     asked, elements = _in_boxes(mesh, points)
     shifts = points[asked] - mesh.nodes[mesh.elements[elements, 0]]
     local = np.einsum("pij,pj->pi", mesh.inverse_spans[elements], shifts)
@@ -106,7 +106,7 @@ def _firsts(rising: Int[np.ndarray, " pairs"]) -> Bool[np.ndarray, " pairs"]:
 
 
 def _in_boxes(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " pairs"], Int[np.ndarray, " pairs"]]:
-    """Every pair of a point and an element in whose box it lies."""
+    """Pairs of a point and an element whose box contains it."""
     low, high = mesh.boxes
     (corner, size, counts), starts, members = mesh.cells
     place = np.clip(np.floor((points - corner) / size), 0, counts - 1).astype(np.int64)

@@ -1,4 +1,4 @@
-"""`BoundaryTree`: which parts of a body's boundary come near one another on the way from one place to another."""
+"""`BoundaryTree`: pairs of boundary features that come near one another during a move."""
 
 from collections import deque
 from collections.abc import Callable
@@ -65,9 +65,9 @@ class BoundaryTree:
         """Largest share of a straight move, at most 1, that is admissible, and the pairs within reach at its end.
 
         Args:
-            nodes: where it begins [m].
-            move: of each node [m].
-            rest: where the nodes are at rest [m]: pairs that touch there may do as they like.
+            nodes: node positions at the start [m].
+            move: displacement of each node [m].
+            rest: rest positions of the nodes [m]; pairs that touch there are not limited.
             kept: share of its distance that each pair is to keep.
             reach: up to which distance pairs are told [m].
         """
@@ -145,7 +145,7 @@ class BoundaryTree:
 
 
 def facet_areas(mesh: Mesh) -> tuple[Vector, Vector]:
-    """Area (length, in the plane) of each facet of the boundary at rest, and of what is nearest each node [m^dim-1]."""
+    """Area (length, in the plane) of each boundary facet at rest, and of each node's share of it [m^dim-1]."""
     corners = mesh.nodes[mesh.boundary]
     spans = corners[:, 1:] - corners[:, :1]
     if mesh.dim == 2:
@@ -166,7 +166,7 @@ def _owned(features: Int[np.ndarray, "facets each corners"]) -> Int[np.ndarray, 
 
 
 def _tree(middles: Float[np.ndarray, "facets dim"]) -> Int[np.ndarray, "boxes 2"]:
-    """Halve the facets at the median along the longest side of what they span, again and again."""
+    """Build the tree: halve the facets recursively at the median along the longest side of their box."""
     children = np.full((max(2 * len(middles) - 1, 0), 2), -1)
     waiting, made = deque([(0, np.arange(len(middles)))] if len(middles) else []), 1
     while waiting:

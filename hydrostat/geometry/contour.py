@@ -1,4 +1,4 @@
-"""Closed surfaces of what is inside: where a field is negative, by marching cubes with exact crossings."""
+"""Closed surfaces of the region where a field is negative, by marching cubes with exact crossings."""
 
 from collections.abc import Callable
 
@@ -42,11 +42,11 @@ def contour(
     Args:
         field: called with many points at once, all within the box.
         box: lowest and highest coordinates [m]; the region ends at its sides.
-        spacing: of the grid [m].
+        spacing: grid spacing [m].
         distance: the field changes by at most the way between two points (a signed distance), so what is far from
             its zero need not be computed; the result is the same, only sooner.
         settled: the same for other fields: whether the sign is the same all within a reach [m] of points.
-        accuracy: of the crossings, as a share of the spacing.
+        accuracy: accuracy of the crossings, as a share of the spacing.
 
     Raises:
         SurfaceError: the grid is too fine for the box, no grid point is inside, or the field is not finite.
@@ -90,7 +90,7 @@ class _Grid:
         return self.origin + self.spacing * self.indices(numbers)
 
     def clip(self, field: Field, points: Points) -> Vector:
-        """The field at points [m] within the box, and 1 beyond it."""
+        """Field at points [m] within the box, and 1 beyond it."""
         values = np.ones(len(points))
         within = np.flatnonzero(((points >= self.box[0]) & (points <= self.box[1])).all(axis=1))
         for start in range(0, len(within), _CHUNK):
@@ -134,7 +134,7 @@ def _inside_by_blocks(field: Field, settled: Settled, grid: _Grid) -> Bool[np.nd
 def _crossed_edges(
     inside: Bool[np.ndarray, " points"], grid: _Grid
 ) -> tuple[Int[np.ndarray, " vertices"], Int[np.ndarray, " vertices"], Int[np.ndarray, "triangles 3"]]:
-    """Ends of every grid edge with a crossing, and how these join: by marching cubes on -1 and 1, met mid-edge."""
+    """Ends of every grid edge with a crossing, and their connections: marching cubes on -1 and 1, met mid-edge."""
     import igl
 
     places = grid.indices(np.arange(grid.points)).astype(float)
@@ -147,7 +147,7 @@ def _crossed_edges(
 def _crossings(
     field: Field, start: Points, end: Points, start_inside: Bool[np.ndarray, " points"], accuracy: float
 ) -> Vector:
-    """Find where the field changes its sign from start to end, as a share of the way.
+    """Find the sign change of the field from start to end, as a share of the distance.
 
     The false position and bisection take turns: the first is quick on smooth fields, the second cannot be slowed by
     a jump, at which both are bisections.
@@ -174,6 +174,6 @@ def _crossings(
 
 
 def _zero(low: Vector, high: Vector) -> Vector:
-    """Zero of the straight line from a value below or at 0 to one above or at 0, as a share of the way."""
+    """Zero of the line from a value at most 0 to one at least 0, as a share of the distance."""
     span = high - low
     return np.where(span > 0.0, -low / np.where(span > 0.0, span, 1.0), 0.5)

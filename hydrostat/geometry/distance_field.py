@@ -59,7 +59,7 @@ def sphere_field(at: Vector, radius: float) -> DistanceField:
 
 
 def capsule_field(at: Vector, to: Vector, radius: float) -> DistanceField:
-    """Distance from all within a radius of a straight way [m]."""
+    """Signed distance from a capsule: all points within a radius of a segment [m]."""
     length = float(np.linalg.norm(to - at))
     axis = (to - at) / length
     return DistanceField(partial(_from_capsule, at, axis, length, radius))

@@ -27,7 +27,7 @@ def inflate(outline: Outline, height: float, *, spacing: float) -> Surface:
     The same input gives the same surface.
 
     Args:
-        outline: of the body [m].
+        outline: outline of the body [m].
         height: thickness where it is thickest [m].
         spacing: length of the edges of the triangles [m]; shorter next to the rim, where the surface bends.
 
@@ -58,7 +58,7 @@ def inflate(outline: Outline, height: float, *, spacing: float) -> Surface:
 
 
 def torsion(mesh: Mesh) -> Vector:
-    """The u at the nodes of a flat mesh [m^2] that is 0 on the boundary and has lap u = -1 inside.
+    """Solution u of lap u = -1 inside a flat mesh with u = 0 on the boundary, at the nodes [m^2].
 
     Named after the twisting of bars, where it is known as Prandtl's stress function.
     """
@@ -78,7 +78,7 @@ def torsion(mesh: Mesh) -> Vector:
 
 
 def _without_bridges(mesh: Mesh) -> Mesh:
-    """The mesh with a node in the middle of each inner edge that runs from rim to rim, where u could not rise."""
+    """Mesh with a node in the middle of each inner edge that runs from rim to rim, where u could not rise."""
     rim = np.zeros(len(mesh.nodes), dtype=bool)
     rim[mesh.boundary_nodes] = True
     outer = {tuple(edge) for edge in np.sort(mesh.boundary, axis=1).tolist()}
@@ -92,7 +92,7 @@ def _without_bridges(mesh: Mesh) -> Mesh:
 
 
 def _halved(triangle: tuple[int, ...], middles: dict[tuple[int, ...], int]) -> list[tuple[int, ...]]:
-    """A triangle, cut where its sides have a middle node; one side after another, so that neighbours agree."""
+    """Triangle, cut where its sides have a middle node; one side after another, so that neighbours agree."""
     for turn in range(3):
         a, b, c = (triangle[(turn + corner) % 3] for corner in range(3))
         middle = middles.get((min(a, b), max(a, b)))
@@ -102,7 +102,7 @@ def _halved(triangle: tuple[int, ...], middles: dict[tuple[int, ...], int]) -> l
 
 
 def _graded(mesh: Mesh, rim: Bool[np.ndarray, " _"], bulge: Vector) -> tuple[Nodes, Elements, Vector]:
-    """The mesh with its edges that leave the rim divided, finer towards the rim, and u at its nodes.
+    """Mesh with its edges that leave the rim divided, finer towards the rim, and u at its nodes.
 
     At shares 1/16, 4/16, 9/16 of the first row the root of u rises in even steps, as u is all but linear there.
     """
@@ -125,7 +125,7 @@ def _graded(mesh: Mesh, rim: Bool[np.ndarray, " _"], bulge: Vector) -> tuple[Nod
 def _rungs(
     element: list[int], rim: Bool[np.ndarray, " _"], ladders: dict[tuple[int, int], list[int]]
 ) -> list[tuple[int, int, int]]:
-    """A triangle cut along the divisions of its two sides that leave the rim, if it has such."""
+    """Triangle cut along the divisions of its two sides that leave the rim, if it has such."""
     onto = [bool(rim[node]) for node in element]
     if sum(onto) == 0:
         return [(element[0], element[1], element[2])]
@@ -143,7 +143,7 @@ def _rungs(
 def _both_sides(
     nodes: Nodes, triangles: Int[np.ndarray, "triangles 3"], rise: Float[np.ndarray, " nodes"], rim: int
 ) -> Surface:
-    """The surface over the triangles and its mirror image below, joined where the rise is none."""
+    """Surface over the triangles and its mirror image below, joined where the rise is none."""
     below = np.flatnonzero(rise > 0.0)
     if len(nodes) - len(below) != rim:
         raise OutlineError("the body is too thin to be inflated: take a larger spacing or a wider outline")

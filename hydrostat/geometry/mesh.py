@@ -1,4 +1,4 @@
-"""`Mesh`: triangles in the plane or tetrahedra in space, and how good they are."""
+"""`Mesh`: triangles in the plane or tetrahedra in space, and their quality."""
 
 from dataclasses import dataclass
 from functools import cached_property, reduce
@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 
 
 def joined_groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarray, " count"]:
-    """Number of the group to which each of `count` things belongs that are joined in pairs, by first member.
+    """Group of each of `count` items that are joined in pairs, numbered by first member.
 
     Each thing points to one of its group with a lower number, until all of a group point to its first. As
     `scipy.sparse.csgraph.connected_components`, which takes 0.06 s to import.
@@ -135,7 +135,7 @@ class Mesh:
 
     @cached_property
     def boundary_elements(self) -> Int[np.ndarray, " facets"]:
-        """The element that each facet of `boundary` belongs to."""
+        """Element that each facet of `boundary` belongs to."""
         return self._outer_facets[1]
 
     @cached_property

@@ -40,7 +40,7 @@ class Outline:
 
     @property
     def rings(self) -> tuple[Ring, ...]:
-        """The outer ring, then the holes [m]; the body lies to the left of each."""
+        """Outer ring, then the holes [m]; the body lies to the left of each."""
         return (self.exterior, *self.holes)
 
     @property
@@ -55,7 +55,7 @@ class Outline:
 
 
 def fault(polygon: Polygon) -> tuple[str, tuple[float, float]] | None:
-    """Find what keeps a polygon from being a body, in words, and where; None if nothing does."""
+    """Describe the fault that keeps a polygon from being a body, and its position; None if there is none."""
     if polygon.is_valid and polygon.area > 0.0:
         return None
     explanation = explain_validity(polygon)
@@ -69,7 +69,7 @@ def fault(polygon: Polygon) -> tuple[str, tuple[float, float]] | None:
 
 
 def _ring(points: Ring, *, counter_clockwise: bool) -> Ring:
-    """A read-only copy of a ring, turned the asked way round, no point repeated in a row."""
+    """Read-only copy of a ring with the required orientation and without repeated points."""
     ring = np.array(points, dtype=float)
     if ring.ndim != 2 or ring.shape[1] != 2 or not np.isfinite(ring).all():
         raise OutlineError("an outline needs finite points in the plane, (points, 2)")
@@ -87,29 +87,29 @@ Stations = Float[np.ndarray, " _"]  # arc lengths, or values at them
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A closed polyline with a station [same unit as its points] for each place on it."""
+    """Closed polyline with a station [same unit as its points] for each place on it."""
 
     corners: Points  # (corners, 2), first point not repeated
 
     @cached_property
-    def closed(self) -> Points:
-        """The corners with the first one repeated at the end."""
+    def closed_corners(self) -> Points:
+        """Corners with the first one repeated at the end."""
         return np.concatenate([self.corners, self.corners[:1]])
 
     @cached_property
     def stations(self) -> Vector:
-        """Arc length at each point of `closed`."""
-        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.closed, axis=0), axis=1))])
+        """Arc length at each point of `closed_corners`."""
+        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.closed_corners, axis=0), axis=1))])
 
     @property
     def length(self) -> float:
-        """Length all the way round."""
+        """Total length of the closed curve."""
         return float(self.stations[-1])
 
     def at(self, stations: Vector) -> Points:
         """Places at stations; these may run past either end."""
         wrapped = np.mod(stations, self.length)
-        return np.column_stack([np.interp(wrapped, self.stations, self.closed[:, axis]) for axis in range(2)])
+        return np.column_stack([np.interp(wrapped, self.stations, self.closed_corners[:, axis]) for axis in range(2)])
 
     def tangents(self, stations: Vector, reach: float) -> Points:
         """Unit directions at stations, taken across `reach` to either side."""
@@ -119,12 +119,12 @@ class Curve:
     @cached_property
     def turning(self) -> Vector:
         """Angle turned to the left at each corner [rad], within (-pi, pi]."""
-        edges = np.diff(self.closed, axis=0)
+        edges = np.diff(self.closed_corners, axis=0)
         before = np.roll(edges, 1, axis=0)
         cross = before[:, 0] * edges[:, 1] - before[:, 1] * edges[:, 0]
         return np.arctan2(cross, np.einsum("ij,ij->i", before, edges))
 
-    def turned(self, stations: Vector, reach: float) -> Vector:
+    def turning_angles(self, stations: Vector, reach: float) -> Vector:
         """Angle turned within `reach` to either side of each station [rad]."""
         places = self._unrolled
         total = np.concatenate([[0.0], np.cumsum(np.tile(self.turning, 3))])
@@ -139,7 +139,7 @@ class Curve:
 
     @cached_property
     def _unrolled_corners(self) -> Points:
-        """The corners three times round, each where its station is."""
+        """Corners three times round, each where its station is."""
         return self.at(self._unrolled)
 
     def sagitta(self, start: float, end: float) -> float:

@@ -1,4 +1,4 @@
-"""`Shell`: the closed boundary of a body, asked how far away points are."""
+"""`Shell`: closed boundary of a body, for distance queries."""
 
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -29,7 +29,7 @@ class Nearest:
 
 
 class Shell:
-    """A closed boundary: segments in the plane with the body to their left, triangles in space seen from outside.
+    """Closed boundary: segments in the plane with the body to their left, triangles in space seen from outside.
 
     Whether a point whose nearest place is a corner or an edge lies inside is told by the mean normal there, weighted by
     angles (Baerentzen 2005).
@@ -47,7 +47,7 @@ class Shell:
         """Restore the state from another process."""
         self.__dict__.update(state)
 
-    def moved(self, nodes: Nodes) -> "Shell":
+    def with_nodes(self, nodes: Nodes) -> "Shell":
         """Return the same facets at other node positions [m]."""
         shell = Shell(nodes, self.facets)
         shell.edges = self.edges
@@ -63,7 +63,7 @@ class Shell:
         return numbers.reshape(self.facets.shape).astype(np.int64)
 
     @property
-    def closed(self) -> bool:
+    def is_closed(self) -> bool:
         """True if every side of a facet belongs to exactly one other facet, of the opposite direction."""
         if self.facets.shape[1] == 2:
             there, back = self.facets.T
@@ -78,7 +78,7 @@ class Shell:
         return np.linalg.norm(self._crosses, axis=1) / (self.facets.shape[1] - 1)
 
     def nearest(self, points: Points) -> Nearest:
-        """The place of the shell nearest to each point (ValueError: nodes or points that are not finite)."""
+        """Place of the shell nearest to each point (ValueError: nodes or points that are not finite)."""
         if not (np.isfinite(self.nodes).all() and np.isfinite(points).all()):
             raise ValueError("a distance needs finite places")
         _, found, places = self._tree.squared_distance(_in_space(self.nodes), self.facets, _in_space(points))
@@ -145,7 +145,7 @@ class Shell:
 
 
 def shell_field(shell: Shell) -> DistanceField:
-    """Distance from what a closed shell encloses [m]; far away, less than it by up to a quarter of the shell's size."""
+    """Signed distance from a closed shell [m]; far away it may be too small by up to a quarter of the shell's size."""
     own = Shell(shell.nodes, shell.facets)
     return DistanceField(partial(_from_shell, own), partial(_shell_values, own))
 
@@ -201,7 +201,7 @@ _TOUCHING = 1e-12
 
 
 def outline_shell(outline: Outline) -> Shell:
-    """The rings of an outline."""
+    """Rings of an outline."""
     counts = [len(ring) for ring in outline.rings]
     starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
     ends = [np.roll(np.arange(start, start + count), -1) for start, count in zip(starts, counts, strict=True)]
@@ -209,7 +209,7 @@ def outline_shell(outline: Outline) -> Shell:
 
 
 def _in_space(points: Points) -> Float[np.ndarray, "points 3"]:
-    """Places of the plane at height 0: the tree knows space only, but segments as well as triangles."""
+    """Points of the plane at height 0: the tree is 3D only, but takes segments as well as triangles."""
     return np.ascontiguousarray(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), dtype=float)
 
 

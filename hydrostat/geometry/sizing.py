@@ -87,5 +87,5 @@ def _guess(nodes: int, content: float, rim: float, dim: int) -> float:
 
 
 def _three_digits(size: float) -> float:
-    """A length to three digits."""
+    """Length to three digits."""
     return float(f"{size:.3g}")

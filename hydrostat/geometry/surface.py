@@ -1,4 +1,4 @@
-"""`Surface`: triangles in space, as a scan or a CAD model gives them; `Solid`: what a closed one encloses."""
+"""`Surface`: triangles in space, as from a scan or a CAD model; `Solid`: region enclosed by a closed surface."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,7 +35,7 @@ class Surface:
 
     @cached_property
     def box(self) -> Float[np.ndarray, "2 3"]:
-        """Lowest and highest coordinates of what the triangles use [m]."""
+        """Lowest and highest coordinates of the vertices in use [m]."""
         corners = self.vertices[np.unique(self.triangles)]
         return np.array([corners.min(axis=0), corners.max(axis=0)])
 
@@ -72,7 +72,7 @@ _MOST_POINTS = 2_000_000  # no more points than this, and one for each triangle
 
 
 def covering_points(surface: Surface, spacing: float) -> Float[np.ndarray, "points 3"]:
-    """The vertices of a surface, and points spread evenly over its triangles, one for each `spacing` squared [m]."""
+    """Vertices of a surface, and points spread evenly over its triangles, one for each `spacing` squared [m]."""
     return np.concatenate([surface.vertices[np.unique(surface.triangles)], spread_points(surface, spacing)[0]])
 
 
@@ -92,12 +92,12 @@ def spread_points(surface: Surface, spacing: float) -> tuple[Float[np.ndarray, "
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """The inside of a surface, by its winding number (Jacobson et al. 2013; fast: Barill et al. 2018)."""
+    """Inside of a surface, by its winding number (Jacobson et al. 2013; fast: Barill et al. 2018)."""
 
     surface: Surface  # closed, oriented outward
 
     def __getstate__(self) -> dict[str, Any]:
-        """State that another process is sent: trees cannot be, and are made again where they are asked for."""
+        """Return the state that is sent to another process: without the trees, which are rebuilt there."""
         return {"surface": self.surface}
 
     def winding(self, points: Points) -> Vector:
@@ -117,7 +117,7 @@ class Solid:
         return np.sqrt(self._nearest(points)[0])
 
     def nearest(self, points: Points) -> tuple[Points, Int[np.ndarray, " points"]]:
-        """The nearest place of the surface to each point [m], and the triangle that it is on."""
+        """Nearest place of the surface to each point [m], and the triangle that it is on."""
         _, triangles, places = self._nearest(points)
         return places, triangles.astype(np.int64)  # from long long, another type to NumPy
 

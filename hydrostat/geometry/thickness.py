@@ -1,4 +1,4 @@
-"""`measure_thickness`: how thick a body is, everywhere on its boundary, and how many elements that is."""
+"""`measure_thickness`: thickness of a body everywhere on its boundary, and the number of elements across."""
 
 from dataclasses import dataclass
 
@@ -111,7 +111,7 @@ def _march(
 
 
 def _neighbours(mesh: Mesh) -> Int[np.ndarray, "elements corners"]:
-    """The element beyond the facet opposite each corner; -1 where the body ends."""
+    """Element beyond the facet opposite each corner; -1 where the body ends."""
     count, corners = len(mesh.elements), mesh.dim + 1
     facets = np.sort(np.concatenate([np.delete(mesh.elements, corner, axis=1) for corner in range(corners)]), axis=1)
     order = np.lexsort(facets.T)
@@ -124,7 +124,7 @@ def _neighbours(mesh: Mesh) -> Int[np.ndarray, "elements corners"]:
 
 @dataclass(frozen=True, eq=False)
 class ThinPart:
-    """A part of the body that is thin and goes on for longer than it is thick."""
+    """Part of the body that is thin and goes on for longer than it is thick."""
 
     thickness: float  # thickness that three quarters of the part do not reach [m]: a point or a notch is no limb
     across: float  # number of elements across
@@ -133,7 +133,7 @@ class ThinPart:
 
 
 def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
-    """The limbs and sheets with fewer than `least` elements across, thinnest first.
+    """Limbs and sheets with fewer than `least` elements across, thinnest first.
 
     Tips, corners and notches are no limbs: what is not longer than `_SLENDER` times its thickness is left out.
     """

@@ -1,4 +1,4 @@
-"""Grasps: a robot closes on a thing, which is pulled out again."""
+"""Grasps: a robot closes on an object, which is pulled out again."""
 
 from typing import TYPE_CHECKING
 

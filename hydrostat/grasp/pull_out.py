@@ -1,4 +1,4 @@
-"""`pull_out`: a robot closes on a thing, which is then pulled away; the force that it takes."""
+"""`pull_out`: a robot closes on an object, which is then pulled away; the required force."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -84,17 +84,17 @@ class PullOut:
 
     @property
     def peak(self) -> float:
-        """The largest force [N]."""
+        """Largest force [N]."""
         return float(self.forces.max())
 
     @property
     def work(self) -> float:
-        """The most work that the pull has done at any place [J]: without friction, the energy to escape."""
+        """Largest work done by the pull up to any position [J]: without friction, the energy to escape."""
         done = 0.5 * (self.forces[1:] + self.forces[:-1]) * np.diff(self.moved)
         return float(np.cumsum(done).max(initial=0.0))
 
     def thing_at(self, row: int) -> Obstacle:
-        """The thing where it is in a row, turned as little as that is seen."""
+        """Return the object at its position in a row; its rotation, hardly visible, is left out."""
         pose = self.poses[row]
         assert pose.carried is not None
         return moved_thing(self.robot.obstacles[-1], pose.carried[-1 - pose.carried.shape[1]])
@@ -108,16 +108,16 @@ def pull_out(
     *,
     tell: Tell | None = None,
 ) -> PullOut:
-    """Close a robot on a thing that is held still, let the thing find its balance, then pull it away in small steps.
+    """Close a robot on a held object, let the object find its equilibrium, then pull it away in small steps.
 
     The thing is held by springs so stiff that the force may fall after its peak. Friction remembers the way, so the
     answer does not depend on the steps.
 
     Args:
-        robot: which.
-        thing: with a mass; where it is at rest, clear of the body.
-        contractions: that close the robot [m].
-        options: of the pull.
+        robot: robot that grasps the object.
+        thing: object with a mass, at its rest position, clear of the body.
+        contractions: contractions that close the robot [m].
+        options: options of the pull.
         tell: is told "pulling", how far it has come, and how far at most [mm].
 
     Raises:
@@ -198,7 +198,7 @@ def _settled(simulation: Simulation, contractions: Contractions, pose: Equilibri
 
 
 def _size(thing: Obstacle) -> float:
-    """About how large a thing is [m]."""
+    """Approximate size of an object [m]."""
     return float(np.sqrt(12 * thing.second_moments().max()))
 
 

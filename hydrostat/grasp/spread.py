@@ -1,4 +1,4 @@
-"""`pull_bands`: how the force of a pull-out changes with what nobody knows well."""
+"""`pull_bands`: sensitivity of the pull-out force to uncertain parameters."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -38,13 +38,13 @@ def pull_bands(
     *,
     tell: Callable[[str, int, int], None] | None = None,
 ) -> tuple[PullCase, ...]:
-    """Pull with friction, stiffness and place changed, one at a time; and without friction, to see what cages.
+    """Pull with friction, stiffness and position varied one at a time, and without friction, for the cage alone.
 
     Args:
-        robot: which.
-        thing: with its usual friction and place.
-        contractions: that close the robot [m].
-        options: of the pull.
+        robot: robot that grasps the object.
+        thing: object with its nominal friction and position.
+        contractions: contractions that close the robot [m].
+        options: options of the pull.
         tell: is told "cases", how many are done, and how many there are.
     """
     cases = list(_cases(robot, thing))

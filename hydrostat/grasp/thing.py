@@ -1,4 +1,4 @@
-"""`read_thing`, `place_thing`: what is grasped, from words, and where it lies."""
+"""`read_thing`, `place_thing`: a grasped object from a text, and its position."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,11 +16,11 @@ FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,4
 
 
 def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
-    """Thing of a text as in `FORMS`, about the origin.
+    """Create an object from a text as in `FORMS`, at the origin.
 
     Args:
         text: its shape and sizes.
-        dim: of the body that grasps it; a sphere is a disc in the plane.
+        dim: dimension of the body that grasps it; a sphere is a disc in the plane.
         mass: [kg].
         friction: Coulomb's coefficient.
 
@@ -53,7 +53,7 @@ def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
 
 
 def _from_file(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
-    """Thing of a surface file in millimetres, with its middle at the origin."""
+    """Read an object from a surface file in millimetres, with its center at the origin."""
     if dim == 2:
         raise InputError(f"{text}: a flat body meets no mesh; use a sphere, which is a disc in the plane, or a box")
     mesh = closed_mesh(read_stranger(text), Path(text).name)
@@ -69,12 +69,12 @@ def moved_thing(thing: Obstacle, place: Vector) -> Obstacle:
 
 
 def place_thing(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
-    """The thing in the midst of where markers are when the robot is closed, moved out of the body at rest.
+    """Place an object amid the markers of the closed robot, moved out of the body at rest.
 
     Args:
-        robot: at rest it must be clear of the thing.
-        thing: anywhere.
-        closed: where the markers of the pose are [m].
+        robot: robot; at rest it must be clear of the object.
+        thing: object at any position.
+        closed: marker positions in the closed pose [m].
 
     Raises:
         InputError: no place is found near by.

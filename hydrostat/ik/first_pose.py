@@ -10,7 +10,7 @@ _SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01  # travels to try, in shares of all; 
 
 
 def with_first_pose(robot: Robot) -> Robot:
-    """The robot with a pose that its one cable makes, the farthest of a few that inverse kinematics finds again."""
+    """Robot with a pose that its one cable makes, the farthest of a few that inverse kinematics finds again."""
     simulation = Simulation(robot)
     simulation.solve({}, strict=False)
     for share in _SHARES:

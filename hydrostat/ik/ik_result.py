@@ -1,4 +1,4 @@
-"""`IKResult`: what inverse kinematics found for one pose."""
+"""`IKResult`: result of inverse kinematics for one pose."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -62,13 +62,13 @@ class IKResult:
         return f"<IKResult for {goal}: rms error {1e3 * self.rms_error:.3g} mm; {self.status}; {self.pose!r}>"
 
     def _repr_html_(self) -> str:
-        """The line, what is to be minded, and a picture, for a notebook."""
+        """Summary, warnings and a picture, for a notebook."""
         words = "\n".join([repr(self), *self.active_limits, *self.pose.warnings])
         return html_repr(words, draw_record("reached", self.pose.robot, self))
 
     @property
-    def wanted(self) -> PoseTarget:
-        """The targets of the markers (InputError: only objectives were asked for)."""
+    def pose_target(self) -> PoseTarget:
+        """Targets of the markers (InputError: only objectives were given)."""
         if self.target is None:
             raise InputError("this was asked for by objectives alone, there is no pose of targets")
         return self.target

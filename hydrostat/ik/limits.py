@@ -1,4 +1,4 @@
-"""`Limits`: how far, how fast and how hard winches may pull."""
+"""`Limits`: limits on contraction, rate and tension of winches."""
 
 # Of the thesis (docs/thesis.md): E18
 
@@ -140,7 +140,7 @@ def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vec
 
 
 def limit_by_winch(robot: Robot, given: float | Mapping[str, float] | None, what: str, unit: str) -> Vector:
-    """A limit for each winch, infinite where none is given (InputError: no such winch, or not above 0)."""
+    """Limit for each winch, infinite where none is given (InputError: no such winch, or not above 0)."""
     if given is None:
         return np.full(len(robot.winches), np.inf)
     if isinstance(given, Mapping):

@@ -41,11 +41,11 @@ class LinearizedPose:
     spread: Float[np.ndarray, "winches channels"]
 
     def towards(self, targets: Mapping[str, Point]) -> Vector:
-        """Contractions of the winches [m] on the way to targets of the same markers [m] (InputError: of others)."""
+        """Contractions of the winches [m] towards targets of the same markers [m] (InputError: other markers)."""
         if targets.keys() != self.targets.keys():
             raise InputError(f"targets must be of the markers of the last update: {', '.join(self.targets)}")
         moved = np.concatenate([np.subtract(self.targets[name], targets[name]) for name in self.targets])
         residual = self.model.residual.copy()
         residual[: len(moved)] += moved
-        model, weight = self.model.aimed(residual), effort_weight(residual, self.size, self.effort)
-        return self.spread @ model.applied(model.best(weight * self.worth, self.radius)[0])
+        model, weight = self.model.with_residual(residual), effort_weight(residual, self.size, self.effort)
+        return self.spread @ model.apply_step(model.best(weight * self.worth, self.radius)[0])

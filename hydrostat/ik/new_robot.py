@@ -54,7 +54,7 @@ class NewRobotWish:
             raise InputError("nodes and element_size: give one of them")
 
     def refuse(self, what: str, *keys: str) -> None:
-        """Refuse wishes that do not fit."""
+        """Reject requests that do not apply."""
         for key in keys:
             if getattr(self, key) is not None:
                 raise InputError(f"{key}: {what}; leave it out")
@@ -62,7 +62,7 @@ class NewRobotWish:
 
 @dataclass(frozen=True, eq=False)
 class BegunRobot:
-    """A new robot, and what there is to tell of how it was made."""
+    """New robot, with notes on its creation."""
 
     robot: Robot
     notes: tuple[str, ...] = ()  # notes on repairs and choices
@@ -107,7 +107,7 @@ Sketch = Callable[[], BegunRobot]
 def begin_robot(
     source: str | Path, wish: NewRobotWish, *, run: Callable[[Sketch], BegunRobot] = lambda sketch: sketch()
 ) -> BegunRobot:
-    """A first robot, and what there is to tell of it; see `new_robot`.
+    """Create a first robot, with notes; see `new_robot`.
 
     `run` does the part that reads, heals and meshes what may be a stranger's file, perhaps within limits.
     """
@@ -131,7 +131,7 @@ def begin_robot(
 
 
 def _of_gallery(source: str, wish: NewRobotWish) -> Robot:
-    """A robot of the gallery, if asked under another name and with other elements."""
+    """Return a robot of the gallery, under another name or with another mesh if requested."""
     wish.refuse("a gallery robot has its own; edit robot.toml", "size", "thickness", "inflate", "material", "inner")
     robot = load_robot(gallery_folder(source.removeprefix(GALLERY)))
     if wish.element_size is not None or wish.nodes is not None:
@@ -141,7 +141,7 @@ def _of_gallery(source: str, wish: NewRobotWish) -> Robot:
 
 def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
     from hydrostat.geometry import read_drawing
-    from hydrostat.robot import inflated
+    from hydrostat.robot import inflate_outline
 
     content, file = read_stranger(path), _file_name(path.name)
     inner = parse_choice(Inner, wish.inner or Inner.HOLES, what="inner")
@@ -156,7 +156,9 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
             notes,
         )
     wish.refuse("an inflated body is as thick as is asked by inflate", "thickness")
-    begun = _of_bytes(inflated(drawing.outline, wish.inflate), path.with_suffix(".ply"), wish, material, size=None)
+    begun = _of_bytes(
+        inflate_outline(drawing.outline, wish.inflate), path.with_suffix(".ply"), wish, material, size=None
+    )
     return BegunRobot(begun.robot, (*notes, *begun.notes), begun.sketch)
 
 
@@ -188,7 +190,7 @@ def _of_mesh(path: Path, wish: NewRobotWish) -> BegunRobot:
 
 
 def _posed(begun: BegunRobot) -> BegunRobot:
-    """The same with a pose that its cable makes, if it is in space and not so large that this would take long."""
+    """Add a target pose that the robot's cable reaches, if it is in space and small enough to solve quickly."""
     mesh = begun.robot.body.mesh
     if mesh.dim == 2:
         return begun

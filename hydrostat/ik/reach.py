@@ -94,12 +94,12 @@ def find_reach(
 
 
 def _limits(robot: Robot) -> tuple[Vector, Vector]:
-    """The least and the most that each winch takes in [m]."""
+    """Minimum and maximum contraction of each winch [m]."""
     return np.array([-winch.release for winch in robot.winches]), np.array([winch.travel for winch in robot.winches])
 
 
 def _tiles(winches: int, count: int) -> tuple[Float[np.ndarray, "poses winches"], float]:
-    """Places of poses in the ranges of all winches, and half the width of what each stands for, as shares of these."""
+    """Sample points in the ranges of all winches, and half the width of each point's tile, as shares of these."""
     if winches > _TILED:
         from scipy.stats import qmc
 

@@ -1,4 +1,4 @@
-"""`reach_extent`: how far markers can be brought in every direction, to first order at one pose."""
+"""`reach_extent`: extent of the marker workspace in every direction, to first order at one pose."""
 
 import numpy as np
 from jaxtyping import Float
@@ -15,9 +15,9 @@ def reach_extent(moves: Float[np.ndarray, "rows winches"], spans: Vector, *, dim
 
     Args:
         moves: slopes of the coordinates of the markers by the contractions, marker after marker.
-        spans: how far each winch may go to either side [m].
+        spans: admissible contraction change of each winch to either side [m].
         dim: coordinates of a marker.
-        floor: what counts as no reach at all [m], above 0.
+        floor: extent that counts as no reach at all [m], above 0.
     """
     if not moves.size:
         return floor
@@ -34,7 +34,7 @@ def usable_spans(
     Args:
         pulls: slopes of the tensions by the contractions [N/m].
         ranges: travel and release of each winch [m].
-        tension: the most that a cable bears [N].
+        tension: maximum cable tension [N].
     """
     hardest = np.abs(pulls).max(axis=0, initial=0.0)
     return np.minimum(ranges, tension / np.maximum(hardest, 1e-12))

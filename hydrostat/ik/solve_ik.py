@@ -58,8 +58,8 @@ def solve_ik(
 
     Args:
         simulation: the robot's physics.
-        targets: where markers should go [m].
-        limits: what the winches may do, beside their travel and release.
+        targets: target positions of markers [m].
+        limits: limits of the winches, in addition to travel and release.
         objectives: more that is wished for, or instead.
         start: a pose to begin from, and to count rates from; the rest pose if left out. Where the goals leave a choice
             it does not matter, unless `options.min_tension` is off.
@@ -145,7 +145,7 @@ def as_pose(targets: Targets | None) -> PoseTarget | None:
 
 
 def wishes(target: PoseTarget | None, objectives: Sequence[Objective]) -> list[Objective]:
-    """All that is wished for (InputError: nothing)."""
+    """All terms of the objective (InputError: none)."""
     found = [*([MarkerTarget(targets=target.targets)] if target else []), *checked_objectives(objectives)]
     if not found:
         raise InputError("there is nothing to reach: give targets for markers, or objectives")
@@ -153,7 +153,7 @@ def wishes(target: PoseTarget | None, objectives: Sequence[Objective]) -> list[O
 
 
 def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, InverseState], Descent]) -> Descent:
-    """The best of several beginnings; the first that reaches its goal."""
+    """Best of several beginnings; the first that reaches its goal."""
     if found.reason in _ENDS or not found.state.errors:
         return found
     spent = found.iterations
@@ -176,7 +176,7 @@ _ENDS = (IKStatus.REACHED, IKStatus.TIME_LIMIT)
 
 
 def _better(search: InverseSearch, found: Descent, other: Descent, *, share: float = 1.0) -> Descent:
-    """The other, if it keeps to the limits where what was found does not, or leaves less than a share of it."""
+    """Return the other result if it alone keeps to the limits, or if its objective is below a share of this one's."""
     new, old = (search.problem.objective(one.state, found.weight) for one in (other, found))
     less = other.allowed >= found.allowed and new < share * old
     return other if less or (other.allowed and not found.allowed) else found
@@ -190,7 +190,7 @@ SEED = 0
 
 
 def restarts(search: InverseSearch, best: Callable[[], InverseState]) -> Iterator[InverseState]:
-    """States to begin from: each the pose that leads at once from rest to other contractions.
+    """States to restart from: poses reached directly from rest by other contractions.
 
     A body with several poses at the same contractions ends on the branch that its way leads to (E20), and the errors of
     markers have local optima. So first the best contractions are tried from rest; then in turn ones near them and ones

@@ -51,7 +51,7 @@ class PoseModel(Protocol):
         ...
 
     def solve(self, targets: Targets) -> ModelAnswer:
-        """Contractions that bring markers to targets [m], as far as it knows (InputError: as for a tracker)."""
+        """Predict contractions that bring markers to targets [m] (InputError: as for a tracker)."""
         ...
 
 
@@ -115,9 +115,9 @@ class Tracker:
         """One step towards where the targets are now.
 
         Args:
-            targets: where markers should go [m].
+            targets: target positions of markers [m].
             seconds: since the last update; what a limit on the rate allows follows from it.
-            objectives: what is wished for just now, beside what was given at the start.
+            objectives: objectives for this update, in addition to those given at the start.
 
         Raises:
             InputError: as for `solve_ik`, or seconds not above 0.
@@ -127,7 +127,7 @@ class Tracker:
             raise InputError(f"seconds since the last update must be above 0, not {seconds!r:.60}")
         target = as_pose(targets)
         search = self._search(target, seconds, objectives)
-        state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
+        state = search.begin(self.pose) if self._state is None else search.adopt_state(self._state)
         weight, reason = search.problem.weight(state), IKStatus.REACHED
         if not _reached(search.problem, state):
             led = self._foretold(search, state, target)
@@ -187,7 +187,7 @@ class Tracker:
         return found if problem.objective(found, weight) < problem.objective(state, weight) else None
 
     def _step(self, search: InverseSearch, state: InverseState, weight: float) -> tuple[InverseState, IKStatus]:
-        """The state after the first step that is accepted, and what to say of it."""
+        """Return the state after the first accepted step, and its status."""
         problem, largest = search.problem, self._options.largest_step
         least = self._options.progress * problem.objective(state, weight)
         first, found = self._radius, False
@@ -209,7 +209,7 @@ class Tracker:
         return InverseSearch(self._problem(seconds, terms), accuracy=self._accuracy, origin=self.pose)
 
     def _problem(self, seconds: float, terms: Sequence[Residual]) -> InverseProblem:
-        """Terms within what can be reached from the pose in time [s]."""
+        """Inverse problem of these terms, within the bounds reachable from the pose in a given time [s]."""
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
         allowed = bounds(self._simulation, limits)
         allowed = allowed.near(allowed.channel(self.pose.contractions))

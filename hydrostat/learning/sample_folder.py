@@ -17,7 +17,7 @@ from hydrostat.geometry import read_stranger
 from hydrostat.given import path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import sample_type
-from hydrostat.robot import clear_unfinished, unfinished
+from hydrostat.robot import clear_unfinished, temporary_path
 
 FORMAT = 1
 """Version of what lies in a folder of samples."""
@@ -142,7 +142,7 @@ def read_manifest(path: str | Path) -> dict[str, Any]:
 
 def _write_whole(path: Path, content: bytes) -> None:
     """Write a file whole, to the disk, or not at all; processes that write the same do not get in each other's way."""
-    part = unfinished(path)
+    part = temporary_path(path)
     try:
         with part.open("wb") as stream:
             stream.write(content)

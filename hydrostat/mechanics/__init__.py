@@ -1,4 +1,4 @@
-"""Physics on plain arrays: energies, their assembly, Newton. It knows no robot."""
+"""Physics on plain arrays: energies, their assembly, Newton's method. Independent of robots."""
 
 from typing import TYPE_CHECKING
 

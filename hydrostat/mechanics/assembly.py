@@ -35,24 +35,24 @@ class Assembly:
         """Sum of energies of a body whose nodes are at `rest` [m] before it deforms.
 
         Args:
-            energies: the terms; they read `control_count` controls.
+            energies: terms of the sum; they read `control_count` controls.
             rest: decides the order of elimination alone.
-            control_count: how many controls there are.
-            pattern: of the stencils of these energies, if it is at hand.
+            control_count: number of controls.
+            pattern: sparsity pattern of the stencils of these energies, if available.
         """
         self.energies, self.control_count = tuple(energies), control_count
         self.pattern = pattern or SparsityPattern([energy.stencils for energy in energies], rest)
         self.shape, self.size = rest.shape, rest.size
         self.token = object()
 
-    def extended(self, energies: Sequence[Energy], *, control_count: int) -> "Assembly":
-        """Sum with more energies; all that is known of the pattern of this one serves it too."""
+    def with_added_energies(self, energies: Sequence[Energy], *, control_count: int) -> "Assembly":
+        """Return the sum with more energies; it reuses the sparsity pattern of this one."""
         for energy in energies:
             if not (isinstance(energy, Energy) and hasattr(energy, "stencils")):
                 raise InputError(f"{energy!r:.60} is no Energy with stencils; see hydrostat.mechanics.Energy")
             if energy.stencils.size and not 0 <= energy.stencils.min() <= energy.stencils.max() < self.shape[0]:
                 raise InputError(f"stencils of {type(energy).__name__} must be nodes from 0 to {self.shape[0] - 1}")
-        pattern = self.pattern.extended([energy.stencils for energy in energies])
+        pattern = self.pattern.with_added_stencils([energy.stencils for energy in energies])
         return Assembly(
             [*self.energies, *energies], rest=self.pattern.rest, control_count=control_count, pattern=pattern
         )
@@ -95,7 +95,11 @@ class Assembly:
             return self
         stencils = [energy.stencils for energy in energies]
         same = all(new is old for new, old in zip(stencils, self.pattern.stencils, strict=True))
-        return self.with_energies(energies) if same else self._like(energies, self.pattern.changed(stencils))
+        return (
+            self.with_energies(energies)
+            if same
+            else self._like(energies, self.pattern.with_replaced_stencils(stencils))
+        )
 
     def with_load(self, share: float) -> "Assembly":
         """Sum with this share of all dead loads."""
@@ -141,11 +145,11 @@ class Assembly:
         return self.with_terms([energy.with_history(part, nodes, controls) for energy, part in parts])
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
-        """Largest force [N] by which what is held fixed while minimising is off."""
+        """Largest error [N] of the quantities that a minimisation holds fixed, such as friction limits."""
         return max((energy.history_residual(nodes, controls) for energy in self.energies), default=0.0)
 
     def with_corrected_history(self, nodes: Nodes, controls: Vector, stiffness: Stiffness | None) -> "Assembly":
-        """Sum in which that is nearer to what it should be; by Newton's method if the stiffness is given."""
+        """Return the sum with these quantities corrected; by Newton's method if the stiffness is given."""
         if stiffness is None:
             return self.with_terms([energy.with_corrected_history(nodes, controls, None) for energy in self.energies])
         energies = []
@@ -156,7 +160,7 @@ class Assembly:
         return self.with_terms(energies)
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "Assembly":
-        """Sum of what follows a state on the loading path."""
+        """Return the sum for the next increment after a state of the loading path."""
         return self.with_terms([energy.with_advanced_history(nodes, controls) for energy in self.energies])
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
@@ -209,7 +213,7 @@ class Assembly:
     def stiffness(
         self, nodes: Nodes, controls: Vector, *, projection: float = 0.0, shift: float = 0.0, damping: float = 0.0
     ) -> Stiffness:
-        """The whole of d2E/dx2, ready to be solved with.
+        """Whole Hessian d2E/dx2, factorised.
 
         `projection` is as in `hessian`; `damping` [N/m] is added to the diagonal, as is `shift`, a share of its largest
         entry.

@@ -56,9 +56,9 @@ class CableEnergy(Energy):
             nodes: rest positions [m].
             segments: those that are not sheathed.
             law: tension against elongation, of each cable.
-            winches: whose contraction each cable follows.
-            slack: of each cable, taken in before it begins to be taut [m].
-            ratios: what each cable takes in when its winch takes in 1 m; 1 if left out.
+            winches: index of the winch whose contraction each cable follows.
+            slack: contraction at which each cable starts to become taut [m].
+            ratios: contraction of each cable per metre of its winch's contraction; 1 by default.
         """
         self.stencils, self.weights, self.offsets = (
             np.ascontiguousarray(part) for part in (segments.stencils, segments.weights, segments.offsets)
@@ -77,13 +77,13 @@ class CableEnergy(Energy):
         native.lengths(nodes, self.stencils, self.weights, self.offsets, self.roundings, self.cables, lengths)
         return lengths
 
-    def taken(self, controls: Vector) -> Vector:
+    def compute_contractions(self, controls: Vector) -> Vector:
         """Return the contraction of each cable, that is the length taken in [m]."""
         return self.ratios * controls[self.winches]
 
     def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
-        """Elongations s [m]: how much longer each cable is than it should be; negative when slack."""
-        return self.lengths(nodes) - self.rest_lengths + self.taken(controls) - self.slack
+        """Elongations s [m] of the cables beyond their free length; negative when slack."""
+        return self.lengths(nodes) - self.rest_lengths + self.compute_contractions(controls) - self.slack
 
     def tensions(self, nodes: Nodes, controls: Vector) -> Vector:
         """T of each cable [N]."""
@@ -130,7 +130,7 @@ class CableEnergy(Energy):
         Args:
             nodes: positions [m].
             springs: the spring that each cable is part of; -1 for none.
-            count: how many springs there are.
+            count: number of springs.
         """
         columns, owners = np.zeros((*nodes.shape, count)), springs[self.cables]
         if count:

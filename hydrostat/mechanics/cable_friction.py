@@ -26,7 +26,7 @@ from hydrostat.mechanics.via_point_turns import ViaPointTurns
 
 
 class LockedTensions(NamedTuple):
-    """Tensions of the spans, and how they change while points at the capstan's limit slip on and the others stick.
+    """Tensions of the spans and their derivatives while points at the capstan limit slip on and the others stick.
 
     Attributes:
         tensions: tension T of each span [N].
@@ -85,11 +85,11 @@ class FrictionCableEnergy(Energy):
             nodes: rest positions [m].
             segments: those that are not sheathed.
             law: tension against elongation, of each cable.
-            winches: whose contraction each cable follows.
-            slack: of each cable, taken in before it begins to be taut [m]; at the winch.
+            winches: index of the winch whose contraction each cable follows.
+            slack: contraction at which each cable starts to become taut [m], at the winch.
             friction: coefficient mu of each cable.
-            turns: where they turn; their points are the segments after them.
-            ratios: what each cable takes in when its winch takes in 1 m; 1 if left out.
+            turns: via points at which the cables turn; their points are the segments after them.
+            ratios: contraction of each cable per metre of its winch's contraction; 1 by default.
         """
         cables = segments.cables
         first = np.append(True, np.diff(cables) != 0)[: len(cables)]
@@ -124,7 +124,7 @@ class FrictionCableEnergy(Energy):
     def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
         """S of each span [m] if nothing slips."""
         spans = self._spans
-        moved = np.where(self._firsts, spans.taken(controls) - spans.slack, self.slips)
+        moved = np.where(self._firsts, spans.compute_contractions(controls) - spans.slack, self.slips)
         passed = np.append(np.where(self._firsts, 0.0, self.slips)[1:], 0.0)
         return spans.lengths(nodes) - spans.rest_lengths + moved - passed
 
@@ -197,7 +197,7 @@ class FrictionCableEnergy(Energy):
         return still.with_limits(still.capstan_limits(nodes, controls))
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
-        """Energy of what follows a state: the cable has slipped, and the limits are those of that state."""
+        """Return the energy for the next increment: the cable has slipped, and the limits are those of this state."""
         slips = self.slips + self.law.slips(self.elongations(nodes, controls))
         other = self._with(self.capstan_limits(nodes, controls), slips)
         other._share, other._missed, other._solves = 1.0, np.inf, False
@@ -214,8 +214,8 @@ class FrictionCableEnergy(Energy):
         Args:
             nodes: equilibrium with the limits as they are [m].
             controls: contractions [m].
-            compliance: of the body there.
-            response: not needed.
+            compliance: compliance of the body at these nodes.
+            response: unused.
         """
         del response
         wanted = self.capstan_limits(nodes, controls)
@@ -234,7 +234,7 @@ class FrictionCableEnergy(Energy):
         return other
 
     def _solved_limits(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Vector | None:
-        """Limits where the capstan law holds on a body that gives way linearly; None if none are found."""
+        """Friction limits that satisfy the capstan law on a linearly compliant body; None if none are found."""
         elongations = self.elongations(nodes, controls)
         chains = CapstanChains(
             law=self.law,
@@ -253,7 +253,7 @@ class FrictionCableEnergy(Energy):
         """Newton's step of the limits while cable slips where it does."""
         elongations = self.elongations(nodes, controls)
         tensions = self.law.tension(elongations)
-        by_elongation, by_limit = self.law.locked(tensions, np.sign(self.law.slips(elongations)))
+        by_elongation, by_limit = self.law.compute_slip_jacobians(tensions, np.sign(self.law.slips(elongations)))
         unit = np.eye(len(tensions))
         moved = np.linalg.solve(unit + by_elongation @ compliance.compliance, by_limit)
         return np.linalg.solve(unit - self._limit_slopes(nodes, tensions, compliance) @ moved, miss)
@@ -264,7 +264,7 @@ class FrictionCableEnergy(Energy):
         Args:
             nodes: an equilibrium [m].
             controls: contractions [m].
-            compliance: of the body there.
+            compliance: compliance of the body at the pose.
         """
         return -compliance.moves @ self.tension_slopes(nodes, controls, compliance)
 
@@ -276,7 +276,7 @@ class FrictionCableEnergy(Energy):
         Args:
             nodes: an equilibrium [m].
             controls: contractions [m].
-            compliance: of the body there.
+            compliance: compliance of the body at the pose.
             taut: cables that, where they are slack, are taken as if they had just become taut and slipped; none if left
                 out.
         """
@@ -295,7 +295,7 @@ class FrictionCableEnergy(Energy):
         )
         return np.linalg.solve(slopes, pulled)
 
-    def locked(self, nodes: Nodes, controls: Vector) -> LockedTensions:
+    def linearize_tensions(self, nodes: Nodes, controls: Vector) -> LockedTensions:
         """Tensions at an equilibrium with the slopes that they and the capstan's limits have there."""
         tensions = self.span_tensions(nodes, controls)
         by_elongation, by_limit = self._locked(nodes, controls, tensions, np.zeros(len(tensions), dtype=bool))
@@ -316,7 +316,7 @@ class FrictionCableEnergy(Energy):
 
     @property
     def spans(self) -> CableEnergy:
-        """The spans as cables of their own, as if nothing slipped."""
+        """Spans as cables of their own, as if nothing slipped."""
         return self._spans
 
     @property
@@ -335,7 +335,7 @@ class FrictionCableEnergy(Energy):
         drops = np.where(self._firsts, 0.0, np.append(0.0, -np.diff(tensions)))
         near = _AT_THE_LIMIT * tensions.max(initial=0.0)
         slipping = joining | (np.abs(drops) >= self.capstan_limits(nodes, controls) - near)
-        return self.law.locked(tensions, np.sign(drops) * slipping)
+        return self.law.compute_slip_jacobians(tensions, np.sign(drops) * slipping)
 
     def _by_tension(self, nodes: Nodes, tensions: Vector) -> RankMatrix:
         """D capstan limits / d tensions at fixed angles."""
@@ -346,7 +346,7 @@ class FrictionCableEnergy(Energy):
         return slopes
 
     def _limit_slopes(self, nodes: Nodes, tensions: Vector, compliance: Compliance) -> RankMatrix:
-        """D capstan limits / d tensions, of the body that gives way to these too."""
+        """D capstan limits / d tensions, including the compliance of the body."""
         before = np.append(0.0, tensions[:-1])
         held = np.exp(-self.friction * self.angles(nodes)) * np.maximum(tensions, before)
         turned = self.turn_gradients(nodes).T @ compliance.moves

@@ -1,4 +1,4 @@
-"""`CapstanChains`: tensions of cables that slip by the capstan's law, on a body that gives way linearly."""
+"""`CapstanChains`: tensions of cables that slip by the capstan law, on a linearly compliant body."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from hydrostat.mechanics.tension_law import TensionLaw
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CapstanChains:
-    """Spans of cables at an equilibrium of the body, and what changes with their tensions T.
+    """Spans of cables at an equilibrium of the body, with their linear dependence on the tensions T.
 
     Elongations are s = elongations - compliance (T - tensions) + slips, angles theta = angles - turning (T - tensions).
     With rho = exp(-mu theta) a point between spans of tensions before and after slips towards the winch only where

@@ -44,7 +44,7 @@ class ChainLaw(TensionLaw):
         return slips
 
     def energy(self, elongation: Vector) -> Vector:
-        """Energy of each span and what friction dissipates at the point before it [J]."""
+        """Elastic energy of each span plus the energy dissipated by friction at the point before it [J]."""
         slips = self.slips(elongation)
         return super().energy(self._own(elongation, slips)) + self.limits * np.abs(slips)
 
@@ -58,7 +58,7 @@ class ChainLaw(TensionLaw):
         return self._joined(super().tangent(self._own(elongation, slips)), slips != 0)[0]
 
     def springs(self, elongation: Vector) -> tuple[Int[np.ndarray, " spans"], Vector]:
-        """The spring that each span belongs to, -1 where it is slack, and dT/ds of each [N/m].
+        """Spring that each span belongs to, -1 where it is slack, and dT/ds of each [N/m].
 
         Spans are one spring, in series, between points where cable sticks.
         """
@@ -67,12 +67,12 @@ class ChainLaw(TensionLaw):
         taut = series > 0
         return np.where(taut, np.cumsum(taut) - 1, -1)[group], series[taut]
 
-    def locked(self, tensions: Vector, signs: Vector) -> tuple[RankMatrix, RankMatrix]:
+    def compute_slip_jacobians(self, tensions: Vector, signs: Vector) -> tuple[RankMatrix, RankMatrix]:
         """dT/ds [N/m] and dT/dlimits while cable goes on slipping where it does.
 
         Args:
-            tensions: of the spans [N].
-            signs: at the point before each span 1 where cable slips towards the winch, -1 the other way, 0 where not.
+            tensions: tensions of the spans [N].
+            signs: slip direction at the point before each span: 1 towards the winch, -1 the other way, 0 for no slip.
         """
         springs = super().tangent(np.where(tensions > 0, self.elongation(tensions), 0.0))
         by_elongation, soft, same = self._joined(springs, signs != 0)
@@ -95,7 +95,7 @@ class ChainLaw(TensionLaw):
     def _series(
         self, springs: Vector, slipping: Bool[np.ndarray, " spans"]
     ) -> tuple[Int[np.ndarray, " spans"], Vector]:
-        """The group of each span that points that slip join, and dT/ds of each group; 0 where a span is slack."""
+        """Group of each span that points that slip join, and dT/ds of each group; 0 where a span is slack."""
         group = np.cumsum(~slipping) - 1
         weakest = np.minimum.reduceat(springs, np.flatnonzero(~slipping)) if len(springs) else springs
         soft = np.bincount(group, 1.0 / np.maximum(springs, 1e-12 * self.stiffness))

@@ -36,18 +36,18 @@ class ContactSurface:
         """Regularization that makes the nearest points of parallel edges unique [m^2]."""
         return (_SOFT * self.distance) ** 2
 
-    def squared(self, nodes: Nodes, pairs: Pairs) -> Vector:
+    def compute_squared_distances(self, nodes: Nodes, pairs: Pairs) -> Vector:
         """Squared distance of each pair [m^2]."""
         squared = np.empty(len(pairs.edges))
         native.squared_distances(nodes, *pairs, self.soft, squared)
         return squared
 
     def begins(self, pairs: Pairs) -> Vector:
-        """Squared distance [m^2] at which each pair is felt: below half of what it has at rest, so at rest none is."""
-        return np.minimum(self.distance**2, _REST * self.squared(self.rest, pairs))
+        """Squared distance [m^2] at which each pair becomes active, below half its rest distance: none is at rest."""
+        return np.minimum(self.distance**2, _REST * self.compute_squared_distances(self.rest, pairs))
 
     def weights(self, pairs: Pairs, begins: Vector) -> Vector:
-        """Factor of the barrier of each pair [N/m]: half as far as it is felt, it pushes by stiffness x area."""
+        """Factor of each pair's barrier [N/m]: its force at half the contact distance is stiffness x area."""
         one = self.areas[pairs.stencils[:, 0]]
         shared = 0.5 * self.areas[pairs.stencils].mean(axis=1)
         area = np.where(pairs.edges, shared, one)
@@ -86,7 +86,7 @@ class ContactEnergy(Energy):
     projects_first: ClassVar[bool] = True
 
     def __init__(self, skin: ContactSurface, pairs: Pairs, watch: CandidatePairs | None = None) -> None:
-        """Contact between the given pairs, and what is known of all others."""
+        """Take the active pairs, and the candidate pairs."""
         self.skin, self.pairs, self.watch = skin, pairs, watch
         self.swept: tuple[Nodes, Pairs] | None = None
         self.stencils: Stencils = pairs.stencils
@@ -98,10 +98,10 @@ class ContactEnergy(Energy):
         """Contact of a body at rest with itself, in which nothing touches yet.
 
         Args:
-            mesh: of the body.
-            distance: at which parts begin to feel one another [m].
+            mesh: mesh of the body.
+            distance: distance at which contact forces start [m].
             young: pressure at half that distance: Young's modulus [Pa].
-            thickness: of a flat body [m].
+            thickness: thickness of a flat body [m].
             rest: all unknowns at rest [m], if there are more than the nodes of the mesh.
         """
         rest = mesh.nodes if rest is None else rest
@@ -187,7 +187,7 @@ class ContactEnergy(Energy):
         return _LOOK * self.skin.distance
 
     def _look_around(self, nodes: Nodes) -> CandidatePairs:
-        """Pairs that are near, and serve as long as no node moves by more than half of what is looked at beyond."""
+        """Return the candidate pairs, valid as long as no node moves by more than half of the search margin."""
         margin = 0.5 * (self._reach - self.skin.distance)
         end, pairs = self.swept or (None, None)
         if end is None or pairs is None or np.abs(nodes - end).max() > _ROUNDING * self.skin.distance:
@@ -196,7 +196,11 @@ class ContactEnergy(Energy):
 
     def _felt(self, nodes: Nodes) -> int:
         """Number of active pairs, that is pairs within the contact distance."""
-        return int((self.skin.squared(nodes, self.pairs) < self._begins).sum()) if len(self.stencils) else 0
+        return (
+            int((self.skin.compute_squared_distances(nodes, self.pairs) < self._begins).sum())
+            if len(self.stencils)
+            else 0
+        )
 
 
 _SOFT = 0.05

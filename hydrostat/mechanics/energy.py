@@ -31,7 +31,7 @@ class Law(Protocol):
         ...
 
     def solve_slack_complementarity(self, elongations: Vector, compliance: RankMatrix) -> Vector | None:
-        """T = law(elongations - compliance @ T): forces on a linear body that gives way to them; None if not found."""
+        """T = law(elongations - compliance @ T): spring forces on a linearly compliant body; None if not found."""
         ...
 
 
@@ -97,7 +97,7 @@ class ContactForces(NamedTuple):
 
 
 class Energy(ABC):
-    """A sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
+    """Sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
     A control is what an actuator commands: the contraction of a winch [m], the tension of a muscle fibre [N].
     A new energy needs value, gradient and Hessian to be assembled and minimised, and is given to a `Simulation` in a
@@ -139,19 +139,19 @@ class Energy(ABC):
 
     @abstractmethod
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), less what `coupling` tells."""
+        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), without the part in `coupling`."""
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
-        """Hessian blocks with this share, 0 to 1, of what is negative in them taken out: projected Newton (E6)."""
+        """Hessian blocks without this share, 0 to 1, of their negative part: projected Newton (E6)."""
         blocks = self.hessian(nodes, controls)
         return blocks if self.convex else blocks + share * (nearest_semidefinite(blocks) - blocks)
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
-        """Add dE/dx to the forces of all nodes [N]; to be told anew only where that is faster than by `gradient`."""
+        """Add dE/dx to the forces of all nodes [N]; override only if that is faster than by `gradient`."""
         native.add_vectors(self.stencils, self.gradient(nodes, controls), total)
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
-        """Add d2E/dx2, with a share of what is negative taken out, to the values of a sparse matrix; as above."""
+        """Add d2E/dx2, without a share of its negative part, to the values of a sparse matrix; override as above."""
         if share and not self.convex:
             blocks = self.projected_hessian(nodes, controls, share)
         else:
@@ -159,11 +159,11 @@ class Energy(ABC):
         native.add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
 
     def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness | None:
-        """Springs that couple many nodes, whose Hessian G D G^T is kept as the low rank it has. None for most."""
+        """Springs that couple many nodes, with the Hessian G D G^T kept in low rank; None for most energies."""
         return None
 
     def span_columns(self, nodes: Nodes) -> LowRankBasis | None:
-        """Slopes of the elongations along which `with_corrected_history` asks how the body gives way; None for most."""
+        """Gradients of the elongations whose compliance `with_corrected_history` needs; None for most energies."""
         return None
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
@@ -223,24 +223,24 @@ class Energy(ABC):
         return self
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
-        """Force [N] by which what is held fixed while minimising is off what it should be at `nodes`; 0 for most."""
+        """Error [N] of the quantities held fixed in a minimisation, at `nodes`; 0 for most energies."""
         return 0.0
 
     def with_corrected_history(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> Self:
-        """Energy in which that is nearer to what it should be; by Newton's method if it is told how the body gives way.
+        """Return the energy with these quantities corrected; by Newton's method if the compliance is given.
 
         Args:
             nodes: equilibrium with what is held fixed [m].
             controls: contractions [m].
-            compliance: how the body gives way to the springs of this energy; None if not known.
-            response: how it gives way to any forces; None if not known.
+            compliance: compliance of the body to the springs of this energy; None if unknown.
+            response: displacement of the body under arbitrary forces; None if unknown.
         """
         return self
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> Self:
-        """Energy of what follows a state on the loading path."""
+        """Return the energy for the next increment after a state of the loading path."""
         return self
 
 

@@ -97,12 +97,12 @@ class Analysis:
         """Analyse the pattern of a symmetric matrix.
 
         Args:
-            indptr: where each column begins, (dofs + 1,), as in `csc_array`.
+            indptr: start of each column, (dofs + 1,), as in `csc_array`.
             indices: rows of the entries, rising in each column; both triangles.
             dim: degrees of freedom of a node, side by side.
-            points: where the nodes are, (nodes, any dimension).
-            like: of a pattern with fewer entries; its order is taken where a better one would not pay.
-            uses: how many factorisations are counted on, where that order competes with one to be found.
+            points: positions of the nodes, (nodes, any dimension).
+            like: analysis of a pattern with fewer entries; its order is taken where a better one would not pay.
+            uses: expected number of factorisations, by which that order competes with a new one.
             backend: who factorises.
 
         Raises:
@@ -131,7 +131,7 @@ class Analysis:
 
 
 class Factorisation:
-    """A = L S L^T with S = diag(+-1), or what does the same.
+    """Factorisation A = L S L^T with S = diag(+-1), or an equivalent one.
 
     Attributes:
         negative: number of negative pivots, which is the number of negative eigenvalues.
@@ -167,7 +167,7 @@ class Factorisation:
 
 
 def factorise(matrix: "csc_array") -> Factorisation:
-    """Factorise one symmetric matrix whose pattern will not come again."""
+    """Factorise one symmetric matrix whose pattern is not used again."""
     return Factorisation(SuperLUFactors(matrix))
 
 
@@ -202,7 +202,7 @@ class SuperLUFactors:
         return self._lu.solve(np.ascontiguousarray(right))
 
     def reduce(self, right: np.ndarray) -> np.ndarray:
-        """The right-hand sides themselves: SuperLU solves no half that is symmetric."""
+        """Right-hand sides themselves: SuperLU solves no half that is symmetric."""
         return right
 
     def inner(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -210,7 +210,7 @@ class SuperLUFactors:
         return one.T @ self.solve(other)
 
     def expand(self, reduced: np.ndarray) -> np.ndarray:
-        """Solution for what was given to `reduce`."""
+        """Solution for the vectors that were given to `reduce`."""
         return self.solve(reduced)
 
 
@@ -221,7 +221,7 @@ def _cheapest_tree(
     points: Nodes | None,
     known: tuple[symbolic.EliminationTree, float, int] | None,
 ) -> tuple[symbolic.EliminationTree, float]:
-    """Supernodes of the best of the orders that we know; of a known order where making others would not pay.
+    """Return the supernodes of the best known elimination order, or of a given order if a search would not pay.
 
     With the modelled time of a factorisation for which the order was found [s].
     """

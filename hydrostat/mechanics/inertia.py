@@ -1,4 +1,4 @@
-"""`InertiaEnergy`: what a step in time pays to leave the way that its nodes fly by themselves."""
+"""`InertiaEnergy`: inertia of the nodes in one time step, as a quadratic potential around their free flight."""
 
 import numpy as np
 from jaxtyping import Float

@@ -42,7 +42,7 @@ def minimise(
         warp: bends steps along arcs; only straight ones without it.
         stiffness: the Hessian at `start` at other controls, such as those at which it is in equilibrium. The first step
             then costs no factorisation: it is the prediction dx/da, bent along arcs.
-        exact: whether `stiffness` is that of `start` to rounding; then it may stand for the Hessian at an end nearby.
+        exact: True if `stiffness` is that of `start` up to rounding; then it may serve as the Hessian at an end nearby.
     """
     return _EnergyDescent(assembly, controls, round_off, options, warp, exact).run(start, stiffness)
 
@@ -152,7 +152,7 @@ class _EnergyDescent:
         return _Trial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
 
     def _advance(self, place: _Iterate, known: Stiffness | None) -> _Iterate | None:
-        """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones.
+        """Take one step with the factors of the last one if that pays, else with `known` ones, else with new ones.
 
         None if there is none; the place itself if it is as near to equilibrium as was asked.
         """
@@ -205,7 +205,7 @@ class _EnergyDescent:
         return stiffness if stiffness.definite else None
 
     def _definite_hessian(self, place: _Iterate) -> Stiffness | None:
-        """The Hessian, or a definite matrix in its place where it is not definite.
+        """Hessian, or a definite matrix in its place where it is not definite.
 
         Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
         drops the whole effect of compression, and Newton creeps for hundreds of steps. So only a share of what is
@@ -230,7 +230,7 @@ class _EnergyDescent:
         return None
 
     def _search(self, place: _Iterate, step: Vector) -> _Iterate | None:
-        """The next place; None if no length of the step lowers the energy.
+        """Next place; None if no length of the step lowers the energy.
 
         Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
         """
@@ -270,7 +270,7 @@ class _EnergyDescent:
         return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
     def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
-        """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
+        """Newton step; if the body alone is stable, it accounts for cables that become slack or taut on the way."""
         if stiffness.body_definite and stiffness.columns.size:
             springs = stiffness.coupling
             if springs.law is not None and springs.elongations is not None:
@@ -281,7 +281,7 @@ class _EnergyDescent:
         return -stiffness.solve(place.gradient)
 
     def _extrapolate(self, place: _Iterate, step: Vector, trial: _Trial) -> _Trial:
-        """A projected Hessian is too stiff, so its step is too short: doubled as long as the energy falls."""
+        """Double a step while the energy falls: a projected Hessian is too stiff, so its step is too short."""
         length = 2.0
         while True:
             longer = self._try(place, length * step)
@@ -291,7 +291,7 @@ class _EnergyDescent:
             length *= 2.0
 
     def _leave_saddle(self, place: _Iterate) -> _Iterate | None:
-        """A place of lower energy along a falling mode; None at a minimum, or where none is found."""
+        """Place of lower energy along a falling mode; None at a minimum, or where none is found."""
         if self.saddles == _SADDLES or self.options.tolerance > _SHARP:
             return None
         stiffness = self._stiffness(place)
@@ -310,7 +310,7 @@ class _EnergyDescent:
         return self._evaluate(*lowest[:4])
 
     def _stiffness(self, place: _Iterate) -> Stiffness:
-        """The Hessian at the end."""
+        """Hessian at the end."""
         if self.last is None or not self.sharp:
             self.last, self.sharp = place.assembly.stiffness(place.nodes, self.controls), True
         return self.last

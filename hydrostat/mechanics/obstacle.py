@@ -53,13 +53,13 @@ class ObstacleEnergy(Energy):
         """Barrier of a body at rest.
 
         Args:
-            mesh: of the body.
+            mesh: mesh of the body.
             field: distance of points from the obstacle, in its frame.
-            distance: at which it begins to be felt [m].
+            distance: distance at which contact forces start [m].
             young: pressure at half that distance: Young's modulus [Pa].
-            thickness: of a flat body [m].
+            thickness: thickness of a flat body [m].
             friction: Coulomb's coefficient mu.
-            carriage: where the unknowns of its frame are; None if it stands still.
+            carriage: unknowns of its frame; None for a static obstacle.
         """
         self.field, self.distance, self.carriage = field, distance, carriage
         self._corners, self.shares, areas = _samples(mesh)
@@ -125,7 +125,7 @@ class ObstacleEnergy(Energy):
         return points
 
     def _located(self, nodes: Nodes) -> tuple[Points, Vector]:
-        """Places of the samples and their distances [m]; those asked for last are kept.
+        """Positions of the samples and their distances [m]; the last result is cached.
 
         Threads may share the energy, so all of what is kept is read and replaced at once.
         """
@@ -136,7 +136,7 @@ class ObstacleEnergy(Energy):
         return seen[1:]
 
     def _felt(self, nodes: Nodes) -> np.ndarray:
-        """Samples that feel the obstacle, or that friction holds."""
+        """Samples in contact with the obstacle, or held by friction."""
         felt = self._located(nodes)[1] < self.distance
         return np.flatnonzero(felt if self.grip is None else felt | (self.grip.limits > 0))
 
@@ -195,7 +195,7 @@ class ObstacleEnergy(Energy):
         """Anchor of each sample in the frame of the obstacle [m], one after another."""
         return np.zeros(0) if self.grip is None else self.grip.anchors.ravel()
 
-    def begun(self, nodes: Nodes) -> "ObstacleEnergy":
+    def with_friction_at_rest(self, nodes: Nodes) -> "ObstacleEnergy":
         """Return this energy with friction springs in their rest state."""
         return (
             self._gripping(ObstacleFriction.at_rest(*self._friction, self.places(nodes))) if self.has_history else self
@@ -205,7 +205,7 @@ class ObstacleEnergy(Energy):
         if self.grip is None:
             return self
         still = replace(self.grip, anchors=history.reshape(self.grip.anchors.shape))
-        return self._gripping(still.asked(*self._pushes(nodes)))
+        return self._gripping(still.with_normal_forces(*self._pushes(nodes)))
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
         if self.grip is None:
@@ -213,7 +213,7 @@ class ObstacleEnergy(Energy):
         some = self._felt(nodes)
         places, grip = self._located(nodes)[0][some], self.grip.only(some)
         pushes, normals = self._pushes(nodes)
-        asked = grip.asked(pushes[some], normals[some])
+        asked = grip.with_normal_forces(pushes[some], normals[some])
         return float(np.abs(asked.forces(places) - grip.forces(places)).max(initial=0.0))
 
     def with_corrected_history(
@@ -221,7 +221,10 @@ class ObstacleEnergy(Energy):
     ) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        places, grip = self._located(nodes)[0], self.grip.judged(self.history_residual(nodes, controls))
+        places, grip = (
+            self._located(nodes)[0],
+            self.grip.with_adapted_relaxation(self.history_residual(nodes, controls)),
+        )
         slips = np.flatnonzero(grip.slipping(places))
         pushes, normals = self._pushes(nodes)
         if response is None or not len(slips):
@@ -231,7 +234,7 @@ class ObstacleEnergy(Energy):
         ways = grip.only(slips).directions(places[slips])
         by_push, by_limit = (self._columns(nodes, slips, rows) for rows in (rises, ways))
         moves = -grip.friction * (by_push.T @ response(by_limit))
-        return self._gripping(grip.stepped(pushes, normals, slips, moves))
+        return self._gripping(grip.with_newton_step(pushes, normals, slips, moves))
 
     def _columns(self, nodes: Nodes, some: np.ndarray, rows: Points) -> Float[np.ndarray, "dofs some"]:
         """Slopes by all degrees of freedom of numbers with these slopes by the place of one sample each."""
@@ -248,7 +251,7 @@ class ObstacleEnergy(Energy):
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        return self._gripping(self.grip.asked(*self._pushes(nodes)).slipped(self._located(nodes)[0]))
+        return self._gripping(self.grip.with_normal_forces(*self._pushes(nodes)).drag_anchors(self._located(nodes)[0]))
 
     def _gripping(self, grip: ObstacleFriction) -> "ObstacleEnergy":
         other = copy(self)
@@ -274,7 +277,7 @@ class ObstacleEnergy(Energy):
         return np.concatenate([by_corner, by_place, by_axes], axis=2)
 
     def _speeds(self, nodes: Nodes, move: Nodes) -> Vector:
-        """Bound of how far each sample goes in the frame while the unknowns make a straight move [m]."""
+        """Bound of each sample's displacement in the obstacle's frame for a straight move of the unknowns [m]."""
         way = self._points(move)
         if self.carriage is None:
             return lengths_of(way)
@@ -310,7 +313,7 @@ class ObstacleEnergy(Energy):
         return one, two
 
     def _blocks(self, nodes: Nodes, some: np.ndarray, share: float) -> HessianBlocks:
-        """Hessian of some terms, with a share of what is negative taken out."""
+        """Hessian of some terms without a share of its negative part."""
         places = self._located(nodes)[0][some]
         found = self.field(places)
         slope, curve = self._derivatives(found, self.weights[some])

@@ -1,4 +1,4 @@
-"""`ObstacleFriction`: Coulomb friction of many samples on a rigid thing, by anchored springs along its surface."""
+"""`ObstacleFriction`: Coulomb friction of samples on a rigid obstacle, by anchored springs along its surface."""
 
 from dataclasses import dataclass, replace
 
@@ -16,7 +16,7 @@ class ObstacleFriction:
 
     Positions are in the frame of the obstacle, so anchors move with it. During a minimization normals and limits are
     fixed: then the springs have a potential, Huber's function of the displacement along the surface.
-    `with_corrected_history` updates limits and normals for the shape found; `slipped` moves the anchors.
+    `with_corrected_history` updates limits and normals for the shape found; `drag_anchors` moves the anchors.
 
     Attributes:
         friction: Coulomb friction coefficient mu.
@@ -50,7 +50,7 @@ class ObstacleFriction:
         )
 
     def only(self, some: np.ndarray) -> "ObstacleFriction":
-        """The springs of some samples."""
+        """Springs of some samples."""
         parts = (self.springs, self.anchors, self.normals, self.limits)
         springs, anchors, normals, limits = (part[some] for part in parts)
         return ObstacleFriction(
@@ -87,7 +87,7 @@ class ObstacleFriction:
         along = np.where(slips, secants, 0.0)[:, None, None] * (units[:, :, None] * units[:, None, :])
         return secants[:, None, None] * across - along
 
-    def asked(self, pushes: Vector, normals: Points) -> "ObstacleFriction":
+    def with_normal_forces(self, pushes: Vector, normals: Points) -> "ObstacleFriction":
         """Return this state with the limits and normals that belong to these normal forces [N]."""
         return replace(self, limits=self.friction * pushes, normals=normals, trail=(), share=1.0, missed=np.inf)
 
@@ -101,11 +101,11 @@ class ObstacleFriction:
         return (self.limits > 0) & (self.springs * self.ways(places)[1] >= (1.0 - _HAIR) * self.limits)
 
     def directions(self, places: Points) -> Points:
-        """Unit vectors along the ways from the anchors."""
+        """Unit vectors from the anchors to the samples, along the surface."""
         spans, lengths = self.ways(places)
         return spans / np.where(lengths > 0, lengths, 1.0)[:, None]
 
-    def stepped(
+    def with_newton_step(
         self,
         pushes: Vector,
         normals: Points,
@@ -126,12 +126,12 @@ class ObstacleFriction:
         limits[slips] = np.clip(self.limits[slips] + step, 0.0, _MOST * np.maximum(self.limits, wanted)[slips])
         return replace(self, limits=limits, normals=normals, trail=())
 
-    def judged(self, missed: float) -> "ObstacleFriction":
+    def with_adapted_relaxation(self, missed: float) -> "ObstacleFriction":
         """Return this state with its relaxation factor adapted to the error of a correction [N]."""
         share = max(0.5 * self.share, _LEAST) if missed > _FALLS * self.missed else min(2.0 * self.share, 1.0)
         return replace(self, share=share, missed=missed)
 
-    def slipped(self, places: Points) -> "ObstacleFriction":
+    def drag_anchors(self, places: Points) -> "ObstacleFriction":
         """Return this state with anchors dragged to where the springs pull no harder than the limits."""
         spans, lengths = self.ways(places)
         held = np.where(self.limits > 0, self._secants(lengths) / self.springs, 0.0)

@@ -40,7 +40,7 @@ class PatchVolume(Energy):
             elements: all elements of the body.
             patches: index of the patch of each element, counted from 0 without gaps.
             lame: Lame's first parameter, lambda [Pa].
-            thickness: of a flat body [m]; leave it out in space.
+            thickness: thickness of a flat body [m]; leave it out in space.
         """
         shape = NeoHookean(nodes, elements, mu=0.0, lame=0.0, thickness=thickness)
         order = np.argsort(patches, kind="stable")

@@ -21,7 +21,7 @@ def grow_patches(elements: Elements, size: int) -> Int[np.ndarray, " elements"]:
 
 
 class _Growth:
-    """The patches while they grow."""
+    """Patches while they grow."""
 
     def __init__(self, elements: Elements, size: int) -> None:
         self.corners = [frozenset(element) for element in elements.tolist()]
@@ -46,7 +46,7 @@ class _Growth:
         return np.unique(self.patch, return_inverse=True)[1]
 
     def _grow(self, seed: int) -> None:
-        """A new patch about a free element."""
+        """New patch about a free element."""
         self.nodes.append(set())
         self.members.append([])
         reach = {seed}
@@ -83,7 +83,7 @@ class _Growth:
 
 
 def _across_faces(elements: Elements) -> list[list[int]]:
-    """The elements that share a face with each."""
+    """Elements that share a face with each."""
     faces = defaultdict(list)
     for index, element in enumerate(np.sort(elements, axis=1).tolist()):
         for face in combinations(element, len(element) - 1):

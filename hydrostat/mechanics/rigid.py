@@ -1,4 +1,4 @@
-"""`RigidBodyDofs`, `RigidEnergy`, `GuideEnergy`: a rigid thing that moves, as a few rows more of the unknowns."""
+"""`RigidBodyDofs`, `RigidEnergy`, `GuideEnergy`: a moving rigid body, as a few extra rows of the unknowns."""
 
 from copy import copy
 from typing import ClassVar, NamedTuple
@@ -44,17 +44,17 @@ class RigidBodyDofs(NamedTuple):
         return unknowns[self.rows[1:]] / self.length
 
     def unknowns(self, place: Vector, axes: Matrix) -> Points:
-        """Rows of a thing at a place [m] with these axes."""
+        """Rows of a body at a position [m] with these axes."""
         return np.vstack([place, self.length * axes])
 
 
 class RigidEnergy(Energy):
-    """Stiffness/4 |A A^T - I|^2: what keeps the axes A of a thing a rotation."""
+    """Stiffness/4 |A A^T - I|^2: penalty that keeps the axes A of a body a rotation."""
 
     convex: ClassVar[bool] = False
 
     def __init__(self, carriage: RigidBodyDofs, stiffness: float) -> None:
-        """The axes of a carriage are held by a stiffness [J]."""
+        """Take the unknowns of a body and the stiffness that holds its axes [J]."""
         self.carriage, self.stiffness = carriage, stiffness
         self.stencils = carriage.rows[None, 1:]
 
@@ -84,7 +84,7 @@ class RigidEnergy(Energy):
 
 
 class GuideEnergy(Energy):
-    """Springs that hold a rigid thing that moves to a place, and to a rotation."""
+    """Springs that hold a moving rigid body at a position and in an orientation."""
 
     quadratic: ClassVar[bool] = True
 
@@ -92,9 +92,9 @@ class GuideEnergy(Energy):
         """Springs to a place [m] and to axes.
 
         Args:
-            carriage: of the thing.
-            place: to which its origin is held [m].
-            axes: to which its axes are held.
+            carriage: unknowns of the object.
+            place: position at which its origin is held [m].
+            axes: orientation in which its axes are held.
             along: stiffness of what holds its place [N/m], (dim, dim), positive semidefinite.
             turning: stiffness of what holds its axes [N/m], each at the length of the carriage from its place.
         """
@@ -105,14 +105,14 @@ class GuideEnergy(Energy):
         self.targets = carriage.unknowns(place, axes)
         self.stiffest = float(np.abs(self.stiffness).max())
 
-    def moved(self, place: Vector, axes: Matrix) -> "GuideEnergy":
+    def with_target(self, place: Vector, axes: Matrix) -> "GuideEnergy":
         """Return the same springs to another position [m] and other axes."""
         other = copy(self)
         other.targets = self.carriage.unknowns(place, axes)
         return other
 
     def pull(self, nodes: Nodes) -> Vector:
-        """Force of the springs on the place of the thing [N]."""
+        """Force of the springs on the origin of the body [N]."""
         return -self._forces(nodes)[0]
 
     def _forces(self, nodes: Nodes) -> Points:
@@ -132,10 +132,10 @@ class GuideEnergy(Energy):
 
 
 class CarriedWarp:
-    """Steps of a body along arcs, and of rigid things: their axes make the turn that a step begins."""
+    """Steps along arcs for a soft body and for rigid bodies, whose axes rotate with the initial spin of the step."""
 
     def __init__(self, body: Bend, count: int, carriages: tuple[RigidBodyDofs, ...]) -> None:
-        """Steps of a body with so many nodes, and of the things whose rows follow."""
+        """Take the warp of a soft body, its number of nodes, and the rigid bodies whose rows follow."""
         self._body, self._count, self._carriages = body, count, carriages
 
     def __call__(self, nodes: Nodes, step: Nodes) -> Nodes:

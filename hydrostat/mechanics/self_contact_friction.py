@@ -78,7 +78,7 @@ class FacetPoints(NamedTuple):
     facets: Int[np.ndarray, " own"]
     weights: Float[np.ndarray, "own dim"]
 
-    def changed(self, some: Bool[np.ndarray, " own"], others: "FacetPoints") -> "FacetPoints":
+    def with_points_replaced(self, some: Bool[np.ndarray, " own"], others: "FacetPoints") -> "FacetPoints":
         """Return these points with some of them replaced."""
         return FacetPoints(
             np.where(some, others.facets, self.facets), np.where(some[:, None], others.weights, self.weights)
@@ -91,7 +91,7 @@ class SelfContactFriction:
 
     The point moves with the body. The `ObstacleFriction` sees as the place of a node the way from the point to the
     node. The spring pulls at the node and at what is beside it, which while energy is minimised is a certain point of
-    the part opposite; `seated` brings it where it belongs.
+    the part opposite; `attach_springs` brings it where it belongs.
 
     Attributes:
         skin: boundary data shared by all states.
@@ -115,7 +115,7 @@ class SelfContactFriction:
         """Return the friction state without normal forces.
 
         Args:
-            skin: of the body.
+            skin: boundary data of the body.
             rest: nodes [m].
             friction: mu of each side.
             springs: stiffness of each node [N/m].
@@ -126,30 +126,34 @@ class SelfContactFriction:
         return cls(skin=skin, anchors=none, beside=none, offsets=still, grip=grip, before=rest)
 
     @cached_property
-    def held(self) -> Whole:
+    def touching_nodes(self) -> Whole:
         """Nodes that have a point of an opposite facet, as indices among the boundary nodes."""
         return np.flatnonzero(self.beside.facets >= 0)
 
     @cached_property
     def stencils(self) -> Stencils:
-        """A row for each: the node, then the corners of the facet that it is beside."""
-        facets = self.skin.facets[self.beside.facets[self.held]]
-        return np.concatenate([self.skin.own[self.held, None], facets], axis=1)
+        """Stencil of each touching node: the node, then the corners of the opposite facet."""
+        facets = self.skin.facets[self.beside.facets[self.touching_nodes]]
+        return np.concatenate([self.skin.own[self.touching_nodes, None], facets], axis=1)
 
     @cached_property
     def shares(self) -> Float[np.ndarray, "held corners"]:
-        """Their shares in the way from the anchor to the node."""
-        return np.concatenate([np.ones((len(self.held), 1)), -self.beside.weights[self.held]], axis=1)
+        """Weights of each stencil's nodes in the displacement from the anchor to the node."""
+        return np.concatenate(
+            [np.ones((len(self.touching_nodes), 1)), -self.beside.weights[self.touching_nodes]], axis=1
+        )
 
     def places(self, nodes: Nodes) -> Ways:
-        """Way from the anchor to each node of the boundary [m]; 0 where there is none."""
+        """Displacement from the anchor to each boundary node [m]; 0 without an anchor."""
         places = np.zeros_like(self.offsets)
-        places[self.held] = np.einsum("tc,tcd->td", self.shares, nodes[self.stencils]) + self.offsets[self.held]
+        places[self.touching_nodes] = (
+            np.einsum("tc,tcd->td", self.shares, nodes[self.stencils]) + self.offsets[self.touching_nodes]
+        )
         return places
 
     def blocks(self, nodes: Nodes) -> Float[np.ndarray, "held corners dim"]:
         """Slope of the energy by the nodes of each row of the stencils [N]."""
-        return self.shares[:, :, None] * self.grip.forces(self.places(nodes))[self.held, None, :]
+        return self.shares[:, :, None] * self.grip.forces(self.places(nodes))[self.touching_nodes, None, :]
 
     def forces(self, nodes: Nodes) -> Nodes:
         """Slope of the energy by all nodes [N]."""
@@ -161,7 +165,7 @@ class SelfContactFriction:
         """Return this state with other springs."""
         return replace(self, grip=grip)
 
-    def seated(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> "SelfContactFriction":
+    def attach_springs(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> "SelfContactFriction":
         """Return this state with its springs attached to the facets opposite the nodes at a given shape.
 
         A node that was not pushed before sticks to the point that was beside it where the increment began, or now if
@@ -169,22 +173,24 @@ class SelfContactFriction:
 
         Args:
             nodes: the shape [m].
-            pairs: that are felt there.
+            pairs: active contact pairs at that shape.
             pushes: normal force on each node of the boundary [N].
             normals: its direction.
         """
-        anchors, grip = self._anchored(nodes, pairs, pushes, normals), self.grip.asked(pushes, normals)
+        anchors, grip = self._anchored(nodes, pairs, pushes, normals), self.grip.with_normal_forces(pushes, normals)
         held = (pushes > 0) & (anchors.facets >= 0)
         points = self._positions(nodes, anchors)
         places = np.where(held[:, None], nodes[self.skin.own] - points, 0.0)
-        left = places - grip.slipped(places).anchors
+        left = places - grip.drag_anchors(places).anchors
         drags = held & (np.linalg.norm(left, axis=1) < (1.0 - _ROUNDING) * grip.ways(places)[1])
         dragged = self._nearest(nodes, pairs, drags, left, normals)
-        beside = anchors.changed(drags & (dragged.facets >= 0), dragged).changed(~held, self._none)
+        beside = anchors.with_points_replaced(drags & (dragged.facets >= 0), dragged).with_points_replaced(
+            ~held, self._none
+        )
         offsets = np.where(held[:, None], self._positions(nodes, beside) - points, 0.0)
         return replace(self, anchors=anchors, beside=beside, offsets=offsets)
 
-    def slipped(self, nodes: Nodes) -> "SelfContactFriction":
+    def drag_anchors(self, nodes: Nodes) -> "SelfContactFriction":
         """Return the state after a shape: anchors are dragged along, and nodes without normal force have no anchor.
 
         Args:
@@ -211,7 +217,7 @@ class SelfContactFriction:
         earlier = _beside(self.before[self.skin.facets[beside.facets[new]]], self.before[self.skin.own[new]])
         near = (np.abs(earlier - 0.5) < _BEYOND).all(axis=1, keepdims=True)
         beside.weights[new] = np.where(near, earlier, beside.weights[new])
-        return self.anchors.changed(beside.facets >= 0, beside)
+        return self.anchors.with_points_replaced(beside.facets >= 0, beside)
 
     def _nearest(
         self, nodes: Nodes, pairs: Pairs, some: Bool[np.ndarray, " own"], spans: Ways, normals: Ways
@@ -238,7 +244,7 @@ class SelfContactFriction:
 
 
 def _beside(corners: Float[np.ndarray, "some dim dim"], points: Ways) -> Float[np.ndarray, "some dim"]:
-    """Weights at the corners of facets of what is nearest a point each in their planes."""
+    """Barycentric weights, at the corners of facets, of the points of their planes nearest to given points."""
     spans = corners[:, 1:] - corners[:, :1]
     squares = np.einsum("tak,tbk->tab", spans, spans)
     along = np.einsum("tak,tk->ta", spans, points - corners[:, 0])[:, :, None]

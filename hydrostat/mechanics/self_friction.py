@@ -1,4 +1,4 @@
-"""`SelfFrictionEnergy`: a body does not pass through itself, and its parts rub on one another."""
+"""`SelfFrictionEnergy`: self-contact with Coulomb friction."""
 
 from dataclasses import replace
 from typing import ClassVar
@@ -27,7 +27,7 @@ class SelfFrictionEnergy(Energy):
     has_history = True
 
     def __init__(self, contact: ContactEnergy, clasp: SelfContactFriction) -> None:
-        """Barriers, and what sticks to what."""
+        """Take the contact energy and the friction state."""
         self.contact, self.clasp = contact, clasp
         self.stencils = np.concatenate([contact.stencils, clasp.stencils])
 
@@ -36,8 +36,8 @@ class SelfFrictionEnergy(Energy):
         """Contact of a body at rest with friction; nothing touches yet.
 
         Args:
-            mesh: of the body.
-            contact: of the body with itself.
+            mesh: mesh of the body.
+            contact: self-contact energy of the body.
             friction: Coulomb's coefficient mu.
         """
         skin = SelfContactSurface.of(mesh, contact.skin.distance)
@@ -55,7 +55,7 @@ class SelfFrictionEnergy(Energy):
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         clasp, size = self.clasp, self.stencils.shape[1] * nodes.shape[1]
-        inner = clasp.grip.only(clasp.held).stiffness(clasp.places(nodes)[clasp.held])
+        inner = clasp.grip.only(clasp.touching_nodes).stiffness(clasp.places(nodes)[clasp.touching_nodes])
         blocks = np.einsum("ta,tb,tij->taibj", clasp.shares, clasp.shares, inner).reshape(-1, size, size)
         return np.concatenate([self.contact.projected_hessian(nodes, controls, share), blocks])
 
@@ -88,21 +88,21 @@ class SelfFrictionEnergy(Energy):
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> "SelfFrictionEnergy":
         pushes, normals = self._pushes(nodes)
-        clasp = self.clasp.seated(nodes, self._felt(nodes), pushes, normals)
-        places, grip = clasp.places(nodes), clasp.grip.judged(self.history_residual(nodes, controls))
-        slips = np.flatnonzero(grip.slipping(places) | grip.asked(pushes, normals).slipping(places))
+        clasp = self.clasp.attach_springs(nodes, self._felt(nodes), pushes, normals)
+        places, grip = clasp.places(nodes), clasp.grip.with_adapted_relaxation(self.history_residual(nodes, controls))
+        slips = np.flatnonzero(grip.slipping(places) | grip.with_normal_forces(pushes, normals).slipping(places))
         if response is None or not len(slips):
             return self._with(self.contact, clasp.with_grip(grip.with_corrected_history(pushes, normals)))
         rises = self._rises(nodes, slips, normals[slips])
         drags = _drags(clasp, nodes, slips, grip.only(slips).directions(places[slips]))
         moves = -grip.friction * (rises.T @ response(drags))
-        return self._with(self.contact, clasp.with_grip(grip.stepped(pushes, normals, slips, moves)))
+        return self._with(self.contact, clasp.with_grip(grip.with_newton_step(pushes, normals, slips, moves)))
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "SelfFrictionEnergy":
-        return self._with(self.contact, self._asked(nodes).clasp.slipped(nodes))
+        return self._with(self.contact, self._asked(nodes).clasp.drag_anchors(nodes))
 
     def _with(self, contact: ContactEnergy, clasp: SelfContactFriction) -> "SelfFrictionEnergy":
-        """Another state; the pattern of its Hessian is known where its stencils are the same."""
+        """Return another state; it reuses the pattern of its Hessian if the stencils are the same."""
         other = SelfFrictionEnergy(contact, clasp)
         if np.array_equal(other.stencils, self.stencils):
             other.stencils = self.stencils
@@ -111,8 +111,8 @@ class SelfFrictionEnergy(Energy):
     def _asked(self, nodes: Nodes) -> "SelfFrictionEnergy":
         """Return this energy with the limits that belong to a shape."""
         pushes, normals = self._pushes(nodes)
-        clasp = self.clasp.seated(nodes, self._felt(nodes), pushes, normals)
-        return self._with(self.contact, clasp.with_grip(clasp.grip.asked(pushes, normals)))
+        clasp = self.clasp.attach_springs(nodes, self._felt(nodes), pushes, normals)
+        return self._with(self.contact, clasp.with_grip(clasp.grip.with_normal_forces(pushes, normals)))
 
     def _pushes(self, nodes: Nodes) -> tuple[Vector, Points]:
         """Force of other parts on each node of the boundary [N], and its direction."""
@@ -124,9 +124,9 @@ class SelfFrictionEnergy(Energy):
         return pushes, np.where(pushes > 0, 1.0 / np.where(pushes > 0, pushes, 1.0), 0.0)[:, None] * forces
 
     def _felt(self, nodes: Nodes) -> Pairs:
-        """Pairs that are felt."""
+        """Active contact pairs."""
         skin, pairs = self.contact.skin, self.contact.pairs
-        return pairs.only(skin.squared(nodes, pairs) < skin.begins(pairs))
+        return pairs.only(skin.compute_squared_distances(nodes, pairs) < skin.begins(pairs))
 
     def _rises(self, nodes: Nodes, some: Int[np.ndarray, " some"], normals: Points) -> Float[np.ndarray, "dofs some"]:
         """Slopes of the forces on some nodes of the boundary along their normals by all degrees of freedom [N/m]."""
@@ -147,9 +147,9 @@ class SelfFrictionEnergy(Energy):
 def _drags(
     clasp: SelfContactFriction, nodes: Nodes, some: Int[np.ndarray, " some"], ways: Points
 ) -> Float[np.ndarray, "dofs some"]:
-    """Slopes of the way of some nodes from their points, along directions, by all degrees of freedom."""
+    """Derivatives of the displacements of some nodes from their points, along directions, by all degrees of freedom."""
     columns = np.zeros((*nodes.shape, len(some)))
-    rows = np.searchsorted(clasp.held, some)
+    rows = np.searchsorted(clasp.touching_nodes, some)
     blocks = clasp.shares[rows][:, :, None] * ways[:, None, :]
     for corner in range(clasp.stencils.shape[1]):
         columns[clasp.stencils[rows, corner], :, np.arange(len(some))] += blocks[:, corner]

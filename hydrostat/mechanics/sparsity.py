@@ -34,11 +34,11 @@ class SparsityPattern:
         self.rest, self._base = rest, base
         self._passing = False
 
-    def extended(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
+    def with_added_stencils(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
         """Pattern of these stencils behind those of this one."""
         return SparsityPattern([*self.stencils, *stencils], self.rest, base=self)
 
-    def changed(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
+    def with_replaced_stencils(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
         """Pattern of other stencils and all pairs of the last settled one; its analysis too, if no pair comes."""
         base = self._base if self._passing and self._base is not None else self
         other = SparsityPattern(stencils, self.rest, base=base)
@@ -46,7 +46,7 @@ class SparsityPattern:
         return other
 
     def settle(self) -> None:
-        """Find what factorisations need of a pattern of terms that come and go; then it keeps no other pattern."""
+        """Prepare the factorisation of a pattern whose terms come and go; then it keeps no other pattern."""
         if self._base is not None and self._passing:
             _ = self.analysis, self._places
             self._base = None

@@ -81,7 +81,7 @@ class Stiffness:
 
     @cached_property
     def moves(self) -> LowRankBasis:
-        """Z [m/N]: how the nodes move when a cable pulls by 1 N more."""
+        """Z [m/N]: displacement of the nodes per newton of extra cable force."""
         return self.factors.expand(self._reduced) if self.columns.size else self.columns
 
     def compliance_to(self, columns: LowRankBasis) -> Compliance:

@@ -43,7 +43,7 @@ LARGE = 0.2
 def plan(
     tree: EliminationTree, indptr: np.ndarray, indices: np.ndarray, dim: int
 ) -> tuple[Fronts, np.ndarray, np.ndarray]:
-    """The fronts of a tree, the places of the degrees of freedom in the order, and the sizes of the two stacks."""
+    """Fronts of a tree, the places of the degrees of freedom in the order, and the sizes of the two stacks."""
     place = np.empty(len(tree.order) * dim, np.int64)
     place[(tree.order[:, None] * dim + np.arange(dim)).ravel()] = np.arange(len(place))
     rows = (tree.rows[:, None] * dim + np.arange(dim)).ravel()
@@ -82,7 +82,7 @@ class _IdleArrays:
         self._arrays: list[np.ndarray] = []
 
     def take(self, size: int) -> np.ndarray:
-        """An array of this size, with whatever stands in it."""
+        """Return an uninitialised array of this size."""
         try:  # one step that threads cannot share
             return self._arrays.pop()
         except IndexError:

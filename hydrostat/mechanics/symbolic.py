@@ -52,7 +52,7 @@ def front_seconds(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 
 def supernodes(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray, dim: int) -> EliminationTree:
-    """The supernodes of eliminating a graph in a given order."""
+    """Supernodes of eliminating a graph in a given order."""
     order = order[_postordered(_elimination(starts, neighbours, order))]
     parent = _elimination(starts, neighbours, order)
     count = np.ones(len(order), np.int64)
@@ -74,14 +74,14 @@ def children(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _inverse(order: np.ndarray) -> np.ndarray:
-    """The place of each node in an order."""
+    """Place of each node in an order."""
     place = np.empty(len(order), np.int64)
     place[order] = np.arange(len(order))
     return place
 
 
 def _elimination(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray) -> np.ndarray:
-    """The elimination tree: parent of each place in the order; -1 at a root."""
+    """Elimination tree: parent of each place in the order; -1 at a root."""
     parent, ancestor = np.full(len(order), -1), np.full(len(order), -1)
     native.elimination_tree(starts, neighbours, order, _inverse(order), parent, ancestor)
     return parent
@@ -96,7 +96,7 @@ def _postordered(parent: np.ndarray) -> np.ndarray:
 
 
 def _fundamental(parent: np.ndarray, count: np.ndarray) -> np.ndarray:
-    """The last node of the supernode of each node: chains without a branch whose columns have the same rows."""
+    """Last node of the supernode of each node: chains without a branch whose columns have the same rows."""
     nodes = np.arange(len(parent))
     only = np.bincount(parent[parent >= 0], minlength=len(parent)) == 1
     last = np.ones(len(parent), bool)

@@ -46,7 +46,7 @@ class TensionLaw:
         return found
 
     def elongation(self, tension: Vector) -> Vector:
-        """The elongation [m] at which a taut cable has this tension > 0 [N]."""
+        """Elongation [m] at which a taut cable has this tension > 0 [N]."""
         k, eps = self.stiffness, self.smoothing
         share = np.maximum(tension, 0.0) / k
         return np.where(share > eps, share + eps, 2 * np.sqrt(eps * share))
@@ -58,7 +58,7 @@ class TensionLaw:
         function of one number a cable. This knows, as a linear law does not, that a slack cable does not push.
 
         Args:
-            elongations: of each cable on a body that does not yet feel them [m].
+            elongations: elongation of each cable on the body before it deforms under them [m].
             compliance: positive semidefinite, (cables, cables) [m/N].
         """
         tensions = np.zeros_like(elongations)

@@ -1,4 +1,4 @@
-"""`TimeScheme`: how a step in time is made of minimisations."""
+"""`TimeScheme`: time integration as a sequence of minimisations."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 @dataclass(frozen=True, kw_only=True)
 class TimeScheme:
-    """A diagonally implicit Runge-Kutta method whose last stage is its end.
+    """Diagonally implicit Runge-Kutta method whose last stage is its end.
 
     Stage i of a step h of y' = f(y) solves y_i = b_i + h a_ii f(y_i), b_i = y_n + h sum over j < i of a_ij f(y_j). With
     forces that have a potential each stage is a minimisation, like a step of implicit Euler; and as the end of the

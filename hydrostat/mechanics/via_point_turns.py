@@ -1,4 +1,4 @@
-"""`ViaPointTurns`: where and how far cables turn."""
+"""`ViaPointTurns`: turning angles of cables at their via points."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""`MaxwellBranches`: the viscous branches of a material; `ViscousEnergy`: what they do to one step in time."""
+"""`MaxwellBranches`: viscous branches of a material; `ViscousEnergy`: their potential in one time step."""
 
 from typing import ClassVar
 
@@ -55,13 +55,13 @@ class ViscousEnergy(Energy):
         return self._solid.projected_hessian(self._apart(nodes), controls, share)
 
     def _apart(self, nodes: Nodes) -> Float[np.ndarray, "apart dim"]:
-        """The corners of each element for themselves."""
+        """Corners of each element for themselves."""
         corners = nodes[self.stencils]
         return (corners - corners[:, :1]).reshape(-1, nodes.shape[1])
 
 
 class MaxwellBranches:
-    """Branches of springs behind dashpots beside an elastic body: a transient network (Linder 2011).
+    """Maxwell branches (spring and dashpot in series) parallel to an elastic body: a transient network (Linder 2011).
 
     Each branch stores mu/2 (tr(A C) - dim - ln det(A C)), C = F^T F, in a metric A that follows the body:
     dA/dt = (C^-1 - A) / tau, so its stress is S = mu (A - C^-1), and it loses energy whenever A differs from C^-1. With
@@ -80,11 +80,11 @@ class MaxwellBranches:
     def __len__(self) -> int:
         return len(self.times)
 
-    def settled(self, nodes: Nodes) -> Metrics:
+    def relax_fully(self, nodes: Nodes) -> Metrics:
         """Return the metrics of fully relaxed branches with the body at `nodes`."""
         return np.repeat(self._inverse(nodes)[None], len(self), axis=0)
 
-    def stored(self, metrics: Metrics, nodes: Nodes) -> float:
+    def compute_stored_energy(self, metrics: Metrics, nodes: Nodes) -> float:
         """Elastic energy stored in the springs of all branches [J]."""
         total = 0.0
         gradients = self._body.deformation_gradients(nodes) if self.times.any() else np.zeros(0)
@@ -105,14 +105,14 @@ class MaxwellBranches:
         return float((self.viscosities / (self.times + step)).sum())
 
     def energy(self, metrics: Metrics, step: float) -> ViscousEnergy:
-        """The potential of an implicit step [s] from these metrics."""
+        """Potential of an implicit step [s] from these metrics."""
         weights = self.viscosities / (self.times + step)
         mean = np.tensordot(weights / weights.sum(), metrics, axes=1)
         return ViscousEnergy(
             self._nodes, self._body.stencils, volumes=self._body.volumes, metrics=mean, modulus=float(weights.sum())
         )
 
-    def relaxed(self, metrics: Metrics, nodes: Nodes, step: float) -> Metrics:
+    def relax_step(self, metrics: Metrics, nodes: Nodes, step: float) -> Metrics:
         """Metrics after an implicit step [s] that ends at `nodes`."""
         if not len(self):
             return metrics

@@ -44,10 +44,10 @@ def pose_stops(reached: Iterable[IKResult]) -> list[Stop]:
     """A stop for each pose that inverse kinematics found."""
     return [
         Stop(
-            name=shorten(found.wanted.name),
+            name=shorten(found.pose_target.name),
             contractions=found.pose.contractions,
-            target=found.wanted,
-            words=f"{shorten(found.wanted.name)}: marker error {MILLIMETRES * found.rms_error:.1f} mm rms",
+            target=found.pose_target,
+            words=f"{shorten(found.pose_target.name)}: marker error {MILLIMETRES * found.rms_error:.1f} mm rms",
         )
         for found in reached
     ]

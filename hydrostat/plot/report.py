@@ -98,7 +98,7 @@ def _portraits(network: Network) -> Html:
         _portrait(robot, reached.pose.nodes, frame, f"hero-pose-{index}", "In a pose")
         for index, reached in enumerate(shown)
     ]
-    names = [reached.wanted.name for reached in shown]
+    names = [reached.pose_target.name for reached in shown]
     if rest.shape[1] == 3:
         pictures = [captioned(picture, name, HOW) for picture, name in zip(posed, names, strict=True)]
         kind = "grid" if len(pictures) == 1 else "grid small"
@@ -109,7 +109,7 @@ def _portraits(network: Network) -> Html:
         "div",
         captioned(still, "At rest", ", as it is sewn"),
         captioned(posed[0], names[0], HOW, kind="still"),
-        captioned(moving, ", ".join(reached.wanted.name for reached in network.reached), HOW, kind="moving"),
+        captioned(moving, ", ".join(reached.pose_target.name for reached in network.reached), HOW, kind="moving"),
         class_="grid",
     )
 

@@ -52,7 +52,7 @@ def chapters(network: Network) -> list[Html]:
     """All chapters, numbered in their order: what was asked, how the network came about, what it reaches."""
     trace = network.trace
     way = muscle_chapters(network, trace) if isinstance(trace, TreeTrace) else growth_chapters(network, trace)
-    targets = target_chapter(network.robot, [reached.wanted for reached in network.reached])
+    targets = target_chapter(network.robot, [reached.pose_target for reached in network.reached])
     poses = [reached_part(network.robot, reached, index) for index, reached in enumerate(network.reached)]
     told = [_body(network.robot), targets, *way, _network(network), Chapter(*REACHED, poses)]
     told += filled_chapters(network)
@@ -126,7 +126,7 @@ def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> H
         "Cables": tension_table(robot, reached),
     }
     numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
-    shown = picture(figure, f"reached-{index}", reached.wanted.name, note)
+    shown = picture(figure, f"reached-{index}", reached.pose_target.name, note)
     minded = filter(None, (*reached.pose.warnings, unconstrained_motion(reached)))
     told = [tag("div", tag("b", "Mind: "), words, class_="note") for words in minded]
     return tag("div", shown, tag("div", *numbers, *told, *notes), class_="pose")

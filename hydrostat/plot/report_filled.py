@@ -4,8 +4,8 @@ from hydrostat.design import FilledReach, Network, out_of_plane
 from hydrostat.drawing import Html, tag
 from hydrostat.errors import HydrostatError
 from hydrostat.plot.report_tables import Chapter, millimetres, table
-from hydrostat.robot import face_words
-from hydrostat.simulation import filled_motion, quickly_filled
+from hydrostat.robot import describe_cable_side
+from hydrostat.simulation import filled_motion, is_filled_motion_fast
 from hydrostat.units import plural
 
 HEAD = "Once it is filled"
@@ -13,7 +13,7 @@ HEAD = "Once it is filled"
 
 def filled_chapters(network: Network) -> list[Chapter]:
     """A chapter on the filled body of a flat robot; nothing for one in space."""
-    where = face_words(network.robot)
+    where = describe_cable_side(network.robot)
     if not where:
         return []
     words = (
@@ -30,7 +30,7 @@ def _played(network: Network) -> str:
     pulled = [reached.pose.contractions for reached in network.reached]
     if network.robot.body.outline is None:
         return "How far it leaves the plane is told of drawings only, and this body is a mesh."
-    if not quickly_filled(network.robot, len(pulled)):
+    if not is_filled_motion_fast(network.robot, len(pulled)):
         return "How far it leaves the plane takes long to find here: hydrostat check ROBOT --filled tells it."
     try:
         found = filled_motion(network.robot, pulled)
@@ -43,7 +43,7 @@ def _judged(network: Network, filled: FilledReach) -> Html:
     """Return a table of the pose errors on the stuffed 3D body, by commands that were found there [mm]."""
     rows = [
         (
-            pose.wanted.name,
+            pose.pose_target.name,
             millimetres(flat.rms_error),
             millimetres(pose.rms_error),
             f"{1e3 * out_of_plane(pose.pose):.1f}",

@@ -91,11 +91,11 @@ def swatch(colour: str) -> Html:
 
 def marker_table(robot: Robot, reached: IKResult) -> Html:
     """Target, reached place and error of each marker."""
-    before = rest_errors(robot, reached.wanted)
+    before = rest_errors(robot, reached.pose_target)
     rows = [
         (name, place(target), place(reached.pose.markers[name]), f"{MILLIMETRES * before[name]:.1f}",
          tag("span", f"{MILLIMETRES * reached.errors[name]:.2f}", class_="error"))
-        for name, target in reached.wanted.targets.items()
+        for name, target in reached.pose_target.targets.items()
     ]  # fmt: skip
     heads = ("marker", "target [mm]", "reached [mm]", "error at rest [mm]", "error [mm]")
     return table(heads, rows, numbers=(1, 2, 3, 4))

@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from hydrostat.robot.robot import LARGEST_STEP, Robot
     from hydrostat.robot.scaled import scaled_robot
     from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
-    from hydrostat.robot.sewn import face_words, sewn_robot, sewn_sides
+    from hydrostat.robot.sewn import describe_cable_side, sewn_robot, sewn_sides
     from hydrostat.robot.sketch import sketch_robot
-    from hydrostat.robot.sketch_space import SurfaceSketch, inflated, sketch_mesh, sketch_surface
+    from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh, sketch_surface
     from hydrostat.robot.tables_file import TablesFile, read_text
-    from hydrostat.robot.unfinished import clear_unfinished, unfinished
+    from hydrostat.robot.unfinished import clear_unfinished, temporary_path
     from hydrostat.robot.winch import Mount, Winch
     from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_robot, with_values
 
@@ -83,15 +83,15 @@ __all__ = [
     "closed_mesh",
     "commented_text",
     "comments",
+    "describe_cable_side",
     "direction_of",
-    "face_words",
     "find_risks",
     "gallery_folder",
     "get_material",
     "gravity_along",
     "html_repr",
     "in_words",
-    "inflated",
+    "inflate_outline",
     "inflated_robot",
     "is_of_gallery",
     "list_gallery",
@@ -114,7 +114,7 @@ __all__ = [
     "sketch_robot",
     "sketch_surface",
     "surface_body",
-    "unfinished",
+    "temporary_path",
     "with_values",
 ]
 

@@ -1,4 +1,4 @@
-"""`Body`: the soft part of a robot, its file and its mesh, and how volumetric locking is avoided."""
+"""`Body`: the soft part of a robot, its file, its mesh and its treatment of volumetric locking."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -28,7 +28,7 @@ class Source(StrEnum):
 
 
 class Volume(StrEnum):
-    """Way to measure the change of volume: in each element, or averaged over patches of elements (a kind of F-bar).
+    """Measure of volume change: in each element, or averaged over patches of elements (a kind of F-bar).
 
     Linear elements are too stiff when the material is nearly incompressible (volumetric locking); patches help.
     """
@@ -39,7 +39,7 @@ class Volume(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """A meshed body. Two bodies are equal when they come from the same file and numbers.
+    """Meshed body. Two bodies are equal when they come from the same file and numbers.
 
     A text stands for the source, the material or the volume of that name.
 
@@ -214,14 +214,14 @@ def surface_body(
     """Body in space from the bytes of a scan or CAD model (STL, OBJ, PLY, OFF or 3MF, by its name), healed if need be.
 
     Args:
-        content: of the file.
+        content: bytes of the file.
         file: its name.
         unit: metres that a coordinate counts, if the file does not say.
-        material: what it is made of.
+        material: material of the body.
         element_size: mean length of a mesh edge [m].
         size: longest side of the bounding box [m] to scale to; None: as the file says.
         thickness: must be None; refused as bodies in space have none.
-        volume: how its change of volume is measured.
+        volume: measure of volume change.
 
     Raises:
         InputError: the file holds no surface, it encloses no body, or a number is out of its range.

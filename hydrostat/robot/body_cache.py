@@ -1,4 +1,4 @@
-"""Cache of bodies: what reading, healing and meshing a file gave, kept between commands.
+"""Cache of bodies: results of reading, healing and meshing a file, kept between commands.
 
 An entry is a file in the user's cache folder, named by a hash of all that its content depends on: the bytes of the
 drawing or scan, the numbers asked for, the code that meshes, and the versions of the libraries it calls. Entries are
@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hydrostat.robot.unfinished import unfinished
+from hydrostat.robot.unfinished import temporary_path
 
 VARIABLE = "HYDROSTAT_CACHE"
 """Environment variable: the folder of the cache; no cache where it is set and empty."""
@@ -101,7 +101,7 @@ def _write(path: Path, arrays: Arrays) -> None:
     data = buffer.getvalue()
     if len(data) > MAX_BYTES:
         return
-    part = unfinished(path)
+    part = temporary_path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _make_room(path.parent, len(data))

@@ -1,4 +1,4 @@
-"""`Cable`: a tendon, a line from a winch through the body to a stopper; and how cables get their names."""
+"""`Cable`: a tendon from a winch through the body to a stopper; naming of cables."""
 
 # Of the thesis (docs/thesis.md): R23, R25, R28, E12, R14, E11, E3
 
@@ -148,6 +148,6 @@ def _numbers(cables: Sequence[Cable]) -> list[int]:
 
 
 def _usual_name(winch: str, number: int) -> str:
-    """The winch's name and a number, no longer than a name may be."""
+    """Winch's name and a number, no longer than a name may be."""
     tail = f" {number}"
     return winch[: LONGEST_NAME - len(tail)] + tail

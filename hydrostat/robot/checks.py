@@ -11,27 +11,27 @@ Point = tuple[float, ...]  # coordinates [m] in the rest pose, two or three
 
 
 def check_number(field: str, value: object, unit: str) -> None:
-    """Refuse what is no number, such as a text with a unit: texts are for robot.toml."""
+    """Reject a value that is no number, such as a text with a unit, which only robot.toml accepts."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise InputError(f"{field} must be a number{f' in {unit}' if unit else ''}, not {value!r:.60}")
 
 
 def check_positive(field: str, value: float, unit: str) -> None:
-    """Refuse what is no number, or not finite and above 0."""
+    """Reject a value that is no number, not finite or not above 0."""
     check_number(field, value, unit)
     if not 0 < value < math.inf:
         raise InputError(f"{field} must be finite and above 0, not {value:g} {unit}")
 
 
 def check_not_negative(field: str, value: float, unit: str) -> None:
-    """Refuse what is no number, not finite or below 0."""
+    """Reject a value that is no number, not finite or below 0."""
     check_number(field, value, unit)
     if not 0 <= value < math.inf:
         raise InputError(f"{field} must be finite and not negative, not {value:g} {unit}")
 
 
 def check_point(field: str, point: Point) -> None:
-    """Refuse what is no place in the plane or in space."""
+    """Reject a value that is no point in the plane or in space."""
     try:
         count, finite = len(point), all(map(math.isfinite, point))
     except TypeError:
@@ -46,7 +46,7 @@ LONGEST_NAME = 60  # a name has at most this many characters
 
 
 def check_name(name: str) -> str:
-    """The name itself.
+    """Check a name and return it.
 
     Raises InputError: it is empty, too long, has another character than letters (of any language), digits, space and .
     _ -, or begins with none of the first two.

@@ -1,4 +1,4 @@
-"""`ClosedMesh`: a rigid thing of any shape, from a file."""
+"""`ClosedMesh`: rigid object of any shape, from a file."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,7 +15,7 @@ MOST_TRIANGLES = 20_000
 
 @dataclass(frozen=True)
 class ClosedMesh:
-    """A closed surface in space and the file that it came from.
+    """Closed surface in space and the file that it came from.
 
     Attributes:
         file: name of the file.
@@ -32,13 +32,13 @@ class ClosedMesh:
         """Surface for distance queries."""
         return Shell(self.surface.vertices, self.surface.triangles)
 
-    def moved(self, turn: Points, shift: Vector) -> "ClosedMesh":
+    def with_transform(self, turn: Points, shift: Vector) -> "ClosedMesh":
         """Return the same object with every point x at turn x + shift [m]."""
         surface = Surface(self.surface.vertices @ turn.T + shift, self.surface.triangles)
         return replace(self, surface=surface)
 
     def masses(self) -> tuple[float, Vector, Points]:
-        """Volume [m^3], middle [m], and mean products of the coordinates of what it encloses about its middle [m^2]."""
+        """Volume [m^3], center [m], and mean products of the coordinates of the interior about its center [m^2]."""
         middle = self.surface.box.mean(axis=0)
         corners = self.surface.vertices[self.surface.triangles] - middle
         volumes = np.linalg.det(corners) / 6
@@ -50,7 +50,7 @@ class ClosedMesh:
 
 
 def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
-    """Read a thing from a surface file; a coordinate counts `unit` metres.
+    """Read an object from a surface file whose coordinates are in `unit` metres.
 
     Raises:
         InputError: no surface, an open one, one that is inside out or runs through itself, or too many triangles.
@@ -64,7 +64,7 @@ def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
     merged, numbers = np.unique(surface.vertices, axis=0, return_inverse=True)
     triangles = numbers.reshape(-1)[surface.triangles]
     whole = Surface(merged, triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)])
-    if not Shell(whole.vertices, whole.triangles).closed:
+    if not Shell(whole.vertices, whole.triangles).is_closed:
         raise InputError(f"{file}: is not closed, or its triangles do not all turn the same way; mend it first")
     if whole.volume <= 0:
         raise InputError(f"{file}: is inside out; turn its triangles round")

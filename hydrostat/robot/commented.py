@@ -1,4 +1,4 @@
-"""`commented_text`: a new robot.toml that tells a person what its tables are for, as those of the gallery do."""
+"""`commented_text`: a new robot.toml with comments on the purpose of its tables, like those of the gallery."""
 
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.write import robot_text
@@ -6,11 +6,11 @@ from hydrostat.units import printable
 
 
 def commented_text(robot: Robot, source: str) -> str:
-    """The text of robot.toml with a comment before the first table of each kind.
+    """Text of robot.toml with a comment before the first table of each kind.
 
     Args:
-        robot: that was just begun.
-        source: name of the file that it was begun from.
+        robot: newly created robot.
+        source: name of the file that it was created from.
     """
     flat = robot.body.mesh.dim == 2
     origin = "the middle of the drawing, x to the right, y up" if flat else "where the file of the body has it"

@@ -1,4 +1,4 @@
-"""`Contact` and `Obstacle`: that a body does not pass through itself, nor through what stands beside it."""
+"""`Contact` and `Obstacle`: contact of a body with itself and with objects next to it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -144,7 +144,7 @@ class Obstacle:
             before = instant
 
     def spine(self) -> Points:
-        """Points within it, (points, dim): along the way from `at` to `to`; none of a plane, which has no end [m]."""
+        """Points inside it [m], (points, dim): along the line from `at` to `to`; none for a plane, which has no end."""
         at = np.array(self.at)
         if self.shape == ObstacleShape.PLANE:
             return np.zeros((0, len(at)))
@@ -179,7 +179,7 @@ class Obstacle:
         axes[0] = span / np.linalg.norm(span)
         return at + 0.5 * span, axes
 
-    def centred(self) -> "Obstacle":
+    def to_own_frame(self) -> "Obstacle":
         """Return the same obstacle in its own frame."""
         place, axes = self.frame()
         at, to = (
@@ -187,16 +187,16 @@ class Obstacle:
         )
         if self.mesh is not None:
             shift = axes @ (np.array(self.at) - place)
-            return replace(self, at=(0.0,) * len(self.at), mesh=self.mesh.moved(axes, shift))
+            return replace(self, at=(0.0,) * len(self.at), mesh=self.mesh.with_transform(axes, shift))
         return replace(self, at=at or (), to=to)
 
-    def moved(self, place: Vector, axes: Points) -> "Obstacle":
+    def with_frame(self, place: Vector, axes: Points) -> "Obstacle":
         """Return the same obstacle with its center at a position [m] and these axes; a box stays axis-aligned."""
         middle, before = self.frame()
         turn = np.eye(len(self.at)) if self.shape is ObstacleShape.BOX else axes.T @ before
         if self.mesh is not None:
             shift = np.array(self.at)
-            mesh = self.mesh.moved(turn, turn @ (shift - middle) + place)
+            mesh = self.mesh.with_transform(turn, turn @ (shift - middle) + place)
             return replace(self, at=(0.0,) * len(self.at), mesh=mesh)
         at, to = (
             None if end is None else tuple((place + turn @ (np.array(end) - middle)).tolist())
@@ -232,7 +232,7 @@ _FIELDS: dict[ObstacleShape, Callable[[Obstacle], DistanceField]] = {
 
 def _mesh_at(one: Obstacle) -> ClosedMesh:
     assert one.mesh is not None
-    return one.mesh.moved(np.eye(3), np.array(one.at))
+    return one.mesh.with_transform(np.eye(3), np.array(one.at))
 
 
 def _mesh_moments(one: Obstacle) -> Vector:

@@ -1,4 +1,4 @@
-"""`finer_size`: smaller elements for a body some of whose limbs have too few of them across."""
+"""`finer_size`: a smaller element size for a body with too few elements across some limbs."""
 
 from hydrostat.geometry import thin_parts
 from hydrostat.robot.body import Body

@@ -28,7 +28,7 @@ def gallery_folder(name: str) -> Path:
 
 
 def _shelf() -> Path:
-    """Inside an installed package, or beside it in a checkout."""
+    """Folder of the gallery: inside an installed package, or next to it in a checkout."""
     package = Path(str(files("hydrostat")))
     inside = package / "examples"
     return inside if inside.is_dir() else package.parent / "examples"

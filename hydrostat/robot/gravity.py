@@ -20,7 +20,7 @@ def gravity_along(direction: str, dim: int) -> tuple[float, ...]:
 
 
 def direction_of(gravity: tuple[float, ...]) -> str | None:
-    """The word that `gravity_along` makes this gravity of; None if there is none."""
+    """Word that `gravity_along` makes this gravity of; None if there is none."""
     dim = len(gravity)
     return next((word for word in DIRECTIONS[: 2 * dim] if gravity_along(word, dim) == gravity), None)
 

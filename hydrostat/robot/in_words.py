@@ -9,7 +9,7 @@ _PART = re.compile(r"\b(pin|winch|cable|marker|pose)\[(\d+)\]")
 
 
 def in_words(text: str) -> str:
-    """A sentence as people say it: "cable 1, point 3" for "cable[0].points[2]", "winch left" for "winch[0] left"."""
+    """Sentence in plain words: "cable 1, point 3" for "cable[0].points[2]", "winch left" for "winch[0] left"."""
     text = _POINT.sub(lambda match: f"cable {_next(match[1])}, point {_next(match[2])}", _NAMED.sub(r"\1", text))
     text = _RUN.sub(lambda run: f"cable {_next(run[1])} between points {_next(run[2])} and {_next(run[3])}", text)
     return _PART.sub(lambda match: f"{match[1]} {_next(match[2])}", text)

@@ -17,15 +17,15 @@ from hydrostat.robot.sewn import side_name
 
 
 def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size: float | None = None) -> Robot:
-    """The robot in space that a flat one becomes: its outline blown up to its thickness, cables on a face of it.
+    """Return the 3D robot of a flat one: its outline inflated to its thickness, its cables on one side.
 
     Winches and markers stay in the plane z = 0; so a cable leaves its winch inside the body and comes to the skin at
     its first via point. A pair is two cables of one winch, each as stiff as the one that is drawn. Poses get z = 0.
 
     Args:
         robot: flat, with an outline.
-        face: where its cables run; as the robot says if left out, and if it does not, on the front.
-        element_size: of the tetrahedra [m]; that of the flat mesh if left out.
+        face: side on which its cables run; None: the robot's own, or else the front.
+        element_size: size of the tetrahedra [m]; None: that of the flat mesh.
 
     Raises:
         InputError: a robot in space, one without a drawing, or a body too thick for its outline.
@@ -77,7 +77,7 @@ def _skin(body: Body, places: Points, side: float) -> Vector:
 
 
 def _lifted(cable: Cable, face: Face, body: Body) -> Iterator[Cable]:
-    """A cable on its face, all but its first point, which is its winch's; twice for pairs."""
+    """Cable on its face, all but its first point, which is its winch's; twice for pairs."""
     points = np.array(cable.points)
     for name, side in _HEIGHTS[face]:
         lift = _skin(body, points, side)

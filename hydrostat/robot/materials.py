@@ -1,4 +1,4 @@
-"""`Material`, and the table of those known by name, each with where its numbers come from.
+"""`Material`, and the table of named materials, each with its source.
 
 Rubbers are given by their 100 % modulus, as data sheets are: Young's modulus is such that a Neo-Hookean material has
 that stress at twice its length. Foams are given by what is known of them, which is little. docs/materials.md is printed
@@ -23,7 +23,7 @@ MOST_BRANCHES = 10  # a material has at most this many branches
 
 @dataclass(frozen=True, kw_only=True)
 class Relaxation:
-    """A Maxwell branch, one term of a Prony series: a spring behind a dashpot, beside the elastic material.
+    """Maxwell branch, one term of a Prony series: spring and dashpot in series, parallel to the elastic material.
 
     After a sudden shear the branch carries modulus * exp(-t / time) of its stress, so the material begins stiffer by
     `modulus` and settles to the elastic material alone.
@@ -41,7 +41,7 @@ class Relaxation:
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """An isotropic material: elastic, and optionally viscous.
+    """Isotropic material: elastic, and optionally viscous.
 
     Attributes:
         young: Young's modulus [Pa].
@@ -124,7 +124,7 @@ def young_of_rubber(stress: float) -> float:
 
 
 def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measured: float) -> Material:
-    """A castable silicone: specific gravity, 100 % modulus [psi], elongation at break [%], a second opinion [kPa]."""
+    """Castable silicone: specific gravity, 100 % modulus [psi], elongation at break [%], a second opinion [kPa]."""
     stress = modulus * PSI
     return Material(
         name=name,
@@ -144,7 +144,7 @@ def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measu
 
 
 def _castable_foam(numeral: str, pounds: int, source: str, young: float, note: str) -> Material:
-    """A castable foam of the FlexFoam-iT! series, named after its density in pounds per cubic foot."""
+    """Castable foam of the FlexFoam-iT! series, named after its density in pounds per cubic foot."""
     return Material(
         name=f"flexfoam-it {numeral}",
         young=young,
@@ -158,7 +158,7 @@ def _castable_foam(numeral: str, pounds: int, source: str, young: float, note: s
 
 
 def _lattice(solid: Material, share: float) -> Material:
-    """A printed gyroid that fills a share of its volume: stiffness falls with the square of density (open cells)."""
+    """Printed gyroid that fills a share of its volume: stiffness falls with the square of density (open cells)."""
     return Material(
         name=f"{solid.name} gyroid {100 * share:.0f}%",
         young=solid.young * share**2,

@@ -29,7 +29,7 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True, kw_only=True)
 class TomlBlock:
-    """One table with its sub-tables, or what stands before the first."""
+    """One table with its sub-tables, or the text before the first table."""
 
     name: str  # first part of its key; "" for what stands before the first table
     whole: bool = True  # True if it begins with the table itself, not with a sub-table
@@ -39,7 +39,7 @@ class TomlBlock:
 
 
 def split_blocks(text: str) -> tuple[list[TomlBlock], str]:
-    """The blocks of a TOML file that tomllib can read, in order, and what is after the last; together all the text."""
+    """Split a TOML file that tomllib can read into its blocks and the text after the last, without loss."""
     starts = [(0, "", True), *_headers(text)]
     blocks: list[TomlBlock] = []
     free = lead = ""
@@ -89,7 +89,7 @@ def _headers(text: str) -> Iterator[tuple[int, str, bool]]:
 
 
 def _parted(text: str, *, last: bool) -> tuple[str, str, str]:
-    """Part a text: what belongs to a block, what stands apart after it, and the comments right above the next one."""
+    """Split a text into the part of a block, detached text after it, and the comments right above the next one."""
     end = 0
     for place, token, _ in _tokens(text):
         if token.strip() and not token.startswith("#"):
@@ -123,7 +123,7 @@ _TOP = ("name", "length_unit", "gravity", "face")
 
 
 def merged_text(text: str, robot: Robot) -> str:
-    """The text of a robot.toml that describes a robot, as near as can be to a text that described another state of it.
+    """Text of a robot.toml that describes a robot, as near as can be to a text that described another state of it.
 
     Comments, order and form of all that did not change stay, and tables that are no longer wanted go with their own
     comments (`lost_comments` tells which). A text that is no robot.toml is replaced.
@@ -139,7 +139,7 @@ def merged_text(text: str, robot: Robot) -> str:
 
 
 def lost_comments(before: str, after: str) -> list[str]:
-    """The comments of one text that another no longer has, in order."""
+    """Comments of one text that another no longer has, in order."""
     kept = comments(after)
     lost = []
     for comment in comments(before):
@@ -151,7 +151,7 @@ def lost_comments(before: str, after: str) -> list[str]:
 
 
 class _Check(RobotReader):
-    """Reads a robot without meshing its body anew: that must be the same."""
+    """Reader of a robot that does not mesh its body again: the body must be the same."""
 
     def __init__(self, text: str, body: Body, fresh: str) -> None:
         super().__init__(Path("robot.toml"), text)
@@ -165,7 +165,7 @@ class _Check(RobotReader):
 
 @dataclass(frozen=True, eq=False)
 class _Side:
-    """A text with what it says: entries of each kind as they stand in it and as they mean."""
+    """Text with its contents: entries of each kind as text and as parsed values."""
 
     blocks: list[TomlBlock]
     tail: str
@@ -208,7 +208,7 @@ def _metres(value: Any, factor: Decimal) -> Any:
 
 
 def _merged(text: str, fresh: str) -> str | None:
-    """The old text with what is new in it; None if its form is too unusual."""
+    """Merge new values into the old text; None if its form is too unusual."""
     new = _side(fresh)
     old = _side(text, RobotReader(Path("robot.toml"), fresh).table.length_unit)
     counts = {kind: len(old.means[kind]) for kind in _ORDER}
@@ -218,7 +218,7 @@ def _merged(text: str, fresh: str) -> str | None:
     added: list[tuple[str, int]] = []
     for kind in _ORDER:
         places, wanted = old.blocks_of(kind), new.blocks_of(kind)
-        pairs = matched(old.means[kind], new.means[kind])  # old number by new number
+        pairs = match_entries(old.means[kind], new.means[kind])  # old number by new number
         slots = sorted(places[before] for before in pairs.values())
         for slot, number in zip(slots, sorted(pairs), strict=True):
             before = old.blocks[places[pairs[number]]]
@@ -235,7 +235,7 @@ def _merged(text: str, fresh: str) -> str | None:
 
 
 def _kept(before: Sequence[TomlBlock], blocks: Sequence[tuple[TomlBlock, int] | None]) -> list[tuple[TomlBlock, int]]:
-    """The blocks that stay; what is said above the first of a kind speaks of them all and stays with the next."""
+    """Blocks that stay; comments above the first of a kind apply to all and stay with the next one."""
     laid: list[tuple[TomlBlock, int]] = []
     seen: set[str] = set()
     inherited: dict[str, str] = {}
@@ -253,7 +253,7 @@ def _kept(before: Sequence[TomlBlock], blocks: Sequence[tuple[TomlBlock, int] | 
 
 
 def _remarks(free: str) -> str:
-    """The comments that stood apart before a table that is gone."""
+    """Comments that stood apart before a table that is gone."""
     return free if "#" in free else ""
 
 
@@ -270,7 +270,7 @@ def _place(laid: Sequence[tuple[TomlBlock, int]], kind: str, number: int) -> int
 
 
 def _updated(block: TomlBlock, old: _Side, new: _Side, kind: str, before: int, number: int) -> str:
-    """The text of a table with what is new in it."""
+    """Update the text of a table with new values."""
     was, now = old.means[kind][before], new.means[kind][number]
     changed = [key for key in dict.fromkeys([*was, *now]) if was.get(key) != now.get(key)]
     if not changed:
@@ -318,7 +318,7 @@ def _update_targets(targets: Any, fresh: Any, was: Mapping[str, Any], now: Mappi
 
 
 def _update_points(points: Any, fresh: Any, was: Sequence[Any], now: Sequence[Any]) -> None:
-    """Only the points that changed, so that remarks beside the others stay."""
+    """Update only the points that changed, so that comments next to the others stay."""
     start = 0
     while start < min(len(was), len(now)) and was[start] == now[start]:
         start += 1
@@ -335,8 +335,8 @@ def _update_points(points: Any, fresh: Any, was: Sequence[Any], now: Sequence[An
         points.insert(place, deepcopy(fresh[place]))
 
 
-def matched(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> dict[int, int]:
-    """Number of the old entry of each new one, by what keys mean: by name, else the same, else the most alike."""
+def match_entries(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> dict[int, int]:
+    """Return the index of the old entry of each new one: by name, else an equal one, else the most similar one."""
     pairs: dict[int, int] = {}
     for likeness in (_same_name, _same, _alike):
         ranked = sorted(_ranked(old, new, pairs, likeness))
@@ -368,7 +368,7 @@ def _same(old: Mapping[str, Any], new: Mapping[str, Any]) -> float:
 
 
 def _alike(old: Mapping[str, Any], new: Mapping[str, Any]) -> float:
-    """Share of what two entries have in common; places weigh most, as many entries have the same numbers."""
+    """Share of equal values of two entries; positions weigh most, as many entries share other values."""
     both = [key for key in new if new[key] is not None and old.get(key) is not None]
     places = [key for key in both if key in ("at", "box", "points", "targets")]
     if not places:

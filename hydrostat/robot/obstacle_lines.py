@@ -24,7 +24,7 @@ def rims(obstacle: Obstacle, robot: Robot) -> list[Points]:
 
 
 def _plane(plane: Obstacle, middle: Vector, size: float) -> list[Points]:
-    """A line, or a square in space, about the point under the middle of the body."""
+    """Line, or a square in space, about the point under the middle of the body."""
     unit = np.array(plane.normal or ()) / np.linalg.norm(plane.normal or ())
     foot, across = middle - ((middle - np.array(plane.at)) @ unit) * unit, _across(unit)
     if len(across) == 1:
@@ -41,7 +41,7 @@ def _sphere(sphere: Obstacle, _: Vector, __: float) -> list[Points]:
 
 
 def _rod(rod: Obstacle, _: Vector, __: float) -> list[Points]:
-    """A capsule in the plane, its ends included; in space the rings at both ends of a rod and lines between them."""
+    """Capsule in the plane, its ends included; in space the rings at both ends of a rod and lines between them."""
     at, to, radius = np.array(rod.at), np.array(rod.to), rod.radius or 0.0
     axis = (to - at) / np.linalg.norm(to - at)
     across = _across(axis)

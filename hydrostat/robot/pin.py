@@ -42,7 +42,7 @@ class Pin:
         check_positive("stiffness", self.stiffness, "N/m")
 
     def anchors(self, mesh: Mesh) -> Anchors:
-        """Find what the pin holds (InputError: the pin lies outside the body and holds nothing)."""
+        """Find the nodes that the pin holds (InputError: the pin lies outside the body and holds nothing)."""
         held = np.flatnonzero(self.holds(mesh))
         if len(held) > 0:
             anchors = anchor_nodes(mesh, held)

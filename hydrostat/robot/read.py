@@ -56,13 +56,13 @@ class RobotReader(TablesFile):
         self.unit = self.table.length_unit
 
     def form(self) -> "type[TomlTable]":
-        """The tables of robot.toml."""
+        """Tables of robot.toml."""
         from hydrostat.robot.schema import RobotTable
 
         return RobotTable
 
     def robot(self) -> Robot:
-        """The robot that the text describes."""
+        """Robot that the text describes."""
         table = self.table
         self.at("length_unit", lambda: units.unit_factor(self.unit, units.LENGTH))
         parts = {
@@ -183,7 +183,7 @@ class RobotReader(TablesFile):
 
 
 def read_material(entry: Any) -> Material:
-    """A material by its name, or by its numbers (InputError: an unknown name, or a number out of its range)."""
+    """Return a material by name or by its values (InputError: an unknown name, or a value out of its range)."""
     if isinstance(entry, str):
         return get_material(entry)
     viscous = _given(entry, "viscosity")
@@ -208,5 +208,5 @@ def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:
 
 
 def _given(entry: Any, *keys: str) -> dict[str, Any]:
-    """The keys that stand in the file; the others keep the record's own defaults."""
+    """Keys that stand in the file; the others keep the record's own defaults."""
     return {key: getattr(entry, key) for key in keys if getattr(entry, key) is not None}

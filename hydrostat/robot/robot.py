@@ -1,4 +1,4 @@
-"""`Robot`: all that is known of one robot, checked when it is made."""
+"""`Robot`: complete description of a robot, checked when it is created."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -95,11 +95,11 @@ class Robot:
         self._check_cables()
 
     def winch(self, name: str) -> Winch:
-        """The winch of this name (InputError: there is none)."""
+        """Return the winch of this name (InputError: there is none)."""
         return _named("winch", "winches", self.winches, name)
 
     def cable(self, name: str) -> Cable:
-        """The cable of this name (InputError: there is none)."""
+        """Return the cable of this name (InputError: there is none)."""
         return _named("cable", "cables", self.cables, name)
 
     @property
@@ -108,14 +108,14 @@ class Robot:
         return given_names(self.cables)
 
     def pose(self, name: str) -> PoseTarget:
-        """The pose of this name (InputError: there is none)."""
+        """Return the target pose of this name (InputError: there is none)."""
         if name not in self.poses:
             raise InputError(f'unknown pose "{name}". {_choices("poses", list(self.poses))}')
         return self.poses[name]
 
     @property
     def contact_distance(self) -> float:
-        """Distance at which parts that touch, and obstacles, begin to be felt [m]."""
+        """Distance at which contact forces between parts, and with obstacles, start [m]."""
         given = None if self.contact is None else self.contact.distance
         return DISTANCE * self.body.mesh.size if given is None else given
 
@@ -174,11 +174,11 @@ class Robot:
         )
 
     def _repr_html_(self) -> str:
-        """The robot at rest, for a notebook."""
+        """Robot at rest, for a notebook."""
         return html_repr(repr(self), draw_record("rest", self))
 
     def _check_kinds(self) -> None:
-        """Refuse parts of another kind, before they are asked for anything."""
+        """Reject parts of a wrong type."""
         check_type(self.body, Body, "body must be a Body, as that of another robot")
         for what, kind in _PARTS.items():
             check_type(getattr(self, what), (tuple, list), f"{what} must be several, such as () for none")
@@ -310,7 +310,7 @@ class Robot:
             )
 
     def _check_inside(self, named: Sequence[tuple[str, Point]]) -> None:
-        """Refuse points outside the body; all at once, as one search for all is far quicker than one for each."""
+        """Reject points outside the body; one search for all points is far quicker than one for each."""
         if not named:
             return
         distances = self.body.distances(np.array([point for _, point in named]))
@@ -320,7 +320,7 @@ class Robot:
                 raise InputError(f"{key} = {self._text(point)} {out}; move it inside")
 
     def _text(self, value: Point | float) -> str:
-        """A point or length in the unit of the file, to four digits."""
+        """Point or length in the unit of the file, to four digits."""
         scale = float(units.unit_factor(self.length_unit, units.LENGTH))
         if isinstance(value, tuple):
             return "[" + ", ".join(f"{coordinate / scale:.4g}" for coordinate in value) + "]"

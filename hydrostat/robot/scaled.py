@@ -17,7 +17,7 @@ LEAST, MOST = 0.01, 100.0
 
 
 def scaled_robot(robot: Robot, factor: float) -> Robot:
-    """The robot with every length so many times as long: body, elements, thickness, pins, winches, cables, obstacles.
+    """Scale every length of a robot: body, elements, thickness, pins, winches, cables, obstacles.
 
     Also markers, targets of poses, spools, travel, release, slack and the distance of contact. Materials, stiffnesses,
     friction and masses stay: they are those of what is bought.
@@ -88,7 +88,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
 
 
 def _scaled_body(robot: Robot, factor: float) -> Body:
-    """The body, meshed anew; where its file alone said how large it is, the size is said now."""
+    """Mesh the scaled body; if its size came from its file alone, it is now stated explicitly."""
     body = robot.body
     size = float(f"{factor * (body.size or _drawn_size(body)):.12g}")
     given = {"material": body.material, "size": size, "volume": body.volume}
@@ -113,7 +113,7 @@ def _scaled_body(robot: Robot, factor: float) -> Body:
 
 
 def _drawn_size(body: Body) -> float:
-    """Longest side of the bounding box of what the file holds [m]."""
+    """Longest side of the bounding box of the file's contents [m]."""
     if body.outline is not None:
         return body.outline.size
     if body.source is Source.SURFACE:

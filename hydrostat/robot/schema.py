@@ -1,4 +1,4 @@
-"""The form of robot.toml: its tables, keys and units, as pydantic models; what is wrong with a file, in our words."""
+"""Schema of robot.toml: its tables, keys and units, as pydantic models, with readable error messages."""
 
 from collections.abc import Callable
 from decimal import Decimal
@@ -46,7 +46,7 @@ def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
 
 
 def _number(value: object) -> Decimal:
-    """A bare number; tomllib hands over int or Decimal."""
+    """Bare number; tomllib hands over int or Decimal."""
     if isinstance(value, bool) or not isinstance(value, int | Decimal):
         raise ValueError(f"{quote(value)} is not a number")
     if isinstance(value, Decimal) and not value.is_finite():
@@ -99,13 +99,13 @@ Pair = Annotated[list[Annotated[int, Strict()]], Field(min_length=2, max_length=
 
 
 class TomlTable(BaseModel):
-    """A table of the file; a key that it does not know is an error."""
+    """Table of the file; an unknown key is an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class RelaxationTable(TomlTable):
-    """A Maxwell branch."""
+    """Maxwell branch."""
 
     modulus: Pressure
     time: Time
@@ -115,7 +115,7 @@ Branches = Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)]
 
 
 class NamedMaterialTable(TomlTable):
-    """A material known by name, with its viscosity."""
+    """Material by name, with its viscosity."""
 
     name: Text
     viscosity: Viscosity | None = None
@@ -123,7 +123,7 @@ class NamedMaterialTable(TomlTable):
 
 
 class MaterialTable(TomlTable):
-    """A material by its numbers."""
+    """Material by its numbers."""
 
     young: Pressure
     poisson: Number
@@ -222,7 +222,7 @@ class ContactTable(TomlTable):
 
 
 class KeyframeTable(TomlTable):
-    """An entry of path of [[obstacle]]."""
+    """Entry of path of [[obstacle]]."""
 
     time: Time
     at: Coordinates
@@ -244,7 +244,7 @@ class ObstacleTable(TomlTable):
 
 
 class RobotTable(TomlTable):
-    """The whole file."""
+    """All tables of robot.toml."""
 
     format: Annotated[int, BeforeValidator(_format)]
     name: Name
@@ -314,7 +314,7 @@ _SENTENCES = {
 
 
 def first_complaint(error: ValidationError, form: type[TomlTable] = RobotTable) -> tuple[str, str]:
-    """Key such as cable[1].points[0], and what is wrong with it; unknown keys first, for they explain missing ones."""
+    """Return the key, such as cable[1].points[0], and the error; unknown keys first, as they explain missing ones."""
     errors = error.errors()
     worst: Any = next((entry for entry in errors if entry["type"] == "extra_forbidden"), errors[0])
     location = tuple(step for step in worst["loc"] if not str(step).startswith("<"))

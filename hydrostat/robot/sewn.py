@@ -1,4 +1,4 @@
-"""`sewn_robot`: a flat robot with each cable as often as it is sewn; `face_words`: where its cables run, in words."""
+"""`sewn_robot`: flat robot with each cable as often as it is sewn; `describe_cable_side`: side of its cables."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from hydrostat.robot.robot import Robot
 
 
 def sewn_robot(robot: Robot) -> Robot:
-    """The flat robot with each cable as often as it is sewn: in pairs all those of the front, then all of the back.
+    """Return the flat robot with each cable as often as it is sewn: in pairs, all front cables, then all back ones.
 
     Both of a pair are as stiff as the one that is drawn. A robot whose cables are no pairs is given back as it is.
     """
@@ -30,7 +30,7 @@ def side_name(cable: Cable, side: str) -> str:
     return name if len(name) <= LONGEST_NAME else ""
 
 
-def face_words(robot: Robot) -> str:
+def describe_cable_side(robot: Robot) -> str:
     """Describe the side of a flat robot's cables, such as "on the front"; empty in space or without cables."""
     if robot.body.mesh.dim != 2 or not robot.cables:
         return ""

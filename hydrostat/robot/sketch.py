@@ -36,14 +36,14 @@ def sketch_robot(
     Args:
         content: the drawing.
         file: name of the drawing in the robot's folder; its ending says of what kind it is.
-        name: of the robot.
+        name: name of the robot.
         size: longest side of the bounding box [m]; None: as the drawing says, if it does.
         element_size: [m]; None: so that there are about as many nodes as asked for.
         thickness: [m]; None: a seventh of the size.
         nodes: wanted; None: about 250, or as many as give each limb enough elements across; not used with an element
             size.
         material: a name from the table.
-        inner: whether shapes in the body are holes, or drawn on it.
+        inner: meaning of shapes in the body: holes, or lines drawn on it.
 
     Raises:
         InputError: the drawing is no body.
@@ -83,7 +83,7 @@ def _element_size(outline: Outline, nodes: int | None) -> float:
 
 
 def _round(length: float) -> float:
-    """A length rounded to half a millimetre, at least that."""
+    """Length rounded to half a millimetre, at least that."""
     return max(round(length * 2000), 1) / 2000
 
 

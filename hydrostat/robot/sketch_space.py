@@ -27,7 +27,7 @@ SHORTEST, LONGEST = 0.002, 20.0  # bodies are as long [m]; what is not was proba
 
 @dataclass(frozen=True, eq=False)
 class SurfaceSketch:
-    """A robot from a surface, and how that was healed."""
+    """Robot created from a surface, with the report of its healing."""
 
     robot: Robot  # robot whose body file is the input if that was clean, else the healed surface as PLY
     before: Surface  # surface before healing
@@ -48,9 +48,9 @@ def sketch_surface(
     """Robot from the bytes of a scan or CAD model; coordinates count in mm if the file does not say.
 
     Args:
-        content: of an STL, OBJ, PLY, OFF or 3MF file.
+        content: bytes of an STL, OBJ, PLY, OFF or 3MF file.
         file: its name.
-        name: of the robot.
+        name: name of the robot.
         size: longest side of the bounding box [m]; None: as the file says.
         element_size: [m]; None: so that there are about as many nodes as asked for.
         nodes: wanted; None: as many as the thesis's hand has; not used with an element size.
@@ -96,7 +96,7 @@ def _silent(stage: str) -> None:
     """Nobody listens."""
 
 
-def inflated(outline: Outline, height: float) -> bytes:
+def inflate_outline(outline: Outline, height: float) -> bytes:
     """Blow an outline up to a body so thick where it is thickest [m], as the bytes of a PLY file for `sketch_surface`.
 
     Raises:
@@ -144,7 +144,7 @@ _SPOOL, _LEAST_SPOOL = 0.006, 0.002
 
 
 def _first_robot(body: Body, name: str) -> Robot:
-    """A body with first boundary conditions (a pin) and one tendon: a cable along its longest limb, a marker.
+    """Body with first boundary conditions (a pin) and one tendon: a cable along its longest limb, a marker.
 
     It is held at the stouter end of its longest side, or, if both ends are slender as of a starfish, round its deepest
     point. The limb is the longest way through the body from there; the cable lies on one side of it.
@@ -176,7 +176,7 @@ def _first_robot(body: Body, name: str) -> Robot:
 
 
 def _hold(mesh: Mesh) -> Pin:
-    """A box about the stouter end, or a ball about the deepest node."""
+    """Box about the stouter end, or a ball about the deepest node."""
     low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
     axis = int(np.argmax(high - low))
     along = (mesh.nodes[mesh.elements].mean(axis=1)[:, axis] - low[axis]) / (high[axis] - low[axis])
@@ -194,13 +194,13 @@ def _hold(mesh: Mesh) -> Pin:
 
 @dataclass(frozen=True, eq=False)
 class _Limb:
-    """The longest way through a body from where it is held."""
+    """Longest path through a body from where it is held."""
 
     away: Vector  # distance of each node from there along edges, as a share of the longest one
     path: Int[np.ndarray, " path"]  # nodes on the longest path, from its end
 
     def part(self, mesh: Mesh, share: float) -> Bool[np.ndarray, " elements"]:
-        """The elements across the limb at a share of its length: those that hang together with the way there."""
+        """Elements across the limb at a share of its length that are connected to the path there."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components  # Imported here: not every command needs it.
 
@@ -246,21 +246,21 @@ def _limb(mesh: Mesh, held: Bool[np.ndarray, " nodes"]) -> _Limb:
 
 
 def _side(mesh: Mesh, arm: Vector) -> Vector:
-    """The axis across an arm along which the body is thinnest, so that it bends easily."""
+    """Axis across an arm along which the body is thinnest, so that it bends easily."""
     spread = np.var(mesh.nodes, axis=0)
     spread[int(np.argmax(np.abs(arm)))] = np.inf
     return np.eye(3)[int(np.argmin(spread))]
 
 
 def _smoothed(points: Points) -> Points:
-    """A line without its zigzag, which is that of the elements; its ends stay."""
+    """Line without its zigzag, which is that of the elements; its ends stay."""
     for _ in range(_SMOOTHINGS):
         points = np.concatenate([points[:1], (points[:-2] + 2 * points[1:-1] + points[2:]) / 4, points[-1:]])
     return points
 
 
 def _covered(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
-    """A place off the middle of a limb towards its skin, in the solid, as far as there is cover, or else the best."""
+    """Place off the middle of a limb towards its skin, in the solid, as far as there is cover, or else the best."""
     places = middle + np.multiply.outer(_OFFS, way)
     found = locate(mesh, np.concatenate([places, middle[None]]))
     places = np.concatenate([places, mesh.nodes[found.stencils[-1:]].mean(axis=1)])
@@ -278,5 +278,5 @@ def _spaced(points: list[Vector]) -> Points:
 
 
 def _point(place: Float[np.ndarray, " 3"]) -> Point:
-    """A place rounded to a hundredth of a millimetre."""
+    """Place rounded to a hundredth of a millimetre."""
     return tuple(round(float(value), 5) for value in place)

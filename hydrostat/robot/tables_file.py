@@ -41,10 +41,10 @@ class TablesFile(ABC):
 
     @abstractmethod
     def form(self) -> "type[TomlTable]":
-        """The tables and keys that the file may have."""
+        """Tables and keys that the file may have."""
 
     def records(self, key: str, make: Callable[[Any], _Record]) -> tuple[_Record, ...]:
-        """A record of each table under a key."""
+        """Record of each table under a key."""
         entries = getattr(self.table, key)
         return tuple(self.at(f"{key}[{index}]", lambda entry=entry: make(entry)) for index, entry in enumerate(entries))
 
@@ -88,7 +88,7 @@ class TablesFile(ABC):
             self.fail(*first_complaint(error, self.form()))
 
     def _data(self) -> dict[str, Any]:
-        """The file as tomllib reads it, which takes time in the square of a key's parts."""
+        """File as tomllib reads it, which takes time in the square of a key's parts."""
         if _LONG_KEY.search(self.text):
             self.fail("", f"not TOML of {self.kind}: a key has more than 30 parts")
         try:
@@ -104,7 +104,7 @@ class TablesFile(ABC):
 
 
 def read_text(file: Path) -> str:
-    """The text of a file in UTF-8 (InputError: it cannot be read, is too large, or is no such text)."""
+    """Read the text of a file in UTF-8 (InputError: it cannot be read, is too large, or is no such text)."""
     content = read_stranger(file, name=units.printable(str(file)), most=LARGEST_TEXT)
     try:
         return content.decode("utf-8-sig")
@@ -118,7 +118,7 @@ _KEY = re.compile(r"(\w+)(?:\[(\d+)\])?(?:\.(\w+))?(?:\[\d+\])*(?:\.(\w+))?(?:\[
 
 
 def find_line(text: str, key: str) -> int | None:
-    """Line of a key such as cable[1].points[0], as near as headers and names of keys tell; None if it stands nowhere.
+    """Find the line of a key such as cable[1].points[0], as near as headers and key names allow; None if absent.
 
     A key that is missing from its table stands at the table's header.
     """

@@ -1,4 +1,4 @@
-"""`unfinished`: the name of a file or folder while it is written; `clear_unfinished`: of those that were never done."""
+"""`temporary_path`: name of a file or folder while it is written; `clear_unfinished`: remove those never completed."""
 
 import os
 import platform
@@ -13,13 +13,13 @@ _NAME = re.compile(rf"\..*\.{_HOST}-(\d+)-\d+\.part", re.DOTALL)
 _LONGEST = 40  # letters of the name that are kept, as no name has more than 255 bytes
 
 
-def unfinished(path: Path) -> Path:
-    """The hidden place beside a path where it is written first: each writer has its own, on each machine."""
+def temporary_path(path: Path) -> Path:
+    """Return the hidden path next to a path at which it is written first: unique to each writer on each machine."""
     return path.with_name(f".{path.name[:_LONGEST]}.{_HOST}-{os.getpid()}-{threading.get_native_id()}.part")
 
 
 def clear_unfinished(folder: Path) -> None:
-    """Remove from a folder what writers of this machine left unfinished that are no more, as if killed."""
+    """Remove from a folder the unfinished files of this machine's writers that no longer run, such as killed ones."""
     try:
         found = [(entry, _NAME.fullmatch(entry.name)) for entry in os.scandir(folder)]
     except OSError:

@@ -12,7 +12,7 @@ from hydrostat.robot.checks import Point, check_not_negative, check_point, check
 
 
 class Mount(StrEnum):
-    """Place where a winch sits: in the body, or fixed in the world beside it."""
+    """Mounting of a winch: in the body, or fixed in the world."""
 
     BODY = "body"
     WORLD = "world"

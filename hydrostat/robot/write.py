@@ -20,7 +20,7 @@ from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.robot import Robot
-from hydrostat.robot.unfinished import unfinished
+from hydrostat.robot.unfinished import temporary_path
 from hydrostat.robot.winch import Mount
 
 
@@ -31,9 +31,9 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     robot.toml that was there are lost, but for a `text` that has them.
 
     Args:
-        robot: to save.
-        folder: of the robot.
-        text: of robot.toml, such as `merged_text` makes it; `robot_text` if left out.
+        robot: robot to save.
+        folder: folder of the robot.
+        text: text of robot.toml, such as `merged_text` returns; None: `robot_text`.
 
     Raises:
         InputError: a name that robot.toml does not allow, or a folder that cannot be written.
@@ -52,7 +52,7 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
 
 
 def with_values(text: str, *, name: str | None = None, element_size: float | None = None) -> str:
-    """The text of a robot.toml with another name or element size [m], its comments kept; None leaves what is there."""
+    """Return the text of a robot.toml with another name or element size [m], comments kept; None keeps a value."""
     import tomlkit
 
     document = tomlkit.parse(text)
@@ -65,7 +65,7 @@ def with_values(text: str, *, name: str | None = None, element_size: float | Non
 
 def replace_file(path: Path, content: bytes) -> Path:
     """Write a file whole or not at all (InputError: it cannot be written)."""
-    part = unfinished(path)
+    part = temporary_path(path)
     try:
         part.write_bytes(content)
         os.replace(part, path)
@@ -89,7 +89,7 @@ def _files(robot: Robot) -> dict[str, bytes]:
 
 
 def robot_text(robot: Robot) -> str:
-    """The robot as the text of robot.toml."""
+    """Write the robot as the text of robot.toml."""
     import tomlkit
 
     writer = _Writer(robot)
@@ -134,7 +134,7 @@ class _Writer:
         self.unit = robot.length_unit
 
     def number(self, value: float) -> Any:
-        """A bare number that reads back to the very same length [m]."""
+        """Bare number that reads back to the very same length [m]."""
         text = units.plain(units.scale_down(value, self.unit, units.LENGTH))
         return self._toml.value(text)
 
@@ -157,7 +157,7 @@ class _Writer:
         return {str(body.source): body.file, **_lengths(lengths), **given}
 
     def material(self, material: Material) -> Any:
-        """A name of the table, or an inline table of the name or the numbers, then the viscosity."""
+        """Name of the table, or an inline table of the name or the numbers, then the viscosity."""
         if MATERIALS.get(material.name) == material:
             return material.name
         table = self._toml.inline_table()
@@ -183,7 +183,7 @@ class _Writer:
         return self._array(tables)
 
     def gravity(self, gravity: tuple[float, ...]) -> Any:
-        """A direction such as "-y", or one acceleration for each axis."""
+        """Direction such as "-y", or one acceleration for each axis."""
         return direction_of(gravity) or [units.format_quantity(value, units.ACCELERATION) for value in gravity]
 
     def contact(self, contact: Contact) -> Any:

@@ -1,4 +1,4 @@
-"""Signed distances to build shapes from: how far points are outside a part [m], negative inside.
+"""Signed distance fields to build shapes from: distance of points from a part [m], negative inside.
 
 Parts are exact (round cone, rounded box, half space) or nearly so close to their surface (ellipsoid). What is made of
 them by union, intersection and placing changes by at most the way between two points, as a distance does, so that
@@ -83,7 +83,7 @@ def half_space(place: Place, outward: Place) -> Field:
 
 
 def union(*fields: Field, blend: float = 0.0) -> Field:
-    """Union: what is in any of the fields, in turn; creases between them are filled over a width `blend` [m].
+    """Union of fields, in turn; creases between them are filled over a width `blend` [m].
 
     Two fields that are equal at a place are lowered there by a quarter of the blend; where they differ by more than
     the blend nothing changes.
@@ -96,7 +96,7 @@ def union(*fields: Field, blend: float = 0.0) -> Field:
 
 
 def intersection(*fields: Field, blend: float = 0.0) -> Field:
-    """Intersection: what is in all of the fields; edges between them are rounded over a width `blend` [m]."""
+    """Intersection of fields; edges between them are rounded over a width `blend` [m]."""
 
     def distance(points: Points) -> Vector:
         return -reduce(lambda one, two: _lower(one, two, blend), (-field(points) for field in fields))
@@ -104,8 +104,8 @@ def intersection(*fields: Field, blend: float = 0.0) -> Field:
     return distance
 
 
-def placed(field: Field, *, turn: Float[np.ndarray, "3 3"], shift: Place = (0.0, 0.0, 0.0)) -> Field:
-    """A field turned about the origin by a rotation matrix and then shifted [m]."""
+def place_field(field: Field, *, turn: Float[np.ndarray, "3 3"], shift: Place = (0.0, 0.0, 0.0)) -> Field:
+    """Field turned about the origin by a rotation matrix and then shifted [m]."""
     moved = np.array(shift, dtype=float)
     return lambda points: field((points - moved) @ turn)
 
@@ -118,7 +118,7 @@ def turn_about(axis: Place, degrees: float) -> Float[np.ndarray, "3 3"]:
 
 
 def _lower(one: Vector, two: Vector, blend: float) -> Vector:
-    """The lower of two, with a parabola between where they are nearer than the blend; its slopes add up to one."""
+    """Lower of two, with a parabola between where they are nearer than the blend; its slopes add up to one."""
     if blend == 0:
         return np.minimum(one, two)
     near = np.maximum(blend - np.abs(one - two), 0.0)

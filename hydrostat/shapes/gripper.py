@@ -12,7 +12,7 @@ BASE = 28e-3  # how far the base reaches below the middle of the palm, to be hel
 
 
 def caging_gripper() -> Shape:
-    """The third foam hand: a round palm that looks up, four fingers of four joints, room for a tennis ball (67 mm)."""
+    """Third foam hand: a round palm that looks up, four fingers of four joints, room for a tennis ball (67 mm)."""
     limbs = {name: _finger(degrees) for name, degrees in SIDES.items()}
     fingers = union(*(finger.distance for finger in limbs.values()), blend=10e-3)
     whole = union(fingers, _palm().distance, blend=14e-3)
@@ -23,7 +23,7 @@ def caging_gripper() -> Shape:
 
 
 def _finger(degrees: float) -> Limb:
-    """A finger in the direction of x, turned about z."""
+    """Finger in the direction of x, turned about z."""
     turn = turn_about((0, 0, 1), degrees)
     joints = np.array([[18e-3, 0, 2e-3], [53e-3, 0, 14e-3], [61e-3, 0, 58e-3], [52e-3, 0, 98e-3], [33e-3, 0, 122e-3]])
     return limb(
@@ -37,12 +37,12 @@ def _finger(degrees: float) -> Limb:
 
 
 def _palm() -> Limb:
-    """A thick disc."""
+    """Thick disc."""
     return _upright([-4e-3, 4e-3], [42e-3, 42e-3], cap=12e-3)
 
 
 def _foot() -> Limb:
-    """The round base below the palm."""
+    """Round base below the palm."""
     return _upright([-BASE - 20e-3, -10e-3], [31e-3, 31e-3], cap=5e-3)
 
 

@@ -74,7 +74,7 @@ _SIZES = MappingProxyType({"index": 1.0, "middle": 1.0, "ring": 0.95, "little": 
 
 @dataclass(frozen=True, kw_only=True)
 class HandPosture:
-    """Way in which a hand holds its fingers."""
+    """Posture of the fingers of a hand."""
 
     # angle of each finger in the plane of the palm, towards the thumb [degrees]
     fans: tuple[float, float, float, float]
@@ -109,7 +109,7 @@ EXTENDED = HandPosture(
 
 
 def hand(posture: HandPosture) -> Shape:
-    """A right hand of human size in a posture; its limbs are thumb, index, middle, ring and little.
+    """Right hand of human size in a posture; its limbs are thumb, index, middle, ring and little.
 
     The joints of a finger are base and head of its metacarpal (the knuckle), its middle and last joint and the tip of
     its last bone; the thumb has one less. They lie as far from one another as the bones are long.
@@ -125,17 +125,17 @@ def hand(posture: HandPosture) -> Shape:
 
 
 def cupping_hand() -> Shape:
-    """The first foam hand: slightly cupped, at rest between open and closed."""
+    """First foam hand: slightly cupped, at rest between open and closed."""
     return hand(CUPPING)
 
 
 def extended_hand() -> Shape:
-    """The second foam hand: fingers extended."""
+    """Second foam hand: fingers extended."""
     return hand(EXTENDED)
 
 
 def _finger(name: str, place: int, posture: HandPosture) -> Limb:
-    """A finger with its metacarpal, through its joints."""
+    """Finger with its metacarpal, through its joints."""
     knuckle = np.array(
         [_SPREAD * (1.5 - place), -posture.arch[place], _LENGTH_TO_KNUCKLE - (3e-3, 0.0, 6e-3, 15e-3)[place]]
     )
@@ -169,7 +169,7 @@ def _metacarpal_base(knuckle: Direction, name: str) -> Direction:
 
 
 def _thumb(posture: HandPosture) -> Limb:
-    """The thumb with its metacarpal, through its joints."""
+    """Thumb with its metacarpal, through its joints."""
     way = _unit(posture.thumb)
     pad = np.array(posture.thumb_pad)
     back = _unit(way * (pad @ way) - pad)
@@ -202,7 +202,7 @@ def _palm(limbs: dict[str, Limb]) -> list[Field]:
 
 
 def _flesh(limbs: dict[str, Limb]) -> tuple[Field, ...]:
-    """The balls of thumb and little finger on the palm, and the web between thumb and index finger."""
+    """Balls of thumb and little finger on the palm, and the web between thumb and index finger."""
     root, knuckle = limbs["thumb"].joints[:2]
     towards_palm = np.array([-4e-3, -3e-3, 0.0])
     base, little = limbs["little"].joints[:2]
@@ -215,7 +215,7 @@ def _flesh(limbs: dict[str, Limb]) -> tuple[Field, ...]:
 
 
 def _forearm() -> Field:
-    """The forearm up to the wrist, broader than deep."""
+    """Forearm up to the wrist, broader than deep."""
     return limb(
         [(0, -2e-3, -FOREARM - 20e-3), (0, -2e-3, 0), (0, -3e-3, 26e-3)],
         side=_ACROSS,

@@ -10,7 +10,7 @@ from hydrostat.shapes.limb import Limb, Shape, limb
 
 
 def trunk() -> Shape:
-    """The trunk of an elephant that looks towards -y: down from z = 0, its tip a little raised, its mouth at +y."""
+    """Trunk of an elephant that looks towards -y: down from z = 0, its tip a little raised, its mouth at +y."""
     joints = [(0, 0, 12e-3), (0, 2e-3, -75e-3), (0, 8e-3, -155e-3), (0, -2e-3, -225e-3), (0, -42e-3, -276e-3)]
     arm = limb(
         joints,
@@ -26,7 +26,7 @@ def trunk() -> Shape:
 
 
 def octopus_arm() -> Shape:
-    """An arm of an octopus along x: a long taper, flattened below where the suckers are, its tip a little raised."""
+    """Arm of an octopus along x: a long taper, flattened below where the suckers are, its tip a little raised."""
     arm = limb(
         [(-12e-3, 0, 0), (80e-3, 0, -2e-3), (170e-3, 0, -4e-3), (250e-3, 0, 2e-3), (312e-3, 0, 18e-3)],
         side=(0, 1, 0),
@@ -40,7 +40,7 @@ def octopus_arm() -> Shape:
 
 
 def tongue() -> Shape:
-    """A tongue along x, twice as long as one of ours: thick at its root, flat and round at its tip."""
+    """Tongue along x, twice as long as one of ours: thick at its root, flat and round at its tip."""
     body = limb(
         [(-10e-3, 0, -6e-3), (45e-3, 0, 3e-3), (95e-3, 0, 3e-3), (136e-3, 0, -4e-3)],
         side=(0, 1, 0),
@@ -54,7 +54,7 @@ def tongue() -> Shape:
 
 
 def fish_tail() -> Shape:
-    """The tail of a fish that swims towards -x: the narrowing peduncle and a forked fin, upright in z."""
+    """Tail of a fish that swims towards -x: the narrowing peduncle and a forked fin, upright in z."""
     peduncle = limb(
         [(-12e-3, 0, 0), (45e-3, 0, 0), (95e-3, 0, 0), (132e-3, 0, 0)],
         side=(0, 0, 1),

@@ -17,7 +17,7 @@ _SPACING = 4e-3  # stations along the spine of a limb are about this far apart [
 
 @dataclass(frozen=True, eq=False)
 class Limb:
-    """A finger, an arm, a trunk: sections across a spine."""
+    """Finger, an arm, a trunk: sections across a spine."""
 
     spine: Float[np.ndarray, "stations 3"]  # stations from the root to the tip [m], (stations, 3)
     # unit vector across the limb at each station; back = direction of the spine x side
@@ -40,11 +40,11 @@ class Limb:
 
     @property
     def tip(self) -> Float[np.ndarray, " 3"]:
-        """The outermost place at the tip [m]."""
+        """Outermost place at the tip [m]."""
         return self.spine[-1] + self.caps[1] * self._directions[-1]
 
     def at(self, share: float, across: float = 0.0, up: float = 0.0) -> tuple[float, float, float]:
-        """A place in the limb [m]: a share of the way along the spine from its root, and offsets from there.
+        """Point in the limb [m]: a share of the spine from its root, and offsets from there.
 
         `across` counts half breadths, `up` half depths towards the back, negative towards the belly.
         """
@@ -62,7 +62,7 @@ class Limb:
         return float(self._stations_at(segments, shares)[0] / self.length)
 
     def distance(self, points: Points) -> Vector:
-        """About how far points are outside the limb [m]; nearly right close to its surface if it tapers gently."""
+        """Approximate signed distance from the limb [m]; accurate close to its surface if it tapers gently."""
         segments, shares = self._feet(points)
         stations = self._stations_at(segments, shares)
         middles = np.stack([np.interp(stations, self.stations, column) for column in self.spine.T], axis=1)
@@ -125,16 +125,16 @@ def limb(
     caps: tuple[float, float] | None = None,
     bend: float = 8e-3,
 ) -> Limb:
-    """A limb through joints [m], with its half breadth and depths given at each of them [m].
+    """Limb through joints [m], with its half breadth and depths given at each of them [m].
 
     Args:
-        joints: from the root to the end of the spine.
-        side: about the direction across the limb; what of it lies along the spine does not count.
+        joints: landmarks from the root to the end of the spine [m].
+        side: approximate direction across the limb; its component along the spine does not count.
         breadths: half the breadth at each joint.
         backs: depth of the back at each joint.
         bellies: depth of the belly; as the back if left out.
         caps: length of the rounded ends; as round as the belly if left out.
-        bend: how far from a joint the spine leaves the straight line [m].
+        bend: distance from a joint at which the spine leaves the straight line [m].
     """
     corners = np.array(list(joints), dtype=float)
     bellies = backs if bellies is None else bellies
@@ -175,14 +175,14 @@ def _smooth(corners: Float[np.ndarray, "joints 3"], bend: float) -> Float[np.nda
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """A body in space."""
+    """Body in space."""
 
     field: Field  # approximate signed distance of points [m], negative inside
     box: Float[np.ndarray, "2 3"]  # lowest and highest coordinates that hold the whole body [m]
     limbs: Mapping[str, Limb]  # limbs by name; their landmarks are the joints
 
     def surface(self, spacing: float) -> Surface:
-        """The closed surface, drawn on a grid [m]; details smaller than the spacing are lost.
+        """Closed surface, drawn on a grid [m]; details smaller than the spacing are lost.
 
         Raises SurfaceError: the spacing is not above 0, too fine for the memory or so coarse that nothing is left.
         """

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
         contraction_values,
         largest_distance,
     )
-    from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_filled
-    from hydrostat.simulation.find_contacts import ContactPatch, find_contacts, touch_words
+    from hydrostat.simulation.filled import FilledMotion, filled_motion, is_filled_motion_fast
+    from hydrostat.simulation.find_contacts import ContactPatch, describe_contacts, find_contacts
     from hydrostat.simulation.motion_file import MotionTable, write_motion
     from hydrostat.simulation.obstacle_frames import (
         carried_frames,
@@ -78,11 +78,13 @@ __all__ = [
     "check_pose",
     "continue_branch",
     "contraction_values",
+    "describe_contacts",
     "filled_motion",
     "find_contacts",
     "find_equilibria",
     "find_history_equilibrium",
     "friction_hysteresis",
+    "is_filled_motion_fast",
     "largest_distance",
     "node_strains",
     "node_stresses",
@@ -91,11 +93,9 @@ __all__ = [
     "obstacles_in_pose",
     "pose_facts",
     "profile_text",
-    "quickly_filled",
     "read_profile",
     "require_static_obstacles",
     "rests_at_first",
-    "touch_words",
     "with_obstacles",
     "with_replaced",
     "without_contact_friction",

@@ -1,4 +1,4 @@
-"""`BodyPhysics`: what the physics of a robot has of its body alone, whatever network pulls at it."""
+"""`BodyPhysics`: physics of a robot's body, independent of its cable network."""
 
 from functools import cached_property
 from typing import Any
@@ -128,7 +128,7 @@ class BodyPhysics:
 
         Args:
             start: all unknowns where a solve begins [m]; at rest if left out.
-            guided: whether other energies may hold the obstacles.
+            guided: True if other energies hold the obstacles.
 
         Raises:
             InputError: no pin, so it moves before friction on the ground can hold it; or an obstacle floats.
@@ -149,10 +149,10 @@ class BodyPhysics:
 
     def _met(self, robot: Robot, obstacle: Obstacle, carriage: RigidBodyDofs | None) -> list[Energy]:
         """Return the contact energy of an obstacle and the energy that keeps a moving one rigid or on its path."""
-        field = (obstacle if carriage is None or obstacle.path else obstacle.centred()).field()
+        field = (obstacle if carriage is None or obstacle.path else obstacle.to_own_frame()).field()
         friction = robot.friction_of(obstacle)
         met = ObstacleEnergy(robot.body.mesh, field, **_felt(robot), friction=friction, carriage=carriage)
-        met, rigid = met.begun(self.rest_unknowns), _RIGID * robot.body.material.young
+        met, rigid = met.with_friction_at_rest(self.rest_unknowns), _RIGID * robot.body.material.young
         if carriage is None:
             return [met]
         if not obstacle.path:

@@ -11,12 +11,12 @@ from hydrostat.simulation.route_points import RoutePoints
 
 
 def cable_energy(robot: Robot, points: RoutePoints) -> CableEnergy:
-    """All cables, in their order, as if they had no friction; the control of each is the index of its winch."""
+    """Energy of all cables without friction, in their order; the control of each is the index of its winch."""
     return CableEnergy(robot.body.mesh.nodes, **_bare_segments(robot, points))
 
 
 def friction_energy(robot: Robot, points: RoutePoints) -> FrictionCableEnergy | None:
-    """All cables as they rub, in place of `cable_energy`; None if none of them does."""
+    """Energy of all cables with friction, in place of `cable_energy`; None if no cable has friction."""
     friction = np.array([cable.friction for cable in robot.cables])
     if not friction.any():
         return None

@@ -12,7 +12,7 @@ from hydrostat.simulation.simulation import Simulation
 
 @dataclass(frozen=True, eq=False)
 class RigSlopes:
-    """Sensitivities of some numbers: a row for each coordinate of each marker asked for, then one for each tension.
+    """Sensitivities of marker coordinates and tensions: a row for each coordinate, then for each tension.
 
     Attributes:
         contractions: derivatives by the contraction of each winch [m/m, N/m].
@@ -34,7 +34,7 @@ def cable_sensitivities(simulation: Simulation, pose: Equilibrium, markers: list
     """Slopes of some markers and of all tensions at an equilibrium, by one adjoint solve for all rows.
 
     Args:
-        simulation: of the robot; where its cables rub they slip on or stick as for `Simulation.jacobian`.
+        simulation: simulation of the robot; cables with friction slip on or stick as for `Simulation.jacobian`.
         pose: an equilibrium of it.
         markers: numbers of the markers asked for.
 

@@ -84,7 +84,7 @@ def check_profile(profile: object, robot: Robot) -> None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProfileTable:
-    """A CSV of moves: a column `time_s`, and in millimetres one for each winch that moves, `left_mm` or just `left`.
+    """CSV of moves: a column `time_s`, and in millimetres one for each winch that moves, `left_mm` or just `left`.
 
     The studio, `hydrostat trajectory`, `hydrostat play` and `hydrostat simulate --play` write and read this table.
 
@@ -157,13 +157,13 @@ class ProfileTable:
 
 
 def _column(head: str, winches: Sequence[str]) -> str:
-    """The winch that a column is of, if it is of one; else its head."""
+    """Winch that a column is of, if it is of one; else its head."""
     bare = head.removesuffix(MILLIMETRES)
     return bare if head not in winches and bare in winches else head
 
 
 def profile_text(robot: Robot, profile: ContractionProfile) -> bytes:
-    """The bytes of a `ProfileTable` of a profile; a gentle one loses that."""
+    """Write a profile as the bytes of a `ProfileTable`; a gentle one becomes linear."""
     rows = zip(profile.times, 1e3 * profile.values + 0.0, strict=True)
     return csv_text(
         [TIME, *(f"{winch.name}{MILLIMETRES}" for winch in robot.winches)],
@@ -172,7 +172,7 @@ def profile_text(robot: Robot, profile: ContractionProfile) -> bytes:
 
 
 def read_profile(path: Path, robot: Robot) -> ContractionProfile:
-    """A profile from a `ProfileTable`.
+    """Read a profile from a `ProfileTable`.
 
     Raises:
         InputError: the file cannot be read, or is no such table; the text names the line.
@@ -186,7 +186,7 @@ def write_profile(path: Path, robot: Robot, profile: ContractionProfile) -> Path
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Iterable[str]]) -> bytes:
-    """A CSV in UTF-8, a line for the names of the columns and one for each row."""
+    """CSV in UTF-8, a line for the names of the columns and one for each row."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(head)
@@ -195,7 +195,7 @@ def csv_text(head: Sequence[str], rows: Iterable[Iterable[str]]) -> bytes:
 
 
 def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, float]:
-    """The numbers of a row by the names of their columns."""
+    """Numbers of a row by the names of their columns."""
     if len(row) != len(head):
         raise InputError(f"{place}: write a number in each of the {len(head)} columns, not {len(row)} of them")
     found = {}

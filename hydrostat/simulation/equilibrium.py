@@ -95,12 +95,12 @@ class Equilibrium:
         return f"<Equilibrium of {self.robot.name!r}: {contractions}{pulls}; {self.result.reason}>"
 
     def _repr_html_(self) -> str:
-        """The line, what is to be minded, and a picture, for a notebook."""
+        """Summary, warnings and a picture, for a notebook."""
         return html_repr("\n".join([repr(self), *self.warnings]), self.plot())
 
     @property
     def unknowns(self) -> Nodes:
-        """All that energies are functions of [m]: the nodes, then the rows of obstacles that move."""
+        """All unknowns of the energies [m]: the nodes, then the rows of moving obstacles."""
         return self.nodes if self.carried is None else np.concatenate([self.nodes, self.carried])
 
     @property
@@ -133,7 +133,7 @@ def largest_distance(one: Nodes, other: Nodes) -> float:
 
 
 def check_apart(mesh: Mesh, nodes: Nodes) -> None:
-    """Check that a body whose parts cannot pass through each other does not do so where a solve is to begin.
+    """Check that a body with self-contact does not intersect itself at the start of a solve.
 
     Raises:
         InputError: it does; with a place.
@@ -148,11 +148,11 @@ def check_pose(
     """Check that a pose is one of a robot, such as one that a solve can begin from.
 
     Args:
-        pose: what was given.
-        shape: of the robot's nodes.
-        winches: their number.
-        history: of physics that remember the way there; None if none do.
-        what: the pose is for, in messages.
+        pose: value to check.
+        shape: shape of the robot's node array.
+        winches: number of winches.
+        history: history variables of physics that depend on the loading path; None for other physics.
+        what: purpose of the pose, for messages.
 
     Raises:
         InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.
@@ -204,7 +204,7 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
 
 
 def _check_metres(robot: Robot, contractions: Vector) -> None:
-    """Refuse what no winch could do, as where millimetres were given."""
+    """Reject contractions that no winch can reach, such as values in millimetres."""
     size = robot.body.mesh.size
     if np.abs(contractions).max(initial=0.0) <= _MOST * size:  # no winch has a lower limit
         return

@@ -1,4 +1,4 @@
-"""`filled_motion`: what a flat robot does once it is filled and its cables are sewn on a face of it."""
+"""`filled_motion`: motion of a flat robot once it is stuffed and its cables are sewn on one side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class FilledMotion:
         return f"{out} mm out of plane, {aside} mm in-plane deviation (flat model moves {moved} mm)"
 
 
-def quickly_filled(robot: Robot, poses: int) -> bool:
+def is_filled_motion_fast(robot: Robot, poses: int) -> bool:
     """Return True if `filled_motion` of so many poses takes only seconds: a flat drawn body, not too fine."""
     body = robot.body
     if body.outline is None or body.thickness is None or not robot.cables or not poses:
@@ -49,10 +49,10 @@ def filled_motion(
     """Play contractions on a flat robot and on the body in space that it becomes (`inflated_robot`), and compare.
 
     Args:
-        robot: flat, with a drawing.
-        contractions: of all winches, for each pose [m].
-        face: where its cables run; as the robot says if left out, and if it does not, on the front.
-        element_size: of the tetrahedra [m]; that of the flat mesh if left out.
+        robot: flat robot with a drawing.
+        contractions: contractions of all winches for each pose [m].
+        face: side on which its cables run; None: the robot's own, or else the front.
+        element_size: size of the tetrahedra [m]; None: that of the flat mesh.
 
     Raises:
         InputError: a robot in space, one without a drawing, or a body too thick for its outline.

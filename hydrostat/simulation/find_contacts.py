@@ -1,4 +1,4 @@
-"""`find_contacts`: where a pose touches itself and obstacles, and with what force."""
+"""`find_contacts`: self-contact and obstacle contact of a pose, with the forces."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -38,7 +38,7 @@ def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPat
     feels, friction included (`obstacle_forces` with the other sign); those of the body on itself are normal.
 
     Args:
-        simulation: of the robot.
+        simulation: simulation of the robot.
         pose: an equilibrium of it.
 
     Raises:
@@ -56,7 +56,7 @@ def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPat
     return tuple(sorted(found, key=lambda touch: -touch.strength))
 
 
-def touch_words(found: Sequence[ContactPatch]) -> str:
+def describe_contacts(found: Sequence[ContactPatch]) -> str:
     """Describe all contacts and their forces in one sentence; empty if nothing touches."""
     parts = []
     for name in dict.fromkeys(touch.obstacle for touch in found):

@@ -45,10 +45,10 @@ def write_motion(
     """Write a motion; one that stops early is written as far as it got. Nothing is replaced before it has ended.
 
     Args:
-        robot: that moves.
+        robot: moving robot.
         motions: its instants, at least one.
         folder: made if need be; the meshes go to `frames` in it.
-        frames_per_second: for the meshes: the first instants not before are taken.
+        frames_per_second: frame rate of the meshes: each frame is the first instant at or after its time.
 
     Returns:
         The paths of motion.csv and motion.pvd, the table, and the last instant.
@@ -83,7 +83,7 @@ def write_motion(
 
 
 def _until_stopped(motions: Iterable[Motion]) -> Iterator[Motion | NotConvergedError]:
-    """The motions, and the error that ended them in place of being raised."""
+    """Motions, and the error that ended them in place of being raised."""
     try:
         yield from motions
     except NotConvergedError as error:
@@ -117,7 +117,7 @@ def _write_frame(robot: Robot, motion: Motion, folder: Path, number: int) -> str
 
 
 def _replace_folder(folder: Path, part: Path) -> None:
-    """Put the files of `part` in the place of what was in the folder before."""
+    """Replace the former contents of a folder by the files of `part`."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     for file in part.iterdir():

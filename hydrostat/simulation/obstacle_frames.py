@@ -51,17 +51,17 @@ def carried_frames(robot: Robot, carried: Points | None) -> dict[str, tuple[Vect
 
 
 def obstacles_in_pose(robot: Robot, carried: Points | None) -> Robot:
-    """The robot with its obstacles where their unknowns say, for pictures; where they stand is not checked anew."""
+    """Return the robot with its obstacles at the positions of their unknowns, for pictures, without checks."""
     frames = carried_frames(robot, carried)
     if not frames:
         return robot
     return with_obstacles(
-        robot, [one.moved(*frames[one.name]) if one.name in frames else one for one in robot.obstacles]
+        robot, [one.with_frame(*frames[one.name]) if one.name in frames else one for one in robot.obstacles]
     )
 
 
 def with_obstacles(robot: Robot, obstacles: Sequence[Obstacle]) -> Robot:
-    """The robot with other obstacles, for pictures: where they stand is not checked."""
+    """Return the robot with other obstacles, for pictures, without checks of their positions."""
     other = copy(robot)
     object.__setattr__(other, "obstacles", tuple(obstacles))
     return other

@@ -1,4 +1,4 @@
-"""`RoutePoints`: the points of all cables of a robot, and how they move with their places in the rest shape."""
+"""`RoutePoints`: points of all cables of a robot, and their motion with their rest positions."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -68,7 +68,7 @@ class RoutePoints:
     ) -> tuple[
         Int[np.ndarray, "segments corners"], Float[np.ndarray, "segments corners"], Float[np.ndarray, "segments dim"]
     ]:
-        """Stencils, signed weights and what is fixed in space [m] of the segments that begin at these points."""
+        """Stencils, signed weights and fixed offsets [m] of the segments that begin at these points."""
         weights = np.where(self.world[:, None], 0.0, self.anchors.weights)
         offsets = np.where(self.world[:, None], self.places, 0.0)
         ends, stencils = starts + 1, self.anchors.stencils
@@ -101,7 +101,7 @@ class RoutePoints:
         return np.where(self.world[:, None], 0.0, self._through(field, slopes))
 
     def held_back(self, slopes: Float[np.ndarray, "*rows points dim"]) -> Float[np.ndarray, "*rows points dim"]:
-        """Slopes by the positions at rest, as slopes by the places asked for."""
+        """Convert derivatives by the held rest positions to derivatives by the requested positions."""
         held = np.einsum("pij,...pi->...pj", self.projections, slopes)
         return np.where(self.world[:, None], slopes, held)
 
@@ -109,7 +109,9 @@ class RoutePoints:
         """From end to end of each bare segment."""
         return positions[..., self.starts + 1, :] - positions[..., self.starts, :]
 
-    def gathered(self, slopes: Float[np.ndarray, "*rows segments dim"]) -> Float[np.ndarray, "*rows points dim"]:
+    def gather_gradients(
+        self, slopes: Float[np.ndarray, "*rows segments dim"]
+    ) -> Float[np.ndarray, "*rows points dim"]:
         """Slopes by the spans, as slopes by the points; a point ends one segment at most, and begins one."""
         total = np.zeros((*slopes.shape[:-2], len(self.places), slopes.shape[-1]))
         total[..., self.starts + 1, :] += slopes
@@ -117,7 +119,7 @@ class RoutePoints:
         return total
 
     def by_cable(self, rows: Points) -> tuple[RouteSlopes, ...]:
-        """The rows of each cable."""
+        """Split rows by cable."""
         return tuple(np.split(rows, np.cumsum(self.counts)[:-1])) if self.counts else ()
 
     def _through(
@@ -129,7 +131,7 @@ class RoutePoints:
 
 
 def route_points(robot: Robot) -> RoutePoints:
-    """The points of all cables of a robot."""
+    """Points of all cables of a robot."""
     mesh, cables = robot.body.mesh, robot.cables
     counts = tuple(len(cable.points) for cable in cables)
     first = np.cumsum([0, *counts])[:-1]

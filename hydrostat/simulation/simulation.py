@@ -60,7 +60,7 @@ class Simulation:
 
         Args:
             robot: body and network.
-            options: how far Newton goes.
+            options: convergence options of Newton's method.
             body: the physics of its body, if they are at hand; making them anew takes longer than all else here.
             energies: more physics, such as a magnet or a floor; controls of theirs are the winches' contractions.
 
@@ -74,7 +74,7 @@ class Simulation:
         self.cables = cable_energy(robot, self.route_points)
         self.friction = friction_energy(robot, self.route_points)
         more = [self.friction or self.cables, *energies]
-        self.assembly: Assembly = self.body.assembly.extended(more, control_count=len(robot.winches))
+        self.assembly: Assembly = self.body.assembly.with_added_energies(more, control_count=len(robot.winches))
         self._more = tuple(energies)
         springs = [*(cable.stiffness for cable in robot.cables), *(energy.stiffest for energy in energies)]
         hidden = self.body.round_off(max(springs, default=0.0))
@@ -103,8 +103,8 @@ class Simulation:
             start: a pose to begin from; the rest pose if left out.
             strict: raise when the solver does not converge, rather than return the best pose found.
             seconds: after which it stops, with what it has; no limit if left out.
-            accuracy: about how far a node may be from equilibrium [m], for poses that are streamed, 1e-5 for instance;
-                what is left is told as `pose.result.error`. Solved to rounding if left out, and always with friction.
+            accuracy: approximate distance of a node from equilibrium [m] for streamed poses, for instance 1e-5; the
+                remaining distance is `pose.result.error`. None: solved to rounding, as always with friction.
 
         Raises:
             InputError: contractions that do not fit the robot, or a limit or an accuracy that is not above 0.
@@ -140,9 +140,9 @@ class Simulation:
 
         Args:
             contractions: cable taken in [m], (poses, winches), or each as in `solve`.
-            jacobians: whether to find slopes of the markers too.
-            nodes: whether to keep all nodes.
-            threads: that solve at the same time, one for each core; for small bodies, where two are slower, one works.
+            jacobians: also compute Jacobians of the markers.
+            nodes: keep all nodes.
+            threads: number of threads, by default one per core; for small bodies, where two are slower, one.
             start: a pose to begin each from; the rest pose if left out.
             seconds: after which one pose is given up; no limit if left out.
 
@@ -223,7 +223,7 @@ class Simulation:
         return sensitivity(self.body, self.assembly, self.cables, pose, **given, response=partial(self.response, pose))
 
     def friction_sensitivities(self, pose: Equilibrium, rows: tuple[np.ndarray, np.ndarray]) -> FrictionSensitivities:
-        """Slopes of numbers of a pose whose cables rub: `rows` are by its nodes, then by tensions; as for `adjoint`."""
+        """Sensitivities of a pose with cable friction: `rows` are by nodes, then by tensions; as for `adjoint`."""
         return friction_sensitivities(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
 
     def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, Stiffness]:
@@ -252,11 +252,11 @@ class Simulation:
         )
 
     def motion_at_rest(self, pose: Equilibrium | None = None, *, velocities: Nodes | None = None) -> Motion:
-        """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
+        """Return a motion that starts in a pose, by default the rest pose, with relaxed viscous branches.
 
         Args:
-            pose: where the nodes are, and the contractions there.
-            velocities: of the nodes [m/s]; none if left out.
+            pose: initial nodes and contractions.
+            velocities: node velocities [m/s]; zero by default.
         """
         self.check_start(pose)
         if pose is None:
@@ -272,14 +272,14 @@ class Simulation:
         options: StepOptions | None = None,
         pin_shifts: PinShifts | None = None,
     ) -> Motion:
-        """The motion after `dt` [s], while contractions and pins go evenly to where they shall be.
+        """Return the motion after `dt` [s], while contractions and pins move evenly to their final values.
 
         Args:
-            motion: where it begins.
-            contractions: at the end of the step [m].
+            motion: state at the start of the step.
+            contractions: contractions at the end of the step [m].
             dt: length of the step [s].
             options: scheme, drag, and how often a step that fails is cut in two.
-            pin_shifts: how far pins are from where they were at rest, at the end of the step [m].
+            pin_shifts: displacement of pins from their rest positions at the end of the step [m].
 
         Raises:
             InputError: arguments that do not fit the robot.
@@ -297,14 +297,14 @@ class Simulation:
         start: Motion | None = None,
         options: StepOptions | None = None,
     ) -> Iterator[Motion]:
-        """The motion under contractions in time: its start, then each step as it is found.
+        """Yield the motion under a contraction profile: its start, then each step.
 
         Args:
             profile: the contractions; its time is that of the motion.
-            seconds: how long.
+            seconds: duration [s].
             dt: longest step [s]; the steps are even, and the last ends in time.
-            start: where it begins; at rest if left out.
-            options: as for `step`.
+            start: initial state; at rest by default.
+            options: options as for `step`.
 
         Raises:
             InputError, NotConvergedError: as for `step`.
@@ -349,18 +349,18 @@ class Simulation:
         return stiffness
 
     def stiffness_of(self, pose: Equilibrium) -> Stiffness | None:
-        """The Hessian that a pose of this simulation brings along; None if it brings none, or its nodes were moved."""
+        """Hessian kept with a pose of this simulation; None if it has none, or its nodes were moved."""
         known = pose.result.stiffness
         return known if known is not None and pose.is_unmodified and known.token is self.assembly.token else None
 
     @cached_property
     def rest(self) -> Equilibrium:
-        """The pose without contractions: where gravity leaves the body (NotConvergedError: as for `solve`)."""
+        """Pose without contractions, under gravity (NotConvergedError: as for `solve`)."""
         return self.solve(np.zeros(len(self.robot.winches)))
 
     @cached_property
     def rest_stiffness(self) -> Stiffness:
-        """The Hessian at the nodes' rest positions."""
+        """Hessian at the nodes' rest positions."""
         nodes, idle = self.body.rest_unknowns, np.zeros(len(self.robot.winches))
         if self._more:
             return self.assembly.with_active_terms(nodes).stiffness(nodes, idle)
@@ -381,7 +381,7 @@ class Simulation:
         return LoadingPath(self.robot, self.solver, self.body.rest_unknowns)
 
     def forces(self, nodes: Nodes, contractions: Vector) -> Vector:
-        """Residual forces dE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""
+        """Residual forces dE/dx [N], (nodes x dim,), on every degree of freedom; 0 at rest."""
         return self.assembly.with_active_terms(nodes).gradient(nodes, contractions)
 
     def make_pose(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> Equilibrium:

@@ -20,7 +20,7 @@ def require_static_obstacles(robot: Robot, what: str) -> None:
     """Check that no obstacle moves.
 
     Args:
-        robot: which.
+        robot: robot to check.
         what: does not know obstacles that move, in words.
 
     Raises:

@@ -1,4 +1,4 @@
-"""`node_strains`, `node_stresses`: how far a body is stretched in a pose, and how hard."""
+"""`node_strains`, `node_stresses`: stretch and stress of a body in a pose."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -91,7 +91,7 @@ class _Stretch:
         self.volume = np.sqrt(np.maximum(_determinant(stretch, self.mean), 1e-300))
 
     def largest(self) -> Float[np.ndarray, " elements"]:
-        """The largest eigenvalue of C, in closed form (Smith 1961)."""
+        """Largest eigenvalue of C, in closed form (Smith 1961)."""
         spread = np.sqrt(self.deviation / 6.0)
         cube = np.maximum(spread**3, 1e-300)
         turned = np.clip(0.5 * _determinant(self._off, 0.0 * self.mean) / cube, -1.0, 1.0)

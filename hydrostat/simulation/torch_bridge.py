@@ -57,9 +57,9 @@ def solve_torch(
     `young` or `poisson` is given. Second derivatives are refused.
 
     Args:
-        simulation: of the robot.
+        simulation: simulation of the robot.
         contractions: cable taken in by each winch [m], (winches,).
-        slack: of each cable [m], (cables,).
+        slack: slack of each cable [m], (cables,).
         routes: rest positions of the points of each cable [m], (points, dim) each. The winch of a cable that begins
             in the world goes with its first point.
         young: Young's modulus [Pa], one number.
@@ -139,7 +139,7 @@ def _altered(
     young: np.ndarray | None,
     poisson: np.ndarray | None,
 ) -> Robot:
-    """The robot with other numbers.
+    """Robot with other numbers.
 
     Raises:
         InputError: numbers that it refuses.
@@ -171,7 +171,7 @@ def _number(name: str, value: np.ndarray) -> float:
 
 
 def _moved_winches(robot: Robot, cables: Sequence[Cable]) -> tuple[Winch, ...]:
-    """The winches, those in the world at the first point of their first cable."""
+    """Winches, those in the world at the first point of their first cable."""
     first = {cable.winch: cable.points[0] for cable in reversed(cables)}
     return tuple(
         replace(winch, at=first.get(winch.name, winch.at)) if winch.mount is Mount.WORLD else winch

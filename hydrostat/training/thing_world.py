@@ -142,7 +142,7 @@ class ThingWorld:
         out = 0.6 if len(axes) == 2 else 0.94
         dots = (self.place + out * radius * sides).tolist()
         made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots]
-        return (self.thing.moved(self.place, axes), *made)
+        return (self.thing.with_frame(self.place, axes), *made)
 
 
 def as_drawn(thing: Obstacle, state: ThingState) -> Obstacle:

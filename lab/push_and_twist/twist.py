@@ -153,7 +153,7 @@ class Held:
         axes, radius = _rotation(self._axes), self.ball.radius or 0.0
         dots = self.place + 0.94 * radius * np.concatenate([axes, -axes])[:: 1 if self.ball.to is None else 2]
         made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots.tolist()]
-        return [self.ball.moved(self.place, axes), *made]
+        return [self.ball.with_frame(self.place, axes), *made]
 
     @property
     def _axes(self) -> np.ndarray:

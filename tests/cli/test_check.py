@@ -13,7 +13,7 @@ from builders import box_mesh
 from hydrostat.cli.main import main
 from hydrostat.geometry import write_vtu
 from hydrostat.robot import Face, gallery_folder, load_robot, save_robot
-from hydrostat.simulation import quickly_filled
+from hydrostat.simulation import is_filled_motion_fast
 
 Check = Callable[[Path], list[str]]
 
@@ -109,7 +109,7 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(check: Check,
     assert 10 < found["on the front"] < 30
     assert found["on both faces, in pairs"] < 1
     fine = replace(robot, face=Face.PAIRS, body=replace(robot.body, element_size=1e-4))
-    assert not quickly_filled(fine, len(fine.poses))
+    assert not is_filled_motion_fast(fine, len(fine.poses))
 
 
 def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,7 +23,7 @@ from hydrostat.cli.bounded import bounded
 from hydrostat.cli.folders import require_folder, result_folder
 from hydrostat.errors import InputError
 from hydrostat.geometry import heal, read_drawing, read_stranger, read_surface, triangulate
-from hydrostat.robot import clear_unfinished, commented_text, replace_file, unfinished
+from hydrostat.robot import clear_unfinished, commented_text, replace_file, temporary_path
 
 Run = Callable[..., tuple[int, str, str]]
 START = "from hydrostat.cli.main import main; main()"
@@ -231,7 +231,7 @@ def dead_process() -> int:
 
 
 def test_what_killed_runs_left_is_cleared_by_the_next(tmp_path: Path) -> None:
-    own = unfinished(tmp_path / "robot.toml")
+    own = temporary_path(tmp_path / "robot.toml")
     left = [tmp_path / own.name.replace(f"-{os.getpid()}-", f"-{dead_process()}-"), tmp_path / "kit"]
     left[1] = left[0].with_name(left[0].name.replace("robot.toml", "kit"))
     left[0].write_text("half")
@@ -252,7 +252,7 @@ def test_what_killed_learning_left_is_cleared_too(
     """Also by a command that is then refused."""
     pytest.importorskip("gymnasium", reason="gymnasium is not installed")
     monkeypatch.chdir(tmp_path)
-    own = unfinished(tmp_path / "here" / "m.model")
+    own = temporary_path(tmp_path / "here" / "m.model")
     own.parent.mkdir()
     left = own.with_name(own.name.replace(f"-{os.getpid()}-", f"-{dead_process()}-"))
     left.write_text("half")
@@ -297,7 +297,7 @@ def test_two_writers_of_one_folder(tmp_path: Path) -> None:
         (out / "a.txt").write_text("other")
     assert (out / "a.txt").read_text() == "one"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out"]
-    assert unfinished(out / "a") != replace_file(out / "a", b"x")
+    assert temporary_path(out / "a") != replace_file(out / "a", b"x")
     assert sorted(path.name for path in out.iterdir()) == ["a", "a.txt", "made"]
 
 

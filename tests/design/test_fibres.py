@@ -64,7 +64,7 @@ def test_wanted_directions_are_the_best_of_all_angles() -> None:
     body = BodyPhysics(robot)
     for row, angle in enumerate(angles):
         fibres = element_fibres(mesh, turned(count, angle))
-        assembly = body.assembly.extended([fibres.energy()], control_count=count)
+        assembly = body.assembly.with_added_energies([fibres.energy()], control_count=count)
         for fibre in range(3, count, 5):
             tensions = np.zeros(count)
             # The same couple of forces at the ends of a fibre of unit length, whatever its own length is.

@@ -80,7 +80,7 @@ def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[IKRe
     for flat, own in zip(reached, filled.reached, strict=True):
         for name, pose in (("flat", flat), ("own", own)):
             markers = solid.solve(pose.pose.contractions).markers
-            squares[name] += [np.sum((markers[m] - [*at, 0]) ** 2) for m, at in flat.wanted.targets.items()]
+            squares[name] += [np.sum((markers[m] - [*at, 0]) ** 2) for m, at in flat.pose_target.targets.items()]
     assert filled.played == pytest.approx(np.sqrt(np.mean(squares["flat"])), rel=1e-6)
     assert filled.rms_error == pytest.approx(np.sqrt(np.mean(squares["own"])), rel=1e-4)
     assert filled.rms_error <= 1.01 * filled.played

@@ -66,7 +66,7 @@ def test_a_goal_out_of_reach_crushes_nothing(way: tuple[float, float]) -> None:
 def test_without_points_it_goes_back_to_rest() -> None:
     posing = FreePosing(ROBOT)
     follow(posing, START + np.array([[-0.04, 0.08]]))
-    none = TIP.chosen([])
+    none = TIP.select_points([])
     while posing.update(none, np.zeros((0, 2))):
         pass
     assert np.abs(posing.nodes - ROBOT.body.mesh.nodes).max() < 1e-5
@@ -112,7 +112,10 @@ def test_markers_that_nobody_holds_rather_stay(farther: float) -> None:
     centre, turn = mesh.nodes.mean(axis=0), np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0)
     goal = (centre + farther * turn @ (places[number] - centre))[None]
     markers = locate(mesh, places)
-    held, calm = markers.chosen([number]), markers.chosen([own for own in range(len(places)) if own != number])
+    held, calm = (
+        markers.select_points([number]),
+        markers.select_points([own for own in range(len(places)) if own != number]),
+    )
 
     def dragged(stays: Anchors | None) -> tuple[float, np.ndarray]:
         """Miss [m], and how far each other marker is from rest [m]."""

@@ -40,7 +40,9 @@ def test_the_designs_of_the_page_are_what_was_asked_for(page: dict[str, Any]) ->
     assert len(network.robot.winches) == 2
     assert 2 <= len(network.robot.cables) <= 4
     squares = [
-        np.mean([np.sum((reached.pose.markers[name] - goal) ** 2) for name, goal in reached.wanted.targets.items()])
+        np.mean(
+            [np.sum((reached.pose.markers[name] - goal) ** 2) for name, goal in reached.pose_target.targets.items()]
+        )
         for reached in network.reached
     ]
     assert network.rms_error == pytest.approx(np.sqrt(np.mean(squares)), rel=1e-6)

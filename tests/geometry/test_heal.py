@@ -285,12 +285,12 @@ def test_settled_blocks_change_nothing(dirty: Surface) -> None:
     """Oracle: the same contour with the winding number summed at every grid point."""
     field = WindingField(dirty)
     box = dirty.box + 0.003 * np.array([[-1.0], [1.0]])
-    every, some = contour(field, box, _FINE), contour(field, box, _FINE, settled=field.settled)
+    every, some = contour(field, box, _FINE), contour(field, box, _FINE, settled=field.find_settled_points)
     assert every.vertices.tobytes() == some.vertices.tobytes()
     assert every.triangles.tobytes() == some.triangles.tobytes()
     middle = np.array([[0.0, 0.0, 0.0]])
-    assert field.settled(middle, np.array([0.002])).all()
-    assert not field.settled(_TOP[None], np.array([0.012])).any()
+    assert field.find_settled_points(middle, np.array([0.002])).all()
+    assert not field.find_settled_points(_TOP[None], np.array([0.012])).any()
 
 
 _SHEET = Surface(np.array([[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0.0]]), np.array([[0, 1, 2], [0, 2, 3]]))

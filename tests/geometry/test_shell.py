@@ -56,8 +56,8 @@ def test_derivatives_are_those_of_differences(shell: Shell) -> None:
     assert np.quantile(errors, 0.99) < 1e-6 * step
     away = step * random.standard_normal(shell.nodes.shape)
     change = (
-        shell.moved(shell.nodes + away).nearest(points).distances
-        - shell.moved(shell.nodes - away).nearest(points).distances
+        shell.with_nodes(shell.nodes + away).nearest(points).distances
+        - shell.with_nodes(shell.nodes - away).nearest(points).distances
     )
     moved = np.einsum("pc,pcd->pd", here.shares, away[here.stencils])
     errors = np.abs(change + 2 * np.einsum("pd,pd->p", here.directions, moved))
@@ -67,8 +67,8 @@ def test_derivatives_are_those_of_differences(shell: Shell) -> None:
 @pytest.mark.parametrize("mesh", [strip_mesh(6, 2), box_mesh((3, 2, 2))], ids=["2", "3"])
 def test_the_boundary_of_a_mesh_is_a_closed_shell_with_the_body_inside(mesh) -> None:
     shell = Shell(mesh.nodes, mesh.boundary)
-    assert shell.closed
-    assert not Shell(mesh.nodes, mesh.boundary[1:]).closed
+    assert shell.is_closed
+    assert not Shell(mesh.nodes, mesh.boundary[1:]).is_closed
     middle, normal = mesh.nodes[mesh.boundary].mean(axis=1), 1e-4 * shell._normals
     np.testing.assert_allclose(shell.nearest(middle - normal).distances, -1e-4, rtol=1e-9)
     np.testing.assert_allclose(shell.nearest(middle + normal).distances, 1e-4, rtol=1e-9)

@@ -20,7 +20,7 @@ def answers(targets: dict[str, tuple[float, float]]) -> tuple[IKResult, IKResult
 def strayed(reached: IKResult) -> float:
     """How far the markers that are not named have gone from rest, in all [m]."""
     places = reached.pose.markers
-    others = [marker for marker in SIMULATION.robot.markers if marker.name not in reached.wanted.targets]
+    others = [marker for marker in SIMULATION.robot.markers if marker.name not in reached.pose_target.targets]
     return float(np.linalg.norm([np.linalg.norm(places[marker.name] - marker.at) for marker in others]))
 
 
@@ -44,7 +44,7 @@ def test_out_of_reach_others_move_only_for_what_they_gain(name: str) -> None:
             if not 0 <= near[winch] <= SIMULATION.robot.winches[winch].travel:
                 continue
             pose = SIMULATION.solve(near, start=minding.pose)
-            missed = {name: float(np.linalg.norm(pose.markers[name] - minding.wanted.targets[name]))}
+            missed = {name: float(np.linalg.norm(pose.markers[name] - minding.pose_target.targets[name]))}
             other = IKResult(
                 target=minding.target, pose=pose, errors=missed, status=minding.status, iterations=0, solves=0
             )

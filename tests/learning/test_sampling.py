@@ -32,7 +32,7 @@ from hydrostat.learning.draw import contractions as drawn
 from hydrostat.learning.draw import shared_numbers
 from hydrostat.learning.sample_folder import SampleFolder
 from hydrostat.learning.sample_shard import REASONS
-from hydrostat.robot import unfinished
+from hydrostat.robot import temporary_path
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -186,7 +186,7 @@ def test_going_on_makes_only_what_is_missing(plan: SamplePlan, once: Path, tmp_p
     sample_robot(plan, tmp_path)
     kept = (tmp_path / "samples-000001.npy").stat().st_mtime_ns
     (tmp_path / "samples-000003.npy").unlink()
-    left = unfinished(tmp_path / "samples-000003.npy")  # of a run that was killed
+    left = temporary_path(tmp_path / "samples-000003.npy")  # of a run that was killed
     left.with_name(left.name.replace(f"-{os.getpid()}-", "-999999999-")).write_bytes(b"half")
     sample_robot(plan, tmp_path)
     assert contents(tmp_path) == contents(once)

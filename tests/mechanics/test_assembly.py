@@ -164,8 +164,8 @@ def test_patterns_of_terms_that_come_and_go_keep_one_other() -> None:
     rest = np.random.default_rng(0).normal(size=(40, 2))
     pattern = begun = SparsityPattern([np.array([[0, 1]])], rest)
     for number in range(2000):
-        pattern = pattern.changed([np.array([[number % 40, (number + 1) % 40]])])
+        pattern = pattern.with_replaced_stencils([np.array([[number % 40, (number + 1) % 40]])])
     pattern.settle()
     wanted = {0 * 40 + 1, 1 * 40 + 0, 39 * 40 + 0, 0 * 40 + 39, *range(0, 1600, 41)}
     assert set(pattern.entries.tolist()) == wanted
-    assert pattern.changed([np.array([[3, 4]])]).analysis is not begun.analysis
+    assert pattern.with_replaced_stencils([np.array([[3, 4]])]).analysis is not begun.analysis

@@ -111,7 +111,7 @@ def test_blocks_to_eight_digits(kind: str) -> None:
     felt = 0
     while felt < 20:
         nodes = random.uniform(-1, 1, (dim + 1, dim))
-        if not 0.01 < skin.squared(nodes, pair.pairs)[0] < 0.8:
+        if not 0.01 < skin.compute_squared_distances(nodes, pair.pairs)[0] < 0.8:
             continue
         felt += 1
         block, errors = pair.hessian(nodes, IDLE)[0], []

@@ -70,7 +70,7 @@ def test_tension_is_the_slope_of_the_energy_and_tangents_of_the_tension(seed: in
 def test_locked_chains_answer_limits_and_elongations(seed: int) -> None:
     random = np.random.default_rng(seed)
     law, elongation = chains(random), random_elongations(random)
-    by_elongation, by_limit = law.locked(law.tension(elongation), np.sign(law.slips(elongation)))
+    by_elongation, by_limit = law.compute_slip_jacobians(law.tension(elongation), np.sign(law.slips(elongation)))
     assert by_elongation == pytest.approx(law.tangents(elongation), abs=1e-6 * law.stiffness.max())
     rubbing = np.flatnonzero(law.limits > 0)
     found = central_differences(

@@ -40,7 +40,7 @@ def met(dim: int, shape: str, friction: float) -> tuple[ObstacleEnergy, np.ndarr
     energy = ObstacleEnergy(
         mesh, field, distance=6e-3, young=3e4, thickness=thickness, friction=friction, carriage=carriage
     )
-    return energy.begun(unknowns), unknowns
+    return energy.with_friction_at_rest(unknowns), unknowns
 
 
 @pytest.mark.parametrize("dim", [2, 3])

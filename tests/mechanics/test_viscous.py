@@ -72,7 +72,7 @@ def test_a_dashpot_is_a_newtonian_fluid(dim: int) -> None:
     expected = body.volumes[:, None, None] * (body.shape_gradients @ np.swapaxes(stress, 1, 2))
     errors = []
     for step in (1e-3, 5e-4, 2.5e-4):
-        energy = branch.energy(branch.settled(nodes - step * velocities), step)
+        energy = branch.energy(branch.relax_fully(nodes - step * velocities), step)
         errors.append(np.abs(energy.gradient(nodes, np.zeros(0)) - expected).max() / np.abs(expected).max())
     assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx(1.0, abs=0.05)
     assert errors[-1] < 0.02
@@ -85,12 +85,16 @@ def test_branches_turn_with_the_body(dim: int) -> None:
     branch, _, nodes = memory(dim, random, time=0.1)
     turn = np.linalg.qr(random.standard_normal((dim, dim)))[0]
     turn *= np.linalg.det(turn) if dim == 3 else np.array([[1.0], [np.linalg.det(turn)]])
-    before = metrics(len(branch.settled(nodes)[0]), dim, random)[None]
+    before = metrics(len(branch.relax_fully(nodes)[0]), dim, random)[None]
     energy = branch.energy(before, 0.02)
     none = np.zeros(0)
     assert energy.value(nodes @ turn.T, none) == pytest.approx(energy.value(nodes, none), rel=1e-12)
-    assert branch.relaxed(before, nodes @ turn.T, 0.02) == pytest.approx(branch.relaxed(before, nodes, 0.02), rel=1e-11)
-    assert branch.stored(before, nodes @ turn.T) == pytest.approx(branch.stored(before, nodes), rel=1e-11)
+    assert branch.relax_step(before, nodes @ turn.T, 0.02) == pytest.approx(
+        branch.relax_step(before, nodes, 0.02), rel=1e-11
+    )
+    assert branch.compute_stored_energy(before, nodes @ turn.T) == pytest.approx(
+        branch.compute_stored_energy(before, nodes), rel=1e-11
+    )
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -98,14 +102,14 @@ def test_a_held_branch_forgets(dim: int) -> None:
     """Oracle: second law: in a body that is held, what a branch stores falls in every step, of any size, to nothing."""
     random = np.random.default_rng(dim)
     branch, _, nodes = memory(dim, random, time=0.1)
-    now = metrics(len(branch.settled(nodes)[0]), dim, random)[None]
-    stored = [branch.stored(now, nodes)]
+    now = metrics(len(branch.relax_fully(nodes)[0]), dim, random)[None]
+    stored = [branch.compute_stored_energy(now, nodes)]
     for step in (1e-3, 0.01, 0.1, 1.0, 1e3):
-        now = branch.relaxed(now, nodes, step)
-        stored.append(branch.stored(now, nodes))
+        now = branch.relax_step(now, nodes, step)
+        stored.append(branch.compute_stored_energy(now, nodes))
     assert (np.diff(stored) < 0).all()
     assert stored[-1] < 1e-6 * stored[0]
-    assert branch.stored(branch.settled(nodes), nodes) == pytest.approx(0.0, abs=1e-12 * stored[0])
+    assert branch.compute_stored_energy(branch.relax_fully(nodes), nodes) == pytest.approx(0.0, abs=1e-12 * stored[0])
 
 
 def test_roots_and_what_has_none() -> None:
@@ -122,7 +126,7 @@ def test_roots_and_what_has_none() -> None:
 def test_an_extrapolated_metric_that_is_not_positive_definite_is_not_used() -> None:
     random = np.random.default_rng(0)
     branch, _, nodes = memory(2, random, time=0.1)
-    good = branch.settled(nodes)
+    good = branch.relax_fully(nodes)
     wrong = good.copy()
     wrong[0, 2] *= -1
     mended = branch.sound(wrong, 2 * good)

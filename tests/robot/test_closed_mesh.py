@@ -64,7 +64,7 @@ def test_in_its_own_frame_it_is_the_same() -> None:
     made = thing(block())
     place, axes = made.frame()
     points = np.random.default_rng(1).uniform(-0.05, 0.05, (500, 3))
-    here, there = made.centred().field()(points), made.field()(place + points @ axes)
+    here, there = made.to_own_frame().field()(points), made.field()(place + points @ axes)
     near = np.abs(there.values) < 0.02
     assert np.allclose(here.values[near], there.values[near], atol=1e-9)
     assert np.linalg.det(axes) == pytest.approx(1.0)

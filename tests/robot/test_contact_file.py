@@ -139,11 +139,11 @@ def test_second_moments_and_frames(shape: str, dim: int) -> None:
     thing = Obstacle(name="thing", shape=shape, at=(0.01,) * dim, mass=1.0, **sizes.get(shape, rod))
     place, axes = thing.frame()
     points = np.random.default_rng(0).uniform(-0.12, 0.12, (400_000, dim))
-    distances = thing.centred().field()(points).values
+    distances = thing.to_own_frame().field()(points).values
     assert np.allclose(thing.field()(place + points[:1000] @ axes).values, distances[:1000], atol=1e-12)
     assert axes @ axes.T == pytest.approx(np.eye(dim), abs=1e-12)
     if shape != "box":
         turned = axes @ np.linalg.qr(np.random.default_rng(1).normal(size=(dim, dim)))[0]
-        there = thing.moved(place + 0.1, turned)
+        there = thing.with_frame(place + 0.1, turned)
         assert np.allclose(there.field()(place + 0.1 + points[:1000] @ turned).values, distances[:1000], atol=1e-9)
     assert (points[distances < 0] ** 2).mean(axis=0) == pytest.approx(thing.second_moments(), rel=0.03)

@@ -7,7 +7,16 @@ import pytest
 from robot_files import GOOD, edit, load
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Face, Robot, face_words, gallery_folder, load_robot, robot_hash, robot_text, sewn_robot
+from hydrostat.robot import (
+    Face,
+    Robot,
+    describe_cable_side,
+    gallery_folder,
+    load_robot,
+    robot_hash,
+    robot_text,
+    sewn_robot,
+)
 from hydrostat.robot.checks import LONGEST_NAME
 from hydrostat.robot.merge import merged_text
 
@@ -67,6 +76,10 @@ def test_a_long_name_gets_no_side(starfish: Robot) -> None:
 
 
 def test_it_is_told_in_words(starfish: Robot) -> None:
-    assert face_words(replace(starfish, face=Face.PAIRS)) == "on both faces, in pairs"
-    assert face_words(starfish).startswith("side not set: a plush kit uses the front panel")
-    assert face_words(starfish.with_network((), ())) == face_words(load_robot(gallery_folder("trunk"))) == ""
+    assert describe_cable_side(replace(starfish, face=Face.PAIRS)) == "on both faces, in pairs"
+    assert describe_cable_side(starfish).startswith("side not set: a plush kit uses the front panel")
+    assert (
+        describe_cable_side(starfish.with_network((), ()))
+        == describe_cable_side(load_robot(gallery_folder("trunk")))
+        == ""
+    )

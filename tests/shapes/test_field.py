@@ -10,7 +10,7 @@ from hydrostat.shapes import (
     ellipsoid,
     half_space,
     intersection,
-    placed,
+    place_field,
     round_cone,
     rounded_box,
     turn_about,
@@ -109,13 +109,13 @@ def test_distances_change_by_at_most_the_way() -> None:
         rounded_box((0, 0, -0.02), (0.04, 0.03, 0.02), 0.01),
     ]
     whole = intersection(union(*parts, blend=0.02), half_space((0, 0, -0.03), (0, 0, -1)), blend=0.005)
-    turned = placed(whole, turn=turn_about((1, 1, 0), 30), shift=(0.01, 0, 0))
+    turned = place_field(whole, turn=turn_about((1, 1, 0), 30), shift=(0.01, 0, 0))
     assert slopes(turned, points()).max() <= 1 + 1e-6
 
 
 def test_placed() -> None:
     """Oracle: a quarter turn about z brings x to y; then the shift."""
     field = round_cone((0, 0, 0), (0.05, 0, 0), 0.01, 0.01)
-    moved = placed(field, turn=turn_about((0, 0, 1), 90), shift=(0, 0, 0.02))
+    moved = place_field(field, turn=turn_about((0, 0, 1), 90), shift=(0, 0, 0.02))
     places = np.array([[0, 0.025, 0.02], [0, 0.06, 0.02], [0.03, 0, 0.02]])
     assert moved(places) == pytest.approx([-0.01, 0.0, 0.02], abs=1e-12)

@@ -75,7 +75,7 @@ class Drag:
 
     def to(self, way: float) -> np.ndarray:
         """Force [N] that drags when the spring's end has gone so far [m]."""
-        guide = self.guide.moved(self.at + way * np.eye(len(self.at))[0], self.axes)
+        guide = self.guide.with_target(self.at + way * np.eye(len(self.at))[0], self.axes)
         self.pose = with_replaced(self.simulation, self.guide, guide).solve({}, start=self.pose)
         return guide.pull(self.pose.unknowns)
 

@@ -62,7 +62,7 @@ def guided(obstacle: Obstacle, way: float) -> np.ndarray:
     guide = GuideEnergy(body.carriages[0], place=place, axes=axes, along=2e6 * np.eye(2), turning=2e6)
     simulation, pose = Simulation(robot, body=body, energies=[guide]), None
     for share in np.linspace(0, 1, 9):
-        moved = guide.moved(place - (0.0, share * way), axes)
+        moved = guide.with_target(place - (0.0, share * way), axes)
         pose = with_replaced(simulation, guide, moved).solve({}, start=pose)
     assert pose is not None
     return pose.markers["top"]

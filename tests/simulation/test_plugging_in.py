@@ -96,7 +96,7 @@ def test_a_pair_that_never_met_is_analysed_anew() -> None:
     far = Reach(TIP, TIP, strength=0.0, control=0)
     far.stencils = far.stencils[:0]
     far.controls = far.controls[:0]
-    assembly = simulation.assembly.extended([far], control_count=2)
+    assembly = simulation.assembly.with_added_energies([far], control_count=2)
     raised = NODES + np.array([0.0, 1e-3])
     near, below = assembly.with_active_terms(raised), assembly.with_active_terms(NODES - np.array([0.0, 1e-3]))
     assert below is assembly

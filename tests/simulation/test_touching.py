@@ -32,7 +32,7 @@ def test_prongs_meet_and_do_not_cross(dim: int) -> None:
     energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy)).with_active_terms(
         pose.nodes
     )
-    squared, begins = energy.skin.squared(pose.nodes, energy.pairs), energy.skin.begins(energy.pairs)
+    squared, begins = energy.skin.compute_squared_distances(pose.nodes, energy.pairs), energy.skin.begins(energy.pairs)
     felt = squared < begins
     assert felt.any()
     assert (squared[felt] / begins[felt]).min() ** 0.5 > 0.3

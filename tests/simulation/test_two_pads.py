@@ -60,7 +60,7 @@ def test_the_pull_is_twice_friction_times_the_press() -> None:
         pose = simulation.solve({}, start=pose)
     shares = []
     for way in np.arange(1, 9) * 4e-4:
-        further = guide.moved(place + way * axes[0], axes)
+        further = guide.with_target(place + way * axes[0], axes)
         pose = with_replaced(simulation, guide, further).solve({}, start=pose)
         pressed = float(press.gradient(pose.unknowns, np.zeros(0))[:, 0, 1].sum())
         shares.append(further.pull(pose.unknowns)[0] / (2 * FRICTION * pressed))

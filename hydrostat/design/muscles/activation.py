@@ -146,7 +146,7 @@ class _Activation:
         self.effort, self.stages = effort, stages
         body = body or BodyPhysics(robot)
         body.check(robot)
-        self.assembly = body.assembly.extended([fibres.energy()], control_count=len(fibres))
+        self.assembly = body.assembly.with_added_energies([fibres.energy()], control_count=len(fibres))
         places = {marker.name: marker.at for marker in robot.markers}
         self.anchors = locate(mesh, np.array([places[name] for name in target.targets]))
         self.goals = np.array(list(target.targets.values()), dtype=float)

@@ -54,7 +54,7 @@ class FreePosing:
         body.check(robot)
         self._energy = self.fibres.energy()
         self._lengths = self._energy.lengths(mesh.nodes)
-        self._assembly = body.assembly.extended([self._energy], control_count=len(self.fibres))
+        self._assembly = body.assembly.with_added_energies([self._energy], control_count=len(self.fibres))
         self._warp, self._noise = body.warp, body.round_off()
         self._effort, self._size = effort, mesh.size
         volume = float(mesh.volumes.sum()) * (robot.body.thickness or 1.0)

@@ -19,8 +19,8 @@ from hydrostat.drawing import (
     LineDrawing,
     Spot,
     balloon_radius,
+    fit_height,
     line_drawing,
-    snug,
     text_size,
 )
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
@@ -70,7 +70,7 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     rings = [1e3 * ring for ring in flat_rings(robot)]
     places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
-    height = snug(box, width - 2 * _MARGIN, height - 2 * _MARGIN) + 2 * _MARGIN
+    height = fit_height(box, width - 2 * _MARGIN, height - 2 * _MARGIN) + 2 * _MARGIN
     canvas = Canvas(width, height)
     frame = CanvasFrame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
     canvas.fill([frame.way(ring) for ring in rings], grey=0.95)
@@ -111,7 +111,9 @@ def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Came
     panes = [pane_of(robot, view, pixels) for view in views]
     breadths = np.array([float(np.ptp(pane.box[:, 0])) for pane in panes])
     rooms = breadths / breadths.sum() * (width - 2 * _MARGIN * len(views))
-    inner = max(snug(pane.box, float(room), height - 2 * _MARGIN) for pane, room in zip(panes, rooms, strict=True))
+    inner = max(
+        fit_height(pane.box, float(room), height - 2 * _MARGIN) for pane, room in zip(panes, rooms, strict=True)
+    )
     canvas, left = Canvas(width, inner + 2 * _MARGIN), 0.0
     for pane, room in zip(panes, rooms.tolist(), strict=True):
         _put_pane(canvas, robot, pane, (left, 0.0, left + room + 2 * _MARGIN, canvas.height))

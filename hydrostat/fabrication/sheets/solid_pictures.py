@@ -21,9 +21,9 @@ from hydrostat.drawing import (
     Polyline,
     Spot,
     balloon_radius,
+    fit_height,
     level_rings,
     line_drawing,
-    snug,
 )
 from hydrostat.fabrication.sheets.map_layout import body_solid, flat_marks, flat_rings
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
@@ -50,7 +50,7 @@ def exploded_picture(
     solids = [drawn_solid(placed.solid, shift=placed.pulled) for placed in assembly.pieces]
     drawing = line_drawing(solids, view or Camera.isometric(), pixels=round(PIXELS * max(width, height)))
     side = _SIDE if numbers else 0.6
-    height = snug(drawing.box, width - 2 * side, height - 1.2) + 1.2
+    height = fit_height(drawing.box, width - 2 * side, height - 1.2) + 1.2
     canvas = Canvas(width, height)
     frame = CanvasFrame.fit(drawing.box, (side, 0.6, width - side, height - 0.6))
     canvas.drawing(drawing, frame)
@@ -126,7 +126,7 @@ def undercut_picture(
     """The body with the pull upright, hatched where it holds in its half; seen from where most of that is in sight."""
     body = DrawnSolid(vertices=vertices, triangles=triangles, sharp=70.0)
     drawing = line_drawing([body], _view(body, held, pull), soft=0.008, pixels=round(PIXELS * max(width, height)))
-    height = snug(drawing.box, width - 1.2, height - 9.6) + 9.6
+    height = fit_height(drawing.box, width - 1.2, height - 9.6) + 9.6
     canvas = Canvas(width, height)
     frame = CanvasFrame.fit(drawing.box, (0.6, 9.0, width - 0.6, height - 0.6))
     canvas.drawing(drawing, frame)

@@ -1,4 +1,4 @@
-"""`Cursor`: a way through the bytes of a mesh file, on which no count is believed before the bytes for it are there."""
+"""`Cursor`: reader of the bytes of a mesh file, which trusts no count before the bytes for it are present."""
 
 import re
 from array import array
@@ -28,14 +28,14 @@ _WORD = re.compile(rb"\S+")
 
 
 def whole_numbers(values: np.ndarray, kind: str = "i8") -> np.ndarray:
-    """Numbers as whole ones of a type; what is none of these becomes the largest, which no mesh has as an index."""
+    """Convert to integers of a type; a number that is none becomes the largest, which is no valid index."""
     if values.dtype.kind == "f":
         least, most = np.iinfo(kind).min, min(np.iinfo(kind).max, 2**62)
         values = np.where((values >= least) & (values <= most), values, float(most))
     return values.astype(kind)
 
 
-def damaged(name: str, what: str) -> InputError:
+def make_damage_error(name: str, what: str) -> InputError:
     """Make the error for a file that is not as it should be."""
     return InputError(f"{name}: {what}: the file is damaged or cut short, save or copy it again")
 
@@ -56,7 +56,7 @@ class Cursor:
         self.at, self.text, self.order = 0, True, "<"
 
     def line(self, *, blank: bool = False) -> bytes | None:
-        """The next line with anything in it, or the very next; None at the end."""
+        """Next line with anything in it, or the very next; None at the end."""
         if not blank:
             self.at = _BLANK.match(self.content, self.at).end()  # pyright: ignore[reportOptionalMemberAccess]
         if self.at >= len(self.content):
@@ -70,15 +70,15 @@ class Cursor:
         """Go on behind a mark (InputError: it is not there)."""
         place = self.content.find(mark, self.at)
         if place < 0:
-            raise self.damaged(f"has no {mark.decode('latin-1', 'replace')!r}")
+            raise self.make_damage_error(f"has no {mark.decode('latin-1', 'replace')!r}")
         self.at = place + len(mark)
 
     def numbers(self, count: int, kind: str) -> np.ndarray:
-        """The next numbers, of a kind given by NumPy's code without order; InputError if there are fewer, or others."""
+        """Next numbers, of a kind given by NumPy's code without order; InputError if there are fewer, or others."""
         dtype = np.dtype(self.order + kind)
         room = (len(self.content) - self.at + 1) // 2 if self.text else (len(self.content) - self.at) // dtype.itemsize
         if not 0 <= count <= room:
-            raise self.damaged(f"declares {count} numbers, but has bytes for {max(room, 0)} at most")
+            raise self.make_damage_error(f"declares {count} numbers, but has bytes for {max(room, 0)} at most")
         if not self.text:
             values = np.frombuffer(self.content, dtype, count, self.at)
             self.at += count * dtype.itemsize
@@ -87,20 +87,20 @@ class Cursor:
         return values.astype(kind) if dtype.kind == "f" else whole_numbers(values, kind)
 
     def _words(self, count: int) -> array:
-        """The next numbers of text."""
+        """Next numbers of text."""
         values = array("d")
         while len(values) < count:
             need = count - len(values)
             words, end = self._piece(min(_PIECE, 32 * need))
             if not words:
-                raise self.damaged(f"ends where {need} more numbers belong")
+                raise self.make_damage_error(f"ends where {need} more numbers belong")
             if len(words) > need:
                 last = next(islice(_WORD.finditer(self.content, self.at, end), need - 1, None))
                 words, end = words[:need], last.end()
             try:
                 values.extend(map(float, words))
             except ValueError:
-                raise self.damaged("has text where numbers belong") from None
+                raise self.make_damage_error("has text where numbers belong") from None
             self.at = end
         return values
 
@@ -111,7 +111,7 @@ class Cursor:
             space = _SPACE.search(self.content, end + size)
             end = space.start() if space else len(self.content)
             if end - self.at > size + _LONGEST:
-                raise self.damaged("has a very long word")
+                raise self.make_damage_error("has a very long word")
             words = self.content[self.at : end].split()
             if words:
                 return words, end
@@ -119,11 +119,11 @@ class Cursor:
         return [], end
 
     def all_numbers(self, end: int, kind: str) -> np.ndarray:
-        """All numbers up to a place in a file of text (InputError: there is something else)."""
+        """Read all numbers up to a position in a text file (InputError: there is something else)."""
         part = Cursor(self.content[self.at : end], self.name)
         self.at = end
         return part.numbers(sum(1 for _ in _WORD.finditer(part.content)), kind)
 
-    def damaged(self, what: str) -> InputError:
-        """The error for this file, which is not as it should be."""
-        return damaged(self.name, what)
+    def make_damage_error(self, what: str) -> InputError:
+        """Return the error for this damaged file."""
+        return make_damage_error(self.name, what)

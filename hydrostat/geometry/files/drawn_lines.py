@@ -34,14 +34,14 @@ def drawing_of(
     page: Callable[[Ring], Page],
     notes: tuple[str, ...] = (),
 ) -> Drawing:
-    """The drawing that closed rings and open lines make, in its units.
+    """Drawing that closed rings and open lines make, in its units.
 
     Args:
         lines: the rings and the open lines, of `closed_rings`.
-        name: of the file, for complaints.
-        inner: what those within the body are.
-        page: on which the outer ring of a body lies.
-        notes: what there is to tell already.
+        name: name of the file, for errors.
+        inner: meaning of the lines within the body.
+        page: function that returns the page on which the outer ring of a body lies.
+        notes: notes so far.
 
     Raises:
         OutlineError: they make no body; see `body_and_holes`.
@@ -66,7 +66,7 @@ def drawing_of(
 
 
 def body_and_marks(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
-    """The largest ring, and all others, which are drawn on the body and may cross or lie in one another.
+    """Largest ring, and all others, which are drawn on the body and may cross or lie in one another.
 
     Raises:
         OutlineError: the largest ring crosses itself, or a ring lies outside it.
@@ -87,7 +87,7 @@ def body_and_marks(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
 
 
 def drawn_picture(drawing: Drawing) -> Drawing:
-    """A drawing whose holes are drawn on the body instead."""
+    """Return the drawing with its holes as lines on the body instead."""
     outline, *_ = drawing.outline.rings
     whole = Outline(outline)
     rings = [np.concatenate([ring, ring[:1]]) for ring in drawing.outline.rings[1:]]
@@ -95,7 +95,7 @@ def drawn_picture(drawing: Drawing) -> Drawing:
 
 
 def holes_told(outline: Outline) -> tuple[str, ...]:
-    """A note on the holes of a body: where drawings have an eye, they would go through it."""
+    """Note on the holes of a body: where drawings have an eye, they would go through it."""
     holes = outline.rings[1:]
     if not holes:
         return ()
@@ -112,7 +112,7 @@ def _extent(line: Ring) -> float:
 
 
 def marks_on(outline: Outline, lines: Iterable[Ring]) -> tuple[Ring, ...]:
-    """The parts of lines [m] that lie on a body; each is cut where it leaves it."""
+    """Parts of lines [m] that lie on a body; each is cut where it leaves it."""
     kept: list[Ring] = []
     for line in lines:
         if len(line) > 1 and _extent(line) > 0.0:

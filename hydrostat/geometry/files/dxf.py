@@ -46,7 +46,7 @@ _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, 
 
 
 def read_dxf(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
-    """Read the outline of a body from a DXF drawing in text form, and in words what was left out.
+    """Read the outline of a body from a DXF drawing in text form, with notes on omissions.
 
     The largest closed line is the body, those inside it are holes. Polylines, circles, ellipses, splines, lines and
     arcs are read, also in blocks; lines and arcs whose ends meet are joined. All else (text, dimensions, hatches), what
@@ -72,7 +72,7 @@ def read_dxf(content: bytes, name: str, size: float | None, page: Page | None, i
 
 
 def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
-    """The document, and a note on what the reader mended in it."""
+    """Open the document; return it with a note on repairs by the reader."""
     if content.startswith(b"AutoCAD Binary DXF"):
         raise OutlineError(f"{name}: a binary DXF, which is not read: save it as DXF in text form (ASCII)")
     if not re.search(rb"\bEOF\s*\Z", content):
@@ -93,7 +93,7 @@ def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
 
 @contextmanager
 def _listening() -> Iterator[list[str]]:
-    """Collect what ezdxf says while it reads, which would else go to the screen."""
+    """Collect the messages of ezdxf, which would otherwise go to the screen."""
     said: list[str] = []
     handler = logging.Handler(logging.WARNING)
     handler.emit = lambda record: said.append(record.getMessage())
@@ -115,7 +115,7 @@ def _unit(document: "Document") -> float | None:
 
 @dataclass
 class _ModelSpace:
-    """Walks through the model space of a document; counts what it leaves out."""
+    """Reader of the model space of a document; counts omitted entities."""
 
     document: "Document"
     name: str
@@ -132,7 +132,7 @@ class _ModelSpace:
             raise OutlineError(f"{self.name}: cannot be read as DXF ({one_line(error)}): export it again") from error
 
     def notes(self) -> tuple[str, ...]:
-        """In words, what was left out."""
+        """Notes on omitted entities."""
         kinds = [f"{count} {kind}" for kind, count in sorted(self.ignored.items())]
         return (f"left out {', '.join(kinds)}",) if kinds else ()
 

@@ -16,7 +16,7 @@ from hydrostat.geometry.files.silhouette import (
     ShadedPart,
     Silhouette,
     contrast,
-    covered,
+    count_covered_pixels,
     shaded_part,
     silhouette,
 )
@@ -34,7 +34,7 @@ _BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticE
 
 
 def read_image(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
-    """Read the outline of a body from a photograph or a drawing on plain ground, PNG or JPEG, and what was left out.
+    """Read the outline of a body from a photograph or a drawing on plain ground, PNG or JPEG, with notes on omissions.
 
     A picture with transparent parts tells the body by them; else the body is what differs in colour from the ground,
     darker or lighter, which is taken from the border of the picture and may change slowly across it. A drawing of lines
@@ -60,7 +60,7 @@ def read_image(content: bytes, name: str, size: float | None, page: Page | None,
 
 
 def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 4"], int]:
-    """Red, green, blue and opacity from 0 to 255, upright, and how many pixels of the file are one along each side."""
+    """Red, green, blue and opacity from 0 to 255, upright, and the number of file pixels per pixel along each side."""
     from PIL import Image, ImageOps
 
     try:
@@ -90,7 +90,7 @@ def _too_large(name: str, pixels: str) -> OutlineError:
 
 
 def _plain(image: "Image", step: int) -> Float[np.ndarray, "rows columns 4"]:
-    """The pixels of any mode of image as red, green, blue and opacity, averaged over squares of `step`."""
+    """Pixels of any mode of image as red, green, blue and opacity, averaged over squares of `step`."""
     from PIL import Image
 
     if image.mode.startswith(("I", "F")):
@@ -109,7 +109,7 @@ def _plain(image: "Image", step: int) -> Float[np.ndarray, "rows columns 4"]:
 def _find_body(
     pixels: Float[np.ndarray, "rows columns 4"], name: str
 ) -> tuple[Silhouette, ShadedPart | None, tuple[str, ...]]:
-    """The body in a picture, what of it may be its shadow, and a note on how it was told from its ground."""
+    """Return the body in a picture, its possible shadow, and a note on the contrast with its ground."""
     opacity = pixels[..., 3]
     if float((opacity < 128.0).mean()) > 0.005:
         return silhouette(opacity, 127.5, 127.5, name), None, ()
@@ -129,7 +129,7 @@ def _find_body(
 
 
 def _shade_told(found: ShadedPart, page: Page) -> str:
-    """A note on what of the body may be its shadow."""
+    """Note on the part of the body that may be its shadow."""
     x, y = found.place[0] - page.origin[0], page.origin[1] - found.place[1]
     scale = 1e3 * page.scale[0]
     where = f"up to {scale * found.width:.2g} mm wide about ({scale * x:.0f}, {scale * y:.0f}) mm"
@@ -141,7 +141,7 @@ def _shade_told(found: ShadedPart, page: Page) -> str:
 
 def _body_level(seen: Contrast) -> tuple[float, bool]:
     """Contrast at which the body begins, and True if a shadow lies below it."""
-    faint, strong = covered(seen.field > seen.faint), covered(seen.field > seen.strong)
+    faint, strong = count_covered_pixels(seen.field > seen.faint), count_covered_pixels(seen.field > seen.strong)
     if faint < 1.1 * strong or strong == 0:
         return seen.strong, False
     between = (seen.field > seen.faint) & (seen.field <= seen.strong)
@@ -151,7 +151,7 @@ def _body_level(seen: Contrast) -> tuple[float, bool]:
 
 
 def _notes(found: Silhouette, page: Page) -> tuple[str, ...]:
-    """Describe what was left out, filled or assumed, a line each."""
+    """Describe omitted, filled or assumed parts, a line each."""
     notes = []
     if found.lines:
         notes.append("a drawing of lines: filled to its outer line, what is drawn inside plays no part")
@@ -167,7 +167,7 @@ def _notes(found: Silhouette, page: Page) -> tuple[str, ...]:
 
 
 def _largest(patches: tuple[PixelPatch, ...], page: Page) -> str:
-    """The largest of some patches in words: where it is and how large, in millimetres of the body."""
+    """Describe the largest of some patches: its position and size, in millimetres of the body."""
     patch, scale = max(patches, key=lambda one: one.area), page.scale[0]
     x, y = patch.place[0] - page.origin[0], page.origin[1] - patch.place[1]
     across, where = 1e3 * scale * patch.extent, [round(1e3 * scale * value, 1) + 0.0 for value in (x, y)]

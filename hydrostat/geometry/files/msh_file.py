@@ -29,7 +29,7 @@ def read_msh(content: bytes, name: str) -> Cells:
     while nodes is None or found is None:
         line = cursor.line()
         if line is None:
-            raise cursor.damaged("ends before its nodes and elements are complete")
+            raise cursor.make_damage_error("ends before its nodes and elements are complete")
         if line == b"$Nodes":
             nodes = _old_nodes(cursor) if old else _nodes(cursor)
             cursor.seek_after(b"$EndNodes")
@@ -60,7 +60,7 @@ def _head(cursor: Cursor) -> bool:
     cursor.line(blank=True)
     words = (cursor.line() or b"").split()
     if len(words) != 3 or words[1] not in (b"0", b"1"):
-        raise cursor.damaged("has no format line")
+        raise cursor.make_damage_error("has no format line")
     version = words[0].decode("latin-1")[:10]
     if version not in ("2", "2.0", "2.1", "2.2", "4.1") or words[2] != b"8":
         raise InputError(f"{cursor.name}: is version {version} of the MSH format: save it as version 4.1 or 2.2")
@@ -73,11 +73,11 @@ def _head(cursor: Cursor) -> bool:
 
 
 def _count(cursor: Cursor) -> int:
-    """The number that stands alone in a line."""
+    """Number that stands alone in a line."""
     try:
         return int(cursor.line() or b"")
     except ValueError:
-        raise cursor.damaged("has no count where one belongs") from None
+        raise cursor.make_damage_error("has no count where one belongs") from None
 
 
 def _old_nodes(cursor: Cursor) -> tuple[np.ndarray, np.ndarray]:
@@ -103,7 +103,7 @@ def _old_elements(cursor: Cursor) -> _Found:
         kind, count, tags = cursor.numbers(3, "i4").tolist()
         blocks += 1
         if kind not in _CORNERS or tags < 0 or count < 1 or blocks > _MOST_OLD_BLOCKS:
-            raise cursor.damaged("has an element of a kind that is not known")
+            raise cursor.make_damage_error("has an element of a kind that is not known")
         width = 1 + tags + _CORNERS[kind]
         rows = cursor.numbers(width * count, "i4").reshape(count, width)
         if kind in found:
@@ -122,11 +122,11 @@ def _old_rows(cursor: Cursor, count: int) -> _Found:
         first = at + 3 + tags
         at = first + _CORNERS.get(kind, end + 1)
         if tags < 0 or at > end:
-            raise cursor.damaged("has an element that is not whole, or of a kind that is not known")
+            raise cursor.make_damage_error("has an element that is not whole, or of a kind that is not known")
         if kind in places:
             places[kind].append(first)
     if at != end:
-        raise cursor.damaged("has elements that do not fit their number")
+        raise cursor.make_damage_error("has elements that do not fit their number")
     return {
         kind: [numbers[np.array(some, dtype=np.int64)[:, None] + np.arange(_CORNERS[kind])]]
         for kind, some in places.items()
@@ -137,7 +137,7 @@ def _blocks(cursor: Cursor) -> int:
     """Number of blocks of a section of version 4.1."""
     blocks = int(cursor.numbers(4, "i8")[0])
     if not 0 <= blocks <= _MOST_BLOCKS:
-        raise cursor.damaged(f"declares {blocks} blocks, at most {_MOST_BLOCKS} are read")
+        raise cursor.make_damage_error(f"declares {blocks} blocks, at most {_MOST_BLOCKS} are read")
     return blocks
 
 
@@ -163,7 +163,7 @@ def _elements(cursor: Cursor) -> _Found:
         _, _, kind = cursor.numbers(3, "i4").tolist()
         count = int(cursor.numbers(1, "i8")[0])
         if kind not in _CORNERS:
-            raise cursor.damaged("has an element of a kind that is not known")
+            raise cursor.make_damage_error("has an element of a kind that is not known")
         rows = cursor.numbers(count * (1 + _CORNERS[kind]), "i8").reshape(count, -1)
         if kind in found:
             found[kind].append(rows[:, 1:].astype(np.int64))

@@ -43,7 +43,7 @@ def read_drawing(
     page: Page | None = None,
     inner: Inner = Inner.HOLES,
 ) -> Drawing:
-    """Read the outline of a body, and in words what was left out; all else is as in `read_outline`.
+    """Read the outline of a body, with notes on omissions; otherwise as `read_outline`.
 
     The last drawing is kept: who makes a robot of one reads it several times.
     """

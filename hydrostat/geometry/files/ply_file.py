@@ -223,7 +223,7 @@ def _coordinates(element: _Element, values: _Values, name: str) -> np.ndarray:
 def _faces(
     element: _Element, values: _Values, name: str
 ) -> tuple[Int[np.ndarray, " corners"], Int[np.ndarray, " faces"]]:
-    """Vertex indices of the faces one after the other, and how many each has."""
+    """Vertex indices of all faces, concatenated, and the number of vertices of each face."""
     label = next((each.name for each in element.properties if each.name in ("vertex_indices", "vertex_index")), None)
     if label is None:
         raise SurfaceError(f"{name}: its faces have no vertex_indices: export the surface again")
@@ -237,7 +237,7 @@ def _faces(
 
 
 def write_ply(surface: Surface) -> bytes:
-    """A surface as binary PLY: float32 coordinates in millimetres, the same bytes for the same surface."""
+    """Surface as binary PLY: float32 coordinates in millimetres, the same bytes for the same surface."""
     head = (
         "ply\nformat binary_little_endian 1.0\ncomment millimetres\n"
         f"element vertex {len(surface.vertices)}\nproperty float x\nproperty float y\nproperty float z\n"

@@ -1,4 +1,4 @@
-"""Lines of any kind of drawing, joined to rings: which are the body, which its holes, on what page."""
+"""Lines of any kind of drawing, joined to rings and sorted into the body, its holes and its page."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -15,7 +15,7 @@ from hydrostat.geometry.outline import Outline, Ring, fault
 
 @dataclass(frozen=True)
 class Page:
-    """A place drawn at d lies at (d - origin) x scale [m] (docs/decisions/0001-coordinates.md)."""
+    """Map from drawing to body: a point d lies at (d - origin) x scale [m] (docs/decisions/0001-coordinates.md)."""
 
     kind: str  # property that two drawings on one page must share
     origin: tuple[float, float]  # point of the drawing at the body's origin, in the drawing's units
@@ -41,7 +41,7 @@ class Page:
 
 
 def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | None) -> Page:
-    """The page whose origin is the middle of the box of an outer ring in the drawing's units.
+    """Page whose origin is the center of the box of an outer ring in the drawing's units.
 
     One of its units is so long along x and y [m], y negative where the drawing counts it downwards, unless the longest
     side of the box is to be `size` [m].
@@ -56,7 +56,7 @@ def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | N
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """The outline of a drawing or picture, and in words what was done to get it."""
+    """Outline of a drawing or picture, with notes on how it was obtained."""
 
     outline: Outline  # outline of the body [m]
     page: Page  # meaning of the drawing's own coordinates
@@ -77,7 +77,7 @@ _ROUNDING = 1e-6
 
 
 def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ring], list[Ring]]:
-    """The rings among a drawing's lines, in its units, and the open lines.
+    """Rings among a drawing's lines, in its units, and the open lines.
 
     Each line is said to close itself or not; ends that all but meet are closed. Errors call the file by its name.
     Raises OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
@@ -114,7 +114,7 @@ def checked_lines(lines: Iterable[tuple[Ring, bool]], name: str) -> Iterator[tup
 
 
 def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
-    """The largest ring, and the rings inside it.
+    """Largest ring, and the rings inside it.
 
     Raises:
         OutlineError: a ring crosses itself or another, lies outside the body or inside a hole, or there are too many.
@@ -145,7 +145,7 @@ def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
 
 
 def shapes_of(rings: list[Ring], name: str) -> list[Polygon]:
-    """The rings that have an area as polygons, the largest first."""
+    """Rings that have an area as polygons, the largest first."""
     shapes = []
     for ring in rings:
         polygon = Polygon(ring) if len(ring) >= 3 else None
@@ -162,7 +162,7 @@ def shapes_of(rings: list[Ring], name: str) -> list[Polygon]:
 
 
 def outline_on_page(body: Ring, holes: list[Ring], page: Page, name: str) -> Outline:
-    """The outline in metres of rings in the drawing's units; OutlineError, with the file's name, if they are none."""
+    """Outline in metres of rings in the drawing's units; OutlineError, with the file's name, if they are none."""
     try:
         return Outline(page.places(body), tuple(page.places(hole) for hole in holes))
     except OutlineError as error:
@@ -185,7 +185,7 @@ def one_line(error: object) -> str:
 
 
 def point_text(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:
-    """A point of the drawing in words."""
+    """Point of the drawing in words."""
     return f"({point[0]:.4g}, {point[1]:.4g})"
 
 
@@ -196,7 +196,7 @@ _Ends = Int[np.ndarray, "lines 2"]
 
 
 def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
-    """Join open lines of finite points at their ends, whichever way each runs; return each with True if it is closed.
+    """Join open lines of finite points at their ends, in either direction; return each with True if it is closed.
 
     Ends that are a millionth of the drawing apart are one; a free end and the free end nearest to it are one when they
     are a thousandth apart or less. A line drawn twice counts once. Lines with a free end that lead nowhere stay open.
@@ -221,7 +221,7 @@ def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
 
 
 def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _Ends:
-    """A number for each end of each line, the same for those that meet."""
+    """Number for each end of each line, the same for those that meet."""
     from scipy.spatial import KDTree  # Imported here: not every command needs it.
 
     flat = points.reshape(-1, 2)
@@ -244,7 +244,7 @@ def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _
 
 
 def _unrepeated(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarray, " kept"]:
-    """The lines that are no repetition of another and have a length."""
+    """Lines that are no repetition of another and have a length."""
     seen, kept = set(), []
     for index, (line, (start, end)) in enumerate(zip(lines, ends.tolist(), strict=True)):
         middle = _middle(line)
@@ -256,13 +256,13 @@ def _unrepeated(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarray
 
 
 def _middle(line: Ring) -> Float[np.ndarray, " 2"]:
-    """The place half way along a line."""
+    """Point half way along a line."""
     lengths = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
     return np.array([np.interp(0.5 * lengths[-1], lengths, line[:, axis]) for axis in range(2)])
 
 
 def _dead_ends(ends: _Ends) -> np.ndarray:
-    """Find the lines that are on no way from a place back to itself: (lines,) of bool."""
+    """Mask of the lines that are on no closed path, (lines,)."""
     at = _lines_at(ends, np.arange(len(ends)))
     degree = {here: len(lines) for here, lines in at.items()}
     dead = np.zeros(len(ends), dtype=bool)
@@ -281,7 +281,7 @@ def _dead_ends(ends: _Ends) -> np.ndarray:
 
 
 def _lines_at(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> dict[int, list[int]]:
-    """The chosen lines at each place, one that returns to it twice."""
+    """Chosen lines at each place, one that returns to it twice."""
     at: dict[int, list[int]] = {}
     for line in chosen.tolist():
         for here in ends[line].tolist():
@@ -310,7 +310,7 @@ def _walks(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> list[list[tuple[int, b
 
 
 def _points_along(lines: list[Ring], ends: _Ends, walk: list[tuple[int, bool]]) -> tuple[Ring, int, int]:
-    """The points along a walk and the numbers of its two ends."""
+    """Points along a walk and the numbers of its two ends."""
     pieces = [lines[line] if forward else lines[line][::-1] for line, forward in walk]
     (first, ahead), (last, onward) = walk[0], walk[-1]
     points = np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])])

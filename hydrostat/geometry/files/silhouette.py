@@ -1,4 +1,4 @@
-"""`Silhouette`: the one body in a picture, told from plain ground by `Contrast`, as rings of pixels' coordinates."""
+"""`Silhouette`: the one body in a picture, separated from plain ground by `Contrast`, as rings in pixel coordinates."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,7 @@ Field = Float[np.ndarray, "rows columns"]  # a value for each pixel
 
 @dataclass(frozen=True, eq=False)
 class Contrast:
-    """A picture against its ground, in steps of colour from 0 to 255 and more."""
+    """Picture against its ground, in steps of colour from 0 to 255 and more."""
 
     field: Field  # distance in colour of each pixel from the ground there
     strong: float  # level halfway between ground and what stands out most (Otsu 1979)
@@ -62,7 +62,7 @@ def _ground(
     like: Bool[np.ndarray, "rows columns"],
     first: Float[np.ndarray, "... 3"],
 ) -> tuple[Float[np.ndarray, "rows columns 3"], float]:
-    """A quadratic colour through the pixels that are like the ground, and how far 95 % of them are from it at most."""
+    """Quadratic color of the ground, fitted to its pixels, and the distance within which 95 % of them lie."""
     rows, columns = pixels.shape[:2]
     y, x = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-1, 1, columns), indexing="ij")
     where = np.flatnonzero(like)
@@ -143,7 +143,7 @@ _Mask = Bool[np.ndarray, "rows columns"]
 
 @dataclass(frozen=True)
 class PixelPatch:
-    """A connected part of a picture."""
+    """Connected part of a picture."""
 
     area: int  # [pixels]
     place: tuple[float, float]  # column and row of its center
@@ -152,7 +152,7 @@ class PixelPatch:
 
 @dataclass(frozen=True, eq=False)
 class Silhouette:
-    """A body in a picture."""
+    """Body in a picture."""
 
     body: Ring  # outer ring of the body, columns and rows [pixels]
     holes: tuple[Ring, ...]  # rings of its holes
@@ -162,13 +162,13 @@ class Silhouette:
     cut: bool  # True if the body reaches the border of the image
 
 
-def covered(mask: _Mask) -> int:
+def count_covered_pixels(mask: _Mask) -> int:
     """Pixels of the largest part of a mask, its holes filled."""
     return max((patch.area for patch in _patches(_filled(mask))[1]), default=0)
 
 
 def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouette:
-    """The body in a picture: where the field is above a level, or within the lines where it is drawn with lines.
+    """Body in a picture: where the field is above a level, or within the lines where it is drawn with lines.
 
     Of all that stands out, the part that covers most with its holes filled is the body. Where hardly anything in it is
     thicker than a line, it is a line drawing: all within the outer line is body. Else parts of the ground inside it,
@@ -194,7 +194,7 @@ def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouett
 
 
 def _filled(mask: _Mask) -> _Mask:
-    """A mask without its holes."""
+    """Mask with its holes filled."""
     parts = _parts(np.pad(~mask, 1, constant_values=True), corners=False)
     return (parts != parts[0, 0])[1:-1, 1:-1]
 
@@ -207,7 +207,7 @@ def _parts(mask: _Mask, *, corners: bool) -> Int[np.ndarray, "rows columns"]:
 
 
 def _depth(mask: _Mask) -> Field:
-    """Distance [pixels] of each pixel of a mask from what is outside it."""
+    """Distance [pixels] of each pixel of a mask from the outside."""
     return np.asarray(distance_transform_edt(mask), dtype=float)
 
 
@@ -257,7 +257,7 @@ def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[PixelP
 
 
 def _specks(mask: _Mask, body: int, name: str) -> tuple[PixelPatch, ...]:
-    """Parts beside the body; refused unless all are small."""
+    """Parts outside the body; an error unless all are small."""
     _, patches = _patches(mask)
     second = max(patches, key=lambda patch: patch.area, default=None)
     if second is not None and second.area > _SECOND * body:
@@ -270,7 +270,7 @@ def _specks(mask: _Mask, body: int, name: str) -> tuple[PixelPatch, ...]:
 
 
 def _signed(field: Field, main: _Mask, mask: _Mask) -> Field:
-    """A field that is above 0 in the body and nowhere else, and crosses 0 where the picture does."""
+    """Field that is above 0 in the body and nowhere else, and crosses 0 where the picture does."""
     step = 1e-3 * max(float(np.ptp(field)), 1e-300)
     field = np.where(main & ~mask, step, field)
     return np.where(~main & mask, -step, field)
@@ -284,7 +284,7 @@ def _is_stepped(field: Field, level: float, main: _Mask) -> bool:
 
 
 def _rings(field: Field, stepped: bool, body: int) -> list[Ring]:
-    """The ring round the body and those of its holes, smooth, with few corners; columns and rows [pixels]."""
+    """Ring round the body and those of its holes, smooth, with few corners; columns and rows [pixels]."""
     from contourpy import LineType, contour_generator
 
     field = np.pad(field, 1, constant_values=-float(np.ptp(field)))
@@ -298,7 +298,7 @@ def _rings(field: Field, stepped: bool, body: int) -> list[Ring]:
 
 
 def _smooth(ring: Ring, reach: float, tolerance: float, most: int) -> Ring:
-    """A ring without the grain of the pixels."""
+    """Ring without the grain of the pixels."""
     curve = Curve(ring)
     count = max(int(2 * curve.length), 16)
     even = curve.at(curve.length * np.arange(count) / count)

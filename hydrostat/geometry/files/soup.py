@@ -1,4 +1,4 @@
-"""`Soup`: what a surface file says, before it is a `Surface`; and what all readers of such files hold to."""
+"""`Soup`: unchecked contents of a surface file, and rules shared by all readers of such files."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -93,7 +93,7 @@ def _joined(corners: np.ndarray) -> Soup:
 
 
 def _keys(rows: np.ndarray) -> np.ndarray:
-    """A number for each row, the same for the same rows and almost never for others: quick to sort."""
+    """Number for each row, the same for the same rows and almost never for others: quick to sort."""
     words = rows.view(f"u{rows.itemsize}").astype(np.uint64)
     for factor in (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F):
         words = (words ^ (words >> np.uint64(29))) * np.uint64(factor)

@@ -1,4 +1,4 @@
-"""`read_stranger`: the bytes of a file whose size is known, and not too much, before any is read."""
+"""`read_stranger`: bytes of an untrusted file, whose size is checked before it is read."""
 
 import stat
 from pathlib import Path
@@ -18,8 +18,8 @@ def read_stranger(path: str | Path, *, name: str | None = None, most: int | None
     """Bytes of a file.
 
     Args:
-        path: of the file.
-        name: of the file in complaints; the path if left out.
+        path: path of the file.
+        name: name of the file in errors; None: the path.
         most: bytes that it may have; by the ending of its name if left out.
 
     Raises:

@@ -33,7 +33,7 @@ _STRANGERS = {
 
 
 def read_surface(content: bytes, *, name: str, unit: float = 1e-3, size: float | None = None) -> Surface:
-    """The surface in a file, as it is: with all its faults, which `heal` mends.
+    """Read the surface in a file, with all its faults, which `heal` repairs.
 
     The ending of its name tells the format. A coordinate counts `unit` metres where the file has no unit (all but 3MF);
     `size`, the longest side of the bounding box [m], overrules any unit. Raises SurfaceError: another ending, another
@@ -79,7 +79,7 @@ def _check_kind(content: bytes, name: str, suffix: str) -> None:
 
 
 def _surface(soup: Soup, name: str, unit: float, size: float | None) -> Surface:
-    """Check what a file says and scale it to metres."""
+    """Check the contents of a file and scale them to metres."""
     if not len(soup.triangles):
         raise SurfaceError(f"{name}: holds no triangles: export the body as a surface")
     check_count(name, "triangles", len(soup.triangles), room=np.inf)

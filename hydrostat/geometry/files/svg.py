@@ -1,4 +1,4 @@
-"""Outlines from SVG drawings, whose XML is checked before anything trusts it."""
+"""Outlines from SVG drawings, whose XML is checked first."""
 
 import io
 import re
@@ -43,7 +43,7 @@ _NO_SHAPES = {
 
 @dataclass(frozen=True)
 class _SvgDocument:
-    """A drawing without what is no shape, in its own units."""
+    """Drawing without elements that are no shapes, in its own units."""
 
     content: bytes  # the SVG again, with width and height such that one user unit is one pixel
     # length of one user unit along x and y [m], None if the drawing has no physical size
@@ -72,7 +72,7 @@ def _open(content: bytes, name: str) -> _SvgDocument:
 
 
 def _guard(content: bytes, name: str) -> None:
-    """Read the XML once without building anything: refuse what is broken, deep, or declares entities."""
+    """Read the XML once without building anything: reject XML that is broken, deep, or declares entities."""
     depth = 0
 
     def start(_tag: str, _attributes: dict[str, str]) -> None:
@@ -98,7 +98,7 @@ def _guard(content: bytes, name: str) -> None:
 
 
 def _plain_rules(text: str) -> str:
-    """The rules of a style sheet, without comments and what is cut short: in these the reader would search for ever."""
+    """Rules of a style sheet, without comments and truncated rules, in which the reader would search forever."""
     first, *others = text.split("/*")
     said = " ".join([first, *(other.partition("*/")[2] for other in others)])
     rules = (rule.partition("{") for rule in said.split("}")[:-1])
@@ -111,7 +111,7 @@ def _tag(element: ElementTree.Element) -> str:
 
 
 def _strip_others(element: ElementTree.Element) -> None:
-    """Remove what is no shape, everywhere below an element."""
+    """Remove all elements below one that are no shapes."""
     for child in list(element):
         if _tag(child) in _NO_SHAPES:
             element.remove(child)
@@ -120,7 +120,7 @@ def _strip_others(element: ElementTree.Element) -> None:
 
 
 def _check_points(root: ElementTree.Element, name: str) -> None:
-    """Refuse drawings with too many points, or that repeat themselves without end by way of `use`."""
+    """Reject drawings with too many points, or with endless repetition by `use`."""
     _check_words(root, name)
     targets = {element.attrib["id"]: element for element in root.iter() if "id" in element.attrib}
     points = 0
@@ -162,14 +162,14 @@ def _length(text: str | None) -> tuple[float, str] | None:
 
 
 def _sheet(root: ElementTree.Element) -> tuple[float, float, float, float] | None:
-    """The page in user units: the viewBox, or width and height from the origin."""
+    """Page in user units: the viewBox, or width and height from the origin."""
     width, height = (_length(root.get(key)) for key in ("width", "height"))
     pixels = (0.0, 0.0, _pixels(width), _pixels(height)) if width and height else None
     return _box(root.get("viewBox", "")) or pixels
 
 
 def _pixels(length: tuple[float, str]) -> float:
-    """A length in pixels."""
+    """Length in pixels."""
     return length[0] * _METRES.get(length[1], _PIXEL) / _PIXEL
 
 
@@ -206,7 +206,7 @@ _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, 
 
 
 def read_svg(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
-    """Read the outline of a body from an SVG drawing, and in words what was left out.
+    """Read the outline of a body from an SVG drawing, with notes on omissions.
 
     The largest closed shape is the body, the shapes inside it are holes, or drawn on it; whether they are filled plays
     no part. Text, pictures, what is hidden and open lines smaller than the body are ignored. Curves become chords.

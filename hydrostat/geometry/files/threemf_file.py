@@ -26,7 +26,7 @@ _Key = tuple[str, str]  # an object: the part of the archive that it stands in, 
 
 @dataclass
 class _Object:
-    """A mesh, or other objects put together, or both."""
+    """Mesh, or other objects put together, or both."""
 
     places: array = field(default_factory=lambda: array("d"))
     corners: array = field(default_factory=lambda: array("q"))
@@ -44,7 +44,7 @@ class _Model:
 
 
 def read_3mf(content: bytes, name: str) -> Soup:
-    """All objects that a 3MF file builds, each where it is built, as one.
+    """Read all objects that a 3MF file builds, each at its position, as one.
 
     Raises SurfaceError: no archive, or not a 3MF one; too large when unpacked; broken XML, or XML with entities;
     objects that hold themselves, are not there, or repeat too often.
@@ -64,7 +64,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _read_archive(archive: ZipFile, name: str) -> _Model:
-    """The root model of an archive, and the parts that it names."""
+    """Root model of an archive, and the parts that it names."""
     model = _Model()
     root = _root(archive, name)
     waiting, done, left = [root], set(), MOST_TEXT_BYTES
@@ -116,7 +116,7 @@ def _member(archive: ZipFile, part: str, name: str, most: int) -> bytes:
 
 
 def _parse(text: bytes, start: "expat._StartElement", name: str) -> None:  # pyright: ignore
-    """Walk through XML; refuse what is broken, deep, or declares entities."""
+    """Parse XML; reject XML that is broken, deep, or declares entities."""
     depth = 0
 
     def begin(tag: str, attributes: dict[str, str]) -> None:
@@ -142,7 +142,7 @@ def _parse(text: bytes, start: "expat._StartElement", name: str) -> None:  # pyr
 
 
 def _read_xml(text: bytes, part: str, model: _Model, *, root: bool, name: str) -> None:
-    """Add what one part says to the model; only the root says what is built."""
+    """Add the contents of one part to the model; only the root lists the objects to build."""
     now = _Object()
 
     def start(tag: str, attributes: dict[str, str]) -> None:
@@ -170,7 +170,7 @@ def _read_xml(text: bytes, part: str, model: _Model, *, root: bool, name: str) -
 
 
 def _placed(attributes: dict[str, str], part: str, model: _Model) -> tuple[_Key, np.ndarray]:
-    """An object and where it goes: four rows of three, for row vectors."""
+    """Object and where it goes: four rows of three, for row vectors."""
     path = next((text for key, text in attributes.items() if key.rpartition("}")[2] == "path"), "").lstrip("/")
     if path:
         model.others.add(path)
@@ -181,7 +181,7 @@ def _placed(attributes: dict[str, str], part: str, model: _Model) -> tuple[_Key,
 
 
 def _built(model: _Model, name: str) -> Soup:
-    """All meshes of what is built, moved to where they are built."""
+    """Meshes of all built objects, moved to their positions."""
     if model.unit not in _METRES:
         raise SurfaceError(f"{name}: its unit {model.unit[:40]!r} is none of {', '.join(_METRES)}: export it again")
     if not model.items:
@@ -204,7 +204,7 @@ def _built(model: _Model, name: str) -> Soup:
 
 
 def _meshes(model: _Model, name: str) -> Iterator[tuple[_Object, np.ndarray]]:
-    """Every mesh of what is built with its transform; a mesh that is used twice comes twice."""
+    """Yield every mesh of the built objects with its transform; a mesh that is used twice comes twice."""
     stack = [(key, transform, 0) for key, transform in reversed(model.items)]
     placed = 0
     while stack:

@@ -5,7 +5,7 @@ from array import array
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.cursor import Cells, Cursor, damaged, whole_numbers
+from hydrostat.geometry.files.cursor import Cells, Cursor, make_damage_error, whole_numbers
 
 TETRAHEDRON, TRIANGLE = 10, 5  # VTK's numbers of the two kinds of cells that are read
 
@@ -27,7 +27,7 @@ def read_vtk(content: bytes, name: str) -> Cells:
             break
         line = cursor.line()
         if line is None:
-            raise cursor.damaged("ends before its points, cells and cell types are complete")
+            raise cursor.make_damage_error("ends before its points, cells and cell types are complete")
         words = line.split()
         match words[0].upper():
             case b"POINTS":
@@ -42,14 +42,14 @@ def read_vtk(content: bytes, name: str) -> Cells:
                 while cursor.line(blank=True):
                     pass
             case _:
-                raise cursor.damaged(f"says {line[:40].decode('latin-1')!r} before its cells are complete")
+                raise cursor.make_damage_error(f"says {line[:40].decode('latin-1')!r} before its cells are complete")
     if points is None or starts is None or corners is None or types is None:
-        raise cursor.damaged("has too many sections")
+        raise cursor.make_damage_error("has too many sections")
     return cells_of(points.reshape(-1, 3), starts, corners, types, name)
 
 
 def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types: np.ndarray, name: str) -> Cells:
-    """The simplices among cells, each of one of VTK's types; InputError, with the file's name, where these do not fit.
+    """Simplices among cells, each of one of VTK's types; InputError, with the file's name, where these do not fit.
 
     Corners are indices of points, of all cells one after the other; `starts` tells where those of each cell begin, and
     where the last ends.
@@ -60,7 +60,7 @@ def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types:
         or (counts < 0).any()
         or (len(starts) and not 0 <= starts[0] <= starts[-1] <= len(corners))
     ):
-        raise damaged(name, "has cells, types and corners that do not fit each other")
+        raise make_damage_error(name, "has cells, types and corners that do not fit each other")
     chosen = []
     for kind, count in ((TETRAHEDRON, 4), (TRIANGLE, 3)):
         first = starts[:-1][(types == kind) & (counts == count)]
@@ -69,12 +69,12 @@ def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types:
 
 
 def _head(cursor: Cursor) -> None:
-    """The first lines, which say how the rest is written."""
+    """Read the first lines, which give the format of the rest."""
     first, _, how, dataset = (cursor.line(blank=True) for _ in range(4))
     if not (first or b"").startswith(b"# vtk DataFile Version"):
-        raise cursor.damaged("does not begin like a VTK file")
+        raise cursor.make_damage_error("does not begin like a VTK file")
     if how not in (b"ASCII", b"BINARY"):
-        raise cursor.damaged("does not say whether it is ASCII or BINARY")
+        raise cursor.make_damage_error("does not say whether it is ASCII or BINARY")
     if (dataset or b"").split() != [b"DATASET", b"UNSTRUCTURED_GRID"]:
         raise InputError(f"{cursor.name}: holds no unstructured grid: save the mesh as an unstructured grid")
     cursor.text, cursor.order = how == b"ASCII", ">"
@@ -84,12 +84,12 @@ def _count(cursor: Cursor, words: list[bytes], place: int) -> int:
     try:
         return int(words[place])
     except (ValueError, IndexError):
-        raise cursor.damaged(f"has no count in {b' '.join(words)[:40].decode('latin-1')!r}") from None
+        raise cursor.make_damage_error(f"has no count in {b' '.join(words)[:40].decode('latin-1')!r}") from None
 
 
 def _kind(cursor: Cursor, word: bytes) -> str:
     if word.lower() not in _KINDS:
-        raise cursor.damaged(f"has numbers of a type {word[:20].decode('latin-1')!r}, which is not known")
+        raise cursor.make_damage_error(f"has numbers of a type {word[:20].decode('latin-1')!r}, which is not known")
     return _KINDS[word.lower()]
 
 
@@ -102,18 +102,18 @@ def _cells(cursor: Cursor, words: list[bytes]) -> tuple[np.ndarray, np.ndarray]:
         starts = whole_numbers(cursor.numbers(count, _kind(cursor, line[-1])))
         line = (cursor.line() or b"").split()
         if line[:1] != [b"CONNECTIVITY"]:
-            raise cursor.damaged("has cells without CONNECTIVITY")
+            raise cursor.make_damage_error("has cells without CONNECTIVITY")
         return starts, whole_numbers(cursor.numbers(size, _kind(cursor, line[-1])))
     cursor.at = place
     row = cursor.numbers(size, "i4").astype(np.int64)
     starts, at, numbers = array("q"), 0, row.tolist()
     for _ in range(min(count, size)):
         if at >= size or numbers[at] < 0:
-            raise cursor.damaged("has cells that do not fit their number")
+            raise cursor.make_damage_error("has cells that do not fit their number")
         starts.append(at + 1)
         at += numbers[at] + 1
     if at != size or len(starts) != count:
-        raise cursor.damaged("has cells that do not fit their number")
+        raise cursor.make_damage_error("has cells that do not fit their number")
     # each cell's own count stands between the corners, so that cells end where the count of the next stands
     keep = np.ones(size, dtype=bool)
     heads = np.array(starts, dtype=np.int64) - 1
@@ -126,5 +126,5 @@ def _skip_fields(cursor: Cursor, words: list[bytes]) -> None:
     for _ in range(min(_count(cursor, words, 2), 1000)):
         row = (cursor.line() or b"").split()
         if len(row) != 4:
-            raise cursor.damaged("has a field that is not understood")
+            raise cursor.make_damage_error("has a field that is not understood")
         cursor.numbers(_count(cursor, row, 1) * _count(cursor, row, 2), _kind(cursor, row[3]))

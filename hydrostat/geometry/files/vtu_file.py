@@ -13,7 +13,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.cursor import Cells, Cursor, damaged, whole_numbers
+from hydrostat.geometry.files.cursor import Cells, Cursor, make_damage_error, whole_numbers
 from hydrostat.geometry.files.soup import MOST_BYTES
 from hydrostat.geometry.files.vtk_file import TETRAHEDRON, TRIANGLE, cells_of
 from hydrostat.geometry.mesh import Mesh
@@ -31,7 +31,7 @@ _APPENDED = re.compile(rb"<AppendedData([^>]{0,1000})>\s*_")
 
 @dataclass
 class _Array:
-    """A DataArray: what its tag says, and the text in it."""
+    """DataArray: attributes of its tag, and its text."""
 
     attributes: dict[str, str]
     text: list[str] = field(default_factory=list)
@@ -56,14 +56,14 @@ def read_vtu(content: bytes, name: str) -> Cells:
     grid = _parse(content, name)
     reader = _Reader(grid.attributes, appended, encoding, name)
     if not 0 < len(grid.pieces) <= _MOST_PIECES:
-        raise damaged(name, f"has no piece, or more than {_MOST_PIECES}")
+        raise make_damage_error(name, f"has no piece, or more than {_MOST_PIECES}")
     points, tetrahedra, triangles, before = [np.zeros((0, 3))], [], [], 0
     for piece in grid.pieces:
         if not {"points", "connectivity", "offsets", "types"} <= piece.keys():
-            raise damaged(name, "has a piece without points or cells")
+            raise make_damage_error(name, "has a piece without points or cells")
         places = reader.values(piece["points"]).astype(float)
         if len(places) % 3:
-            raise damaged(name, "has points without three coordinates")
+            raise make_damage_error(name, "has points without three coordinates")
         arrays = [whole_numbers(reader.values(piece[key])) for key in ("offsets", "connectivity", "types")]
         cells = cells_of(places.reshape(-1, 3), np.append(0, arrays[0]), arrays[1], arrays[2], name)
         points.append(cells.points)
@@ -74,7 +74,7 @@ def read_vtu(content: bytes, name: str) -> Cells:
 
 
 def _parse(content: bytes, name: str) -> _GridText:
-    """Walk through the XML and keep the arrays that matter; refuse what is broken, deep, or declares entities."""
+    """Parse the XML and keep the relevant arrays; reject XML that is broken, deep, or declares entities."""
     grid, path = _GridText(), []
     now: _Array | None = None
 
@@ -116,7 +116,7 @@ def _parse(content: bytes, name: str) -> _GridText:
 
 
 class _Reader:
-    """Reader of the arrays of a file, which knows how they are written."""
+    """Reader of the arrays of a file in their encoding."""
 
     def __init__(self, attributes: dict[str, str], appended: bytes, encoding: str, name: str) -> None:
         self.name, self.appended, self.encoding = name, appended, encoding
@@ -131,7 +131,7 @@ class _Reader:
         """Numbers of an array."""
         kind = _KINDS.get(data.attributes.get("type", ""))
         if kind is None:
-            raise damaged(self.name, "has an array of an unknown type")
+            raise make_damage_error(self.name, "has an array of an unknown type")
         how = data.attributes.get("format", "ascii")
         try:
             if how == "ascii":
@@ -143,7 +143,7 @@ class _Reader:
             content = self._unpacked(source, encoding) if self.packed else self._plain(source, encoding)
             found = np.frombuffer(content, np.dtype(self.order + kind))
         except (ValueError, binascii.Error, zlib.error):
-            raise damaged(self.name, "has an array that cannot be unpacked") from None
+            raise make_damage_error(self.name, "has an array that cannot be unpacked") from None
         self.budget -= len(found)
         if self.budget < 0:
             raise InputError(f"{self.name}: unpacks to more than {MOST_BYTES / 1e6:.0f} MB: save a coarser mesh")
@@ -181,7 +181,7 @@ class _Reader:
         return b"".join(result)
 
     def _cut(self, source: bytes, encoding: str, start: int, count: int) -> bytes:
-        """Some bytes of what is encoded (ValueError: there are not as many)."""
+        """Return some of the encoded bytes (ValueError: there are not as many)."""
         end = start + count
         if encoding == "raw":
             piece = source[start:end]
@@ -221,7 +221,7 @@ def write_vtu(mesh: Mesh, nodes: Nodes, point_data: Mapping[str, np.ndarray]) ->
 
 
 def _data_array(name: str, values: np.ndarray) -> str:
-    """An array as an XML element: blocks packed one by one behind their number and sizes, in base64."""
+    """Array as an XML element: blocks packed one by one behind their number and sizes, in base64."""
     if values.ndim == 2 and values.shape[1] == 2:
         values = np.pad(values, ((0, 0), (0, 1)))
     kind = _NAMES[values.dtype.str[1:]]

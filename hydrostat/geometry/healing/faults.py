@@ -142,7 +142,7 @@ SLIVER = 1e-3  # a triangle lower than this share of its longest side is a slive
 
 
 def pieces_of(shells: Shells) -> tuple[Piece, ...]:
-    """The parts of a surface that are neither body nor cavity."""
+    """Parts of a surface that are neither body nor cavity."""
     counts = np.bincount(shells.label)
     return tuple(
         Piece.of_box(shells.boxes[part], int(counts[part]), role.value)
@@ -167,7 +167,7 @@ def describe_faults(
     shells: Shells,
     slivers: int,
 ) -> tuple[str, ...]:
-    """Describe what was found in a surface, a line each.
+    """Describe the faults found in a surface, a line each.
 
     The surface is turned one way already: `flipped` triangles looked another way than most of their patch; `crossing`
     are pairs of triangles.

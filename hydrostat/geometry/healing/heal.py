@@ -1,4 +1,4 @@
-"""`heal`: one closed body of a surface as scans, careless CAD and damaged files give it, and what was done for it."""
+"""`heal`: one closed body from a faulty surface, as from scans, CAD or damaged files, with a report of repairs."""
 
 import numpy as np
 from jaxtyping import Bool, Int
@@ -86,7 +86,7 @@ def _loose(parts: int) -> SurfaceError:
 
 
 def _check_parts(surface: Surface) -> None:
-    """Refuse what is no surface, and would take long: thousands of loose triangles, or hundreds about one edge."""
+    """Reject input that is no surface and would take long: thousands of loose triangles, or hundreds at one edge."""
     sides = sides_of(surface.triangles)
     most = int(sides.counts.max(initial=0))
     if most > _MOST_AT_EDGE:
@@ -100,7 +100,7 @@ def _check_parts(surface: Surface) -> None:
 
 
 def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:
-    """Refuse what is no surface: most of the triangles that cross any cross many others."""
+    """Reject input that is no surface: most of the triangles that cross any cross many others."""
     counts = np.bincount(crossing.ravel())
     usual = float(np.median(counts[counts > 0])) if len(crossing) else 0.0
     if len(crossing) >= MOST_PAIRS:  # of the first triangles only, as no more were looked for
@@ -135,7 +135,7 @@ def _is_closed(surface: Surface) -> bool:
 
 
 def _describe_repairs(welded: Welded, flipped: int, shells: Shells, closed: int) -> tuple[str, ...]:
-    """Describe what was done so far, a line each."""
+    """Describe the repairs so far, a line each."""
     counts = (
         (welded.flat + welded.repeated + welded.walls, "triangle", "without area or that stood there twice left out"),
         (flipped, "flipped triangle", "turned"),
@@ -153,7 +153,7 @@ def _made_anew(
     removed: tuple[Piece, ...],
     want: float,
 ) -> Healing:
-    """The body by its winding number."""
+    """Body by its winding number."""
     made = remake(kept, shells.boxes[shells.of_role(Role.CAVITY)], want)
     off = deviation(kept, made.surface, made.spacing)
     if off.patched > _MOST_PATCHED:

@@ -1,4 +1,4 @@
-"""`Healing`: a closed surface, and the report of how it came to be."""
+"""`Healing`: a closed surface, and the report of the repairs that produced it."""
 
 import json
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of the input that is not in the healed surface."""
+    """Part of the input that is not in the healed surface."""
 
     size: float  # longest side of its box [m]
     place: tuple[float, float, float]  # middle of its box [m]
@@ -29,13 +29,13 @@ class Piece:
 
     @classmethod
     def of_box(cls, box: np.ndarray, triangles: int, why: str) -> "Piece":
-        """A piece by its lowest and highest coordinates [m]."""
+        """Piece by its lowest and highest coordinates [m]."""
         x, y, z = box.mean(axis=0).tolist()
         return cls(float(np.ptp(box, axis=0).max()), (x, y, z), triangles, why)
 
     @property
     def text(self) -> str:
-        """The piece in words."""
+        """Piece in words."""
         x, y, z = (f"{round(1e3 * coordinate, 2) + 0.0:g}" for coordinate in self.place)
         triangles = plural(self.triangles, "triangle")
         return f"{self.why}, {1e3 * self.size:.3g} mm in size at ({x}, {y}, {z}) mm, {triangles}"
@@ -62,7 +62,7 @@ class Healing:
         return np.array([piece.place for piece in self.removed]).reshape(-1, 3)
 
     def lines(self) -> tuple[str, ...]:
-        """The report in plain words."""
+        """Report in plain words."""
         if self.clean:
             return ("the surface is clean", *(f"found: {line}" for line in self.found))
         pieces = sorted(self.removed, key=lambda piece: -piece.size)
@@ -92,7 +92,7 @@ class Healing:
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, np.ndarray]) -> "Healing":
-        """The healing that `arrays` gave."""
+        """Healing that `arrays` gave."""
         texts = json.loads(str(arrays["healing"]))
         pieces = (Piece(**(piece | {"place": tuple(piece["place"])})) for piece in texts["removed"])
         lists = {"found": tuple(texts["found"]), "done": tuple(texts["done"]), "removed": tuple(pieces)}

@@ -1,4 +1,4 @@
-"""Mending along edges: `Sides` tells how triangles meet; what is one is joined, turned one way, small holes closed."""
+"""Repairs along edges, from `Sides`: equal vertices are merged, triangles oriented, small holes closed."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -54,12 +54,12 @@ class Sides:
 
 
 def members_of(label: Int[np.ndarray, " some"]) -> list[Int[np.ndarray, " _"]]:
-    """Numbers of what has each label, for labels from 0 on that all occur."""
+    """Indices of the members of each label, for labels from 0 on that all occur."""
     return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
 
 
 def sides_of(triangles: Int[np.ndarray, "triangles 3"]) -> Sides:
-    """The edges of triangles."""
+    """Edges of triangles."""
     pairs = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     keys = pairs[:, 0] * (int(triangles.max(initial=0)) + 1) + pairs[:, 1]
     _, first, place = np.unique(keys, return_index=True, return_inverse=True)
@@ -71,7 +71,7 @@ NEAR = 1e-6  # vertices nearer to each other than this part of the surface's siz
 
 @dataclass(frozen=True, eq=False)
 class Welded:
-    """A surface whose triangles have vertices in common, and none of which stands there twice."""
+    """Surface with shared vertices and without duplicates."""
 
     surface: Surface  # resulting surface, its vertices in the order of the input
     merged: int  # number of merged duplicate vertices
@@ -175,7 +175,7 @@ class Holes:
 
 
 def holes_of(surface: Surface) -> Holes:
-    """The holes of a surface."""
+    """Holes of a surface."""
     sides = sides_of(surface.triangles)
     rows, columns = np.nonzero(sides.open[sides.of])
     edges = np.stack([surface.triangles[rows, columns], surface.triangles[rows, (columns + 1) % 3]], axis=1)
@@ -216,7 +216,7 @@ def _part_rings(edges: Int[np.ndarray, "edges 2"], label: Int[np.ndarray, " edge
 
 
 def with_closed(surface: Surface, holes: Holes, chosen: Bool[np.ndarray, " holes"]) -> Surface:
-    """A surface with some of its simple holes closed, each by a fan about its middle; of three edges, by a triangle."""
+    """Surface with some of its simple holes closed, each by a fan about its middle; of three edges, by a triangle."""
     edges, label = holes.edges[chosen[holes.label]], holes.label[chosen[holes.label]]
     numbers, label = np.unique(label, return_inverse=True)
     counts = np.bincount(label, minlength=len(numbers))

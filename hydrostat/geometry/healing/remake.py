@@ -1,4 +1,4 @@
-"""A body made anew as the region whose winding number is above one half, and how far it is from what it was made of."""
+"""A body remade as the region whose winding number is above one half, and its deviation from the input."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ _SMALL = 0.01  # a part with less than this share of the body's volume is remove
 
 @dataclass(frozen=True, eq=False)
 class Remade:
-    """A body made anew."""
+    """Body remade from its winding number."""
 
     surface: Surface  # closed, manifold, outward
     spacing: float  # grid spacing [m]
@@ -28,7 +28,7 @@ class Remade:
 
 
 def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolution: float) -> Remade:
-    """The region that triangles, turned outward as far as is known, wind around by more than one half.
+    """Remake the body as the region around which the oriented triangles wind by more than one half.
 
     Cavities that stay are given by their boxes [m]; other pockets of air are filled. The resolution is the spacing of
     the grid [m], coarser where it would have too many points. Raises SurfaceError if there is no such region, or
@@ -38,7 +38,7 @@ def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolu
     spacing = _allowed_spacing(surface, resolution)
     box = surface.box + 2.0 * spacing * np.array([[-1.0], [1.0]])
     try:
-        made = contour(field, box, spacing, settled=field.settled, accuracy=_ACCURACY)
+        made = contour(field, box, spacing, settled=field.find_settled_points, accuracy=_ACCURACY)
     except SurfaceError as error:
         raise SurfaceError(
             f"the surface encloses nothing that a grid of {1e3 * spacing:.3g} mm finds: it is an open sheet or thinner "
@@ -48,7 +48,7 @@ def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolu
 
 
 class WindingField:
-    """One half minus the winding number, and how far from a point its sign cannot change."""
+    """One half minus the winding number, and a radius around each point within which its sign cannot change."""
 
     def __init__(self, surface: Surface) -> None:
         self.solid = Solid(surface)
@@ -62,7 +62,7 @@ class WindingField:
         """One half minus the winding number."""
         return 0.5 - self.solid.winding(points)
 
-    def settled(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
+    def find_settled_points(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
         """Mask of the points around which the sign is constant within a reach [m]: no triangle, and no rim nearby.
 
         Away from the triangles the winding number has the gradient of the magnetic potential of a current along
@@ -80,7 +80,7 @@ class WindingField:
 
 
 def _allowed_spacing(surface: Surface, resolution: float) -> float:
-    """The resolution, or the least spacing above it whose grid has not too many points."""
+    """Resolution, or the smallest larger spacing whose grid does not have too many points."""
     extent = np.ptp(surface.box, axis=0)
     spacing = resolution
     while (np.ceil(extent / spacing) + 8.0).prod() > MOST_GRID_POINTS:
@@ -89,7 +89,7 @@ def _allowed_spacing(surface: Surface, resolution: float) -> float:
 
 
 def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacing: float) -> Remade:
-    """The largest part of a contour with its cavities; small parts are removed, pockets of air filled."""
+    """Largest part of a contour with its cavities; small parts are removed, pockets of air filled."""
     sides = sides_of(made.triangles)
     label = sides.groups(sides.counts > 1)
     inside = made.vertices[made.triangles[:, 0]] - made.box.mean(axis=0)
@@ -113,7 +113,7 @@ def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacin
 
 
 def _describe_second_body(body: Surface, other: Surface) -> str:
-    """Describe the second body beside a first, and where they are."""
+    """Describe a second body, and the positions of both."""
     places = [", ".join(f"{round(1e3 * x, 2) + 0.0:g}" for x in surface.box.mean(axis=0)) for surface in (body, other)]
     return (
         f"the surface is at least two bodies apart from each other, {1e3 * body.size:.3g} mm in size at "
@@ -134,7 +134,7 @@ class Deviation:
 
 
 def deviation(before: Surface, after: Surface, near: float) -> Deviation:
-    """Measure how far a closed surface is from what it was made of; beyond `near` [m] is patched, lost or inside."""
+    """Measure the distance of a closed surface from its source; beyond `near` [m] a part is patched, lost or inside."""
     import igl
 
     squared, nearest, _ = igl.point_mesh_squared_distance(after.vertices, before.vertices, before.triangles)
@@ -155,7 +155,7 @@ def deviation(before: Surface, after: Surface, near: float) -> Deviation:
 
 
 def _at_rim(surface: Surface) -> Bool[np.ndarray, " triangles"]:
-    """Triangles with a corner at an open edge: what is nearest to them may lie over a hole."""
+    """Triangles with a corner at an open edge: points nearest to them may lie over a hole."""
     sides = sides_of(surface.triangles)
     rim = np.zeros(len(surface.vertices), dtype=bool)
     rim[sides.ends[sides.open]] = True

@@ -1,4 +1,4 @@
-"""`Shells`: the connected parts of a surface, turned outward, and what each is to the body."""
+"""`Shells`: connected parts of a surface, oriented outward, and the role of each in the body."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -26,7 +26,7 @@ class Role(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Shells:
-    """Parts of a surface whose triangles are joined by edges."""
+    """Connected parts of a surface, joined by edges."""
 
     surface: Surface  # the surface, closed parts turned outward but for cavities
     label: Int[np.ndarray, " triangles"]  # number of the part of each triangle

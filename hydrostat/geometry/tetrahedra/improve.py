@@ -28,7 +28,7 @@ class ImproveStage:
 
 
 def improve(mesh: Mesh, solid: Solid, *, element_size: float, stages: tuple[ImproveStage, ...]) -> Mesh:
-    """The mesh with its nodes moved; no element is ever turned over.
+    """Mesh with its nodes moved; no element is ever turned over.
 
     Least of the sum, over tetrahedra, of shape^power and, over points of the outer faces, of their squared distance
     from the surface. shape = (sum of squared edges) / (6 (6 sqrt(2) V)^(2/3)), the inverse of the mean ratio (Liu and
@@ -59,7 +59,7 @@ def _stars(simplices: Elements, count: int) -> tuple[Int[np.ndarray, " _"], Int[
 def _planes(
     nodes: Nodes, facets: Elements, solid: Solid, element_size: float
 ) -> tuple[Float[np.ndarray, "facets samples 3"], Float[np.ndarray, "facets samples"]]:
-    """The plane of the surface at each sample: normal and offset [element sizes]; normal 0 where none faces it.
+    """Plane of the surface at each sample: normal and offset [element sizes]; normal 0 where none faces it.
 
     The normal is the way to the nearest place, outward as the facet is: so at an edge or a corner of the surface it is
     the one that a distance has there.

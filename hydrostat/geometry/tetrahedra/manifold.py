@@ -9,7 +9,7 @@ from hydrostat.geometry.tetrahedra.stuffing import Numbers, signed_volumes
 
 
 def manifold(nodes: Nodes, elements: Elements) -> tuple[Mesh, Points]:
-    """The largest part that faces join, with a node of its own for each group of elements that faces join about it.
+    """Largest part that faces join, with a node of its own for each group of elements that faces join about it.
 
     So what touches at an edge or a node only, such as two fingers, is parted. Where an edge is left between two groups
     about it that are joined elsewhere, the smaller group goes; where two hollows meet at a node, what lies at the
@@ -65,7 +65,7 @@ def _largest(part: Numbers) -> int:
 
 
 def _parted(nodes: Nodes, elements: Elements) -> Mesh:
-    """A node for every group of elements that faces join about it."""
+    """Node for every group of elements that faces join about it."""
     group = joined_groups(_joins(elements), elements.size)
     first = np.unique(group, return_index=True)[1]
     origin = elements.ravel()[first]

@@ -82,7 +82,7 @@ def find_edges(every: Edges, some: Edges) -> Numbers:
 
 
 def halves(elements: Tetrahedra, edges: Edges, middles: Numbers) -> Tetrahedra:
-    """Two tetrahedra for each, whose edge gets a node in its middle: first those with the edge's second end."""
+    """Two tetrahedra for each, cut at the middle of an edge: first those with the edge's second end."""
     return np.concatenate([np.where(elements == edges[:, end, None], middles[:, None], elements) for end in (0, 1)])
 
 
@@ -116,7 +116,7 @@ def bisect(nodes: Nodes, elements: Elements, chosen: Bool[np.ndarray, " elements
 
 
 def _longest(nodes: Nodes, every: Edges, which: Int[np.ndarray, "elements 6"]) -> Int[np.ndarray, " elements"]:
-    """The longest edge of each tetrahedron; of equals, the same for all that have them."""
+    """Longest edge of each tetrahedron; of equals, the same for all that have them."""
     lengths = np.linalg.norm(nodes[every[:, 1]] - nodes[every[:, 0]], axis=1)
     order = np.lexsort((np.arange(len(every)), np.round(lengths / lengths.max(), 9)))
     rank = np.empty(len(every), dtype=np.int64)
@@ -140,7 +140,7 @@ _DEEP = 0.1  # a tetrahedron with all corners on the surface is kept if its midd
 
 
 def stuff(solid: Solid, nodes: Nodes, elements: Elements, distances: Vector) -> tuple[Places, Tetrahedra]:
-    """Cut a solid out of a lattice whose nodes have these distances from it: nodes [m] and elements."""
+    """Cut a solid out of a lattice with these nodal distances: return nodes [m] and elements."""
     return _cut(solid, *_snapped(solid, nodes, elements, distances))
 
 
@@ -191,12 +191,12 @@ def _edge_crossings(
 def _cut(
     solid: Solid, nodes: Nodes, elements: Elements, sides: Int[np.ndarray, " nodes"], edges: Edges, cuts: Places
 ) -> tuple[Places, Tetrahedra]:
-    """The parts of all tetrahedra inside: whole ones, corners, wedges."""
+    """Parts of all tetrahedra inside: whole ones, corners, wedges."""
     count = len(nodes)
     keys = edges[:, 0] * count + edges[:, 1]
 
     def cut(inner: Numbers, outer: Numbers) -> Numbers:
-        """The node of the cut between two nodes; a node that is on the surface is its own."""
+        """Node of the cut between two nodes; a node that is on the surface is its own."""
         low, high = np.minimum(inner, outer), np.maximum(inner, outer)
         found = count + np.searchsorted(keys, low * count + high)
         return np.where(sides[outer] == 0, outer, found)
@@ -247,7 +247,7 @@ _OPEN = 0.05  # a place of an edge as far outside, in lengths of the edge, is in
 def find_bridges(
     solid: Solid, nodes: Nodes, elements: Elements, distances: Vector
 ) -> tuple[Bool[np.ndarray, " elements"], Places]:
-    """Find the tetrahedra with an edge whose ends are inside and which passes outside, and where it does [m].
+    """Find the tetrahedra with an edge whose ends are inside and that passes outside, and the points outside [m].
 
     Only edges longer than what their ends are deep can: no ball about an end reaches the surface. Without them the
     body has a dent there, which is better than fingers grown together, and finer elements then mend it.

@@ -1,4 +1,4 @@
-"""`tetrahedralise`: good tetrahedra from a closed surface; `fit`: how well they follow it."""
+"""`tetrahedralise`: good tetrahedra from a closed surface; `fit`: their distance from it."""
 
 from dataclasses import dataclass
 
@@ -36,7 +36,7 @@ class Fit:
 
     @property
     def largest(self) -> float:
-        """The largest distance, either way [m]."""
+        """Largest distance in either direction [m]."""
         return float(self.distances.max())
 
 
@@ -108,7 +108,7 @@ def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
 
 @dataclass(frozen=True, eq=False)
 class _Filling:
-    """Mesh that a lattice makes of a solid, and what it lacks."""
+    """Mesh of a solid from a lattice, and its missing volume."""
 
     mesh: Mesh  # its largest part; improved if no other is of any size
     whole: float  # volume of all parts, as a share of the solid's
@@ -139,7 +139,7 @@ def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float
 
 
 def _advice(surface: Surface, element_size: float) -> str:
-    """The end of a complaint, with a size that a body as thick as this on average can be filled with."""
+    """End of a complaint, with a size that a body as thick as this on average can be filled with."""
     size = min(2 * surface.volume / surface.area, _ADVICE * element_size)
     return f"elements of {1e3 * element_size:.4g} mm; take {1e3 * size:.2g} mm or less"
 

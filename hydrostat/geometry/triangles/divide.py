@@ -22,7 +22,7 @@ _LEAST_BEND = 0.35
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Wanted distance of nodes at any place, in units of the element size; 1 far from what is fine."""
+    """Wanted distance of nodes at any point, in units of the element size; 1 away from fine regions."""
 
     places: Float[np.ndarray, "places 2"]  # positions with a finer spacing
     values: Float[np.ndarray, " places"]  # spacing at these positions
@@ -41,7 +41,7 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class CurveSamples:
-    """The rings of an outline, finely and evenly sampled, in units of the element size."""
+    """Rings of an outline, finely and evenly sampled, in units of the element size."""
 
     places: Float[np.ndarray, "samples 2"]  # (samples, 2)
     inward: Float[np.ndarray, "samples 2"]  # unit normals into the body, (samples, 2)
@@ -58,7 +58,7 @@ def sample_rings(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Cu
         stations = np.arange(count) * (curve.length / count)
         tangents = curve.tangents(stations, min(_STEP, curve.length / 16))
         reach = min(_BEND_REACH, curve.length / 12)
-        bend = np.abs(curve.turned(stations, reach)) / (2 * reach)
+        bend = np.abs(curve.turning_angles(stations, reach)) / (2 * reach)
         if sharp.size:
             gaps = np.abs(stations[:, None] - sharp)
             bend[np.minimum(gaps, curve.length - gaps).min(axis=1) <= 1.2 * reach] = 0.0
@@ -147,7 +147,7 @@ def _refuse_thin(places: Points, neck: Vector, element_size: float) -> None:
 
 
 def _refuse_long(outline: Outline, rim: float, element_size: float) -> None:
-    """Refuse before long work what is thin or winding all over; the rim is as many elements long."""
+    """Reject shapes with a rim too long in elements, before long work."""
     width = 2 * outline.area / (rim * element_size)
     if width < FLOOR * element_size:
         raise OutlineError(
@@ -165,8 +165,8 @@ def _corners(curve: Curve) -> Stations:
     """Stations of the true corners: where a ring turns much on a short way, and little just before and after."""
     reach = min(_CORNER_REACH, curve.length / 24)
     stations = curve.stations[:-1]
-    sharp = np.abs(curve.turned(stations, reach))
-    around = np.abs(curve.turned(stations, 2 * reach))
+    sharp = np.abs(curve.turning_angles(stations, reach))
+    around = np.abs(curve.turning_angles(stations, 2 * reach))
     likely = np.flatnonzero((sharp > _CORNER_ANGLE) & (sharp > 0.75 * around))
     found: list[float] = []
     for index in likely[np.argsort(-np.abs(curve.turning[likely]) - sharp[likely], kind="stable")]:

@@ -37,7 +37,7 @@ def doubled_areas(points: Points, triangles: Elements) -> np.ndarray:
 
 
 def missing(triangles: Elements, edges: Edges) -> Edges:
-    """The edges that no triangle has."""
+    """Edges that no triangle has."""
     sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     base = int(max(triangles.max(initial=0), edges.max(initial=0))) + 1
     return edges[~np.isin(_keys(edges, base), _keys(sides, base))]
@@ -81,7 +81,7 @@ def _cross(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def _walk(follow: dict[int, int], start: int, end: int) -> list[int]:
-    """The chain of points from start to end; empty if there is none."""
+    """Chain of points from start to end; empty if there is none."""
     chain = [start]
     while chain[-1] != end:
         if chain[-1] not in follow or len(chain) > len(follow):
@@ -111,7 +111,7 @@ def _in_circle(triangle: Points, point: np.ndarray) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Division:
-    """The nodes on one ring of the outline, all lengths in units of the element size."""
+    """Nodes on one ring of the outline, all lengths in units of the element size."""
 
     curve: Curve  # the ring
     stations: Float[np.ndarray, " nodes"]  # arc length of each node, increasing
@@ -158,13 +158,13 @@ class Draft:
 
     @cached_property
     def edges(self) -> Edges:
-        """The sides of the rings."""
+        """Sides of the rings."""
         rings = [np.arange(first, last) for first, last in zip(self.starts, self.starts[1:], strict=False)]
         return np.concatenate([np.column_stack([ring, np.roll(ring, -1)]) for ring in rings])
 
     @cached_property
     def polygon(self) -> Polygon:
-        """The body that the boundary nodes span."""
+        """Body that the boundary nodes span."""
         rings = [part.curve.at(part.stations) for part in self.divisions]
         return Polygon(rings[0], rings[1:])
 
@@ -178,7 +178,7 @@ class Draft:
         return self._triangulated[0]
 
     @property
-    def lost(self) -> Edges:
+    def missing_sides(self) -> Edges:
         """Sides that no triangle has; they must be split."""
         return self._triangulated[1]
 
@@ -188,6 +188,6 @@ class Draft:
         return (ring if ring < len(self.divisions) else -1), node - int(self.starts[ring])
 
     def with_division(self, ring: int, division: Division) -> "Draft":
-        """The draft with one ring divided otherwise."""
+        """Draft with one ring divided otherwise."""
         parts = (*self.divisions[:ring], division, *self.divisions[ring + 1 :])
         return Draft(parts, self.interior)

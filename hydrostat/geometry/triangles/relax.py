@@ -1,4 +1,4 @@
-"""Move the nodes of a draft until its triangles are all but equilateral; mend the few that stay narrow."""
+"""Move the nodes of a draft until its triangles are almost equilateral; repair the few that stay narrow."""
 
 from collections.abc import Iterator
 
@@ -36,7 +36,7 @@ def push_apart(draft: Draft, spacing: Spacing, steps: int) -> Draft:
 
 
 def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Draft:
-    """Minimise the sum over triangles of (mean ratio) ** power, triangulating anew between rounds.
+    """Minimise the sum over triangles of (mean ratio) ** power, with a new triangulation between rounds.
 
     The mean ratio is (a^2 + b^2 + c^2) / (4 sqrt(3) area): one for an equilateral triangle, without bound for a
     flat one. Boundary nodes that are no corners slide along their ring.
@@ -55,7 +55,7 @@ def sound(draft: Draft) -> bool:
     parts = draft.divisions
     ordered = all(bool((part.ends > part.stations).all()) for part in parts)
     near = max(float(part.sagitta().max()) for part in parts) < STRAY
-    return ordered and near and draft.polygon.is_valid and not draft.lost.size
+    return ordered and near and draft.polygon.is_valid and not draft.missing_sides.size
 
 
 def _score(draft: Draft, power: float) -> float:
@@ -83,7 +83,7 @@ def _energy(points: Points, triangles: Elements, power: float) -> tuple[float, P
 
 
 def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft:
-    """The draft moved at fixed triangles, its boundary nodes only if they may slide."""
+    """Draft moved at fixed triangles, its boundary nodes only if they may slide."""
     from scipy.optimize import minimize  # Imported here: bodies in space are read sooner.
 
     slides = ~np.concatenate([part.fixed for part in draft.divisions]) & slide
@@ -104,7 +104,7 @@ def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft
 
 
 def _moved(draft: Draft, variables: Vector, slides: Bool[np.ndarray, " boundary"]) -> Draft:
-    """The draft with its sliding nodes shifted along their rings and its inner points placed anew."""
+    """Return the draft with its sliding nodes shifted along their rings and its inner points moved."""
     shifts = np.zeros(len(slides))
     shifts[slides] = variables[: int(slides.sum())]
     parts = tuple(
@@ -133,7 +133,7 @@ def repair(draft: Draft) -> Draft:
 
 
 def _widest(draft: Draft) -> Draft:
-    """The first change that is good enough, or else the best one."""
+    """First change that is good enough, or else the best one."""
     best = draft
     for changed in _changes(draft):
         if sound(changed):

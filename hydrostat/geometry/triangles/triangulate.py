@@ -58,9 +58,11 @@ def _check_element_size(outline: Outline, element_size: float) -> None:
 def _with_all_sides(draft: Draft) -> Draft:
     """Split sides of the outline until the triangles have them all."""
     for _ in range(30):
-        if not draft.lost.size:
+        if not draft.missing_sides.size:
             return draft
-        for node in sorted({int(pair.min() if np.ptp(pair) == 1 else pair.max()) for pair in draft.lost}, reverse=True):
+        for node in sorted(
+            {int(pair.min() if np.ptp(pair) == 1 else pair.max()) for pair in draft.missing_sides}, reverse=True
+        ):
             ring, number = draft.place(node)
             draft = draft.with_division(ring, draft.divisions[ring].split(number))
     raise OutlineError("the outline comes too near to itself for this element size: take smaller elements")
@@ -73,7 +75,7 @@ def _inner_spacing(draft: Draft) -> Spacing:
 
 
 def _seeds(draft: Draft, spacing: Spacing) -> Points:
-    """A hexagonal lattice where the spacing is full, half a step off the outline."""
+    """Hexagonal lattice where the spacing is full, half a step off the outline."""
     low, high = draft.points.min(axis=0), draft.points.max(axis=0)
     middle, rise = 0.5 * (low + high), 0.5 * np.sqrt(3.0)
     columns, rows = np.ceil((high - middle) / [1.0, rise]).astype(int) + 1
@@ -112,7 +114,7 @@ def _circles(draft: Draft) -> tuple[Points, np.ndarray]:
 
 
 def _mesh(draft: Draft, element_size: float) -> Mesh:
-    """The finished mesh [m], nodes and elements numbered along the longer side of the body."""
+    """Finished mesh [m], nodes and elements numbered along the longer side of the body."""
     points, triangles = draft.points, draft.triangles
     used = np.unique(triangles)
     axis = int(np.ptp(points[:, 1]) > np.ptp(points[:, 0]))

@@ -33,7 +33,7 @@ class CenterOfMassTarget(Objective):
     weight: float = 1.0
 
     def bind(self, simulation: Simulation) -> Residual:
-        """The goal on this robot.
+        """Return the residual on this robot.
 
         Raises:
             InputError: a target that is no place in the body's space, not finite or not in metres, or a weight below 0.

@@ -1,4 +1,4 @@
-"""`Effort`: what the winches do for a pose."""
+"""`Effort`: penalty on contractions, tensions or slack."""
 
 # Of the thesis (docs/thesis.md): E18
 
@@ -48,7 +48,7 @@ class Effort(Objective):
         make_member(self, "of", EffortKind, what="the kind of an effort")
 
     def bind(self, simulation: Simulation) -> Residual:
-        """The wish on this robot (InputError: a weight below 0, or a scale not above 0)."""
+        """Return the residual on this robot (InputError: a weight below 0, or a scale not above 0)."""
         robot = simulation.robot
         travel = np.array([winch.travel for winch in robot.winches])
         weight = not_negative("weight of an effort", self.weight) * robot.body.mesh.size
@@ -56,7 +56,7 @@ class Effort(Objective):
         if self.of is EffortKind.TENSION:
             return _Tension(weight / (scale or _TENSION))
         if self.of is EffortKind.SLACK:
-            return _Slack(weight / (scale or simulation.cables.taken(travel)))
+            return _Slack(weight / (scale or simulation.cables.compute_contractions(travel)))
         return _Contraction(weight / (scale or travel))
 
 

@@ -44,7 +44,7 @@ class MarkerTarget(Objective):
     free: Mapping[str, str] = field(default_factory=dict)
 
     def bind(self, simulation: Simulation) -> Residual:
-        """The goal on this robot.
+        """Return the residual on this robot.
 
         Raises:
             InputError: no targets, a marker that it does not have, a target that is no place in the body's space, not
@@ -61,7 +61,7 @@ class MarkerTarget(Objective):
                 if name not in targets:
                     raise InputError(f'marker "{name}" has a weight or free axes but no target; give it one')
         chosen = [_index(robot, name) for name in names]
-        anchors = simulation.marker_anchors.chosen(chosen)
+        anchors = simulation.marker_anchors.select_points(chosen)
         scales = np.array([not_negative(f"weight of marker {name}", weights.get(name, 1.0)) for name in names])
         held = np.array([_held(name, free.get(name, ""), mesh.dim) for name in names])
         goals = np.array(
@@ -93,7 +93,7 @@ class MarkerResidual(Residual):
         weights: Vector,
         held: Bool[np.ndarray, "markers dim"],
     ) -> None:
-        """Markers by name, where they are stuck, where they should go, how much each counts, along which axes."""
+        """Take the names of markers, their anchors, targets, weights and constrained axes."""
         self.names, self.anchors, self.goals, self.held = tuple(names), anchors, goals, held
         self._scales = weights[:, None] * held
         self._counts = weights > 0

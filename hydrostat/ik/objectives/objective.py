@@ -1,4 +1,4 @@
-"""`Objective`: the contract of every term of what inverse kinematics minimises; what is checked of the given."""
+"""`Objective`: contract of all terms of inverse kinematics, and checks of their arguments."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -53,7 +53,7 @@ class StateJacobian:
 
 
 class Residual(ABC):
-    """An objective on one robot: 1/2 |residual|^2, a residual in metres.
+    """Objective on one robot: 1/2 |residual|^2, a residual in metres.
 
     `hydrostat.testing.check_objective` tells whether a term is right.
     """
@@ -76,7 +76,7 @@ class Objective(ABC):
 
     @abstractmethod
     def bind(self, simulation: Simulation) -> Residual:
-        """The wish on this robot (InputError: it names what the robot does not have)."""
+        """Return the residual on this robot (InputError: it names parts that the robot does not have)."""
 
 
 def checked_objectives(given: object) -> tuple[Objective, ...]:
@@ -115,7 +115,7 @@ def posture_of(
 
 
 def winch_to_cable_matrix(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
-    """B: what a cable takes in when its winch takes in 1 m; 0 for other winches."""
+    """B: contraction of each cable per metre of its winch's contraction; 0 for other winches."""
     cables, winches = simulation.cables, np.arange(len(simulation.robot.winches))
     return np.where(cables.winches[:, None] == winches, cables.ratios[:, None], 0.0)
 
@@ -170,7 +170,7 @@ def numbers(given: object) -> Float[np.ndarray, "..."] | None:
 
 
 def describe(given: object) -> str:
-    """Show what is given in an error of one line: a number, a short text, or its kind."""
+    """Describe a value in an error of one line: a number, a short text, or its type."""
     found = numbers(given)
     if found is not None and found.ndim == 0:
         return f"{found:g}"
@@ -182,7 +182,7 @@ def describe(given: object) -> str:
 
 
 def not_negative(what: str, given: object) -> float:
-    """A number of 0 or more (InputError: it is anything else)."""
+    """Return a number of 0 or more (InputError: it is anything else)."""
     found = numbers(given)
     if found is None or found.ndim or not 0 <= found < np.inf:
         raise InputError(f"{what} must be 0 or more, not {describe(given)}")
@@ -190,7 +190,7 @@ def not_negative(what: str, given: object) -> float:
 
 
 def above_zero(what: str, given: object, *, unit: str = "") -> float:
-    """A number above 0; infinity is one (InputError: it is anything else)."""
+    """Return a number above 0, infinity included (InputError: it is anything else)."""
     found = numbers(given)
     if found is None or found.ndim or not found > 0:
         raise InputError(f"{what} must be a number above 0{unit and ' '}{unit}, not {describe(given)}")
@@ -205,7 +205,7 @@ def by_name(what: str, given: object, example: str) -> Mapping[str, Any]:
 
 
 def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"] | None = None) -> Vector:
-    """A place to go for a part of a body at rest [m], which counts along the axes that are held, or along all.
+    """Place to go for a part of a body at rest [m], which counts along the axes that are held, or along all.
 
     What is no place, of another dimension, not finite, or so far away that it cannot be in metres, is an InputError.
     """

@@ -28,7 +28,7 @@ class PointTarget(Objective):
     weight: float = 1.0
 
     def bind(self, simulation: Simulation) -> Residual:
-        """The goal on this robot.
+        """Return the residual on this robot.
 
         Raises:
             InputError: no points, one without a target or the other way round, a place that is not in the body's space,

@@ -50,7 +50,7 @@ class PoseRegularizer(Objective):
         make_member(self, "of", ClosenessKind, what="the kind of a closeness")
 
     def bind(self, simulation: Simulation) -> Residual:
-        """The wish on this robot (InputError: no solved pose or one of another robot, or a weight below 0)."""
+        """Return the residual on this robot (InputError: no solved pose, one of another robot, or a weight below 0)."""
         weight = not_negative("weight of a closeness", self.weight)
         if not isinstance(self.pose, Equilibrium):
             hint = ", give its .pose" if isinstance(getattr(self.pose, "pose", None), Equilibrium) else ""

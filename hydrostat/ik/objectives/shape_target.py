@@ -38,7 +38,7 @@ from hydrostat.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True)
 class ShapeTarget(Objective):
-    """The pose in which the body's boundary lies on a shape, measured both ways.
+    """Target shape for the body's boundary, by distances in both directions.
 
     1/2 (mean of d^2 over the boundary's nodes + mean of e^2 over places spread evenly over the shape): d is how far a
     node is from the shape, e how far a place of the shape is from the body. With d alone a finger may hide in the palm,
@@ -61,7 +61,7 @@ class ShapeTarget(Objective):
     samples: int | None = None
 
     def bind(self, simulation: Simulation) -> Residual:
-        """The goal on this robot.
+        """Return the residual on this robot.
 
         Raises:
             InputError: not exactly one shape, one of another dimension than the body, far larger or smaller than it, or
@@ -110,7 +110,7 @@ _LARGEST = 10.0  # a body does not get so many times longer or shorter
 
 
 class _Shape(Residual):
-    """A shape goal on one robot: signed distances, positive outside, each times the root of its share."""
+    """Shape goal on one robot: signed distances, positive outside, each times the root of its share."""
 
     def __init__(self, name: str, target: Shell, places: Points, mesh: Mesh, weight: float) -> None:
         """Take the name of the error, the shape, sample points on it, the body, and the weight."""
@@ -130,7 +130,7 @@ class _Shape(Residual):
         return (self._weight * self._roots)[:, None] * np.concatenate([nodes, places])
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
-        """Root of the mean square distance between the body's boundary and the shape, of both ways [m]."""
+        """Root mean square distance between the body's boundary and the shape, in both directions [m]."""
         return {self.name: float(np.linalg.norm(self._distances(posture)))} if self._weight > 0 else {}
 
     def _distances(self, posture: EquilibriumState) -> Rows:
@@ -138,10 +138,10 @@ class _Shape(Residual):
         return self._roots * np.concatenate([shape.distances, body.distances])
 
     def _nearest(self, posture: EquilibriumState) -> tuple[Nearest, Nearest]:
-        """From the boundary's nodes to the shape, and from its places to the body; kept for the posture asked last."""
+        """Nearest points from the boundary to the shape, and from its samples to the body; the last are cached."""
         nodes = posture.nodes
         if self._last is None or self._last[0] is not nodes:
-            body = self._body.moved(nodes)
+            body = self._body.with_nodes(nodes)
             self._last = nodes, self.target.nearest(nodes[self._rim]), body.nearest(self.places)
         return self._last[1:]
 
@@ -189,12 +189,12 @@ def _check(name: str, shell: Shell, mesh: Mesh) -> None:
         )
     if not (shell.measures > 0).all():
         raise InputError(f"the {name} has {np.sum(shell.measures == 0)} triangles without area; heal it first")
-    if not shell.closed:
+    if not shell.is_closed:
         raise InputError(f"the {name} is not closed; heal it first")
 
 
 def load_target_outline(robot: Robot, drawing: Path | str) -> Outline:
-    """The outline of a pose in the coordinates of the robot, for `ShapeTarget`.
+    """Outline of a pose in the coordinates of the robot, for `ShapeTarget`.
 
     Copy the drawing or picture of the body, and bend what is on it; the page must stay as it is. Read by itself, a
     drawing would be put into the middle of its own bounding box, and the pose would no longer be where it was drawn.

@@ -1,4 +1,4 @@
-"""`anchor_untargeted_markers`: what a target does not name should rather stay, where the target is out of reach."""
+"""`anchor_untargeted_markers`: markers without a target stay at rest if a target is out of reach."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from hydrostat.simulation import Equilibrium
 def anchor_untargeted_markers(
     search: InverseSearch, found: Descent, target: PoseTarget | None, start: Equilibrium | None
 ) -> tuple[InverseSearch, Descent]:
-    """The answer where markers that a target does not name have gone back for what they gain too little.
+    """Return the answer with markers without a target moved back to rest where their motion gains too little.
 
     It makes |r| + d^2 / (4 size) stationary, with what is missed in all, |r|, and the distance d of these markers from
     rest. A few descents do, in which d^2 weighs |r| / (2 size) with the last |r|. The answer is as it was where the

@@ -13,7 +13,7 @@ Square = Float[np.ndarray, "channels channels"]
 
 
 class Curvature:
-    """An estimate of sum r_i d2r_i, which counts where a target is out of reach (Dennis, Gay and Welsch 1981).
+    """Estimate of sum r_i d2r_i, which counts where a target is out of reach (Dennis, Gay and Welsch 1981).
 
     It follows from how the slopes of the residual change along a step. It is used only while it tells the objective
     better than Gauss-Newton alone does and that falls slowly, and forgotten when a cable becomes taut or slack.
@@ -25,7 +25,7 @@ class Curvature:
 
     @property
     def matrix(self) -> Square | None:
-        """The estimate, if it is to be used."""
+        """Estimate, if it is to be used."""
         return self._matrix if self._trusted else None
 
     def doubt(self) -> bool:
@@ -55,7 +55,7 @@ class Curvature:
 
 
 def _updated(known: Square, step: np.ndarray, change: np.ndarray, total: np.ndarray) -> Square:
-    """The least change of an estimate, scaled down if too large, that makes it true along a step of the channels.
+    """Least change of an estimate, scaled down if too large, that makes it true along a step of the channels.
 
     The estimate times the step should be `change`; `total` is the change of the whole gradient.
     """
@@ -115,7 +115,7 @@ class _TrustRegionDescent:
         for iteration in range(options.iterations):
             if self.search.patience.over:
                 return self._end(IKStatus.TIME_LIMIT, iteration)
-            self.search.told(self.state)
+            self.search.report_progress(self.state)
             if not self.fixed:
                 if self.state.error <= problem.reached and self._sharpen() and self._reached():
                     return self._end(IKStatus.REACHED, iteration)
@@ -155,7 +155,7 @@ class _TrustRegionDescent:
         return self.curvature.doubt()
 
     def _resize(self, ratio: float, step: Vector) -> None:
-        """The trust radius after a step that gained `ratio` times what it promised."""
+        """Update the trust radius after a step with a given ratio of actual to predicted decrease."""
         used = float((np.abs(step - self.state.values) / self.problem.bounds.span).max(initial=0.0))
         self.radius = min(_next_radius(self.radius, ratio, used), self.problem.options.largest_step)
 
@@ -176,7 +176,7 @@ class _TrustRegionDescent:
         return True
 
     def _end(self, reason: IKStatus, iterations: int) -> Descent:
-        """The state if it rests within its limits, else the last one that did."""
+        """State if it rests within its limits, else the last one that did."""
         if not self._sharpen() or self.state.excess > EXCESS:
             self.state = self.rested or self.state
         if self._reached():
@@ -196,7 +196,7 @@ _SMALLEST_RADIUS = 1e-7  # steps of less than this fraction of the range are not
 
 
 def _next_radius(radius: float, ratio: float, used: float) -> float:
-    """Trust radius after a step that gained `ratio` times what it promised and used `used` of the range."""
+    """Trust radius after a step with this ratio of actual to predicted decrease that used `used` of the range."""
     if ratio < 0.25:
         return 0.25 * min(radius, max(used, 1e-12))
     return 2 * radius if ratio > 0.75 and used > 0.9 * radius else radius

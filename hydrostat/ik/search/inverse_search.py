@@ -1,4 +1,4 @@
-"""`InverseSearch`: from state to state of an inverse problem, by trust-region steps; `reached_pose`: what it found."""
+"""`InverseSearch`: states of an inverse problem, connected by trust-region steps; `reached_pose`: its result."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ from hydrostat.simulation import Equilibrium
 
 
 class InverseSearch:
-    """Equilibria on the way to the solution of a problem; `solves` counts those that were approached.
+    """Equilibria along the search for a solution; `solves` counts the equilibria solved for.
 
     With an accuracy [m] nodes may be so far from equilibrium. Where physics remember the way, as cables that rub do,
     each state is reached straight from the pose `origin`, or from rest if there is none: all contractions change in
@@ -38,7 +38,7 @@ class InverseSearch:
         self.solver = problem.simulation.solver.with_accuracy(accuracy)
         self._remembers, self._turns = problem.simulation.assembly.has_history, False
 
-    def told(self, state: InverseState) -> None:
+    def report_progress(self, state: InverseState) -> None:
         """Report the progress of the search to its listener: one more step, and the errors of a state."""
         self.steps += 1
         if self.patience.tell is not None:
@@ -46,7 +46,7 @@ class InverseSearch:
             self.patience.tell(self.steps, float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0)
 
     def begin(self, start: Equilibrium | None) -> InverseState:
-        """The state of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
+        """State of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
         pose = start or self.problem.simulation.rest
         self.problem.simulation.check_start(pose)
         values = self.problem.bounds.channel(pose.contractions)
@@ -64,7 +64,7 @@ class InverseSearch:
         return self.problem.state(values, self._result(_begun(solved)))
 
     def _begin_where(self, values: Vector, pose: Equilibrium) -> InverseState:
-        """The state of a pose if that is where ways begin, else where the way to its contractions ends."""
+        """Return the state of a pose if loading paths start there, else that at the end of the path to it."""
         simulation = self.problem.simulation
         origin = self._origin or simulation.rest
         contractions = self.problem.bounds.spread @ values
@@ -74,7 +74,7 @@ class InverseSearch:
         return self._idled(self.problem.state(values, replace(pose.result, stiffness=stiffness), pose.history))
 
     def _travelled(self, values: Vector) -> InverseState | None:
-        """The state at the end of the straight way to contractions of the channels [m]; None if it breaks off."""
+        """State at the end of the straight path to contractions of the channels [m]; None if it cannot be followed."""
         simulation = self.problem.simulation
         pose = simulation.solve(self.problem.bounds.spread @ values, start=self._origin, strict=False)
         if not _sound(pose.result) or pose.result.stiffness is None:
@@ -92,12 +92,12 @@ class InverseSearch:
         return self.problem.state(values, result, history, whole=False)
 
     def _idled(self, state: InverseState) -> InverseState:
-        """The state with slack channels where they should be, at the end of the way to these contractions."""
+        """State with slack channels at their preferred positions, at the end of the path to these contractions."""
         idle = self.problem.idle(state)
         return state if idle is state else self._travelled(idle.values) or state
 
     def jump(self, values: Vector) -> InverseState | None:
-        """The state to which contractions of the channels [m] lead at once from rest; None if that is none."""
+        """State reached directly from rest by contractions of the channels [m]; None without an equilibrium."""
         self.solves += 1
         simulation = self.problem.simulation
         if self._remembers:
@@ -107,7 +107,7 @@ class InverseSearch:
         return self._relaxed(values, self._result(simulation.rest))
 
     def approach(self, state: InverseState, values: Vector) -> InverseState | None:
-        """The state at other contractions, near enough to equilibrium to go on; None if no stable one is found."""
+        """State at other contractions, near enough to equilibrium to continue; None if no stable one is found."""
         self.solves += 1
         if self._remembers:
             near = self._reached_at_once(state.result, values)
@@ -131,12 +131,12 @@ class InverseSearch:
         return self._relaxed(values, state.result)
 
     def follow(self, state: InverseState, values: Vector) -> InverseState | None:
-        """The state at other contractions, at equilibrium; None if Newton alone does not find it."""
+        """State at other contractions, at equilibrium; None if Newton alone does not find it."""
         self.solves += 1
         return self._relaxed(values, state.result)
 
-    def renewed(self, state: InverseState) -> InverseState:
-        """A state of another search of the same robot, in the eyes of this one."""
+    def adopt_state(self, state: InverseState) -> InverseState:
+        """Return a state of another search of the same robot as a state of this one."""
         history = state.history if self._remembers else None
         return self.problem.idle(self.problem.state(state.values, state.result, history))
 
@@ -158,7 +158,7 @@ class InverseSearch:
         return self.problem.state(state.values, result) if _sound(result) else None
 
     def drop_slack(self, state: InverseState) -> InverseState:
-        """The state with channels that hardly pull let go, if the goals stay reached."""
+        """Release channels with hardly any tension, if the goals stay reached."""
         cables, posture = self.problem.simulation.cables, state.posture
         places = channels(cables, posture, state.values, self.problem.bounds)
         pulls = posture.tensions[places.first]
@@ -181,7 +181,7 @@ class InverseSearch:
         return replace(pose.result, stiffness=stiffness, residual=residual, stable=stiffness.definite)
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> InverseState | None:
-        """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
+        """Solve by Newton's method alone; a longer solve is better done in smaller steps."""
         if self._remembers:
             found = self._travelled(values)
             return found and self._idled(found)
@@ -206,7 +206,7 @@ def _sound(result: NewtonResult) -> bool:
 
 
 def _begun(pose: Equilibrium) -> Equilibrium:
-    """The pose, if a search can begin from it."""
+    """Pose, if a search can begin from it."""
     if not _sound(pose.result):
         raise NotConvergedError(
             f"inverse kinematics finds no stable equilibrium to begin from: {pose.result.reason}; give a start",
@@ -286,7 +286,7 @@ class Descent:
 
 
 def reached_pose(search: InverseSearch, found: Descent, target: PoseTarget | None) -> IKResult:
-    """Pose that was found, with how near it is to an optimum and the limits that hold."""
+    """Return the result of a search, with its optimality and the active limits."""
     state, problem = found.state, search.problem
     pose = problem.simulation.make_pose(problem.bounds.spread @ state.values, state.result, state.history)
     return IKResult(

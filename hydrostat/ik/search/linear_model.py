@@ -1,4 +1,4 @@
-"""`LinearModel`: what contractions do near a state, where cables may be slack."""
+"""`LinearModel`: first-order effect of contractions near a state, with slack cables."""
 
 from copy import copy
 from dataclasses import dataclass
@@ -90,7 +90,7 @@ class LinearModel:
         self.range = bounds.span
 
     def best(self, effort: Vector, radius: float, curvature: np.ndarray | None = None) -> tuple[Vector, float]:
-        """The step of the channels [m] of least residual and effort, and by how much it lowers half their squares.
+        """Step of the channels [m] that minimizes residual and effort, and the decrease of half their squares.
 
         Where no step keeps the limits on tension, it goes as far towards them as it can. The effort is the residual
         that a tension of each cable is worth [m/N], the radius the largest step as a share of each range, the curvature
@@ -120,7 +120,7 @@ class LinearModel:
         full[active] = scale * step
         return full, 0.5 * float(aim @ aim - after @ after)
 
-    def aimed(self, residual: Float[np.ndarray, " rows"]) -> "LinearModel":
+    def with_residual(self, residual: Float[np.ndarray, " rows"]) -> "LinearModel":
         """Return the same model with another residual, that of other goals."""
         other = copy(self)
         other.residual = residual
@@ -135,7 +135,7 @@ class LinearModel:
         return bool(((self.places.gaps > 0) == (other.places.gaps > 0)).all())
 
     def slope(self, effort: Vector) -> float:
-        """The steepest fall of the length of residual and effort along a channel, as far as the limits allow [m/m].
+        """Steepest fall of the length of residual and effort along a channel, as far as the limits allow [m/m].
 
         Multipliers of the limits that hold are those that leave least of the gradient; 0 at an optimum (Karush, Kuhn
         and Tucker).
@@ -154,7 +154,7 @@ class LinearModel:
             gradient = gradient + rows.T @ nnls(rows.T, -gradient)[0]
         return float(np.abs(gradient).max())
 
-    def applied(self, step: Vector) -> Vector:
+    def apply_step(self, step: Vector) -> Vector:
         """Contractions of the channels after a step [m]; slack ones that do not join stay as they are."""
         places = self.places
         pulls, slopes = self._pulls
@@ -207,7 +207,7 @@ def least_squares(
     limits: Float[np.ndarray, "limits size"],
     room: Float[np.ndarray, " limits"],
 ) -> Float[np.ndarray, " size"] | None:
-    """The x that minimises |matrix x - right| with limits x <= room; None if nothing is within the limits.
+    """Minimise |matrix x - right| with limits x <= room; None if no x is within the limits.
 
     By a QR factorisation it becomes the problem of the least distance, and that one of nonnegative least squares
     (Lawson and Hanson 1974, chapter 23). `matrix` must have full column rank.
@@ -226,7 +226,7 @@ def least_squares(
 def _least_distance(
     rows: Float[np.ndarray, "limits size"], room: Float[np.ndarray, " limits"]
 ) -> Float[np.ndarray, " size"] | None:
-    """The shortest z with rows z <= room."""
+    """Shortest z with rows z <= room."""
     lengths = np.linalg.norm(rows, axis=1)
     some = lengths > 0
     if (room[~some] < 0).any():

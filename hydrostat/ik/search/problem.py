@@ -1,4 +1,4 @@
-"""`InverseProblem`: what inverse kinematics sees of a state, and the step that its linear model promises."""
+"""`InverseProblem`: residuals of inverse kinematics in a state, and the step of its linear model."""
 
 # Of the thesis (docs/thesis.md): M7, E18
 
@@ -37,7 +37,7 @@ class IKOptions:
             search ends.
         iterations: maximum number of steps from one start.
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
-        min_tension: where the goals leave a choice, take the contractions with the least tension, whatever the start.
+        min_tension: among equally good contractions, choose those with the least tension, for any start.
         restarts: maximum number of restarts while a goal is not reached; 0 to save time.
         hold_free_markers: keep markers without a target where they are. This changes nothing if the target is in reach.
             Otherwise they move a distance d from rest only if that gains about d^2 over four times the body's size.
@@ -83,7 +83,7 @@ class InverseState:
 
     @property
     def error(self) -> float:
-        """The largest error that is left of a goal [m]; infinite without goals."""
+        """Largest remaining error of a goal [m]; infinite without goals."""
         return max(self.errors.values(), default=np.inf)
 
 
@@ -107,7 +107,7 @@ class InverseProblem:
         *,
         ready: bool = False,
     ) -> None:
-        """State what is sought; if `ready`, slack cables are kept just short of taut, so that they can join at once.
+        """State the problem; if `ready`, slack cables are kept just short of taut, so they can act without delay.
 
         A robot without cables, or physics beside the cables that remember the way, is an InputError.
         """
@@ -142,7 +142,7 @@ class InverseProblem:
     def state(
         self, values: Vector, result: NewtonResult, history: Vector | None = None, *, whole: bool = True
     ) -> InverseState:
-        """State of nodes near equilibrium: what the terms see where these come to rest, to first order.
+        """State of nodes near equilibrium: residuals where they come to rest, to first order.
 
         Where the way there counts, it has left `history`, and the nodes rest already; `whole` tells whether all of it
         was followed.
@@ -168,7 +168,7 @@ class InverseProblem:
         )
 
     def idle(self, state: InverseState) -> InverseState:
-        """State whose slack channels went where terms want them, or else towards rest or taut; no node moves."""
+        """Move slack channels to where terms want them, or else towards rest or taut; no node moves."""
         gaps = channels(self.simulation.cables, state.posture, state.values, self.bounds).gaps
         slack = (gaps > 0) & np.isfinite(gaps)
         if not slack.any():
@@ -196,7 +196,7 @@ class InverseProblem:
         """Compute the next step from a state: contractions of the channels [m] and the predicted decrease."""
         model = self.linear(state)
         step, promise = model.best(weight * self.worth, radius, curvature)
-        return ModelStep(model.applied(step), promise, model)
+        return ModelStep(model.apply_step(step), promise, model)
 
     def linear(self, state: InverseState) -> LinearModel:
         """Return the linear model of a state: the first-order effect of the contractions."""
@@ -211,7 +211,7 @@ class InverseProblem:
         return LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
 
     def slope(self, state: InverseState, weight: float) -> float:
-        """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
+        """Steepest decrease of the residual norm along a channel that can move that way [m/m]."""
         return self.linear(state).slope(weight * self.worth)
 
     def redundant(self, state: InverseState) -> bool:
@@ -271,7 +271,7 @@ _LEAST_WEIGHT = 1e-8  # of the effort; enough to keep the linearised problem wel
 def _full_tension(simulation: Simulation) -> float:
     """Largest cable tension at full travel of its winch if the body were linear [N]."""
     robot, cables = simulation.robot, simulation.cables
-    travel = cables.taken(np.array([winch.travel for winch in robot.winches]))
+    travel = cables.compute_contractions(np.array([winch.travel for winch in robot.winches]))
     rest = simulation.rest
     compliance = simulation.stiffness(rest).compliance_to(cables.columns(rest.nodes)).compliance.diagonal()
     return float((travel / (1.0 / cables.law.stiffness + compliance)).max())

@@ -1,4 +1,4 @@
-"""`Keyframe`: a pose to be taken on the way, and the search for its contractions; what is checked of given poses."""
+"""`Keyframe`: target of a trajectory at an instant; the search for its contractions; checks of given poses."""
 
 # Of the thesis (docs/thesis.md): R58
 
@@ -47,7 +47,7 @@ Key = Keyframe | Targets | Equilibrium | tuple[float | None, Targets | Equilibri
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Found:
-    """A keyframe with its contractions."""
+    """Keyframe with its contractions."""
 
     keyframe: Keyframe  # requested keyframe
     pose: Equilibrium  # pose found
@@ -81,7 +81,7 @@ def as_keyframes(given: Sequence[Key]) -> list[Keyframe]:
 
 
 def _as_keyframe(number: int, given: Key) -> Keyframe:
-    """A keyframe whose parts are of the right kind; scripts are not checked for types."""
+    """Convert to a keyframe and check the types of its parts."""
     key = given
     if isinstance(key, tuple):
         if len(key) != 2:
@@ -114,7 +114,7 @@ class KeySearch:
     knots: int  # number of poses on a path along which markers move straight; 0 for other paths
 
     def find(self, keyframe: Keyframe, before: Equilibrium) -> Found:
-        """The pose of a keyframe, on the branch before (InputError, NotConvergedError: as for `solve_ik`)."""
+        """Pose of a keyframe, on the branch before (InputError, NotConvergedError: as for `solve_ik`)."""
         if isinstance(keyframe.target, Equilibrium):
             knots = self._straight(tuple(keyframe.target.markers), before, keyframe.target)
             return Found(keyframe=keyframe, pose=keyframe.target, reached=None, free_error=None, knots=knots)
@@ -152,7 +152,7 @@ class KeySearch:
         return one.rms_error < min((1 - _BETTER) * other.rms_error, other.rms_error - near)
 
     def _way(self, begin: Equilibrium, goal: Equilibrium) -> Equilibrium | None:
-        """The pose to which the branch of one pose leads at the contractions of another; None if it ends before."""
+        """Pose to which the branch of one pose leads at the contractions of another; None if it ends before."""
         shares = np.linspace(0.0, 1.0, _STEPS + 1)
         contractions = (1 - shares)[:, None] * begin.contractions + shares[:, None] * goal.contractions
         try:
@@ -183,7 +183,7 @@ _TELL = 1e-5  # and by this share of the body's size
 
 
 def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Equilibrium) -> None:
-    """Refuse a pose that inverse kinematics would not have found; its tensions are told in the report instead.
+    """Reject a pose that inverse kinematics could not have found; its tensions are part of the report instead.
 
     Raises:
         InputError: a pose of another robot, a contraction out of its range, or equal winches that are not equal.

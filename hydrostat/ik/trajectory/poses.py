@@ -28,7 +28,7 @@ def follow(
     jump: float,
     tell: Tell | None = None,
 ) -> tuple[tuple[Equilibrium, ...], tuple[BranchJump, ...]]:
-    """The equilibria at contractions [m] in time [s], each continued from the one before, and where they snap (E20).
+    """Equilibria at contractions [m] in time [s], each continued from the one before, and where they snap (E20).
 
     A step is taken when the nodes come to rest where the predictor x + dx/da da has put them, within `jump` [m]; else
     it is halved. On a branch the distance falls with the square of the step, where a cable becomes taut with the step
@@ -57,7 +57,7 @@ def follow(
 def _go(
     simulation: Simulation, pose: Equilibrium, goal: Vector, jump: float, halvings: int
 ) -> tuple[Equilibrium, float]:
-    """The pose at other contractions, and the largest distance from a prediction on the way [m].
+    """Pose at other contractions, and the largest distance from a prediction on the path [m].
 
     It is 0 where every step was taken; else it is a snap if it is more than `jump`.
     """

@@ -66,14 +66,14 @@ def solve_ik_trajectory(
     Args:
         simulation: the robot's physics.
         keyframes: targets, or (time [s], target), or `Keyframe`; a solved pose is a target too.
-        speed: the most of each winch [m/s], or by name.
-        acceleration: the most of each winch [m/s^2], or by name; 0.2 if left out, none for a linear path.
-        limits: what else the winches may do in keyframes; a start and solved poses must keep to it but for tension.
-        objectives: what is wished for in keyframes, beside their targets.
-        path: what goes on a simple way.
+        speed: maximum speed of each winch [m/s], or by name.
+        acceleration: maximum acceleration of each winch [m/s^2], or by name; 0.2 by default, none for a linear path.
+        limits: other limits of the winches in keyframes; a start and solved poses must keep to all but the tension.
+        objectives: objectives in keyframes, in addition to their targets.
+        path: quantity that follows a simple path.
         start: the pose to begin in, not moving; the rest pose if left out.
         loop: go back to the start at the end.
-        hold: how long the robot stays in each keyframe but the last [s].
+        hold: time in each keyframe but the last [s].
         options: samples, and how keyframes are searched for.
         tell: is told how far the work is.
 

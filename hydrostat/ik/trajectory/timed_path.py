@@ -18,7 +18,7 @@ Peaks = Float[np.ndarray, "legs winches"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TimedPath:
-    """A quintic in each leg, with the speeds given at its ends and no acceleration there.
+    """Quintic in each leg, with the speeds given at its ends and no acceleration there.
 
     With T the length of a leg, u = (t - t_0) / T, D the way and p, q the speeds at both ends times T:
 
@@ -66,7 +66,7 @@ class TimedPath:
         return values, speeds, u * (6 * three + u * (12 * four + u * 20 * five)) / length**2
 
     def peaks(self) -> tuple[Peaks, Peaks]:
-        """The largest speed [m/s] and acceleration [m/s^2] of each winch in each leg, in closed form.
+        """Largest speed [m/s] and acceleration [m/s^2] of each winch in each leg, in closed form.
 
         A leg accelerates as u (1 - u) (r + s u), which is 0 at both ends and at one more place, where the speed is
         extreme; where the jerk is 0 the acceleration is.
@@ -116,7 +116,7 @@ def _slopes(times: Vector, keys: Keys) -> Peaks:
 
 
 def _inside(above: Peaks, below: Peaks) -> Peaks:
-    """A quotient if it lies between 0 and 1, else 0."""
+    """Quotient if it lies between 0 and 1, else 0."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found = above / below
     return np.where((found > 0) & (found < 1), found, 0.0)
@@ -127,7 +127,7 @@ ByWinch = float | Mapping[str, float]  # one number for all winches, or numbers 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionLimits:
-    """The most that each winch may do."""
+    """Speed and acceleration limits of the winches."""
 
     speed: Vector  # maximum speed of each contraction [m/s]; infinite without a limit
     acceleration: Vector  # maximum acceleration of each contraction [m/s^2]; infinite without a limit
@@ -146,13 +146,13 @@ class MotionLimits:
         return used.max(axis=1, initial=0.0)
 
     def rest_to_rest(self, keys: Keys) -> Vector:
-        """The least time of each leg, were it to begin and end at rest [s]."""
+        """Least time of each leg, were it to begin and end at rest [s]."""
         ways = np.abs(np.diff(keys, axis=0))
         return self.share(SPEED_OF_REST * ways, ACCELERATION_OF_REST * ways)
 
 
 def earliest(keys: Keys, lengths: Vector, pace: MotionLimits, *, least: float) -> TimedPath:
-    """The smooth course that is soon at its end: keys [m] are passed without a stop where that saves time.
+    """Smooth course that is soon at its end: keys [m] are passed without a stop where that saves time.
 
     Lengths [s], NaN where free, and passing speeds depend on each other. From stops at all keys on, each leg is
     lengthened or shortened by what it uses of the limits, to no less than the least [s]; each course on the way is then
@@ -175,7 +175,7 @@ def earliest(keys: Keys, lengths: Vector, pace: MotionLimits, *, least: float) -
 
 
 def linear(keys: Keys, lengths: Vector, pace: MotionLimits, *, least: float) -> TimedPath:
-    """The linear course whose speeds keep to the limits in free legs."""
+    """Linear course whose speeds keep to the limits in free legs."""
     soonest = (np.abs(np.diff(keys, axis=0)) / pace.speed).max(axis=1, initial=least)
     return TimedPath.linear(_times(np.where(np.isnan(lengths), soonest, lengths)), keys)
 
@@ -202,7 +202,7 @@ class StraightCourse:
 
     @classmethod
     def earliest(cls, knots: Sequence[Keys], lengths: Vector, pace: MotionLimits, *, least: float) -> Self:
-        """The earliest one through the knots of each leg [m], of given lengths [s] (NaN where free), within limits."""
+        """Fastest path through the knots of each leg [m], of given durations [s] (NaN if free), within limits."""
         legs = tuple(_leg(keys) for keys in knots)
         soonest = np.array([float(pace.share(*_peaks(leg))[0]) for leg in legs])
         # Between the places that are looked at a leg may be faster by a hair.
@@ -228,7 +228,7 @@ class StraightCourse:
         return values, speeds, accelerations
 
     def peaks(self) -> tuple[Peaks, Peaks]:
-        """The largest speed [m/s] and acceleration [m/s^2] of each winch in each leg, at many places."""
+        """Largest speed [m/s] and acceleration [m/s^2] of each winch in each leg, at many places."""
         lengths = np.diff(self.times)[:, None]
         found = [_peaks(leg) for leg in self.legs]
         fastest, hardest = np.concatenate([one for one, _ in found]), np.concatenate([two for _, two in found])

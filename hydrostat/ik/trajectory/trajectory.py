@@ -48,7 +48,7 @@ class KeyPose:
         return float(np.sqrt(np.mean(np.square(list(self.errors.values()))))) if self.errors else 0.0
 
     def lines(self) -> list[str]:
-        """A plain report."""
+        """Plain report."""
         head = f"{self.time:.2f} s {self.name}: "
         head += f"marker error {1e3 * self.rms_error:.2f} mm rms" if self.errors else "as given"
         if self.pose.markers:
@@ -69,20 +69,20 @@ class Trajectory:
     """Contractions over time, and the equilibrium at each sample.
 
     Attributes:
-        path: what goes on a simple way from one keyframe to the next.
-        times: of the samples, from 0 [s].
-        contractions: [m].
-        speeds: of the contractions [m/s].
-        accelerations: of the contractions [m/s^2]; of a linear path 0, but for its corners, where they are infinite.
-        peak_speeds: the largest speed of each winch, between samples too [m/s].
-        peak_accelerations: the largest acceleration of each winch, between samples too [m/s^2].
-        pace: the limits on both.
+        path: quantity that follows a simple path from one keyframe to the next.
+        times: times of the samples, from 0 [s].
+        contractions: contractions at each sample [m].
+        speeds: rates of change of the contractions [m/s].
+        accelerations: second derivatives of the contractions [m/s^2]; 0 for a linear path, infinite at its corners.
+        peak_speeds: maximum speed of each winch, between samples too [m/s].
+        peak_accelerations: maximum acceleration of each winch, between samples too [m/s^2].
+        limits: limits on both.
         poses: equilibria, each continued from the one before.
-        keys: what became of the keyframes, the beginning not among them.
-        branch_jumps: where the robot jumps to another branch.
-        winches: their names.
-        cables: the winch of each cable.
-        tension: the limit on the tension of each cable [N]; infinite without one.
+        keyframes: results of the keyframes, without the start.
+        branch_jumps: jumps of the robot to another branch (snap-through).
+        winches: names of the winches.
+        cables: name of the winch of each cable.
+        tension: maximum tension of each cable [N]; infinite without a limit.
     """
 
     path: PathKind
@@ -121,11 +121,11 @@ class Trajectory:
         return np.array([pose.tensions for pose in self.poses])
 
     def profile(self) -> ContractionProfile:
-        """The contractions for `Simulation.play` and for motors: along lines from sample to sample."""
+        """Contractions for `Simulation.play` and for motors, linear from sample to sample."""
         return ContractionProfile(times=self.times, values=self.contractions)
 
     def lines(self) -> list[str]:
-        """A plain report: keyframes, what is used of the limits, what holds and what does not."""
+        """Report as lines of text: keyframes, used share of the limits, and violated limits."""
         lines = [line for key in self.keyframes for line in key.lines()]
         lines.append(f"{self.seconds:.2f} s in total, {len(self.times)} samples; path {self.path}")
         if self.winches:
@@ -178,7 +178,7 @@ def path_deviation(markers: Mapping[str, Float[np.ndarray, "samples dim"]]) -> f
 
 
 def legs_of(indices: list[int]) -> list[slice]:
-    """The samples of each leg, both ends included."""
+    """Samples of each leg, both ends included."""
     return [slice(first, last + 1) for first, last in pairwise(indices)]
 
 

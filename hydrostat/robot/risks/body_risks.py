@@ -63,7 +63,7 @@ def _flat_angles(mesh: Mesh) -> Iterator[str]:
 
 
 def _crossing(mesh: Mesh) -> Iterator[str]:
-    """A body that passes through itself, or touches itself, before it moves."""
+    """Body that passes through itself, or touches itself, before it moves."""
     found = find_crossings(mesh, mesh.nodes)
     if len(found):
         where = place(found.places[0])
@@ -100,7 +100,7 @@ def _slivers(mesh: Mesh) -> Iterator[str]:
 
 
 def _unlike(body: Body) -> Iterator[str]:
-    """Find what of a surface its mesh does not follow, for all that it got finer elements there."""
+    """Find parts of a surface that its mesh does not follow in spite of finer elements there."""
     if body.healing is None or body.element_size is None:
         return
     surface = body.healing.surface

@@ -112,7 +112,7 @@ def _points_in_body(robot: Robot, cable: Cable) -> Points:
 
 
 def _sampled(points: Points) -> Float[np.ndarray, "places dim"]:
-    """The points and places between them, at most `_STEP` apart, with `_MOST_STEPS` on a segment at most."""
+    """Points and places between them, at most `_STEP` apart, with `_MOST_STEPS` on a segment at most."""
     places = [points[:1]]
     for start, end in pairwise(points):
         steps = min(int(np.ceil(np.linalg.norm(end - start) / _STEP)), _MOST_STEPS)
@@ -160,7 +160,7 @@ def _near_the_surface(robot: Robot) -> Iterator[Risk]:
 
 
 def _length_inside(robot: Robot, cable: Cable) -> float:
-    """Length of a cable outside sheaths and inside the body [m]: what is outside cannot be squeezed."""
+    """Length of a cable outside sheaths and inside the body [m]; the rest cannot be compressed."""
     length = float(cable.segments[cable.bare].sum())
     if robot.winch(cable.winch).mount is Mount.BODY or not cable.bare[0]:
         return length
@@ -169,7 +169,7 @@ def _length_inside(robot: Robot, cable: Cable) -> float:
 
 
 def _squeezing(robot: Robot) -> Iterator[Risk]:
-    """An estimate from lengths alone: what a winch takes in, the body along its cable must become shorter by."""
+    """Estimate compression from lengths alone: the body along a cable must shorten by the winch's contraction."""
     material = robot.body.material
     if material.largest_squeeze is None:
         return

@@ -33,7 +33,7 @@ FAR = 1.5  # a marker is far from any node at this many times the usual length o
 
 
 def marker_risks(robot: Robot) -> Iterator[str]:
-    """Markers that cannot move, and markers that the mesh knows badly."""
+    """Find markers that cannot move, and markers that the mesh resolves badly."""
     if not robot.markers:
         return
     mesh = robot.body.mesh
@@ -80,7 +80,7 @@ def _far(robot: Robot) -> Iterator[Risk]:
 
 
 def _stretching(robot: Robot) -> Iterator[Risk]:
-    """An estimate from below: the way through the body from a pin to a marker must grow to the straight line at least.
+    """Estimate the minimum stretch: the path through the body from a pin to a marker must reach the straight distance.
 
     At rest it is measured along edges, which makes it up to a tenth too long, never too short.
     """
@@ -107,7 +107,7 @@ def _stretching(robot: Robot) -> Iterator[Risk]:
 
 
 def _ways(mesh: Mesh, places: Points) -> Float[np.ndarray, "places nodes"]:
-    """Length of the way from each place to each node [m], straight to the nearest node and on along edges."""
+    """Path length from each point to each node [m], straight to the nearest node and on along edges."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import dijkstra
 

@@ -34,12 +34,12 @@ def told_together(found: Iterable[Risk]) -> Iterator[str]:
 
 
 def mm(length: float) -> str:
-    """A length [m] in millimetres, to three digits, micrometres at best."""
+    """Length [m] in millimetres, to three digits, micrometres at best."""
     return f"{round(1e3 * length, 3):.3g} mm"
 
 
 def place(point: Float[np.ndarray, " dim"]) -> str:
-    """A place [m] in millimetres."""
+    """Place [m] in millimetres."""
     return "[" + ", ".join(f"{round(1e3 * value):d}" for value in point) + "] mm"
 
 

@@ -1,1 +1,1 @@
-"""Several equilibria at the same contractions: branches, snap-through, and what friction leaves between them."""
+"""Several equilibria at the same contractions: branches, snap-through, friction hysteresis."""

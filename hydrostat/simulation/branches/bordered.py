@@ -24,7 +24,7 @@ class Tangent:
 
 @dataclass(frozen=True, eq=False)
 class PathPoint:
-    """An equilibrium on a branch.
+    """Equilibrium on a branch.
 
     Attributes:
         nodes: node positions [m].
@@ -47,7 +47,7 @@ class PathPoint:
     distance: float
     iterations: int
 
-    def turned(self) -> "PathPoint":
+    def reverse_direction(self) -> "PathPoint":
         """Return the same point with the branch direction reversed."""
         return replace(self, tangent=Tangent(-self.tangent.move, -self.tangent.rate))
 
@@ -66,7 +66,7 @@ class Bordered:
     """
 
     def __init__(self, simulation: Simulation, begin: Vector, goal: Vector) -> None:
-        """The physics of a robot whose contractions go from `begin` to `goal` [m]."""
+        """Take the physics of a robot and the contractions at both ends of the way, `begin` and `goal` [m]."""
         mesh = simulation.robot.body.mesh
         self._simulation, self._begin, self._way = simulation, begin, goal - begin
         self._size = mesh.size
@@ -89,7 +89,7 @@ class Bordered:
         return float(np.sqrt(self._weight * np.square(move).sum() + rate**2))
 
     def farthest(self, move: Nodes, rate: float) -> float:
-        """Largest way of a node as a share of the body's size, or the change of the share if that is more."""
+        """Largest displacement of a node relative to the body's size, or the change of the share if larger."""
         return max(float(np.linalg.norm(move, axis=1).max()) / self._size, abs(rate))
 
     def correct(
@@ -102,13 +102,13 @@ class Bordered:
         iterations: int = 20,
         before: Tangent | None = None,
     ) -> PathPoint | None:
-        """The equilibrium in the plane through a place, across a direction; None if it is not within reach.
+        """Equilibrium in the plane through a place, across a direction; None if it is not within reach.
 
         Args:
             nodes: positions to begin at [m].
-            share: of the way, to begin at.
+            share: share of the way to begin at.
             across: the direction; with one that moves no node the share is kept.
-            reach: how far it may be (see `farthest`).
+            reach: largest distance from the start (see `farthest`).
             iterations: most steps of Newton.
             before: direction that the new one shall continue; `across` if left out.
         """
@@ -145,7 +145,7 @@ class Bordered:
     def _place(
         self, nodes: Nodes, share: float, stiffness: Stiffness, tangent: Tangent, distance: float, iterations: int
     ) -> PathPoint | None:
-        """An equilibrium with its forces; None if there is none."""
+        """Equilibrium with its forces; None if there is none."""
         controls = self.controls(share)
         allowed = self._simulation.solver.force_tolerance(nodes, controls)
         residual = float(np.abs(self._simulation.forces(nodes, controls)).max())

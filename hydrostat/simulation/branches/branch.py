@@ -33,7 +33,7 @@ class CriticalKind(StrEnum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BranchPoint:
-    """An equilibrium on a branch.
+    """Equilibrium on a branch.
 
     Attributes:
         share: share of the way from the first contractions to the goal, 0 to 1.
@@ -98,7 +98,7 @@ class Branch:
 
     @property
     def folds(self) -> tuple[float, ...]:
-        """Shares of the way at which the branch turns back."""
+        """Shares of the way at which the branch reverses."""
         return tuple(point.share for point in self.critical if point.kind is CriticalKind.FOLD)
 
     def runs(self) -> list[tuple[slice, bool]]:
@@ -115,7 +115,7 @@ class Branch:
         return inner[len(inner) // 2].stable
 
     def lines(self) -> list[str]:
-        """A plain report."""
+        """Report as lines of text."""
         unstable = sum(not point.stable for point in self.points)
         told = f"{len(self.points)} equilibria" + (f", {unstable} of them unstable" if unstable else ", all stable")
         lines = [f"{self.reason} at {100 * self.points[-1].share:.1f} % of the path ({told})"]

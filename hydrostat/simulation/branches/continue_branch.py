@@ -48,7 +48,7 @@ class BranchOptions:
     turn: float = 0.8
 
     def __post_init__(self) -> None:
-        """Refuse what no branch could be followed with."""
+        """Check that all options are within their ranges."""
         for name in ("first_step", "largest_step", "smallest_step", "steps", "distance", "iterations"):
             value = getattr(self, name)
             if not 0 < value < np.inf:
@@ -75,7 +75,7 @@ def continue_branch(
     Args:
         simulation: the robot's physics.
         start: an equilibrium to begin from, stable or not.
-        contractions: to go to [m].
+        contractions: contractions at the end of the branch [m].
         around_folds: go on where stability is lost, along the unstable part; else the branch ends there.
         options: length of the steps.
 
@@ -130,15 +130,15 @@ class _Follower:
         return self._branch(reason)
 
     def _begin(self, nodes: Nodes) -> PathPoint:
-        """The start as a place on the branch, in the direction of growing share."""
+        """Start as a place on the branch, in the direction of growing share."""
         still = Tangent(np.zeros(nodes.size), 1.0)
         place = self.system.correct(nodes, 0.0, still)
         if place is None or not place.distance < _SAME:
             raise InputError("start must be an equilibrium at its own contractions; solve for it first")
-        return place if place.tangent.rate > 0 else place.turned()
+        return place if place.tangent.rate > 0 else place.reverse_direction()
 
     def _step(self, place: PathPoint, step: float) -> PathPoint | None:
-        """The equilibrium one step on; None if it is not where it was predicted."""
+        """Equilibrium one step on; None if it is not where it was predicted."""
         trial = self._raw_step(place, step)
         if trial is None or self.system.dot(place.tangent, trial.tangent) < self.options.turn:
             return None
@@ -187,7 +187,7 @@ class _Follower:
         return BranchReason.ARRIVED if share == 1.0 else BranchReason.BACK
 
     def _find_critical(self, place: PathPoint, trial: PathPoint, step: float) -> tuple[CriticalKind, PathPoint] | None:
-        """A fold where the share turns back, else a bifurcation where stability changes."""
+        """Fold where the share turns back, else a bifurcation where stability changes."""
         if place.tangent.rate * trial.tangent.rate < 0:
             return CriticalKind.FOLD, self._find_fold(place, trial, step)
         if place.stiffness.definite != trial.stiffness.definite:
@@ -239,7 +239,7 @@ class _Follower:
 
 
 def _solved(simulation: Simulation, controls: Callable[[float], Vector], place: PathPoint) -> Equilibrium:
-    """A place on a branch as a pose like any other."""
+    """Place on a branch as a pose like any other."""
     contractions = controls(place.share)
     positions = simulation.marker_anchors.positions(place.nodes)
     energy = simulation.assembly.value(place.nodes, contractions)

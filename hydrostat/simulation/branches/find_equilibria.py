@@ -69,13 +69,13 @@ class Multistability:
 
     @property
     def largest(self) -> tuple[str, float]:
-        """The marker that differs most, and by how much [m]; "a node" where there are no markers."""
+        """Marker that differs most between poses, and its distance [m]; "a node" for a robot without markers."""
         if not self.spread:
             return "a node", self.node_spread
         return max(self.spread.items(), key=lambda item: item[1])
 
     def lines(self) -> list[str]:
-        """A plain report."""
+        """Report as lines of text."""
         if not self.poses:
             lines = ["no pose found"]
         elif self.unique:
@@ -107,15 +107,15 @@ def find_equilibria(
     tolerance: float = 1e-4,
     progress: Callable[[str, int, int], None] | None = None,
 ) -> Multistability:
-    """Solve the same contractions from different starts, and tell the poses found apart.
+    """Solve the same contractions from different starts, and return the distinct poses.
 
     The paths are those of `loading_paths_to`. One pose is no proof of uniqueness: it is the result of these paths only.
 
     Args:
         simulation: the robot's physics.
-        contractions: at the end of every way [m].
-        count: how many ways.
-        seed: of the random ones.
+        contractions: contractions at the end of every loading path [m].
+        count: number of loading paths.
+        seed: random seed of the loading paths.
         tolerance: poses whose nodes are all within this share of the body's size are one.
         progress: told the stage, how many ways are done, and how many there are.
 
@@ -181,6 +181,6 @@ def _marker_spread(simulation: Simulation, poses: tuple[FoundPose, ...]) -> dict
 
 
 def _told(ways: tuple[str, ...]) -> str:
-    """Ways in words, each once, with how often."""
+    """Descriptions of loading paths, each once, with its count."""
     kinds = Counter(name.partition(":")[0] for name in ways)
     return ", ".join(name if times == 1 else f"{name} ({times} times)" for name, times in kinds.items())

@@ -1,4 +1,4 @@
-"""`friction_hysteresis`: how far apart loading and unloading leave the markers."""
+"""`friction_hysteresis`: distance of the markers between loading and unloading."""
 
 import numpy as np
 

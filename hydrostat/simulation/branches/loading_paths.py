@@ -54,7 +54,7 @@ def loading_paths_to(simulation: Simulation, goal: Vector, count: int, seed: int
 
 
 def follow_approach(simulation: Simulation, way: Approach) -> Equilibrium:
-    """The pose at the end of a way; not converged where no equilibrium was found on it."""
+    """Return the pose at the end of a loading path; not converged if no equilibrium was found on it."""
     idle = np.zeros(len(simulation.robot.winches))
     first, *others = way.stops
     if way.at_once:
@@ -84,7 +84,7 @@ def _in_turn(kinds: list[Iterator[Approach]]) -> Iterator[Approach]:
 
 
 def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
-    """The winches that move, one after the other: in all orders if they are few, else in random ones."""
+    """Winches that move, one after the other: in all orders if they are few, else in random ones."""
     moved = [int(winch) for winch in np.flatnonzero(goal)]
     if len(moved) < 2:
         return
@@ -101,7 +101,7 @@ def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator
 
 
 def _pushes(simulation: Simulation, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
-    """Pushed like its own weight would push it, one way and the opposite, and let go."""
+    """Paths with a push by a force like the body's weight, in two opposite directions, and a release."""
     masses = simulation.body.masses[:, None]
     while True:
         direction = random.standard_normal(simulation.robot.body.mesh.dim)

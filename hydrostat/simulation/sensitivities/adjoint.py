@@ -65,7 +65,7 @@ def sensitivity(
     and dL/dT dT/dtheta to the slopes.
 
     Args:
-        body: that of the robot whose pose it is.
+        body: body of the robot in the pose.
         assembly: its energies.
         cables: those of its cables.
         pose: an equilibrium.
@@ -190,7 +190,7 @@ def by_routes(
     tiny = np.finfo(float).tiny
     by_rest = ((rounded - held * rest_lengths) / np.maximum((rests**2).sum(axis=1), tiny))[..., None] * rests
     return (
-        points.pulled_back(nodes, points.gathered(by_span))
-        + points.held_back(points.gathered(by_rest))
-        - points.values_pulled_back(fields, points.gathered(pull[:, None] * units))
+        points.pulled_back(nodes, points.gather_gradients(by_span))
+        + points.held_back(points.gather_gradients(by_rest))
+        - points.values_pulled_back(fields, points.gather_gradients(pull[:, None] * units))
     )

@@ -1,4 +1,4 @@
-"""`friction_sensitivities`: sensitivities of numbers of a pose to all that cables are made of, where these rub."""
+"""`friction_sensitivities`: sensitivities of scalars of a pose to all cable parameters, with cable friction."""
 
 from dataclasses import dataclass
 
@@ -48,18 +48,18 @@ def friction_sensitivities(
     """Slopes of numbers L while points at the capstan's limit slip on and the others stick, by one adjoint for all.
 
     Tensions T of the spans are unknowns beside the nodes: K dx + G dT = -dr and dT = B de + S df, with the elongations
-    e, the limits f(T, angles(x), mu), and B and S as `ChainLaw.locked` tells. docs/theory/derivatives.md.
+    e, the limits f(T, angles(x), mu), and B and S as in `ChainLaw.compute_slip_jacobians`. docs/theory/derivatives.md.
 
     Args:
-        robot: whose cables they are.
-        points: of the cables.
-        cables: as they are in the pose.
+        robot: robot with these cables.
+        points: points of the cables.
+        cables: energy of the cables in the pose.
         stiffness: the Hessian in the pose.
         pose: an equilibrium.
         rows: dL / d nodes at fixed tensions, and dL / d tensions at the winches.
     """
     nodes, controls = pose.nodes, pose.contractions
-    locked = cables.locked(nodes, controls)
+    locked = cables.linearize_tensions(nodes, controls)
     spans = cables.spans
     body = stiffness.with_weights(np.zeros_like(stiffness.weights))
     columns, turned = spans.columns(nodes), cables.turn_gradients(nodes)

@@ -1,4 +1,4 @@
-"""`response`: how nodes move under small forces at an equilibrium."""
+"""`response`: displacement of the nodes under small forces at an equilibrium."""
 
 import numpy as np
 from jaxtyping import Float
@@ -22,7 +22,7 @@ def response(
         assembly: the energies that count there.
         stiffness: the Hessian there, or at a state close by.
         state: nodes [m] and contractions [m].
-        forces: on every degree of freedom [N], a column for each case.
+        forces: force on every degree of freedom [N], a column for each load case.
     """
     body, springs = assembly.hessian(*state), assembly.coupling(*state)
     allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)

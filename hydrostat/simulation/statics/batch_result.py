@@ -1,4 +1,4 @@
-"""`BatchResult`: equilibria at many contractions, found by several threads; what a sampler or a learner asks for."""
+"""`BatchResult`: equilibria at many contractions, computed by several threads, for sampling and learning."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
@@ -95,13 +95,13 @@ def pose_row(
     slopes: Callable[[Equilibrium], np.ndarray] | None,
     diagnose: Callable[[Equilibrium], Sequence[str]],
 ) -> PoseRow:
-    """Take from a pose what a row holds.
+    """Return the row of a pose.
 
     Args:
-        pose: where the solver ended.
-        anchors: what holds the markers.
-        keep: whether to keep the nodes.
-        slopes: of the markers with the contractions; None if they are not wanted.
+        pose: result of the solver.
+        anchors: nodes and weights that hold the markers.
+        keep: True to keep the nodes.
+        slopes: Jacobian of the markers by the contractions; None if not requested.
         diagnose: tells why there is no equilibrium.
     """
     reason, trouble, jacobian = pose.result.reason, "", None
@@ -139,10 +139,10 @@ def solve_rows(
         robot: robot that is solved.
         contractions: one row for each pose [m].
         solve: returns the row of a number.
-        jacobians: whether rows have Jacobians.
-        nodes: whether rows have nodes.
+        jacobians: True for rows with Jacobians.
+        nodes: True for rows with nodes.
         threads: threads that may work.
-        cost: of one factorization of the body [s]; small ones are faster in one thread.
+        cost: time of one factorization of the body [s]; small ones are faster in one thread.
 
     Raises:
         InputError: no number of threads.
@@ -162,7 +162,7 @@ def solve_rows(
 
 
 def in_threads(work: Callable[[int], PoseRow], size: int, threads: int, *, pays: bool) -> list[PoseRow]:
-    """Collect what `work` gives for 0 to `size` - 1, by several threads, if that pays; each takes the next when free.
+    """Collect the results of `work` for 0 to `size` - 1, by several threads if that pays.
 
     An error ends its own row alone. Ctrl-C ends all as soon as the rows under way are done.
 

@@ -1,4 +1,4 @@
-"""`diagnose_failure`: what stands in the way of an equilibrium that was not found, in words."""
+"""`diagnose_failure`: explanation of a solve that found no equilibrium."""
 
 from collections.abc import Sequence
 
@@ -16,17 +16,17 @@ def diagnose_failure(
     """Explain a failed solve: the cable with the highest tension, an almost flat element or the largest residual.
 
     Args:
-        robot: whose solve ended early.
+        robot: robot of the failed solve.
         cables: its cables, as if they had no friction.
-        nodes: where it ended [m].
-        contractions: of the winches [m].
+        nodes: node positions where the solve ended [m].
+        contractions: contractions of the winches [m].
         forces: left over at the nodes [N].
     """
     told = []
     tensions = cables.tensions(nodes, contractions)
     if tensions.max(initial=0.0) > 0:
         cable = int(np.argmax(tensions))
-        taken = (cables.taken(contractions)[cable] - cables.slack[cable]) / cables.rest_lengths[cable]
+        taken = (cables.compute_contractions(contractions)[cable] - cables.slack[cable]) / cables.rest_lengths[cable]
         told.append(
             f"highest tension {tensions[cable]:.3g} N in cable {robot.cables[cable].name!r}, "
             f"contracted by {100 * taken:.0f} % of its bare length"
@@ -44,7 +44,7 @@ def diagnose_failure(
 
 
 def not_converged(result: NewtonResult, reasons: Sequence[str]) -> NotConvergedError:
-    """The error of a solve that stopped early: why, how much force is left over, and what stands in the way."""
+    """Return the error of a solve that stopped early: reason, residual force and diagnosis."""
     return NotConvergedError(
         f"no equilibrium found after {result.iterations} iterations: {result.reason} (residual force "
         f"{result.residual:.2g} N, allowed {result.allowed:.2g} N); {'; '.join(reasons)}",

@@ -1,4 +1,4 @@
-"""`find_history_equilibrium`: a minimum of energy in balance with what is held fixed while it is found."""
+"""`find_history_equilibrium`: an energy minimum consistent with the quantities held fixed, such as friction limits."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,15 +15,15 @@ Relax = Callable[[Assembly, Nodes, Stiffness | None], NewtonResult]
 def find_history_equilibrium(
     assembly: Assembly, start: tuple[Nodes, Stiffness | None], controls: Vector, relax: Relax, floor: float
 ) -> tuple[Assembly, NewtonResult]:
-    """Minimise, and correct what was held fixed, such as the limits of friction, until both fit each other (E14).
+    """Minimise and correct the quantities held fixed, such as friction limits, until both agree (E14).
 
     Without energies that have a history this is one minimisation.
 
     Args:
         assembly: the sum, with a first guess of what is held fixed.
-        start: where to begin [m], and the Hessian there if it is known.
+        start: initial positions [m], and the Hessian there if it is known.
         controls: contractions [m].
-        relax: how to minimise.
+        relax: function that minimises the energy.
         floor: force that rounding hides [N].
 
     Returns:

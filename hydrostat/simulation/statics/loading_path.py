@@ -1,4 +1,4 @@
-"""`LoadingPath`: incremental loading, where the way to contractions decides where a robot ends."""
+"""`LoadingPath`: incremental loading, where the loading path decides the final pose."""
 
 from copy import copy
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ from hydrostat.simulation.statics.static_solver import StaticSolver
 
 @dataclass(frozen=True, eq=False)
 class _PathState:
-    """An equilibrium on the way; the energies remember what happened until there."""
+    """Equilibrium on the loading path; the energies hold the history up to it."""
 
     nodes: Nodes
     contractions: Vector
@@ -62,7 +62,7 @@ class LoadingPath:
         return other
 
     def solve(self, goal: Vector, start: Equilibrium | None) -> tuple[NewtonResult, Vector]:
-        """Equilibrium at contractions `goal` [m], on the way from `start` or from rest; and what is remembered there.
+        """Equilibrium at contractions `goal` [m], on the path from `start` or from rest, and its history variables.
 
         If the way cannot be followed to its end, the result is where it broke off, and has not converged.
         """
@@ -92,13 +92,13 @@ class LoadingPath:
         return state.result, state.assembly.history
 
     def with_history(self, pose: Equilibrium) -> Assembly:
-        """Physics that remember how a pose was reached."""
+        """Return the physics with the history of a pose."""
         return self._rest.assembly.with_active_terms(pose.unknowns).with_history(
             pose.history, pose.unknowns, pose.contractions
         )
 
     def _advance(self, state: _PathState, goal: Vector, halvings: int = 0) -> _PathState:
-        """The next equilibrium: by half increments where it is not found, and by sliding where these fail too."""
+        """Next equilibrium: by half increments where it is not found, and by sliding where these fail too."""
         found = self._solve(state, goal)
         if found.arrived or _late(found) or (goal == state.contractions).all():
             return found
@@ -110,7 +110,7 @@ class LoadingPath:
         return self._advance(middle, goal, halvings + 1) if middle.arrived else found
 
     def _slide(self, state: _PathState, goal: Vector) -> _PathState:
-        """The next equilibrium where a body snaps: friction follows behind it, and what has slipped sticks.
+        """Next equilibrium after a snap-through: friction follows behind it, and slipped points stick.
 
         Cable slips against the limits of where it was, a little too far. This is repeated until balance is near.
         """
@@ -131,7 +131,7 @@ class LoadingPath:
         return _counted(found, iterations)
 
     def _solve(self, state: _PathState, goal: Vector) -> _PathState:
-        """Equilibrium at `goal` after one increment, in balance with what depends on the path."""
+        """Equilibrium at `goal` after one increment, consistent with the path-dependent quantities."""
 
         def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
             return self._relax(assembly, nodes, goal, known)
@@ -154,7 +154,7 @@ def _stiffness(state: _PathState) -> Stiffness | None:
 
 
 def _counted(state: _PathState, iterations: int) -> _PathState:
-    """The state with another count of iterations."""
+    """State with another count of iterations."""
     assert state.result is not None
     return replace(state, result=replace(state.result, iterations=iterations))
 

@@ -40,14 +40,14 @@ class StaticSolver:
         """Newton from some nodes on.
 
         Args:
-            nodes: where to begin [m].
+            nodes: initial node positions [m].
             controls: contraction of each winch [m].
             stiffness: the Hessian near there, such as that of the last result; then the first step is the prediction
                 dx/da and costs no factorisation.
             iterations: most steps, if fewer than the options allow.
-            tolerance: if looser than theirs.
-            exact: whether `stiffness` is that of `nodes` to rounding, and not of a place close by.
-            whole: whether to give up at once, at no cost, where the prediction cannot be taken whole.
+            tolerance: tolerance, if looser than that of the options.
+            exact: True if `stiffness` is that of `nodes` up to rounding, and not of positions nearby.
+            whole: give up immediately, at no cost, if the prediction cannot be taken whole.
         """
         options = replace(self.options, whole=whole)
         if iterations is not None:
@@ -104,7 +104,7 @@ class StaticSolver:
         rest: tuple[Nodes, Stiffness],
         start: tuple[Nodes, Vector, Stiffness | None] | None = None,
     ) -> NewtonResult:
-        """Equilibrium at `goal`: at once; failing that in load steps from `start`, then from rest, last by patience.
+        """Equilibrium at `goal`: directly; else in load steps from `start`, then from rest with the dead loads.
 
         Where the prediction of the first step would crush an element, load steps follow without delay: cut short
         against the whole command, that step would leave cables that pull far too hard on elements next to flat.
@@ -134,7 +134,7 @@ class StaticSolver:
         return time.monotonic() >= self.options.deadline
 
     def _judged(self, result: NewtonResult, goal: Vector) -> NewtonResult:
-        """A failure on the way, by what is left over at `goal`."""
+        """Result of a failed solve, with residual and energy at `goal`."""
         assembly = self.assembly.with_active_terms(result.nodes)
         return replace(
             result,

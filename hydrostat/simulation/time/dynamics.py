@@ -1,4 +1,4 @@
-"""`Dynamics`: how a robot moves in time."""
+"""`Dynamics`: motion of a robot in time."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -87,7 +87,7 @@ class Dynamics:
         markers: Anchors,
         options: NewtonOptions,
     ) -> None:
-        """The robot's physics at rest; tensions by nodes, contractions and history; its markers; how Newton goes."""
+        """Take the robot's physics at rest, functions for tensions and markers, and the Newton options."""
         material = robot.body.material
         self.robot, self.masses = robot, body.inertias
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
@@ -100,12 +100,12 @@ class Dynamics:
         rest = self.motion_at_rest(body.rest_unknowns, np.zeros(len(robot.winches)), None, None)
         begin = _state(rest)
         moving = self._energies(begin, 1.0, 0.0, list(statics.energies))[len(statics.energies) :]
-        self._assembly = statics.extended(moving, control_count=len(robot.winches))
+        self._assembly = statics.with_added_energies(moving, control_count=len(robot.winches))
 
     def motion_at_rest(
         self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector | None
     ) -> Motion:
-        """A motion that begins at `nodes`, with all viscous branches settled there, after what `history` remembers."""
+        """Return a motion that starts at `nodes`, with relaxed viscous branches and the given `history`."""
         nodes = np.concatenate([nodes, self._begin[len(nodes) :]])  # statics has no rows of obstacles on a path
         history = self._statics.history if history is None else history
         still, shape = np.zeros_like(nodes), self.robot.body.mesh.nodes.shape
@@ -113,14 +113,14 @@ class Dynamics:
             raise InputError(f"velocities must be finite, {shape}, not {velocities.shape}")
         begin = still.copy()
         begin[: shape[0]] = 0.0 if velocities is None else velocities
-        state = _MotionState(nodes, begin, self.memory.settled(nodes))
+        state = _MotionState(nodes, begin, self.memory.relax_fully(nodes))
         shifts = np.zeros((len(self.robot.pins), nodes.shape[1]))
         return self._motion(0.0, (contractions, shifts, history), state, still, None)
 
     def step(
         self, motion: Motion, contractions: Vector, dt: float, options: StepOptions, pin_shifts: PinShifts
     ) -> Motion:
-        """The motion after `dt` [s], while contractions and pins go evenly to where they shall be.
+        """Return the motion after `dt` [s], while contractions and pins move evenly to their final values.
 
         Raises:
             InputError: a step that is not above 0, or a pin that is not there.
@@ -156,7 +156,7 @@ class Dynamics:
     def play(
         self, profile: ContractionProfile, seconds: float, dt: float, start: Motion, options: StepOptions
     ) -> Iterator[Motion]:
-        """The motion under contractions in time: its start, then each step as it is found.
+        """Yield the motion under a contraction profile: its start, then each step.
 
         Raises:
             InputError: a duration or a time step that is not above 0.
@@ -175,7 +175,7 @@ class Dynamics:
     def _advance(
         self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions
     ) -> tuple[Motion, NewtonResult]:
-        """One step, and how its last minimisation ended; if that failed, the motion is not to be used."""
+        """Take one step; return the motion and its last minimisation. If that failed, the motion is invalid."""
         begin = _state(motion)
         end, rates = begin, []
         acceleration = _joined(motion.accelerations, motion, 2)
@@ -197,7 +197,7 @@ class Dynamics:
                 return motion, replace(result, iterations=iterations)
             history, at = assembly.with_advanced_history(result.nodes, controls).history, controls
             velocities = (result.nodes - base.nodes) / step
-            end = _MotionState(result.nodes, velocities, self.memory.relaxed(base.metrics, result.nodes, step))
+            end = _MotionState(result.nodes, velocities, self.memory.relax_step(base.metrics, result.nodes, step))
             acceleration = (velocities - base.velocities) / step
             rates.append(_MotionState(velocities, acceleration, (end.metrics - base.metrics) / step))
         assert result is not None
@@ -207,11 +207,12 @@ class Dynamics:
     def _remembering(
         self, history: Vector, nodes: Nodes, contractions: Vector, shifts: Points, instant: float
     ) -> list[Energy]:
-        """Energies of statics at an instant [s], pins and guides where they are, after what `history` remembers."""
+        """Energies of statics at an instant [s], with pins and guides at their positions, after the given `history`."""
         statics = self._statics.with_history(history, nodes, contractions) if len(history) else self._statics
         energies = list(statics.energies)
         for slot, obstacle in self._guides.items():
-            energies[slot] = energies[slot].moved(obstacle.shift(instant), np.eye(len(obstacle.at)))  # type: ignore[attr-defined]
+            place, axes = obstacle.shift(instant), np.eye(len(obstacle.at))
+            energies[slot] = energies[slot].with_target(place, axes)  # type: ignore[attr-defined]
         return [energy.with_supports_moved(shifts) for energy in energies] if shifts.any() else energies
 
     def _energies(self, base: _MotionState, step: float, drag: float, statics: list[Energy]) -> list[Energy]:
@@ -297,7 +298,7 @@ class Dynamics:
             tensions=self._tensions(nodes, contractions, history),
             kinetic=float(0.5 * self.masses @ (state.velocities**2).sum(axis=1)),
             potential=sum(energy.with_active_terms(nodes).value(nodes, contractions) for energy in statics)
-            + self.memory.stored(state.metrics, nodes),
+            + self.memory.compute_stored_energy(state.metrics, nodes),
             history=history,
             result=result,
         )

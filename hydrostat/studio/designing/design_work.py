@@ -102,7 +102,7 @@ def solution(found: Network | Alternative) -> Solution:
 
 
 def _reach(reached: IKResult) -> PoseResult:
-    pose, solved = reached.wanted, reached.pose
+    pose, solved = reached.pose_target, reached.pose
     places = {name: tuple(np.asarray(solved.markers[name]).tolist()) for name in pose.targets}
     return PoseResult(
         pose=pose,

@@ -82,7 +82,7 @@ def _figures(solved: SolvedPoses) -> dict[str, tuple[str, Figure]]:
         figures["network"] = ("Network", draw_network(robot))
     figures["portrait"] = ("Rest", draw_portrait(robot, robot.body.mesh.nodes))
     for reached in solved.reached:
-        name = reached.wanted.name
+        name = reached.pose_target.name
         figures[f"pose_{file_name(name)}"] = (f"{name}: errors", draw_reached(robot, reached))
         bare = draw_portrait(robot, reached.pose.nodes)
         figures[f"portrait_{file_name(name)}"] = (name, bare)

@@ -65,7 +65,7 @@ class MuscleMover(Mover):
             self._held, self._updates = held, 0
         self._updates += 1
         taken = {point.at for point in held.values()}
-        calm = self._calm.chosen([index for index, marker in enumerate(self._markers) if marker.at not in taken])
+        calm = self._calm.select_points([index for index, marker in enumerate(self._markers) if marker.at not in taken])
         more = self._posing.update(self._anchored.anchors(held), self._anchored.goals(held), calm)
         more = more and self._updates < PATIENCE
         return self._shape(held, more), more

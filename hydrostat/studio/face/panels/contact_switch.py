@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from nicegui import ui
 
-from hydrostat.simulation import touch_words
+from hydrostat.simulation import describe_contacts
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.view.things import RobotShape
@@ -32,7 +32,7 @@ def touch_label(page: WindowPage, shape: Callable[[], RobotShape], mark: str) ->
     label = ui.label().classes("studio-hint").mark(mark)
 
     def show() -> None:
-        words = touch_words(shape().touches)
+        words = describe_contacts(shape().touches)
         label.set_text(f"{words[:1].upper()}{words[1:]}")
         label.set_visibility(bool(words))
 
