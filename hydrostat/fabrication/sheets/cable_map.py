@@ -310,7 +310,7 @@ def single_maps(
         return []
     scene = _flat_scene(robot, stitches) if view is None else _space_scene(robot, view)
     room = width / _COLUMNS
-    tall = min(height / _ROWS, _CELL_HEAD + 2 * _CELL_MARGIN + snug(scene.box, room - 2 * _CELL_MARGIN, 1e3))
+    tall = min(height / _ROWS, _CELL_HEAD + 2 * _CELL_MARGIN + fit_height(scene.box, room - 2 * _CELL_MARGIN, 1e3))
     count = len(scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0))))
     each = _COLUMNS * max(int(height / tall), 1)
     pages = []
