@@ -118,7 +118,7 @@ def _followed(simulation: Simulation, found: IKResult, start: Equilibrium | None
     """Solve an answer that was found without obstacle friction again, with friction along its loading path."""
     pose = simulation.solve(found.pose.contractions, start=start, strict=False)
     if pose.result.reason is Reason.TIME_LIMIT:
-        found = replace(found, reason=IKStatus.TIME_LIMIT)
+        found = replace(found, status=IKStatus.TIME_LIMIT)
     elif not pose.result.converged:
         raise not_converged(pose.result, simulation.diagnose(pose))
     targets = {} if found.target is None else found.target.targets

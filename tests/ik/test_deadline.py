@@ -9,6 +9,8 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.ik import IKStatus, solve_ik
+from hydrostat.ik.solve_ik import _followed
+from hydrostat.robot import Obstacle
 from hydrostat.simulation import Simulation
 
 LOOKS = 12  # of the clock after the time is up: each place that waits looks once or twice, and goes home
@@ -44,3 +46,14 @@ def test_a_limit_that_is_not_reached_changes_nothing() -> None:
     free, limited = solve_ik(simulation, target), solve_ik(simulation, target, seconds=1e6)
     assert (free.pose.nodes == limited.pose.nodes).all()
     assert free.status is limited.status
+
+
+def test_an_answer_followed_with_friction_says_that_time_is_up() -> None:
+    """With obstacle friction the answer is solved again along its loading path; here no time is left for that."""
+    wall = Obstacle(name="wall", shape="plane", at=(0.0, -0.2), normal=(0.0, 1.0), friction=0.5)
+    simulation = Simulation(replace(gallery_robot("starfish"), obstacles=(wall,)))
+    target = {"top": simulation.rest.markers["top"] + np.array([0.01, -0.002])}
+    found = solve_ik(simulation, target)
+    late = _followed(simulation.with_deadline(time.monotonic() - 1.0), found, None)
+    assert found.status is not IKStatus.TIME_LIMIT
+    assert late.status is IKStatus.TIME_LIMIT
