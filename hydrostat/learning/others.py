@@ -7,9 +7,9 @@ from jaxtyping import Float
 from scipy.optimize import lsq_linear
 
 from hydrostat.arrays import Vector
-from hydrostat.learning.lesson import linear_map
 from hydrostat.learning.samples import Samples
 from hydrostat.learning.thesis_network import Answers, Goals
+from hydrostat.learning.training_set import linear_map
 
 Method = Callable[[Samples, Goals], Answers]
 
