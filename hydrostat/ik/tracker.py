@@ -130,7 +130,7 @@ class Tracker:
         state = search.begin(self.pose) if self._state is None else search.adopt_state(self._state)
         weight, reason = search.problem.weight(state), IKStatus.REACHED
         if not _reached(search.problem, state):
-            led = self._foretold(search, state, target)
+            led = self._predict(search, state, target)
             weight = search.problem.weight(led or state)
             state, reason = (led, IKStatus.ITERATION_LIMIT) if led else self._step(search, state, weight)
         self._state = state
@@ -172,8 +172,8 @@ class Tracker:
         """Return a one-line summary."""
         return f"<Tracker at {self.pose!r}>"
 
-    def _foretold(self, search: InverseSearch, state: InverseState, target: PoseTarget | None) -> InverseState | None:
-        """Return the state that the model predicts; None if it was asked for this before, or that is not better."""
+    def _predict(self, search: InverseSearch, state: InverseState, target: PoseTarget | None) -> InverseState | None:
+        """Return the state of the model's answer; None if it answered these targets before, or is no better."""
         if self._model is None or target is None or target.targets == self._asked:
             return None
         self._asked = dict(target.targets)

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from hydrostat.learning.learn_options import LearnOptions
     from hydrostat.learning.learned_model import LearnedModel
     from hydrostat.learning.learned_pose import LearnedPose, Tier
-    from hydrostat.learning.lesson import LEAST, TrainingSet, lesson_of, linear_map
     from hydrostat.learning.model_card import ModelCard
     from hydrostat.learning.model_file import load_model, save_model
     from hydrostat.learning.perceptrons import Perceptrons
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from hydrostat.learning.sample_shard import sample_shard
     from hydrostat.learning.samples import Samples, read_samples
     from hydrostat.learning.train import answer, tensors_of, train_forward
+    from hydrostat.learning.training_set import LEAST, TrainingSet, linear_map, make_training_set
 
 __all__ = [
     "BACKENDS",
@@ -50,10 +50,10 @@ __all__ = [
     "exact_steps",
     "export_samples",
     "learn_model",
-    "lesson_of",
     "linear_map",
     "load_model",
     "load_policy",
+    "make_training_set",
     "physics_hash",
     "plan_samples",
     "read_samples",

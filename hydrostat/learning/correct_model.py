@@ -9,9 +9,9 @@ from hydrostat.errors import InputError
 from hydrostat.learning.learn_model import kept_facts, silent
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel
-from hydrostat.learning.lesson import lesson_of
 from hydrostat.learning.sample_robot import Tell
 from hydrostat.learning.samples import Samples
+from hydrostat.learning.training_set import make_training_set
 
 
 def correct_model(
@@ -41,8 +41,8 @@ def correct_model(
     if not all(np.allclose(one, other) for one, other in zip(samples.limits, (model.low, model.high), strict=True)):
         raise InputError("the samples are of a robot whose winches have another travel than the model's")
     options = replace(options or LearnOptions(steps=_STEPS, rate=_RATE), members=len(model.forward))
-    began, lesson = time.process_time(), lesson_of(samples, model)
-    trained = train_forward(lesson, model.card.dim, options, tell or silent, start=model.forward)
+    began, training_set = time.process_time(), make_training_set(samples, model)
+    trained = train_forward(training_set, model.card.dim, options, tell or silent, start=model.forward)
     if not np.isfinite(trained.error):
         if trained.stopped:
             raise KeyboardInterrupt
@@ -51,7 +51,7 @@ def correct_model(
         model.card,
         **kept,
         corrected=len(samples),
-        error=float(lesson.unit[0]) * trained.error,
+        error=float(training_set.unit[0]) * trained.error,
         stopped=trained.stopped,
         seconds=model.card.seconds + time.process_time() - began,
     )

@@ -12,10 +12,10 @@ from hydrostat.learning.draw import SamplingScheme
 from hydrostat.learning.known_contact import contact_in_model
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel, paired
-from hydrostat.learning.lesson import lesson_of
 from hydrostat.learning.model_card import ModelCard
 from hydrostat.learning.sample_robot import Tell
 from hydrostat.learning.samples import Samples
+from hydrostat.learning.training_set import make_training_set
 
 
 def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: Tell | None = None) -> LearnedModel:
@@ -36,16 +36,16 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
     from hydrostat.learning.train import train_forward, train_inverse
 
     options, told = options or LearnOptions(), tell or silent
-    began, lesson, dim = time.process_time(), lesson_of(samples), samples.facts["dim"]
+    began, training_set, dim = time.process_time(), make_training_set(samples), samples.facts["dim"]
     kept = kept_facts(samples)
     pairs = paired(kept["pairs"], samples.facts["winches"])
-    length = float(lesson.unit[0])
-    forward = train_forward(lesson, dim, options, told)
+    length = float(training_set.unit[0])
+    forward = train_forward(training_set, dim, options, told)
     if not np.isfinite(forward.error):
         if forward.stopped:
             raise KeyboardInterrupt
         raise InputError("the networks learned nothing: try a smaller rate")
-    inverse = None if forward.stopped else train_inverse(lesson, dim, forward.networks, options, told, pairs)
+    inverse = None if forward.stopped else train_inverse(training_set, dim, forward.networks, options, told, pairs)
     some = np.linspace(0, len(samples) - 1, min(len(samples), KNOWN)).astype(int)
     card = ModelCard(
         **kept,
@@ -61,10 +61,10 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
     )
     return LearnedModel(
         card=card,
-        low=lesson.low,
-        high=lesson.high,
-        middle=lesson.middle,
-        unit=lesson.unit,
+        low=training_set.low,
+        high=training_set.high,
+        middle=training_set.middle,
+        unit=training_set.unit,
         forward=forward.networks,
         inverse=None if inverse is None or not np.isfinite(inverse.error) else inverse.networks,
         known=samples.contractions[some].astype(np.float32).astype(float),

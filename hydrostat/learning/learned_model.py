@@ -84,7 +84,7 @@ class LearnedModel:
         given, count = np.asarray(markers, dtype=float).ravel(), self.card.coordinates
         if given.shape != (count,) or not np.isfinite(given).all():
             raise InputError(f"markers must be {count} finite coordinates [m]")
-        return self._inverted(given)
+        return self._apply_inverse(given)
 
     def solve(self, targets: Targets, *, search: bool = True) -> LearnedPose:
         """Contractions that bring markers to targets, as the networks know it.
@@ -104,7 +104,7 @@ class LearnedModel:
         if len(target.targets) < len(self._rows):
             whole = np.where(asked, goal, self._nearest(goal, asked, 1)[1][0])
         if not search:
-            return self.evaluate(target, self._inverted(whole), Tier.NETWORK)
+            return self.evaluate(target, self._apply_inverse(whole), Tier.NETWORK)
         return self.evaluate(target, self._search(whole, asked), Tier.SEARCH)
 
     def evaluate(self, target: PoseTarget, contractions: Vector, tier: Tier) -> LearnedPose:
@@ -125,7 +125,7 @@ class LearnedModel:
             spread={name: hypot(*doubted[row]) for row, name in asked},
         )
 
-    def _inverted(self, markers: Vector) -> Vector:
+    def _apply_inverse(self, markers: Vector) -> Vector:
         if self.inverse is None:
             raise InputError("the model has no inverse network: its learning was stopped before")
         count = self.card.coordinates
@@ -144,7 +144,7 @@ class LearnedModel:
         wanted = np.zeros(len(self.unit))
         wanted[:count] = (goal - self.middle[:count]) / self.unit[:count]
         enough = asked.sum() / self.card.dim * (_USUAL * self.card.error) ** 2
-        starts = [] if self.inverse is None else [self._inverted(goal)]
+        starts = [] if self.inverse is None else [self._apply_inverse(goal)]
         best, least = np.zeros(len(self.low)), np.inf
         for start in [*starts, *self._nearest(goal, asked, _STARTS)[0]]:
             found, left = self.forward.descend(self._scaled(start), wanted, weights, self._box(start))

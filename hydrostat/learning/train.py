@@ -11,8 +11,8 @@ from jaxtyping import Float
 from hydrostat.errors import InputError
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import span_of
-from hydrostat.learning.lesson import TrainingSet, linear_map
 from hydrostat.learning.perceptrons import Perceptrons
+from hydrostat.learning.training_set import TrainingSet, linear_map
 
 try:
     import torch  # pyright: ignore[reportMissingImports]
@@ -30,7 +30,7 @@ class Trained:
 
     Attributes:
         networks: of one shape.
-        error: mean distance of markers on held-out samples, in the lesson's unit; infinite where none was looked at.
+        error: mean distance of markers on held-out samples, in the unit of the training set; infinite without one.
         stopped: whether Ctrl-C ended it.
     """
 
@@ -40,7 +40,7 @@ class Trained:
 
 
 def train_forward(
-    lesson: TrainingSet, dim: int, options: LearnOptions, tell: Tell, *, start: Perceptrons | None = None
+    training_set: TrainingSet, dim: int, options: LearnOptions, tell: Tell, *, start: Perceptrons | None = None
 ) -> Trained:
     """Networks from contractions to markers and tensions; each holds out other samples.
 
@@ -48,15 +48,17 @@ def train_forward(
     """
     torch.set_num_threads(options.threads)
     draw = torch.Generator().manual_seed(options.seed)
-    inputs, outputs, slopes = (_tensor(part) for part in (lesson.inputs, lesson.outputs, lesson.slopes))
+    inputs, outputs, slopes = (
+        _tensor(part) for part in (training_set.inputs, training_set.outputs, training_set.slopes)
+    )
     if start is None:
         sizes = [inputs.shape[1], *[options.width] * options.depth, outputs.shape[1]]
-        numbers = _begin(sizes, options.members, lesson.linear, draw)
+        numbers = _begin(sizes, options.members, training_set.linear, draw)
     else:
         sizes, numbers = start.sizes.tolist(), tensors_of(start)
     learned, held = _folds(len(inputs), options, draw)
     batches = _batches(learned, options.batch, draw)
-    coordinates = lesson.coordinates
+    coordinates = training_set.coordinates
     weights = loss_weights(coordinates, outputs.shape[1], options)
 
     def loss() -> Tensor:
@@ -75,7 +77,7 @@ def train_forward(
 
 
 def train_inverse(
-    lesson: TrainingSet,
+    training_set: TrainingSet,
     dim: int,
     forward: Perceptrons,
     options: LearnOptions,
@@ -89,18 +91,20 @@ def train_inverse(
     only one takes in, as in its samples.
     """
     draw = torch.Generator().manual_seed(options.seed + 1)
-    inputs, markers = _tensor(lesson.inputs), _tensor(lesson.outputs[:, : lesson.coordinates])
+    inputs, markers = _tensor(training_set.inputs), _tensor(training_set.outputs[:, : training_set.coordinates])
     teacher = tensors_of(forward)
-    sizes = [lesson.coordinates, *[options.width] * options.depth, inputs.shape[1]]
-    numbers = _begin(sizes, 1, linear_map(lesson.outputs[:, : lesson.coordinates], lesson.inputs), draw)
+    sizes = [training_set.coordinates, *[options.width] * options.depth, inputs.shape[1]]
+    numbers = _begin(
+        sizes, 1, linear_map(training_set.outputs[:, : training_set.coordinates], training_set.inputs), draw
+    )
     aside = torch.arange(0, len(inputs), max(2, round(1 / options.held_out)))
     learned = torch.tensor(np.setdiff1d(np.arange(len(inputs)), aside.numpy()))[None]
-    batches, members, held = _batches(learned, options.batch, draw), len(forward), _holding(lesson, pairs)
+    batches, members, held = _batches(learned, options.batch, draw), len(forward), _holding(training_set, pairs)
 
     def reached(goals: Tensor, number: int) -> tuple[Tensor, Tensor, Tensor]:
         scaled = held(BEYOND * torch.tanh(answer(numbers, goals[None], None)[0]))
         value = answer([part[number : number + 1] for part in teacher], scaled, None)[0][0]
-        return value[:, : lesson.coordinates], value[:, lesson.coordinates :], scaled[0]
+        return value[:, : training_set.coordinates], value[:, training_set.coordinates :], scaled[0]
 
     def loss() -> Tensor:
         rows, others = next(batches)[0], next(batches)[0]
@@ -109,7 +113,7 @@ def train_inverse(
         between = held(inputs[rows] + share * (inputs[others] - inputs[rows]))
         with torch.no_grad():
             expected = answer([part[number : number + 1] for part in teacher], between[None], None)[0][0]
-        goals = torch.cat([markers[rows], expected[:, : lesson.coordinates]])
+        goals = torch.cat([markers[rows], expected[:, : training_set.coordinates]])
         found, pulls, scaled = reached(goals, number)
         effort = torch.relu(pulls).square().sum(-1) + (1 + scaled).square().sum(-1)
         return (found - goals).square().sum(-1).mean() + options.effort * effort.mean()
@@ -124,12 +128,15 @@ def train_inverse(
     return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
 
 
-def _holding(lesson: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) -> Callable[[Tensor], Tensor]:
+def _holding(training_set: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) -> Callable[[Tensor], Tensor]:
     """What makes of scaled contractions such that of each pair only one takes in, as `LearnedModel` does."""
     one, other = (torch.tensor(places) for places in pairs)
     if not len(one):
         return lambda scaled: scaled
-    low, high, half = (_tensor(part) for part in (lesson.low, lesson.high, 0.5 * span_of(lesson.low, lesson.high)))
+    low, high, half = (
+        _tensor(part)
+        for part in (training_set.low, training_set.high, 0.5 * span_of(training_set.low, training_set.high))
+    )
 
     def held(scaled: Tensor) -> Tensor:
         shares = (low + half * (scaled + 1.0)) / torch.where(high > 0, high, 1.0)

@@ -15,27 +15,27 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.learning import LearnOptions, Samples, lesson_of, read_samples, train_forward
+from hydrostat.learning import LearnOptions, Samples, make_training_set, read_samples, train_forward
 
 HELD_OUT = 200
 
 
 def errors(known: Samples, new: Samples, options: LearnOptions) -> tuple[float, float, float, float]:
     """Of markers [mm], mean and p99; of tensions [N]; of their slopes [N/m]."""
-    lesson = lesson_of(known)
-    networks = train_forward(lesson, known.facts["dim"], options, lambda *_: None).networks
+    training_set = make_training_set(known)
+    networks = train_forward(training_set, known.facts["dim"], options, lambda *_: None).networks
     low, high = known.limits
     answers = [networks.slopes(row) for row in 2 * (new.contractions - low) / (high - low) - 1]
-    values = np.array([value for value, _ in answers]) * lesson.unit + lesson.middle
-    slopes = np.array([slope for _, slope in answers]) * lesson.unit[:, None] / (0.5 * (high - low))
-    markers, tensions = np.split(values, [lesson.coordinates], axis=1)
+    values = np.array([value for value, _ in answers]) * training_set.unit + training_set.middle
+    slopes = np.array([slope for _, slope in answers]) * training_set.unit[:, None] / (0.5 * (high - low))
+    markers, tensions = np.split(values, [training_set.coordinates], axis=1)
     missed = 1e3 * np.linalg.norm(markers.reshape(new.markers.shape) - new.markers, axis=-1)
     assert new.tension_slopes is not None
     return (
         float(missed.mean()),
         float(np.quantile(missed, 0.99)),
         float(np.sqrt(np.square(tensions - new.tensions).mean())),
-        float(np.sqrt(np.square(slopes[:, lesson.coordinates :] - new.tension_slopes).mean())),
+        float(np.sqrt(np.square(slopes[:, training_set.coordinates :] - new.tension_slopes).mean())),
     )
 
 

@@ -44,7 +44,7 @@ def learned(samples: Samples, nodes: np.ndarray, slopes: np.ndarray, steps: int)
     axes = np.linalg.eigh(seen.T @ seen)[1][:, -COMPONENTS:]
     unit = float(np.sqrt(np.square(moved @ axes).sum(axis=1).mean()))
     outputs = moved @ axes / unit
-    lesson = TrainingSet(
+    training_set = TrainingSet(
         low=low,
         high=high,
         middle=np.zeros(COMPONENTS),
@@ -55,7 +55,7 @@ def learned(samples: Samples, nodes: np.ndarray, slopes: np.ndarray, steps: int)
         coordinates=COMPONENTS,
         linear=linear_map(inputs, outputs),
     )
-    network = train_forward(lesson, COMPONENTS, LearnOptions(members=1, steps=steps), lambda *_: None).networks
+    network = train_forward(training_set, COMPONENTS, LearnOptions(members=1, steps=steps), lambda *_: None).networks
 
     def expected(contractions: Vector) -> Nodes:
         scaled = 2 * (contractions - low) / (high - low) - 1

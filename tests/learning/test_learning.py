@@ -31,7 +31,7 @@ from hydrostat.learning import (
     verify,
 )
 from hydrostat.learning.certify import exact_steps
-from hydrostat.learning.lesson import linear_map
+from hydrostat.learning.training_set import linear_map
 from hydrostat.mechanics import Reason
 from hydrostat.robot import Robot
 
@@ -286,11 +286,11 @@ def test_the_way_back_learns_what_a_model_answers() -> None:
     from hydrostat.learning.learned_model import paired
     from hydrostat.learning.train import _holding
 
-    lesson = SimpleNamespace(low=np.array([0.0, -0.01, 0.0]), high=np.array([0.04, 0.05, 0.02]))
+    training_set = SimpleNamespace(low=np.array([0.0, -0.01, 0.0]), high=np.array([0.04, 0.05, 0.02]))
     pairs = paired([["a", "c"], ["b"]], ["a", "b", "c"])
-    model = SimpleNamespace(_pairs=pairs, high=lesson.high)
-    half = 0.5 * (lesson.high - lesson.low)
+    model = SimpleNamespace(_pairs=pairs, high=training_set.high)
+    half = 0.5 * (training_set.high - training_set.low)
     for scaled in np.random.default_rng(0).uniform(-1, 1, (20, 3)):
-        want = LearnedModel._held(model, lesson.low + half * (scaled + 1))  # type: ignore[arg-type]
-        found = _holding(lesson, pairs)(torch.tensor(scaled[None]))[0]  # type: ignore[arg-type]
-        assert lesson.low + half * (found.numpy() + 1) == pytest.approx(want, abs=1e-8)
+        want = LearnedModel._held(model, training_set.low + half * (scaled + 1))  # type: ignore[arg-type]
+        found = _holding(training_set, pairs)(torch.tensor(scaled[None]))[0]  # type: ignore[arg-type]
+        assert training_set.low + half * (found.numpy() + 1) == pytest.approx(want, abs=1e-8)

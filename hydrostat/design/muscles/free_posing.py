@@ -88,7 +88,7 @@ class FreePosing:
                 self._radius = min(2.0 * self._radius, _LARGEST)
                 return self._settle(found, tensions)
             self._radius = max(0.25 * length * farthest, _SMALLEST)
-        # The body may be so far from rest that nothing can be foretold: first let it settle as it is pulled now.
+        # The body may be so far from rest that nothing can be predicted: first let it settle as it is pulled now.
         return self._settle(self._relaxed(self.tensions, _PATIENT), self.tensions)
 
     def _begin(self) -> NewtonResult:

@@ -30,7 +30,7 @@ from hydrostat.studio.posing.propose_work import ProposalInput
 from hydrostat.studio.posing.reach import MarkerReach
 from hydrostat.studio.posing.trail import Trail
 from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.view.robot_things import MARKER, Bar, foretold_things, robot_things, target_things, winch_bars
+from hydrostat.studio.view.robot_things import MARKER, Bar, prediction_things, robot_things, target_things, winch_bars
 from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
 from hydrostat.studio.view.touching import touch_things
 
@@ -120,7 +120,7 @@ class Poser(Stage):
             if name not in markers
         ]
         places = now.anchored.places(wish.held, shape.nodes)
-        found += foretold_things(shape)
+        found += prediction_things(shape)
         found += touch_things(shape, robot.body.mesh.size)
         return found + target_things(
             {name: point.target for name, point in wish.held.items()},

@@ -13,7 +13,7 @@ from hydrostat.learning.samples import Samples
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrainingSet:
-    """What there is to learn: inputs from -1 to 1, and what they lead to, markers first, in a unit for each kind.
+    """Inputs from -1 to 1 and their outputs, markers first, in a unit for each kind.
 
     Attributes:
         low: least contraction of each winch [m].
@@ -38,8 +38,8 @@ class TrainingSet:
     linear: Float[np.ndarray, "rows outputs"]
 
 
-def lesson_of(samples: Samples, like: LearnedModel | None = None) -> TrainingSet:
-    """What there is to learn from samples; in the units of a model if its networks are to learn on.
+def make_training_set(samples: Samples, like: LearnedModel | None = None) -> TrainingSet:
+    """Return the training set of samples, in the units of a model if its networks are trained further.
 
     Raises:
         InputError: there are fewer than `LEAST`, or `FEWEST` where a model learns on.
