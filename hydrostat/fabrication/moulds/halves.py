@@ -164,6 +164,7 @@ def _printed(name: str, title: str, solids: tuple[Manifold, ...], lying: _Lying,
             title=f"{title}, piece {number} of {len(solids)}",
             solid=_on_bed(solid, lying),
             note=note + _JOINED,
+            kind=title,
         )
         for number, solid in enumerate(solids, start=1)
     ]

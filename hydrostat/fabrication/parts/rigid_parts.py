@@ -38,10 +38,7 @@ class RigidParts:
             for part in unit.printed:
                 found[part.name] = part
                 winches.setdefault(part.name, []).append(unit.winch)
-        parts = [
-            replace(found[name], count=len(own), title=f"{found[name].title} of {_listed(own, len(self.units))}")
-            for name, own in sorted(winches.items())
-        ]
+        parts = [_for_winches(found[name], tuple(own), len(self.units)) for name, own in sorted(winches.items())]
         if self.base is not None:
             parts += self.base.printed
         parts += self.seat.printed
@@ -165,8 +162,9 @@ def rigid_parts(
     )
 
 
-def _listed(winches: list[str], count: int) -> str:
-    """Names of winches, or that it is all."""
-    if len(winches) == count and count > 1:
-        return "every winch"
-    return f"winch {winches[0]}" if len(winches) == 1 else f"winches {', '.join(winches)}"
+def _for_winches(part: Printed, winches: tuple[str, ...], count: int) -> Printed:
+    """A part for some of so many winches, with their names in its title."""
+    if len(winches) == count > 1:
+        return replace(part, count=count, title=f"{part.title} of every winch", kind=part.title)
+    words = f"winch{'es' if len(winches) > 1 else ''} {', '.join(winches)}"
+    return replace(part, count=len(winches), title=f"{part.title} of {words}", kind=part.title, winches=winches)

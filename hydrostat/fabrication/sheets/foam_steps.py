@@ -3,8 +3,6 @@
 Times of cure are those of R52 and N5, all others are estimates.
 """
 
-import re
-
 from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.lists import Lists
@@ -103,7 +101,7 @@ def mould_steps(plan: KitPlan, lists: Lists, mould: Mould) -> tuple[AssemblyStep
 
 def _in_pieces(plan: KitPlan) -> bool:
     """Whether something of the mould is printed in pieces that are joined."""
-    return any(re.fullmatch(r"(mould|positive|frame)_(lower|upper)_\d+", part.name) for part in plan.printed)
+    return any(part.kind for part in plan.work.printed)
 
 
 def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:

@@ -57,9 +57,6 @@ def cost_text(bill: Table[BillRow]) -> tuple[str, ...]:
     return (f"about {', '.join(told)}",) if told else ()
 
 
-_OF_ONE, _OF_MANY, _OF_ALL = " of winch ", " of winches ", " of every winch"
-"""How the title of a printed part says for which winches it is."""
-
 _BOUGHT = " (bought)"
 
 
@@ -115,17 +112,9 @@ def piece_facts(plan: KitPlan) -> list[PieceFacts]:
 
 def winch_files(plan: KitPlan, winch: str) -> list[str]:
     """Stems of the files that a winch does not share with all others."""
-    found = []
-    for part in plan.printed:
-        kind, _, names = part.title.partition(_OF_MANY)
-        if names:
-            mine = f", {winch}, " in f", {names}, "
-        else:
-            kind, _, name = part.title.partition(_OF_ONE)
-            mine = name == winch
-        if kind and mine and len(plan.robot.winches) > 1:
-            found.append(part.name)
-    return found
+    if len(plan.robot.winches) == 1:
+        return []
+    return [part.name for part in plan.printed if winch in part.winches]
 
 
 def _count_and_files(parts: list[Printed]) -> tuple[int, str]:
@@ -136,7 +125,7 @@ def _count_and_files(parts: list[Printed]) -> tuple[int, str]:
 
 def _kind_of(part: Printed, plan: KitPlan) -> str:
     """What a printed part is called in the list."""
-    kind = _kind(part.title)
+    kind = part.kind or part.title
     mould = plan.work.mould
     if mould and part.name in {piece.name for piece in mould.printed} and "positive" not in kind:
         kind = f"Mould, {kind[:1].lower()}{kind[1:]}"
@@ -147,13 +136,6 @@ def _kind_of(part: Printed, plan: KitPlan) -> str:
 def _called(placed: Placed) -> str:
     """A bought piece without its details, which are in the bill."""
     return placed.title if placed.printed else placed.title.partition(",")[0]
-
-
-def _kind(title: str) -> str:
-    """What a printed part is, without for which winches, or which of several pieces."""
-    for mark in (" of winch", " of every winch", ", piece", ", part"):
-        title = title.partition(mark)[0]
-    return title.removeprefix("mould, ").removeprefix("Mould, ")
 
 
 def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:

@@ -104,6 +104,8 @@ class Printed:
     count: int = 1  # how many are needed
     note: str = ""  # how to print it: which way up, what to mind
     model: Construction | None = None  # how it is made of shapes, for STEP; None for what is no sum of simple shapes
+    kind: str = ""  # its title without winches or the number of a piece; empty if the title says neither
+    winches: tuple[str, ...] = ()  # names of the winches it is for; empty if all share it, or it is of no winch
 
     @classmethod
     def of(cls, model: Construction, *, name: str, title: str, note: str, count: int = 1) -> "Printed":

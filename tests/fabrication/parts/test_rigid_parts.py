@@ -57,7 +57,10 @@ def test_pieces_on_the_base_are_as_many_as_are_printed():
 
 
 def test_equal_winches_share_a_file_that_names_them():
-    titles = {part.name: (part.title, part.count) for part in parts_of("starfish").printed}
+    parts = parts_of("starfish").printed
+    titles = {part.name: (part.title, part.count) for part in parts}
+    assert {part.winches for part in parts if part.kind == "Spool"} == {("right",), ("left", "feet")}
+    assert not any(part.winches or part.kind for part in parts if "winch" not in part.title)
     assert titles["spool_a"] == ("Spool of winch right", 1)
     assert titles["spool_b"] == ("Spool of winches left, feet", 2)
     assert titles["motor_plate_a"] == ("Motor plate of every winch", 3)

@@ -358,9 +358,10 @@ def test_winches_on_the_base_and_in_the_body_are_told_apart():
 
 def test_parts_are_told_with_their_files_and_for_which_winches():
     given = plush(winches=2)
+    solid = given.plan.printed[0].solid
     spools = [
-        Printed(name=f"spool_{letter}", title=f"Spool of winch {winch.name}", solid=given.plan.printed[0].solid)
-        for letter, winch in zip("ab", given.plan.robot.winches, strict=True)
+        Printed(name=f"spool_{letter}", title=f"Spool of {name}", solid=solid, kind="Spool", winches=(name,))
+        for letter, name in zip("ab", (winch.name for winch in given.plan.robot.winches), strict=True)
     ]
     text = words(assembly_sheet(*changed(given, printed=tuple(spools))))
     assert "Spool: spool_a, spool_b 2" in text
