@@ -144,14 +144,20 @@ class TreeOptions:
                     raise InputError(f"TreeOptions.{name} must be {allowed}, not {value!r}")
 
     @classmethod
-    def single(cls, **knobs: float) -> Self:
-        """The thesis's search as it stands: `TreeKnobs` by name, one network, none chosen by its pose error."""
-        single = TreeKnobs(**knobs)  # type: ignore[arg-type]
+    def single(
+        cls,
+        *,
+        threshold: int = TreeKnobs.threshold,
+        distance: float = TreeKnobs.distance,
+        steps: int = TreeKnobs.steps,
+        phi: float = TreeKnobs.phi,
+    ) -> Self:
+        """The thesis's search as it stands: one value of each of `TreeKnobs`, no network chosen by its pose error."""
         return cls(
-            thresholds=(single.threshold,),
-            distances=(single.distance,),
-            growth_steps=single.steps,
-            phis=(single.phi,),
+            thresholds=(threshold,),
+            distances=(distance,),
+            growth_steps=steps,
+            phis=(phi,),
             shares=1,
             trials=1,
             loss=0.0,

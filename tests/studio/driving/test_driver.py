@@ -313,7 +313,7 @@ def test_a_cable_that_bears_too_much_is_told(driver: Driver, document: Document)
     driver.turn("left", 0.06)
     settle(driver)
     most = driver.tensions()["left"]
-    document.change("less", wishes=replace(document.work.wishes, tension=most / 2))
+    document.change("less", wishes=document.work.wishes.with_values(tension=most / 2))
     assert driver.shape().notes[0] == f"left: cable tension {most:.1f} N, maximum {most / 2:g} N"
 
 
