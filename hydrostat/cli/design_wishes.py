@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hydrostat.cli.options import asked, positive
+from hydrostat.cli.options import parse_optional, positive
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 
@@ -89,10 +89,10 @@ def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
         raise InputError(f"--symmetric {typed.symmetric}: unknown axis. Allowed: x, y, z.")
     given = {
         "cables_per_winch": typed.cables_per_winch,
-        "clearance": asked("--clearance", typed.clearance, LENGTH),
-        "depth": asked("--depth", typed.depth, LENGTH, zero=True),
-        "tension": asked("--tension", typed.tension, FORCE),
-        "slack": asked("--slack", typed.slack, LENGTH, zero=True),
+        "clearance": parse_optional("--clearance", typed.clearance, LENGTH),
+        "depth": parse_optional("--depth", typed.depth, LENGTH, zero=True),
+        "tension": parse_optional("--tension", typed.tension, FORCE),
+        "slack": parse_optional("--slack", typed.slack, LENGTH, zero=True),
         "spool_ratio": 2.0 if typed.stepped else None,
         "mirror": typed.symmetric,
         "locked_winches": tuple(dict.fromkeys(_winch(name, robot) for name in typed.lock_winch)) or None,

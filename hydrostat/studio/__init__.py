@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from hydrostat.studio.posing.mover import MuscleMover
     from hydrostat.studio.posing.poser import Poser
     from hydrostat.studio.posing.poses import held_of
-    from hydrostat.studio.posing.propose_work import ProposalInput, sketched
+    from hydrostat.studio.posing.propose_work import ProposalInput, propose_network
     from hydrostat.studio.records.wished_constraints import wished_constraints
     from hydrostat.studio.records.wishes import Wishes
     from hydrostat.studio.records.work import Work
@@ -42,10 +42,10 @@ __all__ = [
     "Wishes",
     "Work",
     "held_of",
+    "propose_network",
     "read_studio_file",
     "save_work",
     "serve",
-    "sketched",
     "state_folder",
     "wished_constraints",
     "wished_request",

@@ -49,7 +49,7 @@ class Movers:
             start, foreteller = _resumed(simulation, before), self._foreteller(simulation.robot)
             self._cables = CableMover(simulation, tension=tension, start=start, foreteller=foreteller)
         elif before.tension != tension:
-            self._cables = before.limited(tension)
+            self._cables = before.with_tension_limit(tension)
         assert self._cables is not None
         return self._cables
 

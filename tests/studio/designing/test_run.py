@@ -9,7 +9,7 @@ from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.design import Constraints, DesignMethod, RouteOptions, TreeOptions, Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.studio.designing.run import beginning, wished_poses, wished_request
+from hydrostat.studio.designing.run import starting_robot, wished_poses, wished_request
 from hydrostat.studio.records.wished_constraints import wished_constraints
 from hydrostat.studio.records.wishes import Paint, Wishes
 
@@ -128,7 +128,7 @@ def test_a_search_begins_with_what_stays(starfish: Robot) -> None:
     """Oracle: the names and numbers that were wished for."""
 
     def begun(**wishes: object) -> Robot:
-        return beginning(starfish, wished_request(starfish, Wishes(**wishes)))  # type: ignore[arg-type]
+        return starting_robot(starfish, wished_request(starfish, Wishes(**wishes)))  # type: ignore[arg-type]
 
     assert (begun().winches, begun().cables) == ((), ())
     assert begun(improve=True) is starfish
