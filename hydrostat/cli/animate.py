@@ -9,7 +9,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.options import PictureWidth, check_width
-from hydrostat.cli.waiting import prepared, progress_bar, read_robot
+from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import plural
 
@@ -69,7 +69,7 @@ def animate(
         loaded.pose(pose)
     if not loaded.cables:
         raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
-    simulation = prepared(loaded)
+    simulation = prepare_physics(loaded)
     with progress_bar() as tell:
         stops = _stops(simulation, name or list(loaded.poses), tell)
         ways = len(stops) + 1

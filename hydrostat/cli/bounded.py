@@ -1,4 +1,4 @@
-"""`bounded`: work on a stranger's file in a process of its own, which is ended when it takes too long or too much."""
+"""`run_bounded`: work on a file of unknown origin in a process of its own, ended when it takes too long or too much."""
 
 import os
 import pickle
@@ -20,7 +20,7 @@ MEMORY = 1_800_000_000
 _Result = TypeVar("_Result")
 
 
-def bounded(work: Callable[[], _Result], *, file: str, words: str, seconds: float, memory: int = MEMORY) -> _Result:
+def run_bounded(work: Callable[[], _Result], *, file: str, words: str, seconds: float, memory: int = MEMORY) -> _Result:
     """Run work in a child process and return its result; compiled loops cannot be interrupted, but a process can.
 
     Ctrl-C ends it at once. Where processes cannot be forked the work is done here, without a limit.

@@ -8,7 +8,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import Contract, contractions
-from hydrostat.cli.waiting import prepared, progress_bar, read_robot
+from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def branches(
         raise InputError("--contract: no contraction given. Name a winch and a length, e.g. left=40mm.")
     if starts < 1:
         raise InputError(f"--starts {starts}: must be at least 1. 16 is enough for most robots.")
-    simulation = prepared(loaded)
+    simulation = prepare_physics(loaded)
     with progress_bar() as tell:
         found = find_equilibria(simulation, given, count=starts, seed=seed, progress=tell)
     followed = _follow(simulation, found)

@@ -75,7 +75,7 @@ def calibrate(
         places = [min(max(int(1e4 * taken), 0), 999) for taken in contractions.tolist()]
         return np.array([load[place] for load, place in zip(loads, places, strict=True)])
 
-    truth = control.layered(calibration.known()) if port == control.EMULATED else calibration
+    truth = control.add_cable_layers(calibration.assume_zeros()) if port == control.EMULATED else calibration
     with one_interrupt(f"{kind}: stopped", signals=(signal.SIGINT, signal.SIGTERM)):
         bus = control.open_bus(port, loaded, truth, tensions)
         try:

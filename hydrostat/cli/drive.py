@@ -12,7 +12,7 @@ import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.learned import read_model
-from hydrostat.cli.waiting import one_interrupt, prepared, read_robot
+from hydrostat.cli.waiting import one_interrupt, prepare_physics, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def drive(
     loaded = read_robot(robot)
     networks, loaded = (None, loaded) if model is None else read_model(model, loaded)
     learned = None if known is None else teleop.HandMap.open(known)
-    simulation, kind = prepared(loaded), "simulated" if port is None else port.partition(":")[0]
+    simulation, kind = prepare_physics(loaded), "simulated" if port is None else port.partition(":")[0]
     way = _way(simulation, networks, tips=tips, guarded=port is not None)
     with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):  # arming turns motors, too
         asked: DriveSource | None = None

@@ -10,7 +10,7 @@ import typer
 
 from hydrostat.cli.design_results import designed_tension
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import asked, positive
+from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
@@ -88,7 +88,7 @@ def fabricate(
         step=step,
         force=force,
     )
-    limit = asked("--tension", tension, FORCE)
+    limit = parse_optional("--tension", tension, FORCE)
     began = time.perf_counter()
     loaded = read_robot(robot)
     kept = designed_tension(loaded, robot) if limit is None else None

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
-from hydrostat.cli.waiting import one_interrupt, prepared, read_robot
+from hydrostat.cli.waiting import one_interrupt, prepare_physics, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
 if TYPE_CHECKING:
@@ -69,14 +69,14 @@ def mimic(
     wearer.waves, emulated = False, glove == teleop.EMULATED
     hand = teleop.open_hand(glove, wearer)
     try:
-        simulation = prepared(loaded)
+        simulation = prepare_physics(loaded)
         lesson = _lesson(simulation, hand, out, tips=tips)
         show = wearer.person.mimic if emulated else lambda _: None
         with (
             one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)),  # arming turns motors, too
             _Session(folder_of(robot), simulation, port, hand) as session,
         ):
-            session.say(lesson.told())
+            session.say(lesson.summary())
             while lesson.count < poses:
                 contractions = lesson.next_pose()
                 session.go(contractions, out, drawn=port is None and not emulated and not worn)
@@ -86,7 +86,7 @@ def mimic(
                     break
                 lesson.take(held, _markers(simulation, session.motors.places) if tips else session.motors.places)
                 lesson.made.save(out / PAIRS)
-                session.say(lesson.told())
+                session.say(lesson.summary())
     except (KeyboardInterrupt, SystemExit):
         print(f"interrupted; poses so far are in {out / PAIRS}", flush=True)
         raise typer.Exit(130) from None

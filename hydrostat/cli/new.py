@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.bounded import bounded
+from hydrostat.cli.bounded import run_bounded
 from hydrostat.cli.check import FINDINGS, print_sewing
-from hydrostat.cli.options import asked, positive
+from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError
 from hydrostat.units import plural
@@ -82,7 +82,7 @@ def new(
         material=material,
         inner=_inner(inner),
     )
-    seconds = asked("--within", within, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
+    seconds = parse_optional("--within", within, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
     with _made_whole(name) as folder:
         try:
             lines = _begin(source, folder, wish, seconds)
@@ -176,7 +176,7 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
     wish = _asked_about_holes(source, wish, seconds)
 
     def run(sketch: Callable[[], "BegunRobot"]) -> "BegunRobot":
-        return bounded(sketch, file=source, words="healing and meshing the body ...", seconds=seconds)
+        return run_bounded(sketch, file=source, words="healing and meshing the body ...", seconds=seconds)
 
     begun = begin_robot(source, wish, run=run)
     save_robot(begun.robot, folder, text=commented_text(begun.robot, Path(source).name))
@@ -206,7 +206,7 @@ def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "Ne
         drawn = read_drawing(read_stranger(path), name=path.name, size=wish.size, inner=Inner.DRAWN)
         return sum(bool((line[0] == line[-1]).all()) for line in drawn.marks)
 
-    shapes = bounded(count, file=source, words="reading the drawing ...", seconds=seconds)
+    shapes = run_bounded(count, file=source, words="reading the drawing ...", seconds=seconds)
     if not shapes:
         return wish
     what = f"The drawing has {plural(shapes, 'closed shape')} inside the body."

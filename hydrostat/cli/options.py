@@ -71,7 +71,7 @@ def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = Fal
     return value
 
 
-def asked(option: str, text: str | None, dimension: "Dimension", *, zero: bool = False) -> float | None:
+def parse_optional(option: str, text: str | None, dimension: "Dimension", *, zero: bool = False) -> float | None:
     """Parse an option like `positive`; return None for an option that is not given."""
     return None if text is None else positive(option, text, dimension, zero=zero)
 
@@ -99,7 +99,7 @@ def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
     for text, names in zip(equal or [], groups, strict=True):
         if len(names) < 2:
             raise InputError(f'--equal {text}: too few winches. Name at least two, e.g. "left,right".')
-    return Limits(tension=asked("--tension", tension, FORCE), equal=groups)
+    return Limits(tension=parse_optional("--tension", tension, FORCE), equal=groups)
 
 
 def check_width(width: int) -> None:

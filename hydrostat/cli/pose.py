@@ -10,7 +10,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.learned import learned_start, read_model
-from hydrostat.cli.options import EqualWinches, MostTension, asked, pose_limits
+from hydrostat.cli.options import EqualWinches, MostTension, parse_optional, pose_limits
 from hydrostat.cli.waiting import read_robot, search_told
 from hydrostat.errors import InputError
 
@@ -59,7 +59,7 @@ def pose(
     from hydrostat.units import TIME
 
     require_folder(out)
-    limits, patience = pose_limits(tension, equal), asked("--within", within, TIME)
+    limits, patience = pose_limits(tension, equal), parse_optional("--within", within, TIME)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
     options = IKOptions() if restarts is None else IKOptions(restarts=restarts)

@@ -32,7 +32,7 @@ Place = tuple[str, int, str]  # file, line and name of a function
 
 
 @contextmanager
-def profiled(wanted: bool, work: str) -> Iterator[None]:
+def print_profile(wanted: bool, work: str) -> Iterator[None]:
     """Print a table of the CPU time of the work done inside, if that is wanted."""
     if not wanted:
         yield

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import asked
-from hydrostat.cli.waiting import read_robot, told
+from hydrostat.cli.options import parse_optional
+from hydrostat.cli.waiting import read_robot, report_progress
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -73,13 +73,13 @@ def sample(
         check_export(export)
     part = _part(shard)
     draws = tuple(parse_choice(SamplingScheme, each.strip(), what="--draw") for each in draw.split(","))
-    most = asked("--tension", tension, FORCE)
+    most = parse_optional("--tension", tension, FORCE)
     loaded = read_robot(robot)
     plan = plan_samples(
         loaded, count, contact=contact, seed=seed, draws=draws, shard=file_size, nodes=nodes, tension=most
     )
     try:
-        sample_robot(plan, out, part=part, jobs=jobs, backend=backend, tell=told())
+        sample_robot(plan, out, part=part, jobs=jobs, backend=backend, tell=report_progress())
     except KeyboardInterrupt:
         line_end = "\n" if sys.stderr.isatty() else ""  # of the line with the progress
         print(f"{line_end}interrupted: run the same command again to resume", file=sys.stderr, flush=True)

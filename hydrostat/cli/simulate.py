@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import Contract, asked, check_contraction, contractions, positive
-from hydrostat.cli.profiling import profiled
-from hydrostat.cli.waiting import prepared, progress_bar, read_robot
+from hydrostat.cli.options import Contract, check_contraction, contractions, parse_optional, positive
+from hydrostat.cli.profiling import print_profile
+from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import plural
 
@@ -61,7 +61,7 @@ def simulate(
     from hydrostat.version import __version__
 
     require_folder(out)
-    with profiled(profile, "reading"):
+    with print_profile(profile, "reading"):
         loaded = read_robot(robot)
     given = contractions(loaded, contract)
     if dynamic and jacobian:
@@ -70,16 +70,16 @@ def simulate(
         raise InputError("--play and --duration: need --dynamic. Add it.")
     if dynamic and within is not None:
         raise InputError("--within: not available with --dynamic. Remove one of them.")
-    limit = asked("--within", within, TIME)
-    with profiled(profile, "preparing"):
-        simulation = prepared(loaded)
+    limit = parse_optional("--within", within, TIME)
+    with print_profile(profile, "preparing"):
+        simulation = prepare_physics(loaded)
     if dynamic:
-        with profiled(profile, "simulating"):
+        with print_profile(profile, "simulating"):
             files = _move(simulation, given, out, duration=duration, step=step, ramp=ramp, play=play)
         print("Wrote " + ", ".join(str(file) for file in files))
         return
     began = time.process_time()
-    with profiled(profile, "solving"):
+    with print_profile(profile, "solving"):
         pose = simulation.solve(given, strict=False, seconds=limit)
     seconds = time.process_time() - began
     _print_places(pose, loaded)
@@ -136,7 +136,7 @@ def _move(
     from hydrostat.version import __version__
 
     profile = _profile(simulation, contractions, ramp, play)
-    seconds = asked("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
+    seconds = parse_optional("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
     dt = positive("--time-step", step, TIME)
     start = simulation.motion_at_rest(simulation.solve(profile.at(0.0)) if rests_at_first(simulation.robot) else None)
     began = time.process_time()

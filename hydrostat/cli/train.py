@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from hydrostat.cli.folders import RobotFolder, require_folder
-from hydrostat.cli.waiting import one_interrupt, read_robot, told
+from hydrostat.cli.waiting import one_interrupt, read_robot, report_progress
 from hydrostat.errors import HydrostatError, InputError
 
 if TYPE_CHECKING:
@@ -160,7 +160,7 @@ def train(
         method=training.TrainMethod(method), steps=steps, seed=seed, every=max(1, steps // 10), together=together
     )
     training.begun_curve(out, options, resume=resume)
-    progress, began = told(), time.process_time()
+    progress, began = report_progress(), time.process_time()
     wanted = training.held_out_goals(judged, goals, seed, progress=progress)
     size, (word, factor) = judged.unit, judged.measure
     _row(f"    actions{judged.cost:>12}  mean     median   worst    within  CPU")

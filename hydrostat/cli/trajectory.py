@@ -9,8 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import EqualWinches, MostTension, PictureWidth, asked, check_width, pose_limits, positive
-from hydrostat.cli.waiting import prepared, progress_bar, read_robot
+from hydrostat.cli.options import (
+    EqualWinches,
+    MostTension,
+    PictureWidth,
+    check_width,
+    parse_optional,
+    pose_limits,
+    positive,
+)
+from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 
@@ -69,14 +77,14 @@ def trajectory(
 
     require_folder(out)
     fastest = positive("--max-speed", speed, SPEED)
-    hardest = asked("--max-acceleration", acceleration, ACCELERATION)
+    hardest = parse_optional("--max-acceleration", acceleration, ACCELERATION)
     stay = positive("--hold", hold, TIME, zero=True)
     limits = pose_limits(tension, equal)
     kind = parse_choice(PathKind, path, what="--path")
     check_width(width)
     loaded = read_robot(robot)
     names = _keyframe_names(loaded, poses)
-    simulation = prepared(loaded)
+    simulation = prepare_physics(loaded)
     began = time.process_time()
     with progress_bar() as tell:
         made = solve_ik_trajectory(

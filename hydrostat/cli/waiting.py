@@ -39,8 +39,8 @@ def read_robot(path: Path) -> "Robot":
         return load_robot(path)
 
 
-def prepared(robot: "Robot") -> "Simulation":
-    """Physics of a robot, after one solve if pins hold it."""
+def prepare_physics(robot: "Robot") -> "Simulation":
+    """Build the physics of a robot; solve it once if pins hold it."""
     from hydrostat.simulation import Simulation, rests_at_first
 
     simulation = Simulation(robot)
@@ -70,8 +70,8 @@ def progress_bar() -> Iterator[Callable[[str, int, int], None]]:
         yield tell
 
 
-def told() -> Callable[[str, int, int], None]:
-    """A function that tells how much is done, how fast, and how long the rest will take."""
+def report_progress() -> Callable[[str, int, int], None]:
+    """Return a function that prints progress, speed and the remaining time."""
     begin: dict[str, tuple[float, int]] = {}
     seen: dict[str, int] = {}
     last = [0.0]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from hydrostat.control.link import SILENCE, Link, SimulatedLink
     from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_pulls, winch_tensions
     from hydrostat.control.motors import FASTEST, Motors
-    from hydrostat.control.open_bus import EMULATED, check_port, layered, open_bus, open_line
+    from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line
     from hydrostat.control.player import Player, play
     from hydrostat.control.spool_curve import SpoolCurve, fit_spool, measure_spool
     from hydrostat.control.take_up import SlackCalibration, take_up_slack
@@ -75,12 +75,12 @@ __all__ = [
     "Timeline",
     "WinchMotor",
     "WinchPull",
+    "add_cable_layers",
     "arm_motors",
     "board_kind",
     "check_port",
     "emulated_calibration",
     "fit_spool",
-    "layered",
     "measure_spool",
     "not_judged",
     "open_bus",

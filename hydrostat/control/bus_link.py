@@ -121,7 +121,7 @@ class BusLink(Link):
             self.facts = ()
             with self._stopping():
                 self.facts = self._bus.identify()
-            done = self._calibration.done and not self._bus.lost_position
+            done = self._calibration.is_complete and not self._bus.lost_position
             self._to(LinkState.CALIBRATED if done else LinkState.IDENTIFIED)
             for fact, name in zip(self.facts, self._names, strict=True):
                 stops = "stops by itself" if fact.watchdog else "does not stop by itself: its goals stay close ahead"
@@ -233,7 +233,7 @@ class BusLink(Link):
         if (hot := float(np.nanmax(np.append(reading.temperatures, -np.inf)))) > HOTTEST:
             name = self._names[int(np.nanargmax(reading.temperatures))]
             raise HydrostatError(f"the motor of {name} is {hot:.0f} degrees warm, {HOTTEST:g} at most; let it cool")
-        if not self._calibration.done:
+        if not self._calibration.is_complete:
             return
         self._places = self._calibration.contractions(reading.angles)
         beyond = np.maximum(self._low - self._places, self._places - self._high)
@@ -274,7 +274,7 @@ class BusLink(Link):
             needed = "identify the motors"
         elif self._bus.lost_position:
             needed = "calibrate them anew, as a motor or its board was switched off or reset since (docs/motors.md)"
-        elif not self._calibration.done:
+        elif not self._calibration.is_complete:
             needed = "calibrate them"
         if needed:
             raise HydrostatError(f"motors cannot be armed: first {needed}")

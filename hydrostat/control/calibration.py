@@ -98,8 +98,8 @@ class Calibration:
 
     motors: tuple[WinchMotor, ...]
 
-    def known(self) -> "Calibration":
-        """The same with motors that count from 0, where no zero is known: for motors that are not there."""
+    def assume_zeros(self) -> "Calibration":
+        """Return a copy in which motors without a known zero count from 0: for emulated motors."""
         return Calibration(tuple(replace(each, zero=each.zero or 0.0) for each in self.motors))
 
     @property
@@ -112,7 +112,7 @@ class Calibration:
         return [place for place, motor in enumerate(self.motors) if motor.board == board]
 
     @property
-    def done(self) -> bool:
+    def is_complete(self) -> bool:
         """True if the zeros of all motors are known."""
         return all(spool.zero is not None for spool in self.motors)
 
@@ -163,7 +163,7 @@ def emulated_calibration(folder: Path | None, robot: Robot) -> Calibration:
     for name in (EMULATED_CALIBRATION, CALIBRATION):
         if folder is not None and (folder / name).exists():
             return read_calibration(folder, robot, name=name)
-    return usual_calibration(robot).known()
+    return usual_calibration(robot).assume_zeros()
 
 
 def read_calibration(folder: Path, robot: Robot, *, name: str = CALIBRATION) -> Calibration:

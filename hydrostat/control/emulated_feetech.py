@@ -35,7 +35,7 @@ class EmulatedSts(EmulatedServo):
         if place + len(data) <= STATE:
             self.table[place : place + len(data)] = data
             if place == TORQUE and data[0] == 1:
-                self._put(GOAL, round(self.counted / TICK))
+                self._put(GOAL, round(self.counted_angle / TICK))
         return 0
 
     def step(self, now: float, dt: float) -> None:
@@ -51,7 +51,7 @@ class EmulatedSts(EmulatedServo):
         self.speed = speed
         self.angle += speed * dt
         current = min(self.load(self.angle) / self.constant, STALL) if on else 0.0
-        self._put(STATE, round(self.counted / TICK))
+        self._put(STATE, round(self.counted_angle / TICK))
         self.table[STATE + 6 : STATE + 8] = bytes([74, 85 if self.ails.hot else 35])
         self._put(STATE + 13, round(current / AMPERE))
 

@@ -92,7 +92,7 @@ class EmulatedServo:
         self.step(0.0, 1e-3)
 
     @property
-    def counted(self) -> float:
+    def counted_angle(self) -> float:
         """Angle by its own count [rad]."""
         return self.angle - self.origin
 
@@ -125,7 +125,7 @@ class EmulatedServo:
             return 0x07
         self.table[place : place + len(data)] = data
         if place == TORQUE:
-            self.set(GOAL, round(self.counted / TICK), 4)
+            self.set(GOAL, round(self.counted_angle / TICK), 4)
         return 0
 
     def step(self, now: float, dt: float) -> None:
@@ -154,7 +154,7 @@ class EmulatedServo:
         model = MODELS[self.model]
         current = min(self.torque / self.constant, model.stall) if self.table[TORQUE] and not self.ails.hot else 0.0
         self.set(STATE, round(1e3 * current / (1.0 if model.measures else model.stall)), 2)
-        self.set(STATE + 6, round(self.counted / TICK), 4)
+        self.set(STATE + 6, round(self.counted_angle / TICK), 4)
         self.table[HARDWARE] = 0x04 if self.ails.hot else 0
         self.table[146] = 85 if self.ails.hot else 35
 

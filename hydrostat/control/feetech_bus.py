@@ -19,7 +19,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control.bus import MotorFacts, Port, Reading
 from hydrostat.control.dynamixel_packets import ALL, READ, SYNC_READ, SYNC_WRITE, WRITE, Packet
-from hydrostat.control.feetech_packets import SumReader, pack, padded
+from hydrostat.control.feetech_packets import SumReader, pack, pad_bytes
 from hydrostat.control.servo_bus import ServoBus
 from hydrostat.errors import HydrostatError
 
@@ -146,7 +146,7 @@ class FeetechBus(ServoBus):
         return None
 
     def _send(self, number: int, instruction: int, content: bytes = b"") -> None:
-        self._put(padded(pack(number, instruction, content)))
+        self._put(pad_bytes(pack(number, instruction, content)))
 
     def _answers(self, count: int, size: int) -> list[Packet]:
         """Answers of such a size from servos that are ours."""

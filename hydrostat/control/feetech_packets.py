@@ -15,8 +15,8 @@ def pack(number: int, instruction: int, content: bytes = b"") -> bytes:
     return HEADER + inner + bytes([_sum(inner)])
 
 
-def padded(packet: bytes) -> bytes:
-    """The same with a byte after it that is nowhere in it, so that no single byte can be lost unseen.
+def pad_bytes(packet: bytes) -> bytes:
+    """Return the bytes followed by one that does not occur in them, so that no lost byte goes unnoticed.
 
     If a byte is lost on the way, the first byte after the packet is taken for its sum, and is right exactly where it
     is the byte that was lost.

@@ -56,8 +56,8 @@ class Motors:
         self._driven: float | None = None
 
     @property
-    def moving(self) -> bool:
-        """Tell whether they are not yet where they shall be."""
+    def is_moving(self) -> bool:
+        """True if the motors have not yet reached their command."""
         return bool(np.abs(self.places - self.command).max(initial=0.0) > self.link.near)
 
     def set_fastest(self, speed: float) -> None:

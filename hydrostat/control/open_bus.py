@@ -29,8 +29,8 @@ class EmulatedBus(DynamixelBus):
     kind = EMULATED
 
 
-def layered(calibration: Calibration) -> Calibration:
-    """The same with spools a little larger than told, whose cable lies on itself after the first turn.
+def add_cable_layers(calibration: Calibration) -> Calibration:
+    """Return a calibration with slightly larger spools, whose cable lies on itself after the first turn.
 
     Emulated motors have such spools while they are calibrated, and nobody but the ruler is told of it.
     """
@@ -97,7 +97,7 @@ def check_port(text: str) -> None:
 
 def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:
     """Servos that stand where nothing is taken in, each with the load of its cables."""
-    calibration = calibration.known()
+    calibration = calibration.assume_zeros()
     servos = [
         EmulatedServo(n, angle=each.angle(0.0), model=_LIKE_A_KIT) for n, each in enumerate(calibration.motors, 1)
     ]

@@ -97,7 +97,7 @@ def play(
             clock() + float(np.abs(contractions - motors.places).max(initial=0.0)) / motors.fastest + ARRIVAL_TIMEOUT
         )
         drive(contractions)
-        while motors.moving:
+        while motors.is_moving:
             if clock() > latest:
                 raise HydrostatError(f"{_slowest(motors)}; see what holds it")
             wait(TICK)

@@ -40,20 +40,20 @@ class SpoolCurve:
     before: Vector
 
     @property
-    def fitted(self) -> Vector:
+    def fitted_lengths(self) -> Vector:
         """Cable taken in by the curve, at each reading [m]."""
         return _taken(self.motor, self.turned)
 
     @property
     def scatter(self) -> float:
         """Mean distance of the readings from the curve, root of squares [m]."""
-        beside = self.readings - self.fitted
+        beside = self.readings - self.fitted_lengths
         return float(np.sqrt(np.mean((beside - beside.mean()) ** 2)))
 
     @property
     def more(self) -> float:
         """The most that was taken in beside what was thought, counted from the first reading [m]."""
-        apart = (self.fitted - self.fitted[0]) - (self.before - self.before[0])
+        apart = (self.fitted_lengths - self.fitted_lengths[0]) - (self.before - self.before[0])
         return float(apart[np.abs(apart).argmax()])
 
 
@@ -137,7 +137,7 @@ def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve
     curve = SpoolCurve(
         motor=fitted, turned=turned, readings=taken + (found[1] - found[0]), before=_taken(motor, turned)
     )
-    beside = np.abs(curve.readings - curve.fitted)
+    beside = np.abs(curve.readings - curve.fitted_lengths)
     if (worst := float(beside.max())) > WITHIN:
         raise HydrostatError(
             f"{motor.winch}: reading {int(beside.argmax()) + 1} of {len(turned)} is {1e3 * worst:.1f} mm beside every "

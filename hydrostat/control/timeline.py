@@ -74,8 +74,8 @@ class Timeline:
         """The same without one key."""
         return replace(self, keys=self.keys[:index] + self.keys[index + 1 :])
 
-    def moved(self, index: int, time: float) -> Self:
-        """The same with one key at another time [s], in place of one that is there."""
+    def move_key(self, index: int, time: float) -> Self:
+        """Return a timeline with one key at another time [s]; it replaces a key at that time."""
         return self.without(index).with_key(replace(self.keys[index], time=time))
 
 

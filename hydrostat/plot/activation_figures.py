@@ -104,7 +104,7 @@ def _draw_markers(
     points = locate(robot.body.mesh, np.array([marker.at for marker in named])).positions(activation.nodes)
     tracked = {marker.name: point for marker, point in zip(named, points, strict=True)}
     draw_misses(sheet, panes, tracked, goals)
-    markers, targets = panes[0].named(tracked), panes[0].named(goals)
+    markers, targets = panes[0].locate_points(tracked), panes[0].locate_points(goals)
     labels = Labels(sheet, rings=surface.rings, avoid=np.array([*markers.values(), *targets.values()]))
     for name, place in markers.items():
         labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * activation.errors[name]:.1f} mm")

@@ -90,7 +90,7 @@ def _draw_spool(found: SpoolCurve) -> Figure:
     figure, axes = new_chart("turns of the spool", "more than thought [mm]", width=NARROW, height=2.4)
     turns = found.turned / (2 * np.pi)
     axes.plot(turns, MILLIMETRES * (found.readings - found.before), "o", color=WINCHES[0], markersize=4)
-    axes.plot(turns, MILLIMETRES * (found.fitted - found.before), color=MUTED, linewidth=1.2)
+    axes.plot(turns, MILLIMETRES * (found.fitted_lengths - found.before), color=MUTED, linewidth=1.2)
     return figure
 
 

@@ -21,7 +21,7 @@ from hydrostat.drawing import (
 )
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.hardware import spool_size, stopper_bar
-from hydrostat.plot.sheet import MILLIMETRES, Places, framed
+from hydrostat.plot.sheet import MILLIMETRES, Places, frame_points
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
@@ -61,7 +61,7 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float
         *_cables(robot, frames, seconds),
         *_winches(robot, frames, seconds),
     ]
-    low, high = framed(MILLIMETRES * np.concatenate([skin.shape(nodes)[0] for nodes in frames]), 0.04)
+    low, high = frame_points(MILLIMETRES * np.concatenate([skin.shape(nodes)[0] for nodes in frames]), 0.04)
     box = [low[0], -high[1], *(high - low)]
     return tag(
         "svg",

@@ -74,7 +74,7 @@ class Pane(ABC):
                     sheet.curve(part, color=INK, linewidth=1.2, clip_on=True, zorder=3.3)
         return body
 
-    def named(self, points: Mapping[str, Vector]) -> dict[str, Place]:
+    def locate_points(self, points: Mapping[str, Vector]) -> dict[str, Place]:
         """Places on the sheet [mm] of named points [m]."""
         return {name: self.places(np.asarray(point)[None])[0] for name, point in points.items()}
 

@@ -37,9 +37,9 @@ def draw_reach(
                 sheet.dots(pane.places(part.places), 2.6, color=colour, zorder=12)
     rest = rest_markers(robot)
     for pane in panes:
-        draw_markers(sheet, pane.named(rest))
+        draw_markers(sheet, pane.locate_points(rest))
     labels = Labels(sheet, rings=panes[0].outline(sheet, nodes), avoid=np.empty((0, 2)))
-    for name, place in panes[0].named(rest).items():
+    for name, place in panes[0].locate_points(rest).items():
         labels.place(place, shorten(name))
     return sheet.figure
 

@@ -13,7 +13,7 @@ from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.report_chapters import chapters
-from hydrostat.plot.report_tables import captioned, fact, footer, millimetres, page
+from hydrostat.plot.report_tables import add_caption, fact, footer, millimetres, page
 from hydrostat.plot.robot_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES, Spread
 from hydrostat.plot.skin import outer_points
@@ -100,16 +100,16 @@ def _portraits(network: Network) -> Html:
     ]
     names = [reached.pose_target.name for reached in shown]
     if rest.shape[1] == 3:
-        pictures = [captioned(picture, name, HOW) for picture, name in zip(posed, names, strict=True)]
+        pictures = [add_caption(picture, name, HOW) for picture, name in zip(posed, names, strict=True)]
         kind = "grid" if len(pictures) == 1 else "grid small"
-        return tag("div", captioned(still, "At rest", ", as it is made"), *pictures, class_=kind)
+        return tag("div", add_caption(still, "At rest", ", as it is made"), *pictures, class_=kind)
     frames = motion_frames(robot, [reached.pose.contractions for reached in network.reached])
     moving = motion_svg(robot, frames, label="The robot moves from rest into each of its poses and back")
     return tag(
         "div",
-        captioned(still, "At rest", ", as it is sewn"),
-        captioned(posed[0], names[0], HOW, kind="still"),
-        captioned(moving, ", ".join(reached.pose_target.name for reached in network.reached), HOW, kind="moving"),
+        add_caption(still, "At rest", ", as it is sewn"),
+        add_caption(posed[0], names[0], HOW, kind="still"),
+        add_caption(moving, ", ".join(reached.pose_target.name for reached in network.reached), HOW, kind="moving"),
         class_="grid",
     )
 

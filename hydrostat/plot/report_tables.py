@@ -54,11 +54,11 @@ def section(number: int, chapter: Chapter) -> Html:
 
 def picture(figure: Figure, name: str, head: str, words: str) -> Html:
     """A figure with a name of its own on the page, and what it shows: a headline and words that follow it."""
-    return captioned(Html(inline_svg(figure, name=name, label=head + words)), head, words)
+    return add_caption(Html(inline_svg(figure, name=name, label=head + words)), head, words)
 
 
-def captioned(content: Html, head: str, words: str, *, kind: str | None = None) -> Html:
-    """A picture over its headline and words; `kind` is a class of the style."""
+def add_caption(content: Html, head: str, words: str, *, kind: str | None = None) -> Html:
+    """Return a picture with a headline and words below; `kind` is a class of the style."""
     return tag("figure", content, tag("figcaption", tag("b", head), words), class_=kind)
 
 

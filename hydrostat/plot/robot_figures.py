@@ -45,7 +45,7 @@ def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -
     sheet, panes, bodies = _at_rest(robot, head, count, width, mesh=True)
     drawn, labels = _draw_parts(sheet, robot, panes, bodies)
     name_winches(labels, robot, drawn.winches)
-    for name, place in drawn.pane.named(rest_markers(robot)).items():
+    for name, place in drawn.pane.locate_points(rest_markers(robot)).items():
         labels.place(place, shorten(name))
     return sheet.figure
 
@@ -60,11 +60,11 @@ def draw_target(robot: Robot, pose: PoseTarget, *, title: str | None = None, wid
     goals = target_places(pose)
     tracked = {name: place for name, place in rest_markers(robot).items() if name in goals}
     for pane in panes:
-        markers, targets = pane.named(tracked), pane.named(goals)
+        markers, targets = pane.locate_points(tracked), pane.locate_points(goals)
         draw_arrows(sheet, markers, targets)
         draw_crosses(sheet, targets)
         draw_markers(sheet, markers)
-    markers, targets = panes[0].named(tracked), panes[0].named(goals)
+    markers, targets = panes[0].locate_points(tracked), panes[0].locate_points(goals)
     ways = [np.linspace(markers[name], target, 9) for name, target in targets.items()]
     labels = Labels(sheet, rings=bodies[0].rings, avoid=np.concatenate(ways))
     for name, target in targets.items():
@@ -121,8 +121,8 @@ def _draw_parts(
     carried, rest, drawn = Attachments(robot), rest_markers(robot), []
     for pane, body in zip(panes, bodies, strict=True):
         drawn.append(draw_hardware(sheet, pane, body, carried, robot.body.mesh.nodes, width=width))
-        draw_markers(sheet, pane.named(rest), size=size)
-    return drawn[0], drawn[0].labels(sheet, np.array(list(panes[0].named(rest).values())).reshape(-1, 2))
+        draw_markers(sheet, pane.locate_points(rest), size=size)
+    return drawn[0], drawn[0].labels(sheet, np.array(list(panes[0].locate_points(rest).values())).reshape(-1, 2))
 
 
 SMALL = 2.7  # width of such a picture [inch]
@@ -136,7 +136,7 @@ def draw_stage(robot: Robot, *, like: Robot, frame: Spread, width: float = SMALL
     nodes = robot.body.mesh.nodes
     sheet, (pane, *_) = open_sheet(like, [], [frame], width=width, ruled=False)
     draw_hardware(sheet, pane, pane.draw_body(sheet, nodes, pins=True), Attachments(robot), nodes, width=1.8)
-    draw_markers(sheet, pane.named(rest_markers(robot)), size=3.4)
+    draw_markers(sheet, pane.locate_points(rest_markers(robot)), size=3.4)
     return sheet.figure
 
 
@@ -165,8 +165,8 @@ def draw_pose(
     line = _rests(pose) if note is None else note
     sheet, panes, labels = _in_pose(robot, pose, head, line, width, targets={})
     for pane in panes:
-        draw_markers(sheet, pane.named(pose.markers))
-    for name, place in panes[0].named(pose.markers).items():
+        draw_markers(sheet, pane.locate_points(pose.markers))
+    for name, place in panes[0].locate_points(pose.markers).items():
         labels.place(place, shorten(name))
     return sheet.figure
 
@@ -197,7 +197,7 @@ def draw_reached(
     for ring in rings:
         _draw_wanted(sheet, MILLIMETRES * ring)
     draw_misses(sheet, panes, tracked, goals)
-    for name, place in panes[0].named(tracked).items():
+    for name, place in panes[0].locate_points(tracked).items():
         labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * reached.errors[name]:.1f} mm")
     return sheet.figure
 

@@ -16,7 +16,7 @@ from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.glb import Glb, GlbPart
 from hydrostat.plot.open_sheet import way_up
 from hydrostat.plot.sheet import Spread
-from hydrostat.plot.solids import Solid, cross, joined, skin, slab, sphere, spool, tube
+from hydrostat.plot.solids import Solid, cross, join_solids, skin, slab, sphere, spool, tube
 from hydrostat.plot.targets import target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import PoseTarget, Robot, replace_file
@@ -135,7 +135,7 @@ def _cables(film: _Film) -> GlbPart:
         solids.append(tube(np.stack([run[index] for run in runs]), CABLE * size))
         shades = np.array([_linear(scale.colour(float(key.tensions[index]))) for key in film.keys])
         colours.append(np.repeat(shades[:, None], solids[-1][1].shape[1], axis=1))
-    triangles, places, normals = joined(solids)
+    triangles, places, normals = join_solids(solids)
     every = np.concatenate(colours, axis=1)
     return GlbPart(name="cables", triangles=triangles, places=places, normals=normals, colours=every)
 

@@ -84,7 +84,7 @@ def new_sheet(
     The subtitle is left out with the title. If ruled it has a grid and numbers in millimetres; the bar is room for one
     of colours, the room a free border as a share of the longest side; width in inches.
     """
-    low, high = framed(points, room)
+    low, high = frame_points(points, room)
     left, right, bottom = (0.42, 0.12, 0.32) if ruled else (0.05, 0.05, 0.05)
     top = 0.62 if title else 0.48 if bar else 0.1
     inches = width - left - right
@@ -101,8 +101,8 @@ def new_sheet(
     return sheet
 
 
-def framed(points: Places, room: float) -> tuple[Place, Place]:
-    """Lower left and upper right corner of a frame about points, with a border `room` times its longest side."""
+def frame_points(points: Places, room: float) -> tuple[Place, Place]:
+    """Return lower left and upper right corner of a frame around points, with a border `room` x its longest side."""
     border = room * float(np.ptp(points, axis=0).max())
     low, high = points.min(axis=0) - border, points.max(axis=0) + border
     wide, tall = high - low

@@ -122,8 +122,8 @@ _TILT = np.array([[1, -1, 0], [1, 1, -2], [1, 1, 1]]) / np.sqrt([[2.0], [6.0], [
 """A cross of coordinate axes would be hard to tell from the axes themselves."""
 
 
-def joined(solids: list[Solid]) -> Solid:
-    """Several solids as one."""
+def join_solids(solids: list[Solid]) -> Solid:
+    """Join several solids into one."""
     starts = np.cumsum([0, *(solid[1].shape[1] for solid in solids)])
     triangles = [solid[0] + start for solid, start in zip(solids, starts[:-1], strict=True)]
     return (

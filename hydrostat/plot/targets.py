@@ -59,7 +59,7 @@ def draw_misses(
 ) -> None:
     """Draw markers at points [m], a cross at each goal [m], and how far the markers are from these."""
     for pane in panes:
-        markers, targets = pane.named(tracked), pane.named(goals)
+        markers, targets = pane.locate_points(tracked), pane.locate_points(goals)
         draw_errors(sheet, markers, targets)
         draw_crosses(sheet, targets)
         draw_markers(sheet, markers)

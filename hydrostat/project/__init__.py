@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.project.project_file import PROJECT_FILE, read_project_file, write_project_file
     from hydrostat.project.wished_constraints import wished_constraints
     from hydrostat.project.wishes import Paint, Wishes, moved_zone, wish_range
-    from hydrostat.project.work import Work, after_design, followed, fresh_name
+    from hydrostat.project.work import Work, after_design, follow_robot, fresh_name
     from hydrostat.project.work_folder import (
         changed_outside,
         comments_lost,
@@ -30,7 +30,7 @@ __all__ = [
     "comments_lost",
     "doubts",
     "folder_stamp",
-    "followed",
+    "follow_robot",
     "fresh_name",
     "moved_zone",
     "open_note",

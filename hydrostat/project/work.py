@@ -17,7 +17,7 @@ class Work:
     wishes: Wishes = field(default_factory=Wishes)  # for a design
 
 
-def followed(
+def follow_robot(
     work: Work, robot: Robot, renamed: Mapping[str, str] | None = None, cables: Mapping[str, str] | None = None
 ) -> tuple[Timeline, Wishes]:
     """Timeline and wishes that name only what the robot has now, by new names of winches and cables for old ones.
@@ -48,7 +48,7 @@ def followed(
 def after_design(work: Work, robot: Robot) -> Wishes:
     """Wishes after a design has given the robot another network: what was kept and is there still is kept on."""
     same = {cable.name: cable.name for cable in work.robot.cables if cable in robot.cables}
-    wishes = followed(work, robot, cables=same)[1]
+    wishes = follow_robot(work, robot, cables=same)[1]
     places = {winch.name: winch.at for winch in work.robot.winches}
     stayed = {winch.name for winch in robot.winches if places.get(winch.name) == winch.at}
     return replace(wishes, kept_winches=tuple(name for name in wishes.kept_winches if name in stayed))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from hydrostat.studio.posing.mover import MuscleMover
     from hydrostat.studio.posing.poser import Poser
     from hydrostat.studio.posing.poses import held_of
-    from hydrostat.studio.posing.propose_work import ProposalInput, sketched
+    from hydrostat.studio.posing.propose_work import ProposalInput, propose_network
     from hydrostat.studio.session import Session
     from hydrostat.studio.stage import Hit
     from hydrostat.studio.starting.shelf import state_folder
@@ -36,8 +36,8 @@ __all__ = [
     "Rooms",
     "Session",
     "held_of",
+    "propose_network",
     "serve",
-    "sketched",
     "state_folder",
     "wished_request",
 ]

@@ -86,7 +86,7 @@ class Document:
         return simulation
 
     @property
-    def saved(self) -> bool:
+    def is_saved(self) -> bool:
         """True if all changes are saved."""
         return not self._past or self._past[-1].work is self._saved
 

@@ -94,7 +94,7 @@ class Jobs:
         self._closed = False
 
     @property
-    def running(self) -> bool:
+    def is_running(self) -> bool:
         """True if a job is running."""
         state = self.state
         return state is not None and state.running
@@ -127,7 +127,7 @@ class Jobs:
         have begun by then.
         """
         with self._lock:
-            if self.running:
+            if self.is_running:
                 assert self.state is not None
                 raise InputError(f"{self.state.title} is still running. Wait or stop it")
             if self._closed:
@@ -154,7 +154,7 @@ class Jobs:
         """End all work at once; there will be no more."""
         with self._lock:
             self._closed = True
-            if self.running and self.state is not None:
+            if self.is_running and self.state is not None:
                 self.state = replace(self.state, stopping=True)
             workers = [worker for worker in (self._worker, self._spare) if worker is not None]
             self._spare = None

@@ -93,7 +93,7 @@ class Judge:
             self.skins.look(robot.body, options)
             self._bell.ring(Topic.JOB, Topic.THINGS)
 
-    def refused(self, robot: Robot) -> bool | None:
+    def is_refused(self, robot: Robot) -> bool | None:
         """True if a kit of a network that `weigh` has reviewed would be refused, as far as known; None: not known."""
         weighed = self._weighed_of(robot)
         return None if weighed is None else weighed.refused

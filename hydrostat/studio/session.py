@@ -288,7 +288,7 @@ class Session:
         self._complaint, self.answered = complaint, asked
         return more
 
-    def shown(self) -> Shown | None:
+    def current_view(self) -> Shown | None:
         """Return the content of all screens now; None without a robot."""
         if not self.document.is_open:
             return None
@@ -299,8 +299,8 @@ class Session:
         head = {"stage": str(self.stage), "stamp": self.answered, "errors": shape.errors, "notes": list(shape.notes)}
         return self._show.moment(robot, shape, things, head, node_values(robot, shape, self.colouring))
 
-    def left(self, screen: str) -> None:
-        """Let go for a screen that is gone."""
+    def release_screen(self, screen: str) -> None:
+        """Release what a disconnected screen was dragging."""
         self.release(screen)
 
     def close(self) -> None:

@@ -25,7 +25,7 @@ class SewnSkin:
     error: str = ""  # why it was not found; "" if it was, or is being looked for
 
     @property
-    def awaited(self) -> bool:
+    def is_awaited(self) -> bool:
         """True if the skin is still being computed."""
         return self.sewing is None and not self.error
 
@@ -33,7 +33,7 @@ class SewnSkin:
     def words(self) -> str:
         """A line for the person, as `hydrostat check` prints it; "" where only the findings are to be told."""
         if self.sewing is None:
-            return f"{TITLE} …" if self.awaited else f"skin pattern not computed: {self.error}"
+            return f"{TITLE} …" if self.is_awaited else f"skin pattern not computed: {self.error}"
         return "" if self.sewing.problems else f"skin: {self.sewing}"
 
     @property

@@ -35,7 +35,7 @@ class DriveLoop:
         """Begin where the motors are; the clock only runs forward [s]."""
         self.motors, self.way, self.source, self._clock = motors, way, source, clock
         self.silent, self.wish, self.pause = False, DriveWish(stamp=-np.inf), 0.0
-        self._values, self._held = way.held(motors.places), True
+        self._values, self._held = way.hold_at(motors.places), True
         self._looked, self._exchange = -np.inf, 0.0  # when motors were last read, and how long that took [s]
         self._numbers = {name: index for index, name in enumerate(way.channels.names)}
 
@@ -53,7 +53,7 @@ class DriveLoop:
         if self.silent or wish.hold or wish.over:
             if not self._held:
                 self.motors.drive(now)  # where they are just now, not a tick ago
-                self._values, self._held = self.way.held(self.motors.places), True
+                self._values, self._held = self.way.hold_at(self.motors.places), True
         else:
             self._follow(wish)
         self.motors.ask(self.way.contractions)

@@ -80,7 +80,7 @@ def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -
     motors.ask(contractions)
     latest = clock() + float(np.abs(motors.command - motors.places).max(initial=0.0)) / motors.fastest + LATE
     beat()
-    while motors.moving:
+    while motors.is_moving:
         if clock() > latest:
             index = int(np.abs(motors.command - motors.places).argmax())
             raise HydrostatError(f"{motors.names[index]}: target not reached in time. Check for a jammed cable.")
@@ -117,7 +117,7 @@ class LessonPoses:
         number = max(self.made.poses, default=-1) + 1
         self.made.add(number, held.values, answer, time.time())
 
-    def told(self) -> str:
+    def summary(self) -> str:
         """Summary of the cross-validation errors of the pairs so far, in words."""
         if self.count < 4:
             return f"{plural(self.count, 'pose')}; errors are available from 4 poses on"

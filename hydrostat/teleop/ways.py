@@ -51,7 +51,7 @@ class CommandMapper(ABC):
         del places
 
     @abstractmethod
-    def held(self, places: Vector) -> Vector:
+    def hold_at(self, places: Vector) -> Vector:
         """Forget what was asked for, as motors hold at contractions [m]; give the values of the channels there [m]."""
 
     @abstractmethod
@@ -83,7 +83,7 @@ class WinchMapper(CommandMapper):
             self._seen = places.copy()
             self._poses.give(self._seen)
 
-    def held(self, places: Vector) -> Vector:
+    def hold_at(self, places: Vector) -> Vector:
         """Contractions where they hold [m]."""
         self.contractions = places.copy()
         return places.copy()
@@ -142,7 +142,7 @@ class MarkerMapper(CommandMapper):
             if not self._settled:
                 self._settle()
 
-    def held(self, places: Vector) -> Vector:
+    def hold_at(self, places: Vector) -> Vector:
         """Hold at contractions [m]; return the simulated marker positions [m]."""
         with self._lock:
             self._jobs, self._asked, self.contractions = self._jobs + 1, None, places.copy()

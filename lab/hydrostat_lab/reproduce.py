@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from hydrostat.cli.folders import OutFolder, require_folder
-from hydrostat.cli.waiting import told
+from hydrostat.cli.waiting import report_progress
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 
@@ -122,7 +122,7 @@ def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", ou
 
     loaded, rows = [_robot(name) for name in bodies], list["StudyRow"]()
     for robot in loaded:
-        for row in run_study(study, robot, out, jobs=jobs, tell=told()):
+        for row in run_study(study, robot, out, jobs=jobs, tell=report_progress()):
             if not rows or _group(rows[-1]) != _group(row):
                 print(f"\n{_head(row)}\n{_WORDS}")
             print(_line(row), flush=True)

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hydrostat.cli.waiting import told
-from hydrostat_lab.trial_tables import drawn_runs, judged_claims, spanned, trials_missing
+from hydrostat.cli.waiting import report_progress
+from hydrostat_lab.trial_tables import drawn_runs, format_interval, judged_claims, trials_missing
 
 if TYPE_CHECKING:
     from hydrostat_lab.experiments import Ran
@@ -39,7 +39,7 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
         print(f"\n{name}: {reference.experiment.title}")
         print(f"{reference.task}, {count} seeds: interquartile means and their 95 % intervals\n{_WORDS}", flush=True)
         done: dict[str, Ran] = {}
-        for way, ran in run_reference(reference, seeds=count, epochs=epochs, tell=told()):
+        for way, ran in run_reference(reference, seeds=count, epochs=epochs, tell=report_progress()):
             print(_line(way, ran), flush=True)
             done[way] = ran
         kept = judged_claims(reference.experiment, done)
@@ -53,8 +53,8 @@ def _line(name: str, ran: "Ran") -> str:
     from hydrostat_lab.reference import none_missed_from
     from hydrostat_lab.verdict import interquartile
 
-    success = spanned(interquartile(final(ran)), 2)
-    left = spanned(interquartile(10.0 * ran.best[-1].mean(axis=1)), 1)
+    success = format_interval(interquartile(final(ran)), 2)
+    left = format_interval(interquartile(10.0 * ran.best[-1].mean(axis=1)), 1)
     sure = f"{none_missed_from(ran):.0f}".replace("inf", "never")
     return f"{name:10}{int(ran.epochs.actions[-1]):8}{success:>20}{left:>24}{sure:>18}"
 

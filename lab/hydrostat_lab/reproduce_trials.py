@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from hydrostat.cli.waiting import told
-from hydrostat_lab.trial_tables import drawn_runs, judged_claims, shared_table, spanned, trials_missing
+from hydrostat.cli.waiting import report_progress
+from hydrostat_lab.trial_tables import drawn_runs, format_interval, judged_claims, shared_table, trials_missing
 
 if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
@@ -74,7 +74,7 @@ def reproduce_trials(
     from hydrostat.robot import replace_file
     from hydrostat.simulation import Simulation
 
-    usual, tell = _SIZES[much.size], told()
+    usual, tell = _SIZES[much.size], report_progress()
     usual = usual if much.goals is None else usual._replace(goals=much.goals)
     usual = usual if much.epochs is None else usual._replace(small=much.epochs, large=much.epochs)
     networks = _networks(robot, out, model, usual.samples, jobs)
@@ -122,7 +122,9 @@ def _shared(networks: "LearnedModel", simulation: "Simulation", out: Path, *, se
 
     budget = Budget(steps=max(2000, usual.steps // 6), epochs=usual.small)
     trials = NetworkReach(networks, groups=finger_pairs(networks))
-    compared = compare_on_shared_data(trials, simulation, seeds=seeds, goals=usual.goals, budget=budget, tell=told())
+    compared = compare_on_shared_data(
+        trials, simulation, seeds=seeds, goals=usual.goals, budget=budget, tell=report_progress()
+    )
     shared_table(SHARED, compared, out, 1e3 * simulation.robot.body.mesh.size)
 
 
@@ -140,7 +142,7 @@ def _policies(
 
     trials, effort = (
         NetworkReach(networks, groups=finger_pairs(networks)),
-        Budget(steps=usual.steps, epochs=usual.small, tell=told()),
+        Budget(steps=usual.steps, epochs=usual.small, tell=report_progress()),
     )
     every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
     known = networks.card.samples
@@ -152,16 +154,16 @@ def _policies(
         found, far = interquartile(np.nanmean(exact, axis=1)), float(np.nanquantile(exact, 0.99))
         row = {"way": name, "pairs": pairs, "equilibria": used, "seeds": np.nanmean(exact, axis=1).tolist()}
         rows.append({**row, "p99": far})
-        text = f"{name:24}{pairs:8}{used:12}{spanned(found, 3):>24}{100 * found.mean / width:8.3f}"
+        text = f"{name:24}{pairs:8}{used:12}{format_interval(found, 3):>24}{100 * found.mean / width:8.3f}"
         print(f"{text}{far:10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
 
-    asked = exact_goals(simulation, trials, usual.goals, tell=told())
-    sure = certified_distances(simulation, networks, asked, tell=told())
+    asked = exact_goals(simulation, trials, usual.goals, tell=report_progress())
+    sure = certified_distances(simulation, networks, asked, tell=report_progress())
     tell(CERTIFIED, known, known, 10.0 * sure)
     for name, way in list(WAYS.items())[: 1 if table == GRADIENT else None]:
         for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
             act = way(trials, every.first(many), effort)
-            exact = 10.0 * exact_distances(simulation, trials, act, seeds, asked, tell=told())
+            exact = 10.0 * exact_distances(simulation, trials, act, seeds, asked, tell=report_progress())
             tell(name, many, _used(name, many, known, usual), exact)
     replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}
@@ -197,8 +199,10 @@ def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: 
     kept = out / f"{robot.name}-{samples}.model"
     if not kept.exists():
         folder = out / f"{robot.name}-{SamplingScheme.ANTAGONIST}-train-{samples}"
-        sample_robot(plan_samples(robot, samples, draws=(SamplingScheme.ANTAGONIST,)), folder, jobs=jobs, tell=told())
-        save_model(learn_model(read_samples(folder), tell=told()), kept)
+        sample_robot(
+            plan_samples(robot, samples, draws=(SamplingScheme.ANTAGONIST,)), folder, jobs=jobs, tell=report_progress()
+        )
+        save_model(learn_model(read_samples(folder), tell=report_progress()), kept)
     return load_model(kept)
 
 
@@ -210,11 +214,11 @@ def _line(judged: "Judged", width: float) -> str:
     ran, exact = judged.ran, judged.exact
     seeds = interquartile(10.0 * np.nanmean(exact, axis=1))
     numbers = [
-        spanned(interquartile(final(ran)), 2),
-        spanned(interquartile(10.0 * ran.epochs.tolerance[-1]), 2),
-        spanned(interquartile(10.0 * ran.best[0].mean(axis=1)), 2),
-        spanned(interquartile(10.0 * ran.best[-1].mean(axis=1)), 2),
-        spanned(seeds, 2),
+        format_interval(interquartile(final(ran)), 2),
+        format_interval(interquartile(10.0 * ran.epochs.tolerance[-1]), 2),
+        format_interval(interquartile(10.0 * ran.best[0].mean(axis=1)), 2),
+        format_interval(interquartile(10.0 * ran.best[-1].mean(axis=1)), 2),
+        format_interval(seeds, 2),
     ]
     lost = int(np.isnan(exact).sum())
     text = f"{judged.name:18}{int(ran.epochs.actions[-1]):8}" + "".join(f"{number:>21}" for number in numbers)

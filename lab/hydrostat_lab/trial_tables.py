@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from hydrostat_lab.shared_data import OfPairs
 
 
-def spanned(found: object, digits: int) -> str:
-    """An interval as text."""
+def format_interval(found: object, digits: int) -> str:
+    """Format an interval as text."""
     mean, low, high = (getattr(found, name) for name in ("mean", "low", "high"))
     return f"{mean:.{digits}f} ({low:.{digits}f}{' to ' if low < 0 else '-'}{high:.{digits}f})"
 
@@ -40,7 +40,7 @@ def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[st
     for claim in experiment.claims:
         values = claim.measure(ran)
         word = verdict(values, claim.above)
-        number = f"{spanned(interquartile(values), 3)} {claim.unit}".rstrip()
+        number = f"{format_interval(interquartile(values), 3)} {claim.unit}".rstrip()
         print(f"  {claim.text}: {word}, {number} (claim: above {claim.above:g})")
         claims.append({"claim": claim.text, "verdict": word, "seeds": values.tolist(), "above": claim.above})
     runs = {
@@ -85,20 +85,20 @@ def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: flo
     for each in compared:
         expected = 10.0 * each.expected.mean(axis=1)
         row, found = {"way": each.way, "pairs": each.pairs, "in networks": expected.tolist()}, interquartile(expected)
-        text = f"{each.way:24}{each.pairs:8}{spanned(found, 3):>24}"
+        text = f"{each.way:24}{each.pairs:8}{format_interval(found, 3):>24}"
         curves.setdefault(each.way, []).append((each.pairs, found.mean))
         if each.exact is not None:
             ends[each.way] = seeds = 10.0 * np.nanmean(each.exact, axis=1)
             found, row["in the simulator"] = interquartile(seeds), seeds.tolist()
             lost = int(np.isnan(each.exact).sum())
-            text = f"{text}{spanned(found, 3):>24}{100 * found.mean / width:8.3f}{lost:6}"
+            text = f"{text}{format_interval(found, 3):>24}{100 * found.mean / width:8.3f}{lost:6}"
         print(text, flush=True)
         rows.append(row)
     claims = []
     for order in ORDERS:
         lead = ends[order.farther] - ends[order.nearer]
         word = verdict(lead, 0.0)
-        print(f"  {order.text}: {word}, by {spanned(interquartile(lead), 3)} mm")
+        print(f"  {order.text}: {word}, by {format_interval(interquartile(lead), 3)} mm")
         claims.append({"claim": order.text, "verdict": word, "seeds": lead.tolist()})
     replace_file(out / f"{name}.json", (json.dumps({"claims": claims, "rows": rows}, indent=1) + "\n").encode())
     axes = "action-outcome pairs", "mean error in networks [mm]"

@@ -29,7 +29,7 @@ from hydrostat.studio import (
     Poser,
     ProposalInput,
     held_of,
-    sketched,
+    propose_network,
 )
 
 MOVES, PAUSE, START = 60, 0.005, 5.0  # moves of a drag, between two of them [s], until the process has begun [s]
@@ -94,7 +94,7 @@ def proposals(robot: Robot) -> list[float]:
                 break
         nodes, tensions = mover.pulls
         began = time.perf_counter()
-        sketched(robot, ProposalInput(held=held, nodes=nodes, tensions=tensions, wishes=Wishes()), body)
+        propose_network(robot, ProposalInput(held=held, nodes=nodes, tensions=tensions, wishes=Wishes()), body)
         times.append(time.perf_counter() - began)
     return times
 

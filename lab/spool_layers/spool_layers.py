@@ -14,7 +14,7 @@ import numpy as np
 from machine import machine
 
 import hydrostat as hs
-from hydrostat.control import Calibration, fit_spool, layered, usual_calibration
+from hydrostat.control import Calibration, add_cable_layers, fit_spool, usual_calibration
 
 STOPS, RULER = 7, 5e-4
 
@@ -35,8 +35,8 @@ def main() -> None:
     parser.add_argument("robot")
     folder = parser.parse_args().robot
     robot = hs.load_robot(folder)
-    known = usual_calibration(robot).known()
-    true = layered(known)
+    known = usual_calibration(robot).assume_zeros()
+    true = add_cable_layers(known)
     curves = measured(known, true, [winch.travel for winch in robot.winches])
     simulation = hs.Simulation(robot)
     print(machine(), flush=True)

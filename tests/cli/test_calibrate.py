@@ -13,8 +13,8 @@ from hydrostat.control import (
     CALIBRATION,
     EMULATED_CALIBRATION,
     Calibration,
+    add_cable_layers,
     emulated_calibration,
-    layered,
     read_calibration,
     usual_calibration,
     write_calibration,
@@ -46,8 +46,8 @@ def test_emulated_motors_are_calibrated_and_saved(copy: Path) -> None:
     assert "Nothing stands out." in page
     assert page.count("<svg") == 4
     assert [bool(motor.curve) for motor in motors] == [True, False, False]
-    known = usual_calibration(load_robot(copy)).known()
-    true, ends = layered(known).motors[0], np.linspace(0.0, 0.06, 50).tolist()
+    known = usual_calibration(load_robot(copy)).assume_zeros()
+    true, ends = add_cable_layers(known).motors[0], np.linspace(0.0, 0.06, 50).tolist()
     beside = [[true.contraction(each.angle(end)) - end for end in ends] for each in (known.motors[0], motors[0])]
     told, measured = np.abs(beside).max(axis=1)
     assert told == pytest.approx(2.09e-3, abs=2e-5)

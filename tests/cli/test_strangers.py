@@ -19,7 +19,7 @@ import pytest
 import strangers
 from builders import gallery_robot
 
-from hydrostat.cli.bounded import bounded
+from hydrostat.cli.bounded import run_bounded
 from hydrostat.cli.folders import require_folder, result_folder
 from hydrostat.errors import InputError
 from hydrostat.geometry import heal, read_drawing, read_stranger, read_surface, triangulate
@@ -179,7 +179,7 @@ def _refuse() -> None:
 def bound(work: Callable[[], object], seconds: float = 20.0) -> object:
     """Within 400 MB more than this process has, which its child begins with."""
     here = int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    return bounded(work, file="a.stl", words="healing ...", seconds=seconds, memory=here + 400_000_000)
+    return run_bounded(work, file="a.stl", words="healing ...", seconds=seconds, memory=here + 400_000_000)
 
 
 def test_work_within_its_budget_is_as_if_done_here() -> None:

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from hydrostat.cli import waiting
-from hydrostat.cli.waiting import patiently, told
+from hydrostat.cli.waiting import patiently, report_progress
 
 
 def test_what_takes_long_is_told_and_what_is_quick_is_not(
@@ -28,7 +28,7 @@ def test_a_stage_that_comes_again_has_a_clock_of_its_own(
     """Oracle, by hand: ten in ten seconds; a hundred seconds later five of ten in one second, so one is left."""
     now = [0.0]
     monkeypatch.setattr(waiting.time, "monotonic", lambda: now[0])
-    tell = told()
+    tell = report_progress()
     for at, done in ((0.0, 0), (10.0, 10), (110.0, 0), (111.0, 5), (131.0, 10)):
         now[0] = at
         tell("poses", done, 10)

@@ -11,7 +11,7 @@ from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.control.emulated_servos import InjectedFaults
 from hydrostat.control.feetech_bus import BOUND, LOW, MODE, TICK, TORQUE, FeetechBus
-from hydrostat.control.feetech_packets import SumReader, pack, padded
+from hydrostat.control.feetech_packets import SumReader, pack, pad_bytes
 from hydrostat.control.guard import not_judged
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch
@@ -76,7 +76,7 @@ def test_no_single_byte_is_lost_unseen() -> None:
     for _ in range(200):
         packet = pack(0xFE, 0x83, bytes([41, 7, 1, *dice.randbytes(7)]))
         for place in range(len(packet)):
-            line = padded(packet)
+            line = pad_bytes(packet)
             reader = SumReader()
             later = pack(2, 0x01)
             found = list(reader.feed(line[:place] + line[place + 1 :] + later))

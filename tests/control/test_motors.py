@@ -44,13 +44,13 @@ def test_commands_keep_to_the_limits_and_the_speed() -> None:
     link = Noted()
     motors = Motors(WINCHES, link, fastest=0.05)
     assert motors.ask(np.array([0.09, -0.01])) == "left is at its limit of 60.0 mm and was asked for 90.0 mm"
-    assert motors.moving
+    assert motors.is_moving
     assert motors.drive(3.0)
     motors.turn("left", -1.0)
     motors.set_fastest(0.02)
     motors.drive(3.1)
     assert link.heard == [([0.06, 0.0], 3.0, 0.05), ([-0.01, 0.0], 3.1, 0.02)]
-    assert not motors.moving
+    assert not motors.is_moving
     assert motors.ask(np.array([0.06, 0.04])) == ""
 
 

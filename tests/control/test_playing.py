@@ -96,7 +96,7 @@ def test_it_plays_until_it_is_told_to_stop() -> None:
     link = Heard()
     motors = played(link, clock, stop, rounds=np.inf)
     assert 1010 < clock.time < 1011
-    assert not motors.moving
+    assert not motors.is_moving
     assert link.stops == 1
 
 

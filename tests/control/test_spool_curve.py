@@ -8,7 +8,7 @@ from hydrostat.control.bus_link import BusLink
 from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.dynamixel_bus import DynamixelBus
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
-from hydrostat.control.open_bus import layered
+from hydrostat.control.open_bus import add_cable_layers
 from hydrostat.control.spool_curve import LEAST, STOPS, SpoolCurve, fit_spool, measure_spool
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
@@ -20,7 +20,7 @@ OLD = Calibration(
         WinchMotor(winch="thumb", number=2, zero=0.2, turns=-1, radius=RADIUS),
     )
 )
-TRUE = layered(OLD)
+TRUE = add_cable_layers(OLD)
 
 
 class Bench:

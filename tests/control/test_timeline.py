@@ -30,8 +30,8 @@ def test_it_is_as_long_as_said_or_as_its_last_key() -> None:
 
 def test_a_moved_key_replaces_one_that_is_there() -> None:
     timeline = two_keys()
-    assert [key.time for key in timeline.moved(0, 3.5).keys] == [3.0, 3.5]
-    assert timeline.moved(0, 3.0 + SAME / 2).keys == (Key(time=3.0 + SAME / 2, contractions={"left": 0.0}),)
+    assert [key.time for key in timeline.move_key(0, 3.5).keys] == [3.0, 3.5]
+    assert timeline.move_key(0, 3.0 + SAME / 2).keys == (Key(time=3.0 + SAME / 2, contractions={"left": 0.0}),)
     assert timeline.index_at(3.0 - SAME / 2) == 1
     assert timeline.index_at(2.0) is None
 

@@ -20,7 +20,7 @@ def named(robot: Robot, name: str) -> Robot:
 def test_nothing_is_open_at_first() -> None:
     empty = Document(Bell())
     assert not empty.is_open
-    assert empty.saved
+    assert empty.is_saved
     assert not empty.undo()
     with pytest.raises(InputError, match="no robot is open"):
         _ = empty.robot
@@ -80,11 +80,11 @@ def test_timeline_and_wishes_are_undone_too(document: Document) -> None:
 
 
 def test_saved_follows_undo(document: Document, starfish: Robot) -> None:
-    assert document.saved
+    assert document.is_saved
     document.change("one", robot=named(starfish, "one"))
-    assert not document.saved
+    assert not document.is_saved
     document.undo()
-    assert document.saved
+    assert document.is_saved
 
 
 def test_the_physics_is_shared_by_changes_that_leave_the_robot_as_it_is(document: Document, starfish: Robot) -> None:
@@ -135,13 +135,13 @@ def test_what_changes_while_it_is_written_is_not_saved(document: Document, starf
     written = document.work
     document.change("two", robot=named(starfish, "two"))
     document.mark_saved(tmp_path, written)
-    assert not document.saved
+    assert not document.is_saved
     document.undo()
-    assert document.saved
+    assert document.is_saved
     document.open(Work(robot=named(starfish, "other")), saved=False)
     document.mark_saved(tmp_path, written)
     assert document.folder is None
-    assert not document.saved
+    assert not document.is_saved
 
 
 def test_the_bell_rings_for_every_change(document: Document, starfish: Robot) -> None:

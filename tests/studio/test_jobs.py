@@ -93,7 +93,7 @@ def test_a_slot_is_given_back_where_no_process_can_be_begun(monkeypatch: pytest.
 
 
 def test_nothing_is_running_at_first(jobs: Jobs) -> None:
-    assert not jobs.running
+    assert not jobs.is_running
     jobs.stop()
     assert jobs.state is None
 
@@ -130,7 +130,7 @@ def test_the_end_is_told_of_its_own_work_though_other_work_has_begun(jobs: Jobs)
     first, second = Heard(jobs), Heard(jobs)
 
     def hear(topic: Topic) -> None:
-        if not jobs.running and not second.begun:
+        if not jobs.is_running and not second.begun:
             second.begin(works.add, 1)
 
     first.begin(works.refuse)
@@ -207,7 +207,7 @@ def test_stopped_twice_is_ended_at_once(heard: Heard) -> None:
     heard.begin(works.stubborn)
     assert heard.parted.wait(PATIENCE)
     heard.jobs.stop()
-    assert heard.jobs.running
+    assert heard.jobs.is_running
     heard.jobs.stop()
     assert heard.end().error == "stopped"
     heard.jobs.stop()  # nothing runs: nothing happens

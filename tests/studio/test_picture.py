@@ -10,7 +10,7 @@ from hydrostat.drawing import winch_colours
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import locate
 from hydrostat.robot import Robot
-from hydrostat.studio.view.picture import Picture, opened, packet
+from hydrostat.studio.view.picture import Picture, packet, parse_message
 from hydrostat.studio.view.robot_things import DETAIL, robot_things, target_things, winch_bars
 from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Look, Stroke, rest_shape
 
@@ -25,7 +25,9 @@ def robot(request: pytest.FixtureRequest) -> Robot:
 def test_a_packet_opens_to_what_was_put_in() -> None:
     rows = np.arange(12.0).reshape(4, 3)
     numbers = np.array([[1, 2]], dtype=np.uint32)
-    head, arrays = opened(packet({"kind": "frame", "name": "Seestern é"}, {"a": rows, "b": numbers, "c": rows[:0]}))
+    head, arrays = parse_message(
+        packet({"kind": "frame", "name": "Seestern é"}, {"a": rows, "b": numbers, "c": rows[:0]})
+    )
     assert head == {"kind": "frame", "name": "Seestern é"}
     assert np.array_equal(arrays["a"], rows)
     assert np.array_equal(arrays["b"], numbers)
@@ -33,7 +35,7 @@ def test_a_packet_opens_to_what_was_put_in() -> None:
 
 
 def test_the_scene_has_the_surface_of_the_body(robot: Robot) -> None:
-    head, arrays = opened(Picture(robot, robot_things(robot), 7).scene())
+    head, arrays = parse_message(Picture(robot, robot_things(robot), 7).scene())
     mesh = robot.body.mesh
     assert (head["serial"], head["dim"], head["name"]) == (7, mesh.dim, robot.name)
     faces = mesh.elements if mesh.dim == 2 else mesh.boundary
@@ -49,8 +51,8 @@ def test_a_frame_moves_what_is_stuck_to_the_body(robot: Robot) -> None:
     things = robot_things(robot, vias=True)
     picture = Picture(robot, things, 1)
     moved = mesh.nodes * 1.1 + 0.01
-    _, arrays = opened(picture.frame(moved, things, {}))
-    head, _ = opened(picture.scene())
+    _, arrays = parse_message(picture.frame(moved, things, {}))
+    head, _ = parse_message(picture.scene())
     style = next(style for style in head["things"] if style["kind"] == "dot" and style["look"] == "marker")
     marker = robot.markers[0]
     expected = locate(mesh, np.array([marker.at])).positions(moved)[0]
@@ -68,7 +70,7 @@ def test_places_in_the_world_and_loads_need_no_new_scene(robot: Robot) -> None:
 
     picture = Picture(robot, things(at, 0.0), 1)
     assert picture.fits(robot, things(away, 5.0))
-    _, arrays = opened(picture.frame(robot.body.mesh.nodes, things(away, 5.0), {}))
+    _, arrays = parse_message(picture.frame(robot.body.mesh.nodes, things(away, 5.0), {}))
     assert np.allclose(arrays["points"][-1, : len(away)], away, atol=1e-6)
     assert not picture.fits(robot, robot_things(robot))
     assert not picture.fits(robot, things(at, 0.0)[1:])
@@ -87,7 +89,7 @@ def test_ghosts_clouds_and_areas_come_along(robot: Robot) -> None:
     area = Area(key="zone:0", colour="#c8243f", at=tuple(mesh.nodes[0].tolist()), radius=0.01)
     things = [area, ghost, cloud]
     picture = Picture(robot, things, 1)
-    head, arrays = opened(picture.scene())
+    head, arrays = parse_message(picture.scene())
     assert [style["kind"] for style in head["things"]] == ["area", "ghost", "cloud"]
     assert np.allclose(arrays["cloud:reach"][:, : mesh.dim], mesh.nodes[:5] + 1.0, atol=1e-6)
     assert arrays["ghost:rest"].shape == arrays["rest"].shape
@@ -103,10 +105,10 @@ def test_corners_beside_the_body_go_along_with_the_nearest_place(robot: Robot) -
     corners = np.array([inside, outside, third])
     area = Area(key="zone:0", colour="#c8243f", outline=tuple(tuple(corner.tolist()) for corner in corners))
     picture = Picture(robot, [area], 1)
-    _, arrays = opened(picture.frame(mesh.nodes, [area], {}))
+    _, arrays = parse_message(picture.frame(mesh.nodes, [area], {}))
     assert np.allclose(arrays["points"][:, : mesh.dim], corners, atol=1e-6)
     shift = np.arange(1, mesh.dim + 1) * 0.01
-    _, arrays = opened(picture.frame(mesh.nodes + shift, [area], {}))
+    _, arrays = parse_message(picture.frame(mesh.nodes + shift, [area], {}))
     assert np.allclose(arrays["points"][:, : mesh.dim], corners + shift, atol=1e-6)
 
 
@@ -114,7 +116,7 @@ def test_values_are_those_of_the_shown_nodes(robot: Robot) -> None:
     mesh = robot.body.mesh
     values = np.linspace(0.0, 1.0, len(mesh.nodes))
     picture = Picture(robot, [], 1)
-    _, arrays = opened(picture.frame(mesh.nodes, [], {}, values=values))
+    _, arrays = parse_message(picture.frame(mesh.nodes, [], {}, values=values))
     shown = np.arange(len(mesh.nodes)) if mesh.dim == 2 else np.unique(mesh.boundary)
     assert np.allclose(arrays["values"][:, 0], values[shown], atol=1e-6)
 
@@ -137,11 +139,11 @@ def test_eyes_are_shown_and_go_along_with_the_body() -> None:
     robot = replace(robot, body=replace(robot.body, marks=(eye,)))
     things = robot_things(robot)
     picture = Picture(robot, things, 1)
-    head, _ = opened(picture.scene())
+    head, _ = parse_message(picture.scene())
     (drawn,) = [thing for thing in head["things"] if thing.get("stroke") == Stroke.DRAWN]
     assert drawn["count"] <= 2 * DETAIL, "no drawing makes each frame heavy"
     by = np.array([0.02, -0.01])
-    _, arrays = opened(picture.frame(robot.body.mesh.nodes + by, things, {}))
+    _, arrays = parse_message(picture.frame(robot.body.mesh.nodes + by, things, {}))
     points = arrays["points"][drawn["first"] : drawn["first"] + drawn["count"], :2]
     assert np.linalg.norm(points - by, axis=1) == pytest.approx(0.01, abs=1e-6)
     assert np.allclose(points[[0, -1]], eye[[0, -1]] + by, atol=1e-6)

@@ -14,7 +14,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.colouring import Colouring
-from hydrostat.studio.view.picture import opened
+from hydrostat.studio.view.picture import parse_message
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
 
@@ -89,7 +89,7 @@ def there(x: float) -> Hit:
 
 def test_without_a_robot_there_is_only_the_start() -> None:
     empty = Session()
-    assert empty.shown() is None
+    assert empty.current_view() is None
     assert not empty.step(0.0)
     assert not empty.grab("a", BODY)
     with pytest.raises(InputError, match="no robot is open"):
@@ -115,7 +115,7 @@ def test_one_screen_at_a_time_holds(session: Session) -> None:
 
 def test_a_screen_that_is_gone_lets_go(session: Session) -> None:
     session.grab("a", BODY)
-    session.left("a")
+    session.release_screen("a")
     assert diary(session)[-1] == "release"
     assert session.grab("b", BODY)
 
@@ -173,13 +173,13 @@ def test_a_frame_says_which_drag_it_answers(session: Session) -> None:
     session.grab("a", BODY, 100.0)
     session.step(0.0)
     session.drag("a", there(1.0), 200.0)
-    shown = session.shown()
+    shown = session.current_view()
     assert shown is not None
-    assert opened(shown.frame)[0]["stamp"] == 100.0
+    assert parse_message(shown.frame)[0]["stamp"] == 100.0
     session.step(0.1)
-    shown = session.shown()
+    shown = session.current_view()
     assert shown is not None
-    assert opened(shown.frame)[0]["stamp"] == 200.0
+    assert parse_message(shown.frame)[0]["stamp"] == 200.0
 
 
 def test_a_step_that_fails_again_and_again_complains_once(session: Session) -> None:
@@ -204,11 +204,11 @@ def test_undo_tells_what_it_took_back(session: Session, work: Work) -> None:
 
 
 def test_the_same_picture_keeps_its_scene(session: Session) -> None:
-    first, second = session.shown(), session.shown()
+    first, second = session.current_view(), session.current_view()
     assert first is not None
     assert second is not None
     assert first.serial == second.serial
-    head, arrays = opened(second.frame)
+    head, arrays = parse_message(second.frame)
     assert head["scene"] == first.serial
     assert np.allclose(arrays["nodes"][:, :2], session.document.robot.body.mesh.nodes, atol=1e-6)
 
@@ -217,9 +217,9 @@ def test_save_asks_for_a_folder_and_then_knows_it(session: Session, work: Work, 
     with pytest.raises(InputError, match="folder"):
         session.save()
     session.document.change("rename", robot=work.robot)
-    assert not session.document.saved
+    assert not session.document.is_saved
     session.save(tmp_path / "mine")
-    assert session.document.saved
+    assert session.document.is_saved
     assert load_robot(tmp_path / "mine") == work.robot
     session.save()
     assert session.document.folder == tmp_path / "mine"

@@ -38,7 +38,7 @@ def settle(session: Session) -> Callable[[Robot], None]:
     def wait(robot: Robot) -> None:
         def known() -> bool:
             skin = session.document.judge.skin(robot)
-            return skin is not None and not skin.awaited
+            return skin is not None and not skin.is_awaited
 
         with rung:
             assert rung.wait_for(known, timeout=300)

@@ -95,16 +95,16 @@ def test_networks_of_a_design_are_weighed_one_after_another(squid: Robot) -> Non
     other = squid.with_network(squid.winches[:1], [squid.cables[0]])
     for known in ([False, None], [False, False], [False, False]):
         judge.weigh([squid, other])
-        assert [judge.refused(squid), judge.refused(other)] == known
+        assert [judge.is_refused(squid), judge.is_refused(other)] == known
     assert heard == [Topic.JOB] * 2
     judge.learn(other, refused=("it is torn",))
-    assert judge.refused(other) is None
+    assert judge.is_refused(other) is None
     judge.weigh([squid, other])
-    assert judge.refused(other) is True
+    assert judge.is_refused(other) is True
     judge.options = KitOptions(motor="25d")
-    assert judge.refused(squid) is None
+    assert judge.is_refused(squid) is None
     judge.weigh([squid])
-    assert judge.refused(squid) is True
+    assert judge.is_refused(squid) is True
 
 
 def test_a_finding_is_chosen_and_let_go(squid: Robot) -> None:

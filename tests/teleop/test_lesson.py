@@ -62,8 +62,8 @@ def test_forty_poses_of_a_person_who_holds_still(bent: float, enough: float) -> 
         errors.append(known(values) - contractions)
     error = 2 * float(np.sqrt(np.mean(np.square(errors)))) / course.span
     assert error < 2 * enough
-    assert "40 poses; cross-validation error: leave-one-out" in course.told()
-    assert float(course.told().split("(")[1].split(")")[0]) == pytest.approx(error, rel=0.4)
+    assert "40 poses; cross-validation error: leave-one-out" in course.summary()
+    assert float(course.summary().split("(")[1].split(")")[0]) == pytest.approx(error, rel=0.4)
 
 
 def test_a_hand_that_moves_is_told_from_one_that_holds_still() -> None:

@@ -28,8 +28,8 @@ from hydrostat.studio.designing.painter import Painter
 from hydrostat.studio.designing.run import (
     DesignRun,
     ProgressPoint,
-    beginning,
     error_at_rest,
+    starting_robot,
     wished_poses,
     wished_request,
 )
@@ -150,7 +150,7 @@ class Designer(Stage):
             request=request,
             began=time.monotonic(),
             rest=error_at_rest(robot, request.poses),
-            best=beginning(robot, request),
+            best=starting_robot(robot, request),
         )
         self.running, self.outcome = True, ""
         ended = partial(self._ended, request)
@@ -198,13 +198,13 @@ class Designer(Stage):
         if ease is None or len(ease.nodes) != len(robot.body.mesh.nodes):
             return rest_shape(robot)
         reach = self._reach()
-        pulled = np.zeros(len(self.shown.winches)) if reach is None else reach.contractions
+        pulled = np.zeros(len(self.shown_robot.winches)) if reach is None else reach.contractions
         errors = {} if reach is None else reach.errors
         return RobotShape(nodes=ease.nodes, tensions=ease.tensions, contractions=pulled, errors=errors)
 
     def things(self) -> Sequence[Thing]:
         """The network that is shown, targets, zones."""
-        shown, ease, reach = self.shown, self._ease, self._reach()
+        shown, ease, reach = self.shown_robot, self._ease, self._reach()
         fits = ease is not None and len(ease.tensions) == len(shown.cables)
         things = robot_things(
             shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.constraints.tension
@@ -219,12 +219,12 @@ class Designer(Stage):
     def step(self, now: float) -> bool:
         """The body glides to the shape that is to be shown; what rests is judged, then one card after another."""
         judge = self._document.judge
-        judge.look(self.shown, self.wishes, now, held=self.running)
-        if not self.running and judge.of(self.shown, self.wishes) is not None:
+        judge.look(self.shown_robot, self.wishes, now, held=self.running)
+        if not self.running and judge.of(self.shown_robot, self.wishes) is not None:
             judge.weigh(candidate.robot for candidate in self.candidates)
         reach = self._reach()
         nodes = self._document.robot.body.mesh.nodes if reach is None else reach.nodes
-        tensions = np.zeros(len(self.shown.cables)) if reach is None else reach.tensions
+        tensions = np.zeros(len(self.shown_robot.cables)) if reach is None else reach.tensions
         if self._ease is None or self._ease.nodes.shape != nodes.shape:
             self._ease = Ease(nodes, tensions)
         self._ease.go(nodes, tensions)
@@ -257,8 +257,8 @@ class Designer(Stage):
         return self.painter.key(name)
 
     @property
-    def shown(self) -> Robot:
-        """The robot with the network that is shown."""
+    def shown_robot(self) -> Robot:
+        """Robot with the network that is shown."""
         candidate, run, robot = self.candidate, self.run, self._document.robot
         if candidate is not None:
             return candidate.robot

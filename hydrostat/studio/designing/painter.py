@@ -37,8 +37,8 @@ def lasso(points: tuple[Point, ...], size: float) -> Zone:
     return Zone(outline=tuple((float(x), float(y)) for x, y in list(largest.coords)[:-1]))
 
 
-def moved(zone: Zone, start: Point, end: Point) -> Zone:
-    """A zone carried from one point to another."""
+def move_zone(zone: Zone, start: Point, end: Point) -> Zone:
+    """Return a zone moved by the way from one point to another [m]."""
 
     def there(point: Point) -> Point:
         return tuple(value + last - first for value, first, last in zip(point, start, end, strict=True))
@@ -115,7 +115,7 @@ class Painter:
         elif kind == "zone" and self._there(rest):
             self.chosen = int(rest)
             zone = zones[self.chosen][1]
-            self._begin(self.chosen, "move", lambda end: moved(zone, place, end))
+            self._begin(self.chosen, "move", lambda end: move_zone(zone, place, end))
         else:
             return False
         return True

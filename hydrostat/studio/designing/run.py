@@ -61,8 +61,8 @@ class DesignRun:
     trail: tuple[ProgressPoint, ...] = field(default=())  # of the best network, in time
 
 
-def beginning(robot: Robot, request: DesignRequest) -> Robot:
-    """The robot with what a search begins with: its own network if that is improved, else what is kept of it."""
+def starting_robot(robot: Robot, request: DesignRequest) -> Robot:
+    """Return the robot with the network that a search starts from: its own if improved, else the kept parts of it."""
     limits = request.constraints
     if request.improve:
         return robot

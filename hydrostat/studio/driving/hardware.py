@@ -70,7 +70,7 @@ class Hardware:
         return None if link is None else link.state
 
     @property
-    def armed(self) -> bool:
+    def is_armed(self) -> bool:
         """True if the motors are armed and follow commands."""
         return self.state is LinkState.ARMED
 
@@ -203,7 +203,7 @@ class Hardware:
         """Tell and read motors once; False where none turn."""
         with self._lock:
             link = self._link
-            if link is None or not self.armed:
+            if link is None or not self.is_armed:
                 return False
             now = time.monotonic()
             if now - self._alive > self._silent:

@@ -76,7 +76,7 @@ class Keyframes:
             held = _Held(index=index, before=self.timeline, made=self.timeline)
         before = held.before
         time = min(max(time, 0.0), before.seconds)
-        timeline = replace(before.moved(index, time), length=before.seconds)
+        timeline = replace(before.move_key(index, time), length=before.seconds)
         self._held = replace(held, made=timeline)
         self._document.change(f"move keyframe to {time:.2f} s", timeline=timeline, merge="move key")
         self._choose(time)

@@ -144,7 +144,7 @@ class Machine:
     @property
     def busy(self) -> bool:
         """Tell whether there is more to do."""
-        return self.player.playing or self.motors.moving
+        return self.player.playing or self.motors.is_moving
 
     def _motors_of(self, robot: Robot, before: Motors) -> Motors:
         """Motors of a robot; winches of the same name keep what they have taken in, and what they shall take in."""

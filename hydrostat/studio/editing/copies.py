@@ -1,4 +1,4 @@
-"""`shifted`, `pasted`: many parts of a robot together, moved or put in once more."""
+"""`shift_parts`, `paste_parts`: many parts of a robot together, moved or put in once more."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -27,8 +27,8 @@ def spots(robot: Robot, keys: Collection[str]) -> list[str]:
     return list(found)
 
 
-def shifted(robot: Robot, keys: Collection[str], way: Sequence[float], mirror: Mirror | None = None) -> Robot:
-    """The robot with parts, and their twins, moved by a way [m] (InputError: one would lie outside)."""
+def shift_parts(robot: Robot, keys: Collection[str], way: Sequence[float], mirror: Mirror | None = None) -> Robot:
+    """Return the robot with parts, and their mirror twins, moved by a way [m] (InputError: one would lie outside)."""
     own = spots(robot, keys)
     places: dict[str, Point] = {}
     for key in own:
@@ -42,8 +42,8 @@ def shifted(robot: Robot, keys: Collection[str], way: Sequence[float], mirror: M
     return move(robot, places)
 
 
-def pasted(robot: Robot, source: Robot, keys: Collection[str]) -> tuple[Robot, tuple[str, ...]]:
-    """The robot with copies of parts of a source, a little beside them, and the keys of the copies.
+def paste_parts(robot: Robot, source: Robot, keys: Collection[str]) -> tuple[Robot, tuple[str, ...]]:
+    """Return the robot with copies of parts of a source, slightly offset, and the keys of the copies.
 
     A winch brings its cables; a cable alone is laid once more from its own winch. An InputError says that there is no
     room beside them, or that the winch of a cable is gone.

@@ -8,15 +8,15 @@ import numpy as np
 
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
-from hydrostat.project import followed
+from hydrostat.project import follow_robot
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.cable_draft import CableDraft, begin_cable, end_cable, overlay
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity
-from hydrostat.studio.editing.copies import pasted, shifted
+from hydrostat.studio.editing.copies import paste_parts, shift_parts
 from hydrostat.studio.editing.findings import Findings, look_over
-from hydrostat.studio.editing.hold import Hold, below_skin, gridded, inside, take_hold
+from hydrostat.studio.editing.hold import Hold, below_skin, inside, snap_to_grid, take_hold
 from hydrostat.studio.editing.part import Mirror, find_part, keys_of, name_of, place_of, title_of
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
 from hydrostat.studio.editing.ruler import Ruler
@@ -118,7 +118,7 @@ class Editor(Stage):
         """Put in what was copied once more, beside it, and select that (InputError: nothing was copied, or no room)."""
         if self._copied is None:
             raise InputError("nothing copied. Select parts and press Ctrl C")
-        robot, keys = pasted(self._document.robot, *self._copied)
+        robot, keys = paste_parts(self._document.robot, *self._copied)
         self._change(f"paste {plural(len(keys), 'part')}", robot)
         self._copied = (robot, keys)
         self._chosen = keys
@@ -137,7 +137,7 @@ class Editor(Stage):
         if self.selection:
             way = np.zeros(self._document.robot.body.mesh.dim)
             way[axis] = step
-            robot = shifted(self._document.robot, self.selection, way.tolist(), self.mirror)
+            robot = shift_parts(self._document.robot, self.selection, way.tolist(), self.mirror)
             words = title_of(self.chosen) if len(self.selection) == 1 else plural(len(self.selection), "part")
             self._document.change(f"nudge {words}", robot=robot, merge=f"nudge {' '.join(self.selection)}")
 
@@ -348,7 +348,7 @@ class Editor(Stage):
         before = place_of(robot, hold.key)
         if before is None or not self._many(hold.key):
             return move(robot, hold.places(at))
-        return shifted(robot, self.selection, tuple(np.subtract(at, before).tolist()), self.mirror)
+        return shift_parts(robot, self.selection, tuple(np.subtract(at, before).tolist()), self.mirror)
 
     def _measure(self, hit: Hit) -> None:
         """Lay the ruler on a part, or on a place of the body."""
@@ -363,7 +363,7 @@ class Editor(Stage):
         robot = self._document.robot
         if hit.rest is None:
             raise InputError(f"click the body to place a {self.tool}")
-        asked = gridded(hit.rest, self.snap)
+        asked = snap_to_grid(hit.rest, self.snap)
         at = inside(robot.body, asked) if skin else below_skin(robot.body, asked, self.depth)
         return self.mirror.on_plane(at) if self.mirror is not None and self.mirror.near(robot, at) else at
 
@@ -387,7 +387,7 @@ class Editor(Stage):
         return (key,) if twin is None else (key, twin)
 
     def _change(self, label: str, robot: Robot, renamed: dict[str, str] | None = None) -> None:
-        timeline, wishes = followed(self._document.work, robot, renamed)
+        timeline, wishes = follow_robot(self._document.work, robot, renamed)
         self._refused = ""
         self._document.change(label, robot=robot, timeline=timeline, wishes=wishes)
 

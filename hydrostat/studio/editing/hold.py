@@ -53,8 +53,8 @@ def tidy(at: Point) -> Point:
     return tuple(round(float(value), DIGITS) + 0.0 for value in at)
 
 
-def gridded(at: Point, step: float) -> Point:
-    """The nearest place whose coordinates are multiples of a step [m]; the place itself where that is 0."""
+def snap_to_grid(at: Point, step: float) -> Point:
+    """Return the nearest place whose coordinates are multiples of a step [m]; the place itself for a step of 0."""
     return at if step <= 0 else tuple((step * np.round(np.array(at) / step)).tolist())
 
 
@@ -83,7 +83,7 @@ class Hold:
 
     def asked(self, robot: Robot, world: Point, snap: float = 0.0) -> Point:
         """The place [m] that a pointer asks for, on a grid; inside the body, but for pins and winches beside it."""
-        at = gridded(tuple((np.array(world) + self.grip).tolist()) if self.grip else world, snap)
+        at = snap_to_grid(tuple((np.array(world) + self.grip).tolist()) if self.grip else world, snap)
         part = find_part(robot, self.key)
         if part is not None and part.kind is Kind.WINCH and robot.winches[part.index].mount is Mount.WORLD:
             return tidy(at)

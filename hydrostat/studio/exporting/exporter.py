@@ -76,8 +76,8 @@ class Exporter(Stage):
         """Pictures of the robot as it is now, if they were made."""
         return self._result(Export.PICTURES) or ()
 
-    def outdated(self, export: Export) -> bool:
-        """Tell whether something was made, and the robot has changed since."""
+    def is_outdated(self, export: Export) -> bool:
+        """True if an export was made and the robot has changed since."""
         return export in self._made and self._result(export) is None
 
     def choose(self, options: KitOptions) -> None:

@@ -25,7 +25,7 @@ class KitMade:
     pattern: bytes | None = None  # of a plush robot, as SVG
 
     @property
-    def told(self) -> str:
+    def check_summary(self) -> str:
         """Count of the passed checks, such as "8 of 8 checks passed"."""
         held = sum(check.passed for check in self.checks)
         return f"{held} of {len(self.checks)} checks passed"

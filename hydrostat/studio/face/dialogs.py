@@ -101,7 +101,7 @@ class _Sure:
 async def may_leave(page: WindowPage) -> bool:
     """Ask if there is work that is not saved, and save it if a person says so; whether it may be left now."""
     document = page.session.document
-    if document.saved:
+    if document.is_saved:
         return True
     with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
         ui.label(f"Unsaved changes in {document.robot.name}").classes("studio-title")
@@ -118,7 +118,7 @@ async def may_leave(page: WindowPage) -> bool:
     dialog.delete()
     if answer == "save":
         await page.save()
-        return document.saved
+        return document.is_saved
     return answer == "yes"
 
 

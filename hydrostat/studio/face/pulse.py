@@ -99,7 +99,7 @@ class Pulse:
 
     def _hand_over(self) -> bool:
         with self._showing:
-            shown = self._session.shown()
+            shown = self._session.current_view()
             if shown is not None:
                 self._publish(shown)
         return False

@@ -98,8 +98,8 @@ class Rooms:
             room.seen = time.monotonic()
         return room
 
-    def watched(self, key: str) -> Room | None:
-        """The room that a watch key shows; None if there is none, or nobody has opened it yet."""
+    def find_watched(self, key: str) -> Room | None:
+        """Return the room of a watch key; None if there is none, or nobody has opened it yet."""
         rooms = [self._only] if self._only is not None else list(self._rooms.values())
         return next((room for room in rooms if room.watch_key == key), None)
 
@@ -107,7 +107,7 @@ class Rooms:
         name = sha256(key.encode()).hexdigest()[:24]
         state = None if self._state is None else self._state / "rooms" / name
         session = Session(state, guest=True, slots=self._slots)
-        if self._first is not None and not session.starter.autosave.left():
+        if self._first is not None and not session.starter.autosave.find_recovered():
             session.starter.open_gallery(self._first)
             session.go("pose")
         return session

@@ -68,7 +68,7 @@ def _add_streams(app: FastAPI, rooms: Rooms) -> None:
 
     @app.websocket("/watched/{key}")
     async def watch(socket: WebSocket, key: str) -> None:
-        room = rooms.watched(key)
+        room = rooms.find_watched(key)
         await (socket.close(1008) if room is None else show(socket, room, watching=True))
 
 
@@ -103,7 +103,7 @@ def _add_pages(rooms: Rooms, token: str | None, cookie: str) -> None:
 
     @ui.page("/watch/{key}", title=TITLE, language="en-US")
     def watcher(key: str) -> Response | None:
-        room = rooms.watched(key)
+        room = rooms.find_watched(key)
         if room is None:
             return PlainTextResponse("hydrostat: this room is not in use now\n", status_code=404)
         page = build_watch(room.session, f"/watched/{key}")

@@ -64,7 +64,7 @@ class Stream:
             with suppress(asyncio.CancelledError, WebSocketDisconnect, RuntimeError):
                 await writer
             del self._screens[name]
-            self._session.left(name)
+            self._session.release_screen(name)
 
     def _wake(self) -> None:
         for screen in self._screens.values():

@@ -154,7 +154,7 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
 
     def show_robot() -> None:
         document = session.document
-        name.set_text(("" if document.saved else "● ") + document.robot.name if document.is_open else "")
+        name.set_text(("" if document.is_saved else "● ") + document.robot.name if document.is_open else "")
         undo.props(f"data-serial={document.serial}")  # whose state the buttons show
         for button in (save, more):
             button.set_enabled(document.is_open)

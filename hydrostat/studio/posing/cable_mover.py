@@ -77,8 +77,8 @@ class CableMover(Mover):
         """Pose that the robot is in."""
         return self._pose
 
-    def limited(self, tension: float) -> "CableMover":
-        """The same in the same pose with another limit on the tension [N]."""
+    def with_tension_limit(self, tension: float) -> "CableMover":
+        """Return a mover in the same pose with another limit on the tension [N]."""
         return CableMover(self._simulation, tension=tension, start=self._pose, predictor=self.predictor)
 
     def rest(self) -> RobotShape:
@@ -100,7 +100,7 @@ class CableMover(Mover):
             self._told = True  # the exact answer is next, even if the pointer has gone on
             self.predictor.stay(self._pose)
             shape = self._shape(self._anchored.errors(held, self._pose.nodes), (), settled=False)
-            return replace(shape, prediction=self.predictor.solve(targets).to_prediction(exact=False)), True
+            return replace(shape, prediction=self.predictor.solve(targets).as_prediction(exact=False)), True
         self._told = False
         if self._near and not self._exact:
             self._follow(self._simulation)
@@ -125,7 +125,7 @@ class CableMover(Mover):
             notes = (*notes, *self._band())
         shape = self._shape(dict(reached.errors), notes, settled=not more)
         if targets and self.predictor is not None:
-            shape = replace(shape, prediction=self.predictor.solve(targets).to_prediction(exact=not more))
+            shape = replace(shape, prediction=self.predictor.solve(targets).as_prediction(exact=not more))
         return shape, more
 
     def _asked(self, held: Mapping[str, HeldPoint]) -> dict[str, Point] | None:

@@ -63,7 +63,7 @@ class CableProposals:
             self._newest = _Question(robot, moment)
             self._news.notify_all()
 
-    def found(self, robot: Robot) -> Proposal | None:
+    def latest_proposal(self, robot: Robot) -> Proposal | None:
         """Return the latest proposal, if it is for a body as this robot has it."""
         found = self._found
         if found is None or not self.on or not same_physics(found[0], robot, Mode.MUSCLES):
@@ -72,7 +72,7 @@ class CableProposals:
 
     def network(self, robot: Robot) -> Robot | None:
         """The robot with the network proposed last; None if there is none."""
-        found = self.found(robot)
+        found = self.latest_proposal(robot)
         if found is None or not found.cables:
             return None
         made = self._made  # asked for with every frame, and the checks of a robot take a while

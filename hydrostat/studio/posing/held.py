@@ -85,8 +85,8 @@ class PoseState:
         found = name in self.wish.held or any(marker.name == name for marker in self.robot.markers)
         return name if found else ""
 
-    def adapted(self, robot: Robot) -> "PoseState":
-        """The same for a robot of the same nodes; what was held at a lost marker is let go, a plain point is not."""
+    def adapt_to(self, robot: Robot) -> "PoseState":
+        """Return the state for a robot of the same nodes; it releases points held at lost markers, not plain points."""
         names, places = renamed_markers(self.robot, robot), {marker.name: marker.at for marker in robot.markers}
         held: dict[str, HeldPoint] = {}
         for old, point in self.wish.held.items():

@@ -49,7 +49,7 @@ class Movers:
             start, predictor = _resumed(simulation, before), self._predictor(simulation.robot)
             self._cables = CableMover(simulation, tension=tension, start=start, predictor=predictor)
         elif before.tension != tension:
-            self._cables = before.limited(tension)
+            self._cables = before.with_tension_limit(tension)
         assert self._cables is not None
         return self._cables
 

@@ -357,7 +357,7 @@ class Poser(Stage):
                 now = PoseState(robot=robot, wish=wish, anchored=Anchored(robot.body.mesh), shape=rest_shape(robot))
                 self._let_go()
             else:
-                now = before.adapted(robot)
+                now = before.adapt_to(robot)
                 self._rename(before, now)
             self._now = now
             return now

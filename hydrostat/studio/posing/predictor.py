@@ -23,8 +23,8 @@ class HeldAnswer:
     uncertainty: float  # mean spread of the networks there [m]
     markers: Mapping[str, Point]  # where they expect each held marker [m]
 
-    def to_prediction(self, *, exact: bool) -> Prediction:
-        """Return it as the studio shows it, next to an answer that is exact or on its way."""
+    def as_prediction(self, *, exact: bool) -> Prediction:
+        """Return the prediction to show, next to an answer that is exact or still being solved."""
         return Prediction(markers=self.markers, error=self.error, uncertainty=self.uncertainty, exact=exact)
 
 

@@ -66,8 +66,8 @@ def asked_of_trees(robot: Robot, wishes: Wishes) -> DesignRequest:
     ).fitted(robot)
 
 
-def sketched(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal:
-    """The network for one moment, with the pose that it reaches."""
+def propose_network(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal:
+    """Find the network for one proposal input, with the pose that it reaches."""
     posed = with_pose(robot, POSE, moment.held)
     activation = Activation(
         target=posed.pose(POSE),
@@ -107,6 +107,6 @@ def propose_work(pipe: Connection) -> None:
 
 def _answer(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal:
     try:
-        return sketched(robot, moment, body)
+        return propose_network(robot, moment, body)
     except HydrostatError as error:
         return Proposal(words=str(error))

@@ -30,7 +30,7 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
     simulation = Simulation(robot)
     last, held, places = simulation.rest, 0, []
     rubs = simulation.assembly.has_history  # the way counts there
-    for index, contractions in enumerate(spread(robot, count)):
+    for index, contractions in enumerate(spread_contractions(robot, count)):
         report.progress("sampling poses", index, count)
         try:
             pose = simulation.solve(contractions, start=None if rubs else last, strict=False)
@@ -48,8 +48,8 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
     return held
 
 
-def spread(robot: Robot, count: int) -> list[Vector]:
-    """Contractions of all winches [m], by Sobol's sequence, each near the one before so that solves are short."""
+def spread_contractions(robot: Robot, count: int) -> list[Vector]:
+    """Return contractions of all winches [m] by Sobol's sequence, ordered so that successive solves are short."""
     from scipy.stats import qmc  # a quarter of a second, not to be spent before the studio opens
 
     low = np.array([-winch.release for winch in robot.winches])

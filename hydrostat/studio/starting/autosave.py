@@ -130,16 +130,16 @@ class Autosave:
 
     def close(self) -> None:
         """End with the studio: what is saved is kept no longer, what is not is there next time."""
-        if not self._document.saved:
+        if not self._document.is_saved:
             self._keep()
         with self._lock:
-            if self._document.saved:
+            if self._document.is_saved:
                 self._remove()
             if self._held is not None:
                 self._held.let_go()
                 self._held = None
 
-    def left(self) -> list[RecoveredWork]:
+    def find_recovered(self) -> list[RecoveredWork]:
         """Return the work recovered from studios that no longer run, the newest first."""
         if self._folder is None or not self._folder.is_dir():
             return []
@@ -160,7 +160,7 @@ class Autosave:
         rmtree(left.folder.parent, ignore_errors=True)
 
     def _state(self) -> tuple[int, bool, bytes]:
-        return (self._document.serial, self._document.saved, self._document.designs)
+        return (self._document.serial, self._document.is_saved, self._document.designs)
 
     def _keep(self) -> bool:
         """Write the work as it is now, or remove what was kept if it is saved; whether that could be done."""

@@ -1,4 +1,4 @@
-"""`LoopCorner`, `read_loops`, `loops_svg`, `fitted`: an outline as few corners, as a person draws it."""
+"""`LoopCorner`, `read_loops`, `loops_svg`, `fit_loops`: an outline as few corners, as a person draws it."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -107,8 +107,8 @@ def loops_svg(loops: Sequence[Loop]) -> tuple[bytes, tuple[float, float]]:
     return text.encode(), (float(left), float(top))
 
 
-def fitted(outline: Outline) -> tuple[Loop, ...]:
-    """Loops of as few corners as follow an outline to a share of its size."""
+def fit_loops(outline: Outline) -> tuple[Loop, ...]:
+    """Fit loops with the fewest corners that follow an outline to within a share of its size."""
     return tuple(_fitted(1e3 * ring, 1e3 * outline.size) for ring in outline.rings)
 
 

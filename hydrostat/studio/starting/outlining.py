@@ -1,4 +1,4 @@
-"""`Outlining`, `reshaped`: an outline while a person draws it, and a robot that is given it."""
+"""`Outlining`, `reshape_outline`: an outline while a person draws it, and a robot that is given it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -8,9 +8,9 @@ import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import read_drawing
-from hydrostat.project import Work, followed, moved_zone
+from hydrostat.project import Work, follow_robot, moved_zone
 from hydrostat.robot import Body, Cable, Mount, Pin, Point, PoseTarget, Robot, outline_body
-from hydrostat.studio.starting.loops import Loop, LoopCorner, fitted, loops_svg, outline_of, read_loops
+from hydrostat.studio.starting.loops import Loop, LoopCorner, fit_loops, loops_svg, outline_of, read_loops
 from hydrostat.studio.starting.photo import Backdrop
 from hydrostat.units import plural
 
@@ -43,7 +43,7 @@ class Outlining:
         """Edit the outline of a robot, as few corners (InputError: it was not drawn)."""
         if robot.body.outline is None:
             raise InputError(f"{robot.name} has no outline. Only flat bodies made from a drawing have one")
-        return cls(fitted(robot.body.outline), robot)
+        return cls(fit_loops(robot.body.outline), robot)
 
     def take(self, raw: Any) -> None:
         """Take what a screen has sent (InputError: it is no loops)."""
@@ -53,10 +53,10 @@ class Outlining:
         """The loops as SVG in millimetres (InputError: they are no body)."""
         return loops_svg(self.loops)[0]
 
-    def applied(self, work: Work) -> Reshaped:
-        """The work with this outline (InputError: it is no body, or no pin lies in it)."""
+    def apply_outline(self, work: Work) -> Reshaped:
+        """Return the work with this outline (InputError: it is no body, or no pin lies in it)."""
         drawing, corner = loops_svg(self.loops)
-        return reshaped(work, drawing, corner)
+        return reshape_outline(work, drawing, corner)
 
     def _set(self, loops: tuple[Loop, ...]) -> None:
         self.loops = loops
@@ -86,7 +86,7 @@ def _spoke(step: float, steps: int) -> tuple[float, float]:
     return round(float(np.cos(angle)), 3), round(float(np.sin(angle)), 3)
 
 
-def reshaped(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
+def reshape_outline(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
     """Give a flat robot another outline, an SVG in millimetres (InputError: it is no body, or no pin lies in it).
 
     Coordinates of a body count from the middle of its drawing, so what stays is moved when that moves: `corner` is what
@@ -199,5 +199,5 @@ def _poses_of(poses: tuple[PoseTarget, ...], markers: set[str], dropped: list[st
 def _matching(work: Work, robot: Robot, move: Move) -> Work:
     """Wishes and keyframes that fit the robot."""
     zones = tuple((paint, moved_zone(zone, move)) for paint, zone in work.wishes.zones)
-    timeline, wishes = followed(work, robot)
+    timeline, wishes = follow_robot(work, robot)
     return replace(work, robot=robot, timeline=timeline, wishes=replace(wishes, zones=zones))

@@ -16,11 +16,11 @@ from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.starting.autosave import Autosave
 from hydrostat.studio.starting.draft import BodyDraft, new_draft
-from hydrostat.studio.starting.loops import fitted
+from hydrostat.studio.starting.loops import fit_loops
 from hydrostat.studio.starting.outlining import Outlining
 from hydrostat.studio.starting.shelf import Card, Recent, card_of, robots_in, told_apart
 from hydrostat.studio.starting.sketch import Sketch, make_sketch
-from hydrostat.studio.starting.unpack import unpacked
+from hydrostat.studio.starting.unpack import unpack_robot
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
@@ -83,7 +83,7 @@ class Starter(Stage):
 
     def open_zip(self, name: str, content: bytes) -> None:
         """Open the robot in a .zip, such as Export makes; Save asks for a folder (InputError: there is none in it)."""
-        work, text = unpacked(name, content)
+        work, text = unpack_robot(name, content)
         self._document.open(work, text=text)
 
     def recent(self) -> list[Card]:
@@ -91,7 +91,7 @@ class Starter(Stage):
         return told_apart([*map(card_of, self._recent.folders()), *robots_in(Path.cwd())])
 
     @property
-    def meshing(self) -> bool:
+    def is_meshing(self) -> bool:
         """True if a sketch is being meshed."""
         return self._working is not None
 
@@ -118,7 +118,7 @@ class Starter(Stage):
             if self.draft is None:
                 return
             draft = replace(self.draft, **changes)
-            if self.sketch is not None and self.is_current and not self.meshing and set(changes) <= _LIGHT:
+            if self.sketch is not None and self.is_current and not self.is_meshing and set(changes) <= _LIGHT:
                 self.draft, self.sketch = draft, _with_light(self.sketch, draft)
                 self._look_at_skin()
                 self._document.bell.ring(Topic.JOB)
@@ -129,7 +129,7 @@ class Starter(Stage):
         """Open the robot that was sketched (InputError: there is none, or it is not what was asked for last)."""
         with self._lock:
             sketch = self.sketch
-            if sketch is None or not self.is_current or self.meshing:
+            if sketch is None or not self.is_current or self.is_meshing:
                 raise InputError(self.problem or "meshing in progress. Wait a moment")
             self._document.open(Work(robot=sketch.robot), saved=False)
             self.drop()
@@ -166,7 +166,7 @@ class Starter(Stage):
         sketch = self.sketch
         if sketch is None or sketch.robot.body.outline is None:
             raise InputError("no flat outline yet")
-        self.outlining = Outlining(fitted(sketch.robot.body.outline), behind=sketch.behind)
+        self.outlining = Outlining(fit_loops(sketch.robot.body.outline), behind=sketch.behind)
         self._document.bell.ring(Topic.JOB)
 
     def outline_cancel(self) -> None:
@@ -203,7 +203,7 @@ class Starter(Stage):
             before = self._document.work
             if outlining.robot is not None and outlining.robot.body.content != before.robot.body.content:
                 raise InputError("outline not applied: another body was opened meanwhile")
-            work = outlining.applied(before).work
+            work = outlining.apply_outline(before).work
             if self.outlining is not outlining or outlining.loops != asked:
                 raise InputError("the outline changed meanwhile. Apply it again when it is done")
             if self._document.work is before:  # else it is made again, for what was changed meanwhile

@@ -1,4 +1,4 @@
-"""`unpacked`: the robot in a .zip, as `Exporter.robot_zip` packs it; nothing of a stranger's archive goes elsewhere."""
+"""`unpack_robot`: the robot in a .zip, as `Exporter.robot_zip` packs it; no file of the archive goes elsewhere."""
 
 import stat
 import zlib
@@ -18,8 +18,8 @@ MOST_BYTES = 200_000_000  # of all its files, unpacked
 DEEPEST = 4  # folders in one another
 
 
-def unpacked(name: str, content: bytes) -> tuple[Work, str]:
-    """The robot, and the text of its robot.toml; sizes are known before a byte is unpacked.
+def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
+    """Return the robot and the text of its robot.toml; sizes are checked before anything is unpacked.
 
     Raises:
         InputError: no archive, too large, a file that would climb out of its folder, or not one robot in it.

@@ -37,8 +37,8 @@ def packet(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
     return b"".join([struct.pack("<I", len(text)), text, *bodies])
 
 
-def opened(message: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """Head and arrays of a message, for tests and for programs that listen to a studio."""
+def parse_message(message: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Return the head and arrays of a message, for tests and for programs that listen to a studio."""
     (length,) = struct.unpack_from("<I", message)
     head = json.loads(message[4 : 4 + length])
     place, arrays = 4 + length, {}

@@ -132,7 +132,7 @@ def test_a_candidate_is_shown_in_its_pose_and_at_rest(done: Studio) -> None:
     done.settle()
     np.testing.assert_array_equal(designer.shape().nodes, best.source.body.mesh.nodes)
     assert not designer.shape().tensions.any()
-    assert done.session.shown() is not None
+    assert done.session.current_view() is not None
 
 
 def test_accepting_is_one_step_to_undo(done: Studio, strip: Robot) -> None:

@@ -16,7 +16,7 @@ from hydrostat.simulation import Simulation
 from hydrostat.studio.designing import cards_file
 from hydrostat.studio.designing.cards_file import cards_content, read_cards
 from hydrostat.studio.designing.design_work import DesignsFound, solution
-from hydrostat.studio.designing.run import DesignRun, beginning, wished_request
+from hydrostat.studio.designing.run import DesignRun, starting_robot, wished_request
 from hydrostat.studio.session import Session
 
 
@@ -24,7 +24,7 @@ def found_by(session: Session, robot: Robot) -> None:
     """The robot's own network and one with half of its cables are what a design has found."""
     designer, few = session.designer, robot.with_network(robot.winches[:1], [robot.cables[0]])
     request = wished_request(robot, Wishes())
-    designer.run = DesignRun(robot=robot, request=request, began=0.0, rest=0.0, best=beginning(robot, request))
+    designer.run = DesignRun(robot=robot, request=request, began=0.0, rest=0.0, best=starting_robot(robot, request))
     once = IKOptions(restarts=0)
     pose = next(iter(robot.poses.values()))
     made = [
@@ -54,7 +54,7 @@ def crashed(starfish: Robot, tmp_path: Path, unchecked: None) -> Iterator[Sessio
 
 def test_cards_come_back_with_their_poses_and_loads(crashed: Session, tmp_path: Path) -> None:
     session = Session(tmp_path / "state")
-    (left,) = session.starter.autosave.left()
+    (left,) = session.starter.autosave.find_recovered()
     session.starter.autosave.restore(left)
     before, after = crashed.designer.candidates, session.designer.candidates
     assert len(after) == len(before) == 2
@@ -77,15 +77,15 @@ def test_cards_come_back_with_their_poses_and_loads(crashed: Session, tmp_path: 
     assert len(session.document.robot.cables) == 1
     session.document.undo()
     session.close()
-    (again,) = session.starter.autosave.left()
+    (again,) = session.starter.autosave.find_recovered()
     assert (again.folder / "designs.json").is_file(), "what was restored is not saved yet"
 
 
 def test_a_studio_that_ends_well_leaves_no_cards_of_saved_work(crashed: Session, tmp_path: Path) -> None:
-    (left,) = crashed.starter.autosave.left()
+    (left,) = crashed.starter.autosave.find_recovered()
     assert left.origin == tmp_path / "robot"
     crashed.close()
-    assert crashed.starter.autosave.left() == []
+    assert crashed.starter.autosave.find_recovered() == []
 
 
 def test_cards_of_another_body_damaged_ones_and_too_many(

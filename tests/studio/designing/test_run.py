@@ -8,7 +8,7 @@ from hydrostat.design import Constraints, DesignMethod, RouteOptions, TreeOption
 from hydrostat.errors import InputError
 from hydrostat.project import Paint, Wishes, wished_constraints
 from hydrostat.robot import Robot
-from hydrostat.studio.designing.run import beginning, wished_poses, wished_request
+from hydrostat.studio.designing.run import starting_robot, wished_poses, wished_request
 
 
 @pytest.fixture(scope="module")
@@ -125,7 +125,7 @@ def test_a_search_begins_with_what_stays(starfish: Robot) -> None:
     """Oracle: the names and numbers that were wished for."""
 
     def begun(**wishes: object) -> Robot:
-        return beginning(starfish, wished_request(starfish, Wishes.of(**wishes)))
+        return starting_robot(starfish, wished_request(starfish, Wishes.of(**wishes)))
 
     assert (begun().winches, begun().cables) == ((), ())
     assert begun(improve=True) is starfish

@@ -55,7 +55,7 @@ def test_while_it_moves_it_is_a_hair_off_and_at_rest_exact(driver: Driver, starf
     for number in range(1, 11):  # 2 mm a step
         driver.step(0.02 * number * 2 / 3)
     exact = physics.solve(driver.places()).nodes
-    assert driver.motors.moving
+    assert driver.motors.is_moving
     assert 0 < np.abs(driver.shape().nodes - exact).max() < 2e-5
     driver.leave()
     driver.step(1.0)
@@ -384,7 +384,7 @@ def test_a_drag_that_was_never_dropped_brings_nothing_old_back(
         driver.keyframes.put(3.0, {"left": 0.01})
     before = driver.keyframes.timeline
     driver.move_key(1, 3.5)
-    assert driver.keyframes.timeline == replace(before.moved(1, 3.5), length=before.seconds)
+    assert driver.keyframes.timeline == replace(before.move_key(1, 3.5), length=before.seconds)
 
 
 def test_a_selected_key_is_one_of_this_robot(driver: Driver, document: Document, starfish: Robot) -> None:

@@ -71,7 +71,7 @@ def test_what_cannot_be_filmed_is_told_at_once(starfish: Robot, monkeypatch: pyt
     jobs = Jobs(document.bell)
     with pytest.raises(InputError, match="no keyframes to record"):
         Recorder(document, jobs).start(FilmKind.GIF)
-    assert not jobs.running
+    assert not jobs.is_running
     with pytest.raises(InputError, match=r"61\.0 s long \(maximum 60 s for a video\)"):
         check_film(Timeline(keys=SHORT.keys, length=61.0), FilmKind.GLB)
     monkeypatch.setattr("shutil.which", lambda program: None)
@@ -87,7 +87,7 @@ def test_a_film_is_made_in_another_process(starfish: Robot) -> None:
     document = Document(Bell())
     document.open(Work(robot=starfish, timeline=SHORT))
     jobs, ended = Jobs(document.bell), Event()
-    document.bell.listen(lambda topic: ended.set() if not jobs.running else None)
+    document.bell.listen(lambda topic: ended.set() if not jobs.is_running else None)
     recorder = Recorder(document, jobs)
     recorder.start(FilmKind.GLB)
     assert ended.wait(300)

@@ -74,7 +74,7 @@ def test_they_hold_when_nobody_looks_at_the_page(session: Session) -> None:
     hardware = session.hardware
     hardware.connect("emulated")
     hardware.arm()
-    assert until(lambda: not hardware.armed)  # no sign of life comes
+    assert until(lambda: not hardware.is_armed)  # no sign of life comes
     assert "no active browser tab" in hardware.words
 
 
@@ -83,7 +83,7 @@ def test_another_stage_and_another_robot_hold_them(session: Session) -> None:
     hardware.connect("emulated")
     hardware.arm()
     session.go(StageName.POSE)
-    assert not hardware.armed
+    assert not hardware.is_armed
     assert "Re-arm to continue" in hardware.words
     session.open_folder(gallery_folder("fish_tail"))
     session.step(time.monotonic())
@@ -171,7 +171,7 @@ def test_two_windows_that_connect_at_once_leave_no_port_open(session: Session) -
     assert len(closed) == 1
     assert "meanwhile. Connect again" in wrong[0]
     hardware.arm()
-    assert hardware.armed
+    assert hardware.is_armed
     hardware.close()
     assert set(map(id, closed)) == set(map(id, opened))
 
@@ -262,14 +262,14 @@ def test_who_is_told_may_fail_and_motors_are_still_told_and_armed_anew(session: 
     hardware._silent = 0.2
     hardware.connect("emulated")
     hardware.arm()
-    assert until(lambda: not hardware.armed)
+    assert until(lambda: not hardware.is_armed)
     assert "no active browser tab" in hardware.words
     hardware._silent = 1e3
     session.driver.turn("left", 0.008)
 
     def turned() -> bool:
         step(session, 0.05)
-        if not hardware.armed:  # this computer was too busy to tell them
+        if not hardware.is_armed:  # this computer was too busy to tell them
             hardware.arm()
         return hardware.places["left"] > 0.007
 

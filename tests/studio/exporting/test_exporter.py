@@ -97,7 +97,7 @@ def test_a_kit_is_the_files_of_the_library_in_one_zip(
         assert {entry.date_time for entry in zipped.infolist()} == {(1980, 1, 1, 0, 0, 0)}
     assert unpacked == {f"starfish_kit/{path}": content for path, content in plush_kit.files.items()}
     assert made.summary == plush_kit.summary
-    assert made.told == f"{len(plush_kit.checks)} of {len(plush_kit.checks)} checks passed"
+    assert made.check_summary == f"{len(plush_kit.checks)} of {len(plush_kit.checks)} checks passed"
     assert "Pattern" in told.stages
 
 
@@ -132,10 +132,10 @@ def test_results_belong_to_the_robot_they_were_made_of(exporter: Exporter) -> No
     finished(exporter)
     assert exporter.errors == {}
     assert exporter.pictures
-    assert not exporter.outdated(Export.PICTURES)
+    assert not exporter.is_outdated(Export.PICTURES)
     document.change("remove markers", robot=replace(document.robot, gravity=(0.0, -1.0)))
     assert not exporter.pictures
-    assert exporter.outdated(Export.PICTURES)
+    assert exporter.is_outdated(Export.PICTURES)
     document.undo()
     assert exporter.pictures
 

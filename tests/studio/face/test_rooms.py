@@ -23,7 +23,7 @@ from hydrostat.studio.face.rooms import Room, Rooms, new_key
 from hydrostat.studio.jobs import Jobs, Slots
 from hydrostat.studio.posing.cable_proposals import CableProposals
 from hydrostat.studio.session import Session
-from hydrostat.studio.view.picture import opened
+from hydrostat.studio.view.picture import parse_message
 
 
 @pytest.fixture
@@ -39,15 +39,15 @@ def test_each_key_has_its_own_robot_and_keeps_it(rooms: Rooms, tmp_path: Path) -
     first.session.editor.rename("marker:top", "tip")
     assert rooms.enter(one) is first
     assert "tip" not in {marker.name for marker in rooms.enter(two).session.document.robot.markers}
-    assert rooms.watched(first.watch_key) is first
-    assert rooms.watched(one) is None
+    assert rooms.find_watched(first.watch_key) is first
+    assert rooms.find_watched(one) is None
     assert first.watch_key not in (one, rooms.enter(two).watch_key)
     rooms.close()
     again = Rooms(state=tmp_path / "state", first=gallery_folder("starfish"))
-    (left,) = again.enter(one).session.starter.autosave.left()
+    (left,) = again.enter(one).session.starter.autosave.find_recovered()
     again.enter(one).session.starter.autosave.restore(left)
     assert "tip" in {marker.name for marker in again.enter(one).session.document.robot.markers}
-    assert not again.enter(two).session.starter.autosave.left(), "nobody is offered the work of others"
+    assert not again.enter(two).session.starter.autosave.find_recovered(), "nobody is offered the work of others"
     assert one not in "".join(str(path) for path in tmp_path.rglob("*")), "a key can be read on the disk"
     again.close()
 
@@ -75,7 +75,7 @@ def test_the_room_that_nobody_sees_makes_way(rooms: Rooms, monkeypatch: pytest.M
     one.seen = two.seen = time.monotonic() - 2 * rooms_module.IDLE
     one.seen -= 1.0
     rooms.enter(new_key())
-    assert (rooms.watched(one.watch_key), rooms.watched(two.watch_key)) == (None, two)
+    assert (rooms.find_watched(one.watch_key), rooms.find_watched(two.watch_key)) == (None, two)
 
 
 def test_long_work_stands_in_line() -> None:
@@ -89,7 +89,7 @@ def test_long_work_stands_in_line() -> None:
         until(lambda job=job, place=place: job.state is not None and job.state.stage.endswith(_stage(place)))
     jobs[1].stop()
     assert ended[1].wait(60.0)
-    assert (jobs[1].running, jobs[1].state and jobs[1].state.error) == (False, "stopped")
+    assert (jobs[1].is_running, jobs[1].state and jobs[1].state.error) == (False, "stopped")
     until(lambda: jobs[2].state is not None and jobs[2].state.stage.endswith(_stage(1)))
     slots.give()
     assert ended[0].wait(60.0)
@@ -152,7 +152,7 @@ def frames(socket: ClientConnection, until: float) -> list[float]:
     stamps = []
     while (left := until - time.monotonic()) > 0:
         try:
-            head, _ = opened(bytes(socket.recv(timeout=left)))  # type: ignore[arg-type]
+            head, _ = parse_message(bytes(socket.recv(timeout=left)))  # type: ignore[arg-type]
         except TimeoutError:
             break
         socket.send(json.dumps({"kind": "seen"}))
@@ -194,6 +194,6 @@ def test_a_class_in_browsers(serving: Callable[..., Server]) -> None:
 def test_what_a_guest_takes_home_counts_as_saved(rooms: Rooms) -> None:
     session = rooms.enter(new_key()).session
     session.document.change("rename", robot=replace(session.document.robot, name="mine"))
-    assert not session.document.saved
+    assert not session.document.is_saved
     assert session.take_home().name == "mine.zip"
-    assert session.document.saved
+    assert session.document.is_saved

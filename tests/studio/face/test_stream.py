@@ -14,7 +14,7 @@ from hydrostat.robot import gallery_folder
 from hydrostat.studio.face.stream import MOST_MISTAKES
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, StageName
-from hydrostat.studio.view.picture import opened
+from hydrostat.studio.view.picture import parse_message
 
 pytestmark = pytest.mark.slow
 
@@ -62,7 +62,7 @@ class Screen:
         packet = self.socket.recv(timeout=timeout)
         assert isinstance(packet, bytes)
         self.say("seen")
-        head, _ = opened(packet)
+        head, _ = parse_message(packet)
         return head.get("stamp", -1.0)
 
 
@@ -172,7 +172,7 @@ def test_no_stage_stumbles_over_what_is_not_there(name: StageName) -> None:
                 session.grab("one", hit)
                 session.drag("one", hit)
                 session.grab("one", hit)
-                assert session.shown() is not None
+                assert session.current_view() is not None
                 session.release("one")
                 session.release("one")
     finally:

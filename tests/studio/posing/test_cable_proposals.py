@@ -19,7 +19,7 @@ from hydrostat.studio.posing.held import HeldPoint, Mode
 from hydrostat.studio.posing.mover import MuscleMover
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.posing.poses import held_of, with_pose
-from hydrostat.studio.posing.propose_work import OPTIONS, POSE, Proposal, ProposalInput, asked_of_trees, sketched
+from hydrostat.studio.posing.propose_work import OPTIONS, POSE, Proposal, ProposalInput, asked_of_trees, propose_network
 from hydrostat.studio.view.things import Dot
 
 PATIENCE = 120.0  # the process has to start [s]
@@ -59,7 +59,7 @@ def test_a_network_of_a_moment_can_be_built_and_reaches_what_it_says(starfish: R
     node = starfish.body.mesh.nodes[np.argmax(starfish.body.mesh.nodes[:, 0])]
     held["point_1"] = HeldPoint(at=tuple(node), target=tuple(node))
     wishes = Wishes.of(winches=2, cables=4, tension=15.0, clearance=0.006)
-    found = sketched(starfish, posed(starfish, held, wishes), BodyPhysics(starfish))
+    found = propose_network(starfish, posed(starfish, held, wishes), BodyPhysics(starfish))
     assert found.words == ""
     assert len(found.winches) == 2
     assert 2 <= len(found.cables) <= 4
@@ -104,7 +104,7 @@ def test_cables_are_proposed_while_muscles_follow_and_can_be_kept(
     poser.step(0.0)
     assert poser.proposals.network(document.robot) is None
     poser.proposals.switch(False)
-    assert poser.proposals.found(document.robot) is None
+    assert poser.proposals.latest_proposal(document.robot) is None
 
 
 @pytest.mark.slow
@@ -120,7 +120,7 @@ def test_the_latest_wins(starfish: Robot, document: Document, poser: Poser, monk
     for _ in range(99):
         proposals.ask(starfish, early)
     proposals.ask(starfish, last)
-    wanted = sketched(starfish, last, BodyPhysics(starfish))
+    wanted = propose_network(starfish, last, BodyPhysics(starfish))
     until(lambda: taken and taken[-1] == wanted, poser)
     assert len(taken) <= 2
 
@@ -131,8 +131,8 @@ def test_a_process_that_dies_is_told(starfish: Robot, document: Document, poser:
     poser.proposals.switch(True)
     moment = ProposalInput(held=held, nodes=np.zeros((1, 2)), tensions=np.zeros(1), wishes=Wishes())
     poser.proposals.ask(starfish, moment)  # of another body
-    until(lambda: poser.proposals.found(starfish), poser)
-    found = poser.proposals.found(starfish)
+    until(lambda: poser.proposals.latest_proposal(starfish), poser)
+    found = poser.proposals.latest_proposal(starfish)
     assert found is not None
     assert "crashed" in found.words
     assert poser.proposals.network(starfish) is None

@@ -16,7 +16,7 @@ from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs, Report
-from hydrostat.studio.posing.reach import MarkerReach, spread, sweep
+from hydrostat.studio.posing.reach import MarkerReach, spread_contractions, sweep
 
 ROBOT = strip_robot(columns=8, rows=2)
 
@@ -39,7 +39,7 @@ class Told(Report):
 
 
 def test_contractions_fill_what_the_winches_can_do() -> None:
-    drawn = np.array(spread(ROBOT, 64))
+    drawn = np.array(spread_contractions(ROBOT, 64))
     low = np.array([-winch.release for winch in ROBOT.winches])
     high = np.array([winch.travel for winch in ROBOT.winches])
     shares = (drawn - low) / (high - low)
@@ -61,7 +61,7 @@ def test_places_are_those_of_equilibria_within_the_limit() -> None:
     assert told.done == sorted(told.done)
     simulation = Simulation(ROBOT)
     expected = []
-    for contractions in spread(ROBOT, 24):
+    for contractions in spread_contractions(ROBOT, 24):
         pose = simulation.solve(contractions, strict=False)
         if pose.result.converged and pose.tensions.max() <= limit:
             expected.append(pose.markers[name])

@@ -68,24 +68,24 @@ def test_what_a_killed_studio_leaves_is_restored(tmp_path: Path) -> None:
         assert process.stdout is not None
         assert process.stdout.readline() == b"kept\n"
         document, autosave = opened(tmp_path / "work")
-        assert autosave.left() == [], "it lives"
+        assert autosave.find_recovered() == [], "it lives"
         os.kill(process.pid, signal.SIGKILL)
     finally:
         process.kill()
         process.communicate()
-    (left,) = autosave.left()
+    (left,) = autosave.find_recovered()
     assert left.words.endswith(": letter_e")
     autosave.restore(left)
     robot = load_robot(gallery_folder("letter_e"))
     assert robot.pins[0].at is not None
     assert document.robot == replace(robot, markers=(*robot.markers, Marker(name="new", at=robot.pins[0].at)))
     assert document.folder is None
-    assert not document.saved
-    assert autosave.left() == [], "it is kept by the studio that restored it"
+    assert not document.is_saved
+    assert autosave.find_recovered() == [], "it is kept by the studio that restored it"
     autosave.close()
-    (again,) = autosave.left()
+    (again,) = autosave.find_recovered()
     autosave.forget(again)
-    assert autosave.left() == []
+    assert autosave.find_recovered() == []
 
 
 def test_work_is_kept_when_changes_pause(tmp_path: Path, work: Work) -> None:
@@ -127,7 +127,7 @@ def test_closing_keeps_what_is_not_saved(tmp_path: Path, work: Work) -> None:
     document.open(work, folder=tmp_path / "robot")
     changed(document, "last words")
     autosave.close()
-    (left,) = opened(tmp_path)[1].left()
+    (left,) = opened(tmp_path)[1].find_recovered()
     assert (left.name, left.origin) == ("last words", tmp_path / "robot")
 
 
@@ -140,7 +140,7 @@ def test_half_written_and_foreign_things_are_not_offered(tmp_path: Path) -> None
     (tmp_path / "list/1/work/robot.toml").write_text("")
     (tmp_path / "file").write_text("")
     _, autosave = opened(tmp_path)
-    assert autosave.left() == []
+    assert autosave.find_recovered() == []
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
@@ -152,7 +152,7 @@ def test_a_disk_that_cannot_be_written_is_no_reason_to_stop(tmp_path: Path, work
     settle(autosave, 0.0)
     settle(autosave, 10.0)
     autosave.close()
-    assert autosave.left() == []
+    assert autosave.find_recovered() == []
 
 
 def test_why_nothing_is_kept_is_told_and_tried_again(tmp_path: Path, work: Work) -> None:
@@ -199,7 +199,7 @@ def test_what_others_wrote_after_a_crash_is_asked_about(tmp_path: Path, work: Wo
     if touched:
         (home / "robot.toml").write_text((home / "robot.toml").read_text() + "# theirs\n")
     again, autosave = opened(tmp_path / "state")
-    autosave.restore(autosave.left()[0])
+    autosave.restore(autosave.find_recovered()[0])
     assert again.folder == home
     assert any("another program" in words for words in doubts(again.work, home, again.stamp)) == touched
     autosave.close()
@@ -212,4 +212,4 @@ def test_without_a_folder_nothing_is_kept(work: Work) -> None:
     settle(autosave, 0.0)
     settle(autosave, 10.0)
     autosave.close()
-    assert autosave.left() == []
+    assert autosave.find_recovered() == []

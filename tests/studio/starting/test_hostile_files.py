@@ -205,7 +205,7 @@ def test_the_session_stays_as_it_was(tmp_path: Path) -> None:
     bell.listen(lambda topic: rung.set())
 
     def settle() -> None:
-        while starter.meshing:
+        while starter.is_meshing:
             assert rung.wait(60)
             rung.clear()
 

@@ -22,13 +22,13 @@ from hydrostat.studio.starting.loops import (
     Loop,
     LoopCorner,
     curve,
-    fitted,
+    fit_loops,
     loops_svg,
     outline_of,
     read_loops,
     send_loops,
 )
-from hydrostat.studio.starting.outlining import Outlining, Reshaped, beginnings, reshaped
+from hydrostat.studio.starting.outlining import Outlining, Reshaped, beginnings, reshape_outline
 from hydrostat.studio.starting.starter import Starter
 
 FLAT = ("letter_e", "letter_s", "pig", "puppy", "robot", "squid", "starfish")
@@ -40,7 +40,7 @@ def test_few_corners_follow_the_outlines_of_the_gallery(name: str) -> None:
     """Oracle: Hausdorff distance to the outline; 0.5 % of the size, with a twentieth of its points."""
     outline = gallery_robot(name).body.outline
     assert outline is not None
-    loops = fitted(outline)
+    loops = fit_loops(outline)
     assert len(loops) == len(outline.rings)
     for loop, ring in zip(loops, outline.rings, strict=True):
         assert LinearRing(1e-3 * curve(loop)).hausdorff_distance(LinearRing(ring)) < 0.005 * outline.size
@@ -119,7 +119,7 @@ def starfish() -> Work:
 def test_an_unchanged_outline_keeps_all_parts_in_their_places(tmp_path: Path) -> None:
     """Oracle: the robot before, to the accuracy of the corners."""
     work = starfish()
-    found = Outlining.of(work.robot).applied(work)
+    found = Outlining.of(work.robot).apply_outline(work)
     robot = found.work.robot
     assert found.dropped == ()
     assert robot.body.mesh.size == pytest.approx(work.robot.body.mesh.size, rel=0.01)
@@ -144,7 +144,7 @@ def test_what_lies_outside_is_named_and_goes() -> None:
         for k, corner in enumerate(cut)
         if corner.y < 45.0 or cut[k - 1].y < 45.0 or cut[(k + 1) % len(cut)].y < 45.0
     )
-    found = Outlining((tuple(replace(corner, smooth=False) for corner in kept),), robot).applied(work)
+    found = Outlining((tuple(replace(corner, smooth=False) for corner in kept),), robot).apply_outline(work)
     lost = [marker.name for marker in robot.markers if marker.at[1] > 0.046]
     assert lost
     assert {f"marker {name}" for name in lost} <= set(found.dropped)
@@ -165,7 +165,7 @@ def test_an_outline_without_any_pin_is_refused() -> None:
     work = starfish()
     far = tuple(replace(corner, x=corner.x + 800) for corner in SQUARE)
     with pytest.raises(InputError, match="no pin lies inside"):
-        Outlining((far,), work.robot).applied(work)
+        Outlining((far,), work.robot).apply_outline(work)
 
 
 def test_editing_an_outline_is_one_change() -> None:
@@ -201,7 +201,7 @@ def test_a_slow_outline_loses_nothing(monkeypatch: pytest.MonkeyPatch, meanwhile
     begun = [meanwhile]
 
     def slowly(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
-        made = reshaped(work, drawing, corner)
+        made = reshape_outline(work, drawing, corner)
         if begun and begun.pop() == "part":
             document.change("rename", robot=replace(document.robot, name="mine"))
         elif meanwhile == "robot":
@@ -210,7 +210,7 @@ def test_a_slow_outline_loses_nothing(monkeypatch: pytest.MonkeyPatch, meanwhile
             starter.outline_new()
         return made
 
-    monkeypatch.setattr("hydrostat.studio.starting.outlining.reshaped", slowly)
+    monkeypatch.setattr("hydrostat.studio.starting.outlining.reshape_outline", slowly)
     before = document.robot
     if meanwhile == "part":
         starter.outline_apply()
@@ -236,7 +236,7 @@ def test_cables_that_are_kept_stay_kept_in_a_new_outline() -> None:
         for place, corner in enumerate(corners)
         if corner.x < cut or corners[place - 1].x < cut or corners[(place + 1) % len(corners)].x < cut
     ]
-    found = Outlining((tuple(kept),), work.robot).applied(work)
+    found = Outlining((tuple(kept),), work.robot).apply_outline(work)
     assert "cable 1" in found.dropped
     assert found.work.wishes.kept_cables == tuple(cable.name for cable in found.work.robot.cables)
 

@@ -42,7 +42,7 @@ class Desk:
             assert self._rung.wait_for(ready, timeout=300)
 
     def settle(self) -> None:
-        self.wait(lambda: not self.starter.meshing)
+        self.wait(lambda: not self.starter.is_meshing)
 
 
 @pytest.fixture
@@ -89,7 +89,7 @@ def test_a_gallery_robot_is_opened_as_a_copy(desk: Desk) -> None:
     desk.starter.open_gallery(gallery_folder("starfish"))
     assert desk.document.robot == gallery_robot("starfish")
     assert desk.document.folder is None
-    assert desk.document.saved
+    assert desk.document.is_saved
 
 
 def test_a_folder_is_opened_and_remembered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -156,7 +156,7 @@ def test_a_drawing_becomes_a_robot(desk: Desk) -> None:
     assert "<svg" in sketch.picture
     assert sketch.robot.body.mesh.size == pytest.approx(0.1)
     desk.starter.revise(material="ecoflex 00-30")
-    assert not desk.starter.meshing, "a material needs no new mesh"
+    assert not desk.starter.is_meshing, "a material needs no new mesh"
     desk.starter.revise(thickness=0.02, nodes=120, size=0.3)
     desk.settle()
     desk.starter.make()
@@ -165,7 +165,7 @@ def test_a_drawing_becomes_a_robot(desk: Desk) -> None:
     assert robot.body.mesh.size == pytest.approx(0.3)
     assert abs(len(robot.body.mesh.nodes) / 120 - 1) < 0.15
     assert robot.name == "My_bar"
-    assert not desk.document.saved
+    assert not desk.document.is_saved
     assert desk.document.folder is None
     assert desk.starter.draft is None
 
@@ -233,7 +233,7 @@ def test_another_job_is_told_of(desk: Desk) -> None:
     desk.jobs.start("Designing cables", make_sketch, new_draft("other.svg", BAR))
     desk.starter.bring("bar.svg", BAR)
     assert "Designing cables is still running" in desk.starter.problem
-    assert not desk.starter.meshing
+    assert not desk.starter.is_meshing
 
 
 def _tetrahedron_text() -> bytes:

@@ -15,7 +15,7 @@ from hydrostat.project import Work
 from hydrostat.robot import gallery_folder, robot_text
 from hydrostat.studio.session import Session
 from hydrostat.studio.starting import unpack
-from hydrostat.studio.starting.unpack import unpacked
+from hydrostat.studio.starting.unpack import unpack_robot
 
 TOML = (gallery_folder("starfish") / "robot.toml").read_bytes()
 
@@ -33,9 +33,9 @@ def test_what_is_taken_home_comes_back(name: str) -> None:
     session = Session()
     robot = gallery_robot(name)
     session.document.open(Work(robot=replace(robot, name="mine")), saved=False)
-    assert not session.document.saved
+    assert not session.document.is_saved
     home = session.take_home()
-    assert session.document.saved
+    assert session.document.is_saved
     session.starter.open_zip("mine.zip", home.content)
     assert robot_text(session.document.robot) == robot_text(replace(robot, name="mine"))
     assert session.document.robot.body.content == robot.body.content
@@ -66,7 +66,7 @@ LINK.external_attr = (stat.S_IFLNK | 0o777) << 16
 def test_what_is_refused(files: dict[str, bytes], why: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(InputError, match=why):
-        unpacked("x.zip", packed(files))
+        unpack_robot("x.zip", packed(files))
     assert not list(tmp_path.iterdir())
 
 
@@ -75,13 +75,13 @@ def test_a_bomb_is_refused_before_it_is_unpacked(monkeypatch: pytest.MonkeyPatch
     bomb = packed({"robot/robot.toml": TOML, "robot/outline.svg": bytes(unpack.MOST_BYTES)})
     assert len(bomb) < 1_000_000
     with pytest.raises(InputError, match="200 MB unpacked, at most 200 MB are read"):
-        unpacked("bomb.zip", bomb)
+        unpack_robot("bomb.zip", bomb)
 
 
 @pytest.mark.parametrize("content", [b"", b"PK", b"no archive", packed({"robot/robot.toml": TOML})[:-40]])
 def test_what_is_no_archive_is_told(content: bytes) -> None:
     with pytest.raises(InputError, match="cannot be unpacked"):
-        unpacked("x.zip", content)
+        unpack_robot("x.zip", content)
 
 
 def test_an_entry_that_lies_about_its_size_is_refused() -> None:
@@ -90,7 +90,7 @@ def test_an_entry_that_lies_about_its_size_is_refused() -> None:
     size = len(TOML).to_bytes(4, "little")
     assert whole.count(size) == 2
     with pytest.raises(InputError, match=r"cannot be unpacked|larger than it says"):
-        unpacked("x.zip", whole.replace(size, (5).to_bytes(4, "little")))
+        unpack_robot("x.zip", whole.replace(size, (5).to_bytes(4, "little")))
 
 
 @pytest.mark.parametrize("way", [zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
@@ -103,9 +103,9 @@ def test_bytes_that_cannot_be_unpacked_are_told(way: int) -> None:
     begin = 30 + len("robot.toml")
     whole[begin : begin + 40] = bytes([7]) * 40
     with pytest.raises(InputError, match=r'^"x.zip": cannot be unpacked'):
-        unpacked("x.zip", bytes(whole))
+        unpack_robot("x.zip", bytes(whole))
 
 
 def test_a_complaint_does_not_name_the_scratch_folder() -> None:
     with pytest.raises(InputError, match=r'^"x.zip": robot.toml, line 8: body.outline: file "starfish'):
-        unpacked("x.zip", packed({"robot/robot.toml": TOML}))
+        unpack_robot("x.zip", packed({"robot/robot.toml": TOML}))

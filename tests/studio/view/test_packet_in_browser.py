@@ -7,7 +7,7 @@ import pytest
 from builders import gallery_robot
 from view_modules import needs_node, run
 
-from hydrostat.studio.view.picture import Picture, opened, packet
+from hydrostat.studio.view.picture import Picture, packet, parse_message
 from hydrostat.studio.view.robot_things import robot_things
 
 SCRIPT = """
@@ -25,7 +25,7 @@ def check(folder: Path, message: bytes) -> None:
     file = folder / "message"
     file.write_bytes(message)
     found = run(folder, SCRIPT, file)
-    head, arrays = opened(message)
+    head, arrays = parse_message(message)
     assert found["head"] == head
     assert list(found["tables"]) == list(arrays)
     for name, array in arrays.items():

@@ -30,7 +30,7 @@ def design_panel(page: WindowPage) -> None:
     design_paint(page)
     design_limits(page)
     ui.label("Design review").classes("studio-section")
-    finding_list(page, lambda: page.session.designer.shown)
+    finding_list(page, lambda: page.session.designer.shown_robot)
     with page.bottom:
         design_compare(page)
 
@@ -152,7 +152,7 @@ def _go(page: WindowPage) -> None:
 
     def show() -> None:
         button.set_visibility(not designer.running)
-        button.set_enabled(bool(document.robot.poses) and not jobs.running)
+        button.set_enabled(bool(document.robot.poses) and not jobs.is_running)
 
     page.on((Topic.JOB, Topic.ROBOT), show)
 
@@ -217,7 +217,7 @@ def design_compare(page: WindowPage) -> None:
                     _cards(page, candidates, own())
 
     def state() -> tuple[object, ...]:
-        refused = tuple(bool(document.judge.refused(one.robot)) for one in designer.candidates)
+        refused = tuple(bool(document.judge.is_refused(one.robot)) for one in designer.candidates)
         return tuple(one.number for one in designer.candidates), designer.chosen, designer.pose, own(), refused
 
     page.on_new((Topic.JOB, Topic.ROBOT), state, room, build)
@@ -267,7 +267,9 @@ def _cards(page: WindowPage, candidates: tuple[Candidate, ...], own: tuple[int, 
             card = pressable("design-card" + (" design-card-on" if now else ""), show)
             with card.props('data-testid="design-card"').tooltip(_more(one)):
                 ui.html(designer.sketch(one), sanitize=False).classes("w-full")
-                ui.html(_words(one, own, refused=bool(page.session.document.judge.refused(one.robot))), sanitize=False)
+                ui.html(
+                    _words(one, own, refused=bool(page.session.document.judge.is_refused(one.robot))), sanitize=False
+                )
 
 
 def _words(one: Candidate, own: tuple[int, ...], *, refused: bool) -> str:

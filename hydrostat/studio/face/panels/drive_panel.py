@@ -10,7 +10,7 @@ from hydrostat.studio.face.elements import Knob, winch_badge
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
-from hydrostat.studio.face.panels.drive_strip import drive_strip, unfocused
+from hydrostat.studio.face.panels.drive_strip import drive_strip, release_focus
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.stage import StageName
 
@@ -32,7 +32,7 @@ def drive_panel(page: WindowPage) -> None:
         ui.space()
         rest = ui.button("Rest", icon="restart_alt", on_click=page.doing(driver.rest), color=None)
         rest.props("flat dense no-caps").style("color: var(--accent)")
-        unfocused(rest).tooltip("Release all cables (R)").mark("drive-rest")
+        release_focus(rest).tooltip("Release all cables (R)").mark("drive-rest")
     ui.label("Turn a knob, type a length, or drag a winch in the view down.").classes("studio-hint")
     notes = ui.label().classes("studio-hint").style(f"color: {ERROR}; white-space: pre-line").mark("drive-notes")
     box = ui.column().classes("w-full").style("gap: 8px")

@@ -44,7 +44,7 @@ def _player(page: WindowPage) -> None:
     driver = page.session.driver
     play = ui.button(icon="play_arrow", on_click=page.doing(driver.toggle))
     play.props('unelevated round dense aria-label="Play"')
-    unfocused(play).tooltip("Play or stop (Space)").mark("drive-play")
+    release_focus(play).tooltip("Play or stop (Space)").mark("drive-play")
     loop = _button("repeat", "Loop", lambda: page.act(driver.set_loop, not driver.player.loop))
     time = ui.label().classes("studio-figure").style("width: 58px; text-align: right; white-space: nowrap")
     time.mark("drive-time")
@@ -88,14 +88,14 @@ def _keys(page: WindowPage) -> None:
     driver = page.session.driver
     add = ui.button("Add", icon="add", on_click=page.doing(driver.add_key)).props("unelevated dense no-caps no-wrap")
     add.style("padding: 2px 12px 2px 8px; flex: none")
-    unfocused(add).tooltip("Add the knob positions as a keyframe at the playhead").mark("drive-add")
+    release_focus(add).tooltip("Add the knob positions as a keyframe at the playhead").mark("drive-add")
     copy = _button("content_copy", "Duplicate keyframe", page.doing(driver.duplicate_key))
     delete = _button("delete_outline", "Delete keyframe", page.doing(driver.delete_key))
     smooth = ui.toggle({False: "Linear", True: "Smooth"}, value=False)
     smooth.props(
         "dense no-caps unelevated toggle-color=primary color=transparent text-color=grey padding='2px 9px'"
     ).style("border: 1px solid var(--line); border-radius: 8px; margin-left: 6px")
-    unfocused(smooth).on_value_change(lambda event: page.act(driver.keyframes.set_smooth, bool(event.value)))
+    release_focus(smooth).on_value_change(lambda event: page.act(driver.keyframes.set_smooth, bool(event.value)))
 
     def show() -> None:
         chosen = driver.keyframes.chosen is not None
@@ -233,10 +233,10 @@ def _menu() -> ui.menu:
 
 
 def _button(icon: str, words: str, action: Callable[[], Any] | None) -> ui.button:
-    return unfocused(icon_button(icon, words, action).classes("studio-tool"))
+    return release_focus(icon_button(icon, words, action).classes("studio-tool"))
 
 
-def unfocused(part: Part) -> Part:
-    """A click with the mouse leaves the space key to play."""
+def release_focus(part: Part) -> Part:
+    """Release the keyboard focus after a mouse click, so that Space still plays."""
     part.on("mousedown", js_handler="(event) => event.preventDefault()")
     return part

@@ -127,7 +127,7 @@ def _maker(
     def show() -> None:
         busy, state = exporter.busy is export, jobs.state
         button.set_visibility(not busy)
-        button.set_enabled(not jobs.running)
+        button.set_enabled(not jobs.is_running)
         quiet = bool(find())
         button.props(remove="unelevated" if quiet else "flat", add="flat" if quiet else "unelevated")
         progress.set_visibility(busy)
@@ -151,7 +151,7 @@ def _result(page: WindowPage, export: Export, find: Callable[[], object], build:
 
     def show() -> None:
         found = None if exporter.busy is export else find()
-        state = (found, exporter.outdated(export))
+        state = (found, exporter.is_outdated(export))
         if all(now is before for now, before in zip(state, drawn, strict=False)) and len(drawn) == len(state):
             return
         drawn[:] = state
@@ -159,7 +159,7 @@ def _result(page: WindowPage, export: Export, find: Callable[[], object], build:
         with room:
             if found is not None:
                 build()
-            elif exporter.outdated(export) and exporter.busy is not export:
+            elif exporter.is_outdated(export) and exporter.busy is not export:
                 ui.label(OUTDATED).classes("studio-hint").props(f'data-testid="outdated-{export}"')
 
     page.on((Topic.JOB, Topic.ROBOT), show)
@@ -297,7 +297,7 @@ def _line(words: str, icon: str, kind: str) -> None:
 
 
 def _checks(kit: KitMade) -> None:
-    with ui.expansion(kit.told).props("dense").classes("export-more w-full").props('data-testid="kit-checks"'):
+    with ui.expansion(kit.check_summary).props("dense").classes("export-more w-full").props('data-testid="kit-checks"'):
         for check in kit.checks:
             icon, kind = ("check_circle", "export-good") if check.passed else ("error_outline", "export-bad")
             with ui.element("div").classes("export-told"):

@@ -42,7 +42,7 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
         skin = sewn()
         if skin is not None and (words := skin.words):
             ui.label(words[0].upper() + words[1:]).classes("studio-hint").props('data-testid="skin-words"')
-        if not found and not (skin is not None and skin.awaited):
+        if not found and not (skin is not None and skin.is_awaited):
             with ui.element("div").classes("studio-row"):
                 ui.icon("check_circle", size="18px").style(f"color: {GOOD}")
                 ui.label(_good(shown())).style("font-size: 13px")

@@ -62,7 +62,7 @@ def motors_card(page: WindowPage) -> None:
         currents = hardware.currents
         lines = [f"{name}: {1e3 * at:.1f} mm{_drawn(currents.get(name))}" for name, at in hardware.places.items()]
         found.set_text("\n".join(lines))
-        found.set_visibility(hardware.armed)
+        found.set_visibility(hardware.is_armed)
         words.set_text(hardware.words)
         words.set_visibility(bool(hardware.words))
         words.style(f"color: {ERROR}" if now is LinkState.FAULT else "color: inherit")
@@ -75,7 +75,7 @@ def stop_button(page: WindowPage) -> None:
     hardware = page.session.hardware
     button = ui.button("Stop motors", icon="front_hand", on_click=page.doing(hardware.hold), color="negative")
     button.props("unelevated no-caps dense").style("padding: 4px 12px; font-weight: 700").mark("motors-stop")
-    page.on(Topic.DRIVE, lambda: button.set_visibility(hardware.armed), lasting=True)
+    page.on(Topic.DRIVE, lambda: button.set_visibility(hardware.is_armed), lasting=True)
 
 
 def _drawn(current: float | None) -> str:

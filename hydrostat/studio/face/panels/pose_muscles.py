@@ -38,7 +38,7 @@ def muscles_card(page: WindowPage) -> None:
         keep.set_enabled(found is not None and found.cables != document.robot.cables)
 
     def _words() -> str:
-        found = poser.proposals.found(document.robot)
+        found = poser.proposals.latest_proposal(document.robot)
         if found is None:
             return "Searching for cables" if poser.held else "Drag a point to get a proposal."
         if not found.cables:

@@ -71,7 +71,7 @@ def _state(page: WindowPage) -> Callable[[], None]:
         problem = ui.label().props('data-testid="problem"')
 
     def refresh() -> None:
-        busy.set_visibility(starter.meshing)
+        busy.set_visibility(starter.is_meshing)
         words = jobs.state.stage if jobs.state is not None else ""
         stage.set_text({"starting": "Reading…"}.get(words, f"{words[:1].upper()}{words[1:]}…"))
         wrong.set_visibility(bool(starter.problem))
@@ -265,7 +265,7 @@ class _Fields:
         self._enable()
 
     def _enable(self) -> None:
-        ready = self._starter.is_current and not self._starter.meshing
+        ready = self._starter.is_current and not self._starter.is_meshing
         self._make.set_enabled(not self._wrong.text and ready)
 
     def _thicken(self, value: float) -> None:

@@ -59,7 +59,7 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
         if robot is None:
             await page.act_slowly(starter.outline_done)
             return
-        found = await page.act_slowly(outlining.applied, page.session.document.work)
+        found = await page.act_slowly(outlining.apply_outline, page.session.document.work)
         if found is not None and await _agreed(page, found):
             serial = page.session.document.serial
             await page.act_slowly(starter.outline_apply)

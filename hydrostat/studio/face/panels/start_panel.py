@@ -28,7 +28,7 @@ MOST_LEFT = 4  # so many works that a crash left are offered at once, the newest
 def shelf_view(page: WindowPage) -> Callable[[], None]:
     """Build it."""
     starter = page.session.starter
-    for left in starter.autosave.left()[:MOST_LEFT]:
+    for left in starter.autosave.find_recovered()[:MOST_LEFT]:
         _left(page, left)
     ui.label("New robot").classes("start-title")
     with ui.element("div").classes("start-ways"):
