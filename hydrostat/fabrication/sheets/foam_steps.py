@@ -60,7 +60,7 @@ def other_way(mould: Mould) -> tuple[str, str]:
 
 
 def cure_times(mould: Mould | None) -> tuple[tuple[str, str], ...]:
-    """How long each material cures, that of the body last."""
+    """Cure time of each material, that of the body last."""
     if mould is None:
         return ()
     what, time = mould.casting.times[-1]
@@ -100,7 +100,7 @@ def mould_steps(plan: KitPlan, lists: Lists, mould: Mould) -> tuple[AssemblyStep
 
 
 def _in_pieces(plan: KitPlan) -> bool:
-    """Whether something of the mould is printed in pieces that are joined."""
+    """Tell whether a half of the mould is printed in pieces that are joined."""
     return any(part.kind for part in plan.work.printed)
 
 
@@ -211,7 +211,7 @@ def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
 
 
 def _cable_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
-    """How cables come in or on the body, by their depth."""
+    """Steps that bring cables in or on the body, by their depth."""
     cables = len(plan.robot.cables)
     depths = CableDepths.of(lists.stitching, cables)
     tubes = bool(lists.tubes.rows)
