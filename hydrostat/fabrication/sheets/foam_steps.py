@@ -6,6 +6,7 @@ Times of cure are those of R52 and N5, all others are estimates.
 from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.lists.stitching import PointAccess
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.sheets.steps import (
     AssemblyStep,
@@ -175,7 +176,7 @@ def _tubes_first(depths: CableDepths) -> tuple[AssemblyStep, ...]:
             "Lay tubes in the cavity",
             10 * len(depths.laid),
             f"{cables_text(depths.laid)} {'runs' if len(depths.laid) == 1 else 'run'} too deep for a needle: where "
-            "lists/stitching.csv says “tube laid before casting”, lay a PTFE tube through these points on a straight "
+            f"lists/stitching.csv says “{PointAccess.LAID}”, lay a PTFE tube through these points on a straight "
             "rod, its ends closed with tape. Hold the rod at both ends: in a hole drilled through the wall, or on "
             "pins in it.",
         ),
