@@ -1,1 +1,1 @@
-"""What to cut, to stitch, to buy, and whether motors and lines are strong enough."""
+"""Lists of what to cut, to stitch and to buy, and checks that motors and lines are strong enough."""

@@ -155,7 +155,7 @@ def check_lengths(table: Table[CableRow], simulation: Simulation) -> Check:
 
 
 SPARE = 20.0
-"""What a tube takes at most from a side of a housing that looks away from it [mm]. Assumed, measured on none."""
+"""Most that a tube takes from a side of a housing that looks away from it [mm]. Assumed, measured on none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -251,7 +251,7 @@ def _sheath_row(robot: Robot, cut: SheathCut, bore: float, tube: float) -> Sheat
 
 
 def _sheath_notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
-    """What is said below the table: of cutting, and of tubes whose length is no matter of the simulation."""
+    """Notes below the table: on cutting, and on tubes whose length is no matter of the simulation."""
     if not cuts:
         return ("No cable of this robot runs in a tube.",)
     found = [

@@ -160,7 +160,7 @@ def _line_table(rows: tuple[LineRow, ...], line: FishingLine, *, largest: float)
 
 
 def _remedy(tension: float) -> str:
-    """What line would bear a tension [N]."""
+    """Name a line that withstands a tension [N]."""
     for line in LINES:
         if line.working_load >= tension:
             return f"use {line.name} ({line.diameter:g} mm) or thicker, or ask for less"

@@ -1,4 +1,4 @@
-"""`WinchSizing`, `PowerPlan`: whether a motor is strong and quick enough for each winch, and what feeds all motors."""
+"""`WinchSizing`, `PowerPlan`: strength and speed of the motor of each winch, and the supply of all motors."""
 
 import math
 from collections.abc import Mapping
@@ -73,7 +73,7 @@ _MINDS = {
     "holds for seconds": "more than the {0.rated_torque:.0f} N mm that the motor bears for long: hold such poses for "
     "seconds only",
 }
-"""What a person should mind of a winch, by its verdict."""
+"""Warning on a winch, by its verdict."""
 
 
 def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
@@ -196,7 +196,7 @@ WIRES = ((3.0, 0.5, 20), (7.5, 0.75, 18), (10.0, 1.0, 17), (15.0, 1.5, 16), (25.
 single wires are rated at; of no standard."""
 
 PLUG = 3.0
-"""What one plug of a chain of servos bears [A]: JST EH, 3 A with wire of AWG 22. Told from memory."""
+"""Current that one plug of a chain of servos withstands [A]: JST EH, 3 A with wire of AWG 22. Told from memory."""
 
 CELL, CELLS, USED = 1.2, 2.0, 0.8
 """A NiMH cell of size AA: volts, ampere hours, and the share of them that is used."""
@@ -215,7 +215,7 @@ class PowerRow:
 
 @dataclass(frozen=True, kw_only=True)
 class PowerPlan:
-    """What feeds the motors of a robot.
+    """Power supply of the motors of a robot.
 
     Attributes:
         motor: of all winches.
@@ -229,7 +229,7 @@ class PowerPlan:
 
     @property
     def servos(self) -> bool:
-        """Whether the motors are servos on a bus; else DC motors on boards."""
+        """Tell whether the motors are servos on a bus; else DC motors on boards."""
         return self.motor.horn is not None
 
     @property
@@ -274,7 +274,7 @@ class PowerPlan:
 
     @property
     def table(self) -> Table[PowerRow]:
-        """What to buy and set, as a list."""
+        """Parts and settings of the supply, as a list."""
         area, gauge = self.wire
         rows: list[tuple[str, str]] = [
             ("supply", f"{self.motor.volts:g} V, {self.supply:g} A or more"),
@@ -300,7 +300,7 @@ class PowerPlan:
 
 
 def power_plan(torques: Mapping[str, float], motor: Motor) -> PowerPlan | None:
-    """What feeds a motor on each winch, by its name and largest torque [N mm]; None where there are none."""
+    """Plan the supply of a motor on each winch, by its name and largest torque [N mm]; None where there are none."""
     if not torques:
         return None
     spread = motor.stall_current - motor.free_current

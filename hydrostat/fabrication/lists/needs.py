@@ -166,7 +166,7 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
 
 
 def _mould(plan: KitPlan) -> list[Item]:
-    """What a mould is made of, and what joins, holds and seals its pieces."""
+    """Material of a mould, and what joins, holds and seals its pieces."""
     foam = plan.work.foam
     if foam is None:
         return []

@@ -241,7 +241,7 @@ def _point_access(bare: tuple[bool, ...], depth: float) -> PointAccess:
 
 
 def close_warnings(robot: Robot) -> tuple[str, ...]:
-    """Which cables have points too close for two stitches."""
+    """Warn of cables with points too close for two stitches."""
     close = {
         f"C{number}": 1e3 * float(cable.segments[cable.bare].min())
         for number, cable in enumerate(robot.cables, start=1)
@@ -255,7 +255,7 @@ def close_warnings(robot: Robot) -> tuple[str, ...]:
 
 
 def deep_warnings(table: Table[DepthRow]) -> tuple[str, ...]:
-    """Which cables have points too deep for a needle, a sentence each."""
+    """Warn of cables with points too deep for a needle, a sentence each."""
     deep: dict[str, float] = {}
     for row in table.rows:
         if row.how is PointAccess.LAID:

@@ -172,7 +172,7 @@ def sighted(
 
 
 def _stands(robot: Robot) -> dict[str, Point]:
-    """Where each winch stands [m], by its mark."""
+    """Position of each winch [m], by its mark."""
     return {mark: robot.winch(name).at for name, mark in winch_marks_of(robot).items()}
 
 
@@ -287,7 +287,7 @@ _PALE = 0.72  # grey of what does not stand out
 
 @dataclass(frozen=True, eq=False)
 class _Scene:
-    """What all cells show: runs in a frame, and how the body is drawn there."""
+    """Content of all cells: runs in a frame, and the drawing of the body there."""
 
     box: Float[np.ndarray, "2 2"]
     runs: Callable[[CanvasFrame], list[CableRun]]

@@ -6,6 +6,7 @@ Times of cure are those of R52 and N5, all others are estimates.
 from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.lists.stitching import PointAccess
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.sheets.steps import (
     AssemblyStep,
@@ -60,7 +61,7 @@ def other_way(mould: Mould) -> tuple[str, str]:
 
 
 def cure_times(mould: Mould | None) -> tuple[tuple[str, str], ...]:
-    """How long each material cures, that of the body last."""
+    """Cure time of each material, that of the body last."""
     if mould is None:
         return ()
     what, time = mould.casting.times[-1]
@@ -100,7 +101,7 @@ def mould_steps(plan: KitPlan, lists: Lists, mould: Mould) -> tuple[AssemblyStep
 
 
 def _in_pieces(plan: KitPlan) -> bool:
-    """Whether something of the mould is printed in pieces that are joined."""
+    """Tell whether a half of the mould is printed in pieces that are joined."""
     return any(part.kind for part in plan.work.printed)
 
 
@@ -175,7 +176,7 @@ def _tubes_first(depths: CableDepths) -> tuple[AssemblyStep, ...]:
             "Lay tubes in the cavity",
             10 * len(depths.laid),
             f"{cables_text(depths.laid)} {'runs' if len(depths.laid) == 1 else 'run'} too deep for a needle: where "
-            "lists/stitching.csv says “tube laid before casting”, lay a PTFE tube through these points on a straight "
+            f"lists/stitching.csv says “{PointAccess.LAID}”, lay a PTFE tube through these points on a straight "
             "rod, its ends closed with tape. Hold the rod at both ends: in a hole drilled through the wall, or on "
             "pins in it.",
         ),
@@ -211,7 +212,7 @@ def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
 
 
 def _cable_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
-    """How cables come in or on the body, by their depth."""
+    """Steps that bring cables in or on the body, by their depth."""
     cables = len(plan.robot.cables)
     depths = CableDepths.of(lists.stitching, cables)
     tubes = bool(lists.tubes.rows)

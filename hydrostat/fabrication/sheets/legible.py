@@ -16,7 +16,7 @@ _NAMES = ("title", "name")  # under which facts have names: their signs stay
 _PAGE = f'#set text(font: ("{FONTS[0]}", "{FONTS[1]}"))\n#set page(width: auto, height: auto)\n#sys.inputs.letter'
 
 _SIGNS = ((r"(?<=\d) C\b", " °C"), (r"\^3\b", "³"), (r"\^2\b", "²"))
-"""What lists and files write in plain letters, and how a page shows it."""
+"""Units in the plain letters of lists and files, and in the signs of a page."""
 
 _POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-]?\d+)\b")
 
@@ -37,7 +37,7 @@ class PrintableText:
 
     @property
     def warning(self) -> str:
-        """What was replaced, a sentence; empty if nothing was."""
+        """A sentence on replaced letters; empty if none was replaced."""
         told = []
         if lacking(self._robot.name):
             told.append(f'letters of the robot\'s name stand as "{_MISSING}"')
@@ -85,7 +85,7 @@ def _power(found: re.Match[str]) -> str:
 
 @cache
 def _drawn(letter: str) -> bool:
-    """Whether a letter can be printed: a page for archives (PDF/A) is refused where no font has it."""
+    """Tell whether a letter can be printed: a page for archives (PDF/A) is refused where no font has it."""
     if letter.isascii():
         return letter.isprintable()
     import typst  # Imported here: few names need it.

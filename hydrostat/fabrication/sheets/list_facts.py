@@ -1,11 +1,11 @@
-"""`bill_facts`, `piece_facts`, `power_facts`: what is bought, pieces by their numbers, and wires, for a sheet."""
+"""`bill_facts`, `piece_facts`, `power_facts`: the bill, pieces by their numbers, and wires, for a sheet."""
 
 from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.bill import BillRow
+from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.motors import PowerPlan
-from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.parts.board import BOARDS
 from hydrostat.fabrication.sheets.facts import PieceFacts, PowerFacts, TableFacts
 from hydrostat.fabrication.sheets.legible import shortened
@@ -17,21 +17,20 @@ from hydrostat.robot import Robot
 _UNITS = {"piece": "", "m^2": "m²"}
 
 
-def bill_facts(bill: Table[BillRow]) -> TableFacts:
-    """What is bought, how much of it, and what it costs, with the total."""
-    rows = [
-        [shortened(row.short_name, 40), _amount(row), _dollars(row.cost_used)] for row in bill.rows if not row.is_total
-    ]
+def bill_facts(lists: Lists) -> TableFacts:
+    """Names, amounts and costs of what is bought, and the totals."""
+    items = [row for row in lists.bill.rows if not row.is_total]
+    rows = [[shortened(row.short_name, 40), _amount(row), _dollars(row.cost_used)] for row in items]
     return {
-        "file": f"lists/{bill.name}.csv",
+        "file": f"lists/{lists.bill.name}.csv",
         "heads": ["what", "amount", "USD"],
         "right": [False, True, True],
-        "rows": [*rows, *([words, "", f"{cost:.0f}"] for words, cost in _costs(bill))],
+        "rows": [*rows, *([words, "", f"{cost:.0f}"] for words, cost in _costs(lists))],
     }
 
 
 def _amount(row: BillRow) -> str:
-    """How much of a thing, small masses in grams."""
+    """Amount of an item, small masses in grams."""
     if row.amount is None:
         return ""
     if row.unit == "kg" and row.amount < 1:
@@ -44,16 +43,17 @@ def _dollars(cost: float) -> str:
     return "<1" if 0 < cost < 0.5 else f"{cost:.0f}"
 
 
-def _costs(bill: Table[BillRow]) -> list[tuple[str, float]]:
+def _costs(lists: Lists) -> list[tuple[str, float]]:
     """Costs of all that is used up, and of all in whole packs [USD], by their names; none if nothing is bought."""
-    rows = [row for row in bill.rows if not row.is_total]
-    used, packs = sum(row.cost_used for row in rows), sum(row.cost_packs for row in rows)
-    return [("used up", used), ("in whole packs", packs)] if rows else []
+    if all(row.is_total for row in lists.bill.rows):
+        return []
+    columns = lists.bill.columns
+    return list(zip((columns["cost_used"].title, columns["cost_packs"].title), lists.cost, strict=True))
 
 
-def cost_text(bill: Table[BillRow]) -> tuple[str, ...]:
-    """What it costs; nothing if nothing is known."""
-    told = [f"{cost:.0f} USD {name}" for name, cost in _costs(bill)]
+def cost_text(lists: Lists) -> tuple[str, ...]:
+    """Cost in words; empty if nothing is bought."""
+    told = [f"{cost:.0f} USD {name}" for name, cost in _costs(lists)]
     return (f"about {', '.join(told)}",) if told else ()
 
 
@@ -118,13 +118,13 @@ def winch_files(plan: KitPlan, winch: str) -> list[str]:
 
 
 def _count_and_files(parts: list[Printed]) -> tuple[int, str]:
-    """How many of a kind, and from which files."""
+    """Number of parts of a kind, and their files."""
     files = [part.name + (f" × {part.count}" if len(parts) > 1 and part.count > 1 else "") for part in parts]
     return sum(part.count for part in parts), shortened(", ".join(files), 90)
 
 
 def _kind_of(part: Printed, plan: KitPlan) -> str:
-    """What a printed part is called in the list."""
+    """Name of a printed part in the list."""
     kind = part.kind or part.title
     mould = plan.work.mould
     if mould and part.name in {piece.name for piece in mould.printed} and "positive" not in kind:

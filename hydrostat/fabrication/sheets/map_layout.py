@@ -33,7 +33,7 @@ class Visibility:
         return cls(*(DepthBuffer.of(corners, nothing, pixels=_COARSE) for corners in (seen, turned)))
 
     def in_front(self, seen: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, " points"]:
-        """Whether points, as seen, lie in the near half of the body or before it; so do those beside it."""
+        """Tell whether points, as seen, lie in the near half of the body or before it; so do those beside it."""
         before = -self.front.behind(seen)
         after = -self.back.behind(seen * np.array([1.0, 1.0, -1.0]))
         return ~((before > 0) & (before > after))
@@ -58,7 +58,7 @@ def best_views(robot: Robot, body: DrawnSolid) -> tuple[Camera, ...]:
 
 
 def _apart(views: list[Camera], one: Camera) -> Float[np.ndarray, " views"]:
-    """How far views are from one of them: 0 for itself, 1 for a right angle, 2 for the opposite."""
+    """Distance of views from one of them: 0 for itself, 1 for a right angle, 2 for the opposite."""
     return np.array([1 - float(view.axes[2] @ one.axes[2]) for view in views])
 
 
@@ -66,7 +66,7 @@ _SHARP = 70.0  # on a body, edges are drawn that are sharper than this [degrees]
 
 
 def flat_marks(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
-    """What is drawn on a flat body, such as eyes, to know its front by [mm]."""
+    """Lines drawn on a flat body, such as eyes, that mark its front [mm]."""
     return [1e3 * np.array(mark) for mark in robot.body.marks]
 
 
@@ -101,7 +101,7 @@ _STEP = 0.5  # between points that stand for a line [mm]
 
 @dataclass
 class LabelPlaces:
-    """What is taken on a picture, and places that are free."""
+    """Occupied and free places of a picture."""
 
     room: Box  # nothing is put beyond it
     _points: list[np.ndarray] = field(default_factory=list)

@@ -52,7 +52,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         "facts": _about(plan, lists, steps),
         "mind": note_lines(findings.problems, (*((letters,) if letters else ()), *findings.warnings), plan.robot),
         "forced": bool(findings.problems),
-        "bill": bill_facts(lists.bill),
+        "bill": bill_facts(lists),
         "cables": _table(lists.cables, _CABLES),
         "log": [f"C{number}" for number in range(1, len(plan.robot.cables) + 1)],
         "tubes": _table(lists.tubes, _TUBES),
@@ -88,7 +88,7 @@ def _all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
 
 
 def _about(plan: KitPlan, lists: Lists, steps: Iterable[Iterable[AssemblyStep]]) -> list[str]:
-    """What kind of robot it is, a line each."""
+    """Size, parts, time and cost of a robot, a line each."""
     robot = plan.robot
     nodes = 1e3 * robot.body.mesh.nodes
     sides = [*(nodes.max(axis=0) - nodes.min(axis=0)).tolist()]
@@ -100,7 +100,7 @@ def _about(plan: KitPlan, lists: Lists, steps: Iterable[Iterable[AssemblyStep]])
         f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
         + (f" in {plural(plan.pairs, 'pair')}" if plan.pairs else ""),
         f"about {minutes_text(busy)} of work",
-        *cost_text(lists.bill),
+        *cost_text(lists),
     ]
 
 
@@ -154,7 +154,7 @@ def _step(step: AssemblyStep) -> StepFacts:
 
 
 def _mould(mould: Mould | None) -> MouldFacts | None:
-    """What is said of a mould beside its steps."""
+    """Facts of a mould that are not in its steps."""
     if mould is None:
         return None
     body, casting = mould.casting.body, mould.casting

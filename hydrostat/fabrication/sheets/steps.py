@@ -215,7 +215,7 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
 
 
 def _matched(plan: KitPlan) -> str:
-    """How the two of a pair are set."""
+    """Tell how the two of a pair are set."""
     if not plan.pairs:
         return ""
     return (
@@ -262,7 +262,7 @@ def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
 
 
 def _laid(plan: KitPlan) -> str:
-    """What is laid flat, and which cables are sewn on it in which order."""
+    """Tell what is laid flat, and which cables are sewn on it in which order."""
     cables = len(plan.robot.cables)
     if plan.pairs:
         return (
@@ -280,7 +280,7 @@ def _row(first: int, last: int) -> str:
 
 
 def _flat(plan: KitPlan) -> bool:
-    """Whether it is a front and a back; else a skin of patches."""
+    """Tell whether it is a front and a back; else a skin of patches."""
     return plan.robot.body.mesh.dim == 2
 
 

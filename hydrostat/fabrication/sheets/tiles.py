@@ -26,7 +26,7 @@ OVERLAP = 10.0  # what a tile shares with the next [mm]
 
 @dataclass(frozen=True, kw_only=True)
 class Tile:
-    """What is printed on one page."""
+    """Content of one printed page."""
 
     name: str  # column and row, such as "B2"
     column: int  # from the left, from 0
@@ -110,7 +110,7 @@ class _Windows(NamedTuple):
 
 
 def _steps(length: float, tile: float) -> tuple[int, list[float]]:
-    """How many tiles a length [mm] takes, and where the first may begin: in the middle of the room, or elsewhere."""
+    """Number of tiles that a length [mm] takes, and starts of the first: in the middle of the room, or elsewhere."""
     count = max(1, math.ceil((length - OVERLAP) / (tile - OVERLAP) - 1e-9))
     room = length - OVERLAP - count * (tile - OVERLAP)
     return count, [room * share for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9, 0.0, 1.0)]
@@ -123,7 +123,7 @@ def _letters(index: int) -> str:
 
 
 _WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
-"""Of the lines [mm]: an operation is told by its width too where the printer knows no colour."""
+"""Widths of the lines [mm]: an operation is told by its width too where the printer knows no colour."""
 
 _NAMED = 12  # so many empty tiles are named; more would fill the page
 _BAR = 100.0  # length of the bar that shows whether a page was printed at its true scale [mm]
@@ -216,7 +216,7 @@ def _overview(pattern: Pattern, grid: TileGrid, paper: Paper) -> str:
 
 
 def _left_out(empty: list[str]) -> str:
-    """Which tiles have no page."""
+    """Tell which tiles have no page."""
     if not empty:
         return ""
     if len(empty) > _NAMED:
@@ -225,7 +225,7 @@ def _left_out(empty: list[str]) -> str:
 
 
 def _key(y: float) -> list[str]:
-    """What each kind of line means."""
+    """Legend of the kinds of lines."""
     red, blue = (f'rgb("{COLOURS[layer]}")' for layer in (Layer.CUT, Layer.PINHOLE))
     thin = f"width: {_WIDTHS[Layer.MARK]}mm"
     samples = (
