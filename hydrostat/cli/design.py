@@ -4,7 +4,7 @@ import sys
 import time
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -24,50 +24,30 @@ if TYPE_CHECKING:
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
 
+def _option(metavar: str | None, words: str, default: str) -> Any:
+    """An option with its help, and the field of a record that has its default."""
+    return typer.Option(metavar=metavar, help=words, show_default=DefaultText(default))
+
+
 Winches = Annotated[
     str | None,
-    typer.Option(
-        metavar="N|auto",
-        help="Number of winches, or auto for the fewest that meet the tolerance.",
-        show_default=DefaultText("DesignRequest", "winches"),
-    ),
+    _option("N|auto", "Number of winches, or auto for the fewest that meet the tolerance.", "DesignRequest.winches"),
 ]
-Cables = Annotated[
-    int | None,
-    typer.Option(
-        metavar="N", help="Maximum number of cables in total.", show_default=DefaultText("DesignRequest", "cables")
-    ),
-]
+Cables = Annotated[int | None, _option("N", "Maximum number of cables in total.", "DesignRequest.cables")]
 Poses = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Pose to design for. Repeatable.", show_default="all")
 ]
 Method = Annotated[
     str | None,
-    typer.Option(
-        metavar="routes|trees",
-        help="Search method: routes (adjoint-based) or trees (Chang 2018).",
-        show_default=DefaultText("DesignRequest", "method"),
-    ),
+    _option("routes|trees", "Search method: routes (adjoint-based) or trees (Chang 2018).", "DesignRequest.method"),
 ]
 ConstraintsFile = Annotated[
     Path | None, typer.Option(metavar="FILE.toml", help="Constraints file. Options below override it.")
 ]
 CablesPerWinch = Annotated[
-    int | None,
-    typer.Option(
-        metavar="N",
-        help="Maximum number of cables per winch.",
-        show_default=DefaultText("Constraints", "cables_per_winch"),
-    ),
+    int | None, _option("N", "Maximum number of cables per winch.", "Constraints.cables_per_winch")
 ]
-Clearance = Annotated[
-    str | None,
-    typer.Option(
-        metavar="LENGTH",
-        help="Minimum distance from cable to edge.",
-        show_default=DefaultText("Constraints", "clearance"),
-    ),
-]
+Clearance = Annotated[str | None, _option("LENGTH", "Minimum distance from cable to edge.", "Constraints.clearance")]
 Depth = Annotated[
     str | None,
     typer.Option(
@@ -76,36 +56,31 @@ Depth = Annotated[
         show_default="anywhere inside",
     ),
 ]
-Tension = Annotated[
-    str | None,
-    typer.Option(metavar="FORCE", help="Maximum cable tension.", show_default=DefaultText("Constraints", "tension")),
-]
-Slack = Annotated[
-    str | None,
-    typer.Option(metavar="LENGTH", help="Maximum cable slack.", show_default=DefaultText("Constraints", "slack")),
-]
+Tension = Annotated[str | None, _option("FORCE", "Maximum cable tension.", "Constraints.tension")]
+Slack = Annotated[str | None, _option("LENGTH", "Maximum cable slack.", "Constraints.slack")]
 SteppedSpools = Annotated[
     bool, typer.Option("--stepped-spools", help="Allow cable spools from half to twice the winch spool radius.")
 ]
 Symmetric = Annotated[str | None, typer.Option(metavar="x|y|z", help="Require mirror symmetry about this axis.")]
 LockWinch = Annotated[list[str] | None, typer.Option(metavar="NAME", help="Keep this winch of the robot. Repeatable.")]
 LockCable = Annotated[
-    list[str] | None,
-    typer.Option(metavar="NAME", help="Keep this cable, by name or number from 1. Repeatable."),
+    list[str] | None, typer.Option(metavar="NAME", help="Keep this cable, by name or number from 1. Repeatable.")
 ]
 Improve = Annotated[bool, typer.Option("--improve", help="Warm-start from the robot's own network.")]
 Simplicity = Annotated[
     float | None,
-    typer.Option(
-        help="Weight of simplicity in the score: fewer winches, cables and holes. 0 = ignore; 10 = quick to sew.",
-        show_default=DefaultText("RouteOptions", "simplicity"),
+    _option(
+        None,
+        "Weight of simplicity in the score: fewer winches, cables and holes. 0 = ignore; 10 = quick to sew.",
+        "RouteOptions.simplicity",
     ),
 ]
 Reach = Annotated[
     float | None,
-    typer.Option(
-        help="Weight of workspace size in the score. 0 = ignore; 1 = twice the workspace may cost twice the error.",
-        show_default=DefaultText("RouteOptions", "reach"),
+    _option(
+        None,
+        "Weight of workspace size in the score. 0 = ignore; 1 = twice the workspace may cost twice the error.",
+        "RouteOptions.reach",
     ),
 ]
 AsModelled = Annotated[
@@ -127,12 +102,7 @@ Tolerance = Annotated[
     ),
 ]
 Fibres = Annotated[
-    str | None,
-    typer.Option(
-        metavar="edges|elements",
-        help="Location of muscles for --method trees.",
-        show_default=DefaultText("TreeOptions", "fibres"),
-    ),
+    str | None, _option("edges|elements", "Location of muscles for --method trees.", "TreeOptions.fibres")
 ]
 Knobs = Annotated[
     list[str] | None,

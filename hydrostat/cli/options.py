@@ -30,28 +30,23 @@ EqualWinches = Annotated[
 
 
 class DefaultText(str):
-    """Text of an option's default, read from a field of a record of `hydrostat.design` when help is printed.
+    """Text of an option's default: "Record.field" of `hydrostat.design`, read from there when help is printed.
 
     Records take a second to import, which commands should not spend before they are called.
     """
 
-    __slots__ = ("field", "record")
-
-    def __new__(cls, record: str, field: str) -> "DefaultText":
-        """Text of a field of a record with this name."""
-        text = super().__new__(cls, f"{record}.{field}")
-        text.record, text.field = record, field
-        return text
+    __slots__ = ()
 
     def __format__(self, spec: str) -> str:
         """The default with its unit."""
         from hydrostat import design
 
-        value = getattr(getattr(design, self.record), self.field)
+        record, _, field = self.partition(".")
+        value = getattr(getattr(design, record), field)
         if not isinstance(value, float):
             return format(str(value), spec)
-        allowed = design.RANGES.get(self.field, design.Range()) if self.record == "Constraints" else design.Range()
-        scale, unit = allowed.shown
+        allowed = design.RANGES.get(field) if record == "Constraints" else None
+        scale, unit = (allowed or design.Range()).shown
         return format(f"{scale * value:g} {unit}".rstrip(), spec)
 
 

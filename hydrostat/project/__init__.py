@@ -7,7 +7,7 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.project.project_file import PROJECT_FILE, read_project_file, write_project_file
     from hydrostat.project.wished_constraints import wished_constraints
-    from hydrostat.project.wishes import Paint, Wishes, moved_zone, wish_range
+    from hydrostat.project.wishes import WISH_RANGES, Paint, Wishes, moved_zone
     from hydrostat.project.work import Work, after_design, follow_robot, fresh_name
     from hydrostat.project.work_folder import (
         changed_outside,
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "PROJECT_FILE",
+    "WISH_RANGES",
     "Paint",
     "Wishes",
     "Work",
@@ -38,7 +39,6 @@ __all__ = [
     "read_project_file",
     "save_work",
     "text_of",
-    "wish_range",
     "wished_constraints",
     "write_project_file",
 ]

@@ -15,7 +15,6 @@ from hydrostat.design import (
     Constraints,
     DesignMethod,
     DesignRequest,
-    Range,
     RouteOptions,
     TreeKnobs,
     TreeOptions,
@@ -102,10 +101,8 @@ ELSEWHERE = (*Paint, "locked_winches", "locked_cables", "spool_ratio")
 """Fields of `Constraints` that are wished by other names: as `zones`, `kept_winches`, `kept_cables` and "stepped"."""
 
 
-def wish_range(name: str) -> Range:
-    """Allowed values of a number that can be wished."""
-    options = {option: ROUTE_RANGES[option] for option in OPTIONS}
-    return {**RANGES, **options, **KNOB_RANGES}[name]
+WISH_RANGES = {**RANGES, **{name: ROUTE_RANGES[name] for name in OPTIONS}, **KNOB_RANGES}
+"""Allowed values of the numbers in the records of `Wishes`."""
 
 
 def moved_zone(zone: Zone, move: Callable[[Point], Point]) -> Zone:
@@ -126,7 +123,7 @@ def _check(name: str, value: Any) -> None:
     """Refuse a value that its record would refuse, in a person's units."""
     if name == "mirror":
         _check_mirror(value)
-    allowed = None if name in OWN or _is_plain(name) else wish_range(name)
+    allowed = WISH_RANGES.get(name)
     if allowed is None or allowed.holds(value):
         return
     words = name.replace("_", " ")
@@ -139,8 +136,3 @@ def _check(name: str, value: Any) -> None:
 def _check_mirror(value: object) -> None:
     if value not in (None, "x", "y", "z"):
         raise InputError(f"mirror must be x, y, z or nothing, not {quote(value)}")
-
-
-def _is_plain(name: str) -> bool:
-    """Tell whether a value is no number, so that its record checks it."""
-    return name == "stepped" or (_record(name) == "constraints" and name not in RANGES)

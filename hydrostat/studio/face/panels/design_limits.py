@@ -6,7 +6,7 @@ from typing import Any
 
 from nicegui import ui
 
-from hydrostat.project import Paint, Wishes, wish_range
+from hydrostat.project import WISH_RANGES, Paint, Wishes
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.painter import COLOURS, WORDS
 from hydrostat.studio.face.messages import sent_number
@@ -112,7 +112,7 @@ def _more(title: str) -> ui.expansion:
 
 def number_box(page: WindowPage, words: str, name: str, unit: str = "") -> Show:
     """Build a box for a number that can be wished, in the unit of its range; empty where it is left open."""
-    designer, allowed = page.session.designer, wish_range(name)
+    designer, allowed = page.session.designer, WISH_RANGES[name]
     scale, own_unit = allowed.shown
     unit, whole, optional = unit or own_unit, allowed.whole, allowed.optional
     box = ui.number(words, suffix=unit or None, format="%.6g").props("dense outlined hide-bottom-space stack-label")
