@@ -9,9 +9,9 @@ from hydrostat.errors import HydrostatError, NotConvergedError
 from hydrostat.ik import IKOptions, IKStatus, Limits, PointTarget, PoseRegularizer, Tracker
 from hydrostat.robot import Point
 from hydrostat.simulation import Equilibrium, Simulation, friction_hysteresis
-from hydrostat.studio.posing.foreteller import Predictor
 from hydrostat.studio.posing.held import Anchored, HeldPoint
 from hydrostat.studio.posing.mover import Mover
+from hydrostat.studio.posing.predictor import Predictor
 from hydrostat.studio.view.things import RobotShape
 from hydrostat.studio.view.touching import with_touches
 
@@ -62,10 +62,10 @@ class CableMover(Mover):
         *,
         tension: float,
         start: Equilibrium | None = None,
-        foreteller: Predictor | None = None,
+        predictor: Predictor | None = None,
     ) -> None:
-        """Begin in a pose, or at rest; cables bear at most a tension [N]. With a foreteller its answer comes first."""
-        self.foreteller, self._told = foreteller, False
+        """Begin in a pose, or at rest; cables bear at most a tension [N]. With a predictor its answer comes first."""
+        self.predictor, self._told = predictor, False
         self.robot, self.tension = simulation.robot, tension
         self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)
         options = replace(simulation.options, tolerance=ROUGH)
@@ -79,7 +79,7 @@ class CableMover(Mover):
 
     def with_tension_limit(self, tension: float) -> "CableMover":
         """Return a mover in the same pose with another limit on the tension [N]."""
-        return CableMover(self._simulation, tension=tension, start=self._pose, foreteller=self.foreteller)
+        return CableMover(self._simulation, tension=tension, start=self._pose, predictor=self.predictor)
 
     def rest(self) -> RobotShape:
         """Back to rest at once."""
@@ -96,11 +96,11 @@ class CableMover(Mover):
                 self._follow(self._rough)
             self._near = False
         targets = self._asked(held)
-        if targets and self._updates == 0 and not self._told and self.foreteller is not None:
+        if targets and self._updates == 0 and not self._told and self.predictor is not None:
             self._told = True  # the exact answer is next, even if the pointer has gone on
-            self.foreteller.stay(self._pose)
+            self.predictor.stay(self._pose)
             shape = self._shape(self._anchored.errors(held, self._pose.nodes), (), settled=False)
-            return replace(shape, foretold=self.foreteller.solve(targets).as_prediction(exact=False)), True
+            return replace(shape, prediction=self.predictor.solve(targets).as_prediction(exact=False)), True
         self._told = False
         if self._near and not self._exact:
             self._follow(self._simulation)
@@ -124,13 +124,13 @@ class CableMover(Mover):
         if not more:
             notes = (*notes, *self._band())
         shape = self._shape(dict(reached.errors), notes, settled=not more)
-        if targets and self.foreteller is not None:
-            shape = replace(shape, foretold=self.foreteller.solve(targets).as_prediction(exact=not more))
+        if targets and self.predictor is not None:
+            shape = replace(shape, prediction=self.predictor.solve(targets).as_prediction(exact=not more))
         return shape, more
 
     def _asked(self, held: Mapping[str, HeldPoint]) -> dict[str, Point] | None:
         """Targets of what is held, if there are networks that know all of it."""
-        if self.foreteller is None or not self.foreteller.knows(held):
+        if self.predictor is None or not self.predictor.knows(held):
             return None
         return {name: point.target for name, point in held.items()}
 
@@ -167,7 +167,7 @@ class CableMover(Mover):
             limits=Limits(tension=self.tension),
             start=self._pose,
             options=IKOptions(largest_step=STRIDE),
-            model=self.foreteller,
+            model=self.predictor,
         )
 
     def _shape(self, errors: dict[str, float], notes: tuple[str, ...], *, settled: bool = True) -> RobotShape:

@@ -9,9 +9,9 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.posing.cable_mover import CableMover
-from hydrostat.studio.posing.foreteller import Predictor
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.mover import Mover, MuscleMover
+from hydrostat.studio.posing.predictor import Predictor
 
 
 class Movers:
@@ -46,14 +46,14 @@ class Movers:
         before = self._cables
         if before is None or not self.ready(robot, mode):
             simulation = self._document.simulation_of(robot)
-            start, foreteller = _resumed(simulation, before), self._foreteller(simulation.robot)
-            self._cables = CableMover(simulation, tension=tension, start=start, foreteller=foreteller)
+            start, predictor = _resumed(simulation, before), self._predictor(simulation.robot)
+            self._cables = CableMover(simulation, tension=tension, start=start, predictor=predictor)
         elif before.tension != tension:
             self._cables = before.with_tension_limit(tension)
         assert self._cables is not None
         return self._cables
 
-    def _foreteller(self, robot: Robot) -> Predictor | None:
+    def _predictor(self, robot: Robot) -> Predictor | None:
         """Networks of a robot; None where there are none, or it was changed since they learned."""
         if self._document.model is None:
             return None

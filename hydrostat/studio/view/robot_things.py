@@ -15,7 +15,7 @@ from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, S
 
 MARKER = "#2b2833"
 PIN = "#5f5a68"
-FORETOLD = "#d9730d"
+PREDICTED = "#d9730d"
 DETAIL = 1500  # so many points of what is drawn on a body are sent with each frame at most, or near that
 
 
@@ -98,14 +98,14 @@ def target_things(
     return things
 
 
-def foretold_things(shape: RobotShape) -> list[Thing]:
+def prediction_things(shape: RobotShape) -> list[Thing]:
     """Dots where networks expect markers while the body is on its way there."""
-    foretold = shape.foretold
-    if foretold is None or foretold.exact:
+    prediction = shape.prediction
+    if prediction is None or prediction.exact:
         return []
     return [
-        Dot(at=place, look=Look.MARKER, colour=FORETOLD, label="predicted", stuck=False)
-        for place in foretold.markers.values()
+        Dot(at=place, look=Look.MARKER, colour=PREDICTED, label="predicted", stuck=False)
+        for place in prediction.markers.values()
     ]
 
 

@@ -33,7 +33,7 @@ class RobotShape:
     touches: tuple[ContactPatch, ...] = ()  # where it touches itself and obstacles, the hardest first
     carried: Points | None = None  # where obstacles that move are, as `Equilibrium.carried` [m]; None: where they begin
     crossing: Point | None = None  # a place where it passes through itself [m]
-    foretold: Prediction | None = None  # what networks say of it; None where none are asked
+    prediction: Prediction | None = None  # what networks say of it; None where none are asked
     notes: tuple[str, ...] = ()  # what to mind, a line each: limits that hold, why a solver stopped
 
 

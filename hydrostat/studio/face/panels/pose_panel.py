@@ -69,7 +69,7 @@ def held_card(page: WindowPage) -> None:
     with ui.element("div").classes("studio-card"):
         empty = ui.label("No targets yet. Drag a point to add one.").classes("studio-hint")
         rows = ui.column().classes("w-full").style("gap: 2px")
-        told = ui.label().classes("studio-hint studio-figure").style("margin-top: 6px").mark("pose-foretold")
+        told = ui.label().classes("studio-hint studio-figure").style("margin-top: 6px").mark("pose-prediction")
         notes = ui.label().classes("studio-hint").style("white-space: pre-line; margin-top: 6px").mark("pose-notes")
     figures: dict[str, ui.label] = {}
 
@@ -88,8 +88,8 @@ def held_card(page: WindowPage) -> None:
                 label.set_text(words)
                 near = error is not None and error < NEAR
                 label.style(f"color: {'var(--q-positive)' if near else 'inherit'}")
-        told.set_text(foretold_words(shape))
-        told.set_visibility(shape.foretold is not None)
+        told.set_text(prediction_words(shape))
+        told.set_visibility(shape.prediction is not None)
         words = "\n".join(f"{note[:1].upper()}{note[1:]}" for note in shape.notes)
         notes.set_text(words)
         notes.set_visibility(bool(words))
@@ -98,9 +98,9 @@ def held_card(page: WindowPage) -> None:
     page.on((Topic.THINGS, Topic.SHAPE), show)
 
 
-def foretold_words(shape: RobotShape) -> str:
+def prediction_words(shape: RobotShape) -> str:
     """State of the shown answer and the networks' predicted error [mm], in words; "" without networks."""
-    told = shape.foretold
+    told = shape.prediction
     if told is None:
         return ""
     known = f"predicted error {told_error(told.error)} ± {told_error(told.uncertainty)}"

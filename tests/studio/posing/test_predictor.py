@@ -13,12 +13,12 @@ from hydrostat.learning import LearnedModel, Perceptrons, plan_samples, save_mod
 from hydrostat.robot import Point, Robot, load_robot, save_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
-from hydrostat.studio.face.panels.pose_panel import foretold_words
+from hydrostat.studio.face.panels.pose_panel import prediction_words
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import Hit
-from hydrostat.studio.view.robot_things import foretold_things
+from hydrostat.studio.view.robot_things import prediction_things
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -70,13 +70,13 @@ def test_networks_answer_first_and_the_exact_pose_follows(poser: Poser, starfish
     hold_all(poser, starfish, model)
     poser.step(0.0)
     first = poser.shape()
-    assert first.foretold is not None
-    assert not first.foretold.exact
-    assert first.foretold.error == first.foretold.uncertainty == 1e-3
+    assert first.prediction is not None
+    assert not first.prediction.exact
+    assert first.prediction.error == first.prediction.uncertainty == 1e-3
     assert not first.contractions.any()  # what is shown of winches, and sent to motors, is of a pose
-    dots = {dot.at for dot in foretold_things(first)}
+    dots = {dot.at for dot in prediction_things(first)}
     assert dots == {tuple(model.markers[marker.name].tolist()) for marker in starfish.markers}
-    assert foretold_words(first).startswith("Dots by surrogate model: predicted error 1.0 mm ± 1.0 mm.")
+    assert prediction_words(first).startswith("Dots by surrogate model: predicted error 1.0 mm ± 1.0 mm.")
     poser.step(0.1)
     second = poser.shape()
     assert max(second.errors.values()) < 0.05 * max(first.errors.values())  # one update, as far as the networks lead
@@ -85,10 +85,10 @@ def test_networks_answer_first_and_the_exact_pose_follows(poser: Poser, starfish
         count += 1
         assert count < 500
     last = poser.shape()
-    assert last.foretold is not None
-    assert last.foretold.exact
-    assert foretold_things(last) == []
-    assert foretold_words(last).startswith("Exact: ")
+    assert last.prediction is not None
+    assert last.prediction.exact
+    assert prediction_things(last) == []
+    assert prediction_words(last).startswith("Exact: ")
     again = Simulation(starfish).solve(last.contractions)
     assert np.abs(again.nodes - last.nodes).max() < 1e-4 * starfish.body.mesh.size
 
@@ -116,7 +116,7 @@ def test_networks_are_not_asked_for_plain_points(poser: Poser, starfish: Robot, 
     poser.step(0.0)
     assert poser.held
     assert model.asked == []
-    assert poser.shape().foretold is None
+    assert poser.shape().prediction is None
 
 
 def untrained(robot: Robot) -> LearnedModel:
