@@ -17,7 +17,7 @@ KEPT = 80  # so many robots are remembered, the candidates of some designs among
 
 
 @dataclass(frozen=True, eq=False)
-class _Known:
+class _RobotFacts:
     """Facts about a robot that other work has found."""
 
     robot: Robot
@@ -26,13 +26,13 @@ class _Known:
 
 
 @dataclass(frozen=True, eq=False)
-class _Case:
+class _Review:
     """A robot that was judged, with all that it was judged by."""
 
     robot: Robot
     wishes: Wishes
     options: KitOptions
-    known: _Known | None
+    known: _RobotFacts | None
     said: tuple[Diagnostic, ...]
 
 
@@ -42,7 +42,7 @@ class _KitVerdict:
 
     robot: Robot
     options: KitOptions
-    known: _Known | None
+    known: _RobotFacts | None
     refused: bool
 
 
@@ -59,20 +59,20 @@ class Judge:
         self.options = KitOptions()  # of the kit that the next judgement is for
         self.chosen: Diagnostic | None = None  # that is shown with its words
         self._bell = bell
-        self._known: tuple[_Known, ...] = ()
-        self._cases: tuple[_Case, ...] = ()
-        self._weighed: tuple[_KitVerdict, ...] = ()
+        self._known: tuple[_RobotFacts, ...] = ()
+        self._reviews: tuple[_Review, ...] = ()
+        self._verdicts: tuple[_KitVerdict, ...] = ()
         self._seen: tuple[Robot, Wishes, KitOptions, float] | None = None
 
     def of(self, robot: Robot, wishes: Wishes) -> tuple[Diagnostic, ...] | None:
         """Return the findings on a robot; None until it has been reviewed."""
-        case = self._case(robot, wishes)
-        if case is None:
+        review = self._review_of(robot, wishes)
+        if review is None:
             return None
         skin = self.skin(robot)
-        told = {finding.text for finding in case.said}
+        told = {finding.text for finding in review.said}
         more = () if skin is None else (finding for finding in skin.findings if finding.text not in told)
-        return (*more, *case.said)
+        return (*more, *review.said)
 
     def skin(self, robot: Robot) -> SewnSkin | None:
         """The skin of a robot that is sewn in space, once it was looked at; None for others."""
@@ -80,7 +80,7 @@ class Judge:
 
     def look(self, robot: Robot, wishes: Wishes, now: float, *, held: bool = False) -> None:
         """Judge a robot that is shown once it has rested, unless it is held or was judged [s]."""
-        if self._case(robot, wishes) is not None:
+        if self._review_of(robot, wishes) is not None:
             self.skins.look(robot.body, self.options)
             return
         seen = self._seen
@@ -88,28 +88,28 @@ class Judge:
             self._seen = (robot, wishes, self.options, now)
         elif now - seen[3] >= QUIET and not held:
             options, known = self.options, self._of(robot)
-            case = _Case(robot, wishes, options, known, _said(robot, wishes, options, known))
-            self._cases = (case, *self._cases)[:KEPT]
+            review = _Review(robot, wishes, options, known, _said(robot, wishes, options, known))
+            self._reviews = (review, *self._reviews)[:KEPT]
             self.skins.look(robot.body, options)
             self._bell.ring(Topic.JOB, Topic.THINGS)
 
     def is_refused(self, robot: Robot) -> bool | None:
-        """True if a kit of a network that `weigh` has reviewed would be refused, as far as known; None: not known."""
-        weighed = self._weighed_of(robot)
-        return None if weighed is None else weighed.refused
+        """True if a kit of a network that `review_kits` has reviewed would be refused; None: not known."""
+        verdict = self._verdict_of(robot)
+        return None if verdict is None else verdict.refused
 
-    def weigh(self, robots: Iterable[Robot]) -> None:
+    def review_kits(self, robots: Iterable[Robot]) -> None:
         """Look at one of some networks that nobody has looked at yet: whether a kit of it would be refused."""
-        robot = next((robot for robot in robots if self._weighed_of(robot) is None), None)
+        robot = next((robot for robot in robots if self._verdict_of(robot) is None), None)
         if robot is not None:
             options, known = self.options, self._of(robot)
-            weighed = _KitVerdict(robot, options, known, _is_refused(robot, options, known))
-            self._weighed = (weighed, *self._weighed)[:KEPT]
+            verdict = _KitVerdict(robot, options, known, _is_refused(robot, options, known))
+            self._verdicts = (verdict, *self._verdicts)[:KEPT]
             self._bell.ring(Topic.JOB)
 
     def learn(self, robot: Robot, *, demand: Demand | None = None, refused: tuple[str, ...] = ()) -> None:
         """Remember the loads of a robot's poses, or why a kit of it was refused."""
-        before = self._of(robot) or _Known(robot)
+        before = self._of(robot) or _RobotFacts(robot)
         known = replace(before, robot=robot, demand=demand or before.demand, refused=refused or before.refused)
         self._known = (known, *(other for other in self._known if other is not before))[:KEPT]
         self._seen = None
@@ -120,28 +120,32 @@ class Judge:
         self.chosen = None if finding == self.chosen else finding
         self._bell.ring(Topic.JOB, Topic.THINGS)
 
-    def _case(self, robot: Robot, wishes: Wishes) -> _Case | None:
+    def _review_of(self, robot: Robot, wishes: Wishes) -> _Review | None:
         known = self._of(robot)
         return next(
             (
-                case
-                for case in self._cases
-                if case.robot is robot
-                and case.wishes == wishes
-                and case.options == self.options
-                and case.known is known
+                review
+                for review in self._reviews
+                if review.robot is robot
+                and review.wishes == wishes
+                and review.options == self.options
+                and review.known is known
             ),
             None,
         )
 
-    def _weighed_of(self, robot: Robot) -> _KitVerdict | None:
+    def _verdict_of(self, robot: Robot) -> _KitVerdict | None:
         known = self._of(robot)
         return next(
-            (one for one in self._weighed if one.robot is robot and one.known is known and one.options == self.options),
+            (
+                one
+                for one in self._verdicts
+                if one.robot is robot and one.known is known and one.options == self.options
+            ),
             None,
         )
 
-    def _of(self, robot: Robot) -> _Known | None:
+    def _of(self, robot: Robot) -> _RobotFacts | None:
         return next((known for known in self._known if _alike(known.robot, robot)), None)
 
 
@@ -155,7 +159,7 @@ def _alike(one: Robot, other: Robot) -> bool:
     )
 
 
-def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _Known | None) -> tuple[Diagnostic, ...]:
+def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _RobotFacts | None) -> tuple[Diagnostic, ...]:
     """All findings, the reasons of a refused kit among them; what cannot be judged is not said."""
     try:
         constraints = wished_constraints(robot, wishes)
@@ -168,7 +172,7 @@ def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _Known | Non
     return (*(Diagnostic(text=text, weight=Severity.REFUSED, places=places_in(text, robot)) for text in more), *found)
 
 
-def _is_refused(robot: Robot, options: KitOptions, known: _Known | None) -> bool:
+def _is_refused(robot: Robot, options: KitOptions, known: _RobotFacts | None) -> bool:
     """True if a kit would be refused for any reason; a robot that cannot be reviewed has none."""
     try:
         return bool((known and known.refused) or find_refusals(robot, known.demand if known else None, options=options))

@@ -94,16 +94,16 @@ def test_networks_of_a_design_are_weighed_one_after_another(squid: Robot) -> Non
     judge = Judge(bell)
     other = squid.with_network(squid.winches[:1], [squid.cables[0]])
     for known in ([False, None], [False, False], [False, False]):
-        judge.weigh([squid, other])
+        judge.review_kits([squid, other])
         assert [judge.is_refused(squid), judge.is_refused(other)] == known
     assert heard == [Topic.JOB] * 2
     judge.learn(other, refused=("it is torn",))
     assert judge.is_refused(other) is None
-    judge.weigh([squid, other])
+    judge.review_kits([squid, other])
     assert judge.is_refused(other) is True
     judge.options = KitOptions(motor="25d")
     assert judge.is_refused(squid) is None
-    judge.weigh([squid])
+    judge.review_kits([squid])
     assert judge.is_refused(squid) is True
 
 

@@ -221,7 +221,7 @@ class Designer(Stage):
         judge = self._document.judge
         judge.look(self.shown_robot, self.wishes, now, held=self.running)
         if not self.running and judge.of(self.shown_robot, self.wishes) is not None:
-            judge.weigh(candidate.robot for candidate in self.candidates)
+            judge.review_kits(candidate.robot for candidate in self.candidates)
         reach = self._reach()
         nodes = self._document.robot.body.mesh.nodes if reach is None else reach.nodes
         tensions = np.zeros(len(self.shown_robot.cables)) if reach is None else reach.tensions

@@ -13,7 +13,7 @@ APART = 0.5  # a copy of a key is put so much later [s]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Held:
+class _DraggedKey:
     """A key that is dragged."""
 
     index: int  # its number before
@@ -27,7 +27,7 @@ class Keyframes:
     def __init__(self, document: Document) -> None:
         self._document = document
         self._chosen: tuple[Robot, float] | None = None
-        self._held: _Held | None = None
+        self._held: _DraggedKey | None = None
 
     @property
     def timeline(self) -> Timeline:
@@ -73,7 +73,7 @@ class Keyframes:
         if held is None or held.index != index or held.made is not self.timeline:  # not what this drag has made
             self._key(index)
             self._document.seal()
-            held = _Held(index=index, before=self.timeline, made=self.timeline)
+            held = _DraggedKey(index=index, before=self.timeline, made=self.timeline)
         before = held.before
         time = min(max(time, 0.0), before.seconds)
         timeline = replace(before.move_key(index, time), length=before.seconds)

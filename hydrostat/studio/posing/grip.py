@@ -16,21 +16,21 @@ def name_under(now: PoseState, hit: Hit) -> str:
     markers = [marker.name for marker in now.robot.markers]
     if kind == "marker" and name in markers:
         return name
-    if kind in ("target", "point") and name in now.wish.held:
+    if kind in ("target", "point") and name in now.targets.held:
         return name
     if hit.rest is None:
         return ""
     near = NEAR * now.robot.body.mesh.size
-    for own, held in now.wish.held.items():
+    for own, held in now.targets.held.items():
         if np.linalg.norm(np.subtract(held.at, hit.rest)) < near:
             return own
-    return fresh_name("point", [*now.wish.held, *markers])
+    return fresh_name("point", [*now.targets.held, *markers])
 
 
 def point_of(now: PoseState, name: str, hit: Hit) -> HeldPoint:
     """A point by name, held where it is if it is not held yet."""
-    if name in now.wish.held:
-        return now.wish.held[name]
+    if name in now.targets.held:
+        return now.targets.held[name]
     for marker in now.robot.markers:
         if marker.name == name:
             return HeldPoint(at=marker.at, target=marker.at, marker=True)

@@ -75,27 +75,30 @@ class PoseState:
     """State of posing, replaced as a whole so that no thread sees old targets with a new body."""
 
     robot: Robot  # that is posed
-    wish: PoseTargets  # what a person wants of it
+    targets: PoseTargets  # what a person wants of it
     anchored: Anchored  # where held points are stuck to its mesh
     shape: RobotShape  # where its body is
     ghost: Ghost | None = None  # a shape to compare with, if any
 
     def known(self, name: str) -> str:
         """The name, if a point that is held or a marker has it, else ""."""
-        found = name in self.wish.held or any(marker.name == name for marker in self.robot.markers)
+        found = name in self.targets.held or any(marker.name == name for marker in self.robot.markers)
         return name if found else ""
 
     def adapt_to(self, robot: Robot) -> "PoseState":
         """Return the state for a robot of the same nodes; it releases points held at lost markers, not plain points."""
         names, places = renamed_markers(self.robot, robot), {marker.name: marker.at for marker in robot.markers}
         held: dict[str, HeldPoint] = {}
-        for old, point in self.wish.held.items():
+        for old, point in self.targets.held.items():
             name = names.get(old, old)
             if name in places or not point.marker:
                 held[name] = replace(point, at=places.get(name, point.at))
-        mode = self.wish.mode if robot.cables else Mode.MUSCLES
+        mode = self.targets.mode if robot.cables else Mode.MUSCLES
         return replace(
-            self, robot=robot, wish=replace(self.wish, held=held, mode=mode), shape=with_network_of(robot, self.shape)
+            self,
+            robot=robot,
+            targets=replace(self.targets, held=held, mode=mode),
+            shape=with_network_of(robot, self.shape),
         )
 
 

@@ -74,12 +74,12 @@ class Poser(Stage):
     @property
     def mode(self) -> Mode:
         """Actuation of the body: by muscles or by cables."""
-        return self._fit().wish.mode
+        return self._fit().targets.mode
 
     @property
     def held(self) -> Mapping[str, HeldPoint]:
         """Held points with their targets, by name."""
-        return self._fit().wish.held
+        return self._fit().targets.held
 
     @property
     def armed(self) -> bool:
@@ -98,7 +98,7 @@ class Poser(Stage):
     def things(self) -> Sequence[Thing]:
         """Ghosts, the robot, points that are held, and rings where they should be."""
         now = self._fit()
-        robot, wish, shape = now.robot, now.wish, now.shape
+        robot, targets, shape = now.robot, now.targets, now.shape
         limit = self._document.work.wishes.constraints.tension
         keys = {f"marker:{self._chosen}", f"point:{self._chosen}"} if self._chosen else set()
         found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, colour=GHOST)]
@@ -107,7 +107,7 @@ class Poser(Stage):
         cloud = self.reach.cloud(robot)
         if cloud is not None:
             found.append(cloud)
-        proposed = self.proposals.network(robot) if wish.mode is Mode.MUSCLES else None
+        proposed = self.proposals.network(robot) if targets.mode is Mode.MUSCLES else None
         if proposed is None:
             options = {"scale": limit, "carried": shape.carried}
             found += robot_things(robot, tensions=shape.tensions, chosen=keys, **options)
@@ -116,15 +116,15 @@ class Poser(Stage):
         markers = {marker.name for marker in robot.markers}
         found += [
             Dot(key=f"point:{name}", at=point.at, look=Look.HANDLE, colour=MARKER, chosen=f"point:{name}" in keys)
-            for name, point in wish.held.items()
+            for name, point in targets.held.items()
             if name not in markers
         ]
-        places = now.anchored.places(wish.held, shape.nodes)
+        places = now.anchored.places(targets.held, shape.nodes)
         found += prediction_things(shape)
         found += touch_things(shape, robot.body.mesh.size)
         return found + target_things(
-            {name: point.target for name, point in wish.held.items()},
-            dict(zip(wish.held, (tuple(place.tolist()) for place in places), strict=True)),
+            {name: point.target for name, point in targets.held.items()},
+            dict(zip(targets.held, (tuple(place.tolist()) for place in places), strict=True)),
             chosen=f"target:{self._chosen}",
         )
 
@@ -195,23 +195,25 @@ class Poser(Stage):
         mode = parse_choice(Mode, mode, what="mode")
         with self._lock:
             now = self._fit()
-            if mode is now.wish.mode:
+            if mode is now.targets.mode:
                 return
             if mode is Mode.CABLES and not now.robot.cables:
                 raise InputError("this robot has no cables yet. Find some in Design, or place them in Edit")
             ghost = None
-            if mode is Mode.CABLES and now.wish.held:
+            if mode is Mode.CABLES and now.targets.held:
                 ghost = Ghost(name="target", nodes=now.shape.nodes, colour=TARGET_GHOST)
-            self._now = replace(now, wish=replace(now.wish, mode=mode), ghost=ghost)
+            self._now = replace(now, targets=replace(now.targets, mode=mode), ghost=ghost)
         self._ring()
 
     def rest(self) -> None:
         """Back to rest: no targets, no cable taken in."""
         with self._lock:
             now = self._fit()
-            if now.wish.held:
+            if now.targets.held:
                 self._note("rest")
-            self._now = replace(now, wish=PoseTargets(mode=now.wish.mode, rests=now.wish.rests + 1), ghost=None)
+            self._now = replace(
+                now, targets=PoseTargets(mode=now.targets.mode, rests=now.targets.rests + 1), ghost=None
+            )
             self._let_go()
         self._ring()
 
@@ -220,15 +222,15 @@ class Poser(Stage):
         with self._lock:
             now = self._fit()
             self._note(f"release {name}")
-            left = {own: held for own, held in now.wish.held.items() if own != name}
-            self._now = replace(now, wish=replace(now.wish, held=left))
+            left = {own: held for own, held in now.targets.held.items() if own != name}
+            self._now = replace(now, targets=replace(now.targets, held=left))
             self._chosen = self._armed = ""
         self._ring()
 
     def store(self, name: str) -> None:
         """Keep what is held as a pose of the robot; can be undone (InputError: no name, or nothing is held)."""
         now = self._fit()
-        changed = with_pose(now.robot, name, now.wish.held)
+        changed = with_pose(now.robot, name, now.targets.held)
         self._document.change(f"store pose {name.strip()}", robot=changed)
 
     def show_pose(self, name: str) -> None:
@@ -237,7 +239,7 @@ class Poser(Stage):
             now = self._fit()
             held = held_of(now.robot, name)
             self._note(f"show {name}")
-            self._now = replace(now, wish=replace(now.wish, held=held), ghost=None)
+            self._now = replace(now, targets=replace(now.targets, held=held), ghost=None)
             self._let_go()
         self._ring()
 
@@ -261,32 +263,32 @@ class Poser(Stage):
     def step(self, now: float) -> bool:
         """One update of the mover; the first only says that it may take a while."""
         current = self._fit()
-        robot, wish = current.robot, current.wish
+        robot, targets = current.robot, current.targets
         tension = self._document.work.wishes.constraints.tension
         if self._done is not None and all(
-            old is new for old, new in zip(self._done, (robot, wish, tension), strict=True)
+            old is new for old, new in zip(self._done, (robot, targets, tension), strict=True)
         ):
             return False
-        if not self._movers.ready(robot, wish.mode) and not self._announced:
+        if not self._movers.ready(robot, targets.mode) and not self._announced:
             self._announced = True
             self._publish(robot, replace(current.shape, notes=(READY,)))
             return True
         self._announced = False
         try:
-            mover = self._movers.mover(robot, wish.mode, tension)
+            mover = self._movers.mover(robot, targets.mode, tension)
         except NotConvergedError as error:
-            self._done = (robot, wish, tension)
+            self._done = (robot, targets, tension)
             self._publish(robot, replace(current.shape, notes=(str(error),)))
             return False
-        if self._rested.get(wish.mode) != wish.rests:
-            self._rested[wish.mode] = wish.rests
+        if self._rested.get(targets.mode) != targets.rests:
+            self._rested[targets.mode] = targets.rests
             mover.rest()
-        shape, more = mover.update(wish.held)
+        shape, more = mover.update(targets.held)
         self._publish(robot, shape)
-        self._propose(robot, wish)
+        self._propose(robot, targets)
         if not more:
-            self._done = (robot, wish, tension)
-        return more or self._fit().wish is not wish
+            self._done = (robot, targets, tension)
+        return more or self._fit().targets is not targets
 
     @property
     def undo_label(self) -> str:
@@ -310,26 +312,26 @@ class Poser(Stage):
         """Go to another step of the trail; where nothing was held, back to rest."""
         with self._lock:
             now = self._fit()
-            held = way(now.wish.held)
-            rests = now.wish.rests + (not held)
-            self._now = replace(now, wish=replace(now.wish, held=held, rests=rests), ghost=None)
+            held = way(now.targets.held)
+            rests = now.targets.rests + (not held)
+            self._now = replace(now, targets=replace(now.targets, held=held, rests=rests), ghost=None)
             self._let_go()
         self._ring()
 
     def _note(self, label: str) -> None:
         """Note for undo that the held points change now."""
-        self._trail.note(label, self._fit().wish.held)
+        self._trail.note(label, self._fit().targets.held)
 
-    def _propose(self, robot: Robot, wish: PoseTargets) -> None:
+    def _propose(self, robot: Robot, targets: PoseTargets) -> None:
         """Want cables for what the muscles do just now."""
         muscles = self._movers.muscles
-        if not self.proposals.on or wish.mode is not Mode.MUSCLES or muscles is None:
+        if not self.proposals.on or targets.mode is not Mode.MUSCLES or muscles is None:
             return
-        if not wish.held:
+        if not targets.held:
             self.proposals.forget()
             return
         nodes, tensions = muscles.pulls
-        moment = ProposalInput(held=wish.held, nodes=nodes, tensions=tensions, wishes=self._document.work.wishes)
+        moment = ProposalInput(held=targets.held, nodes=nodes, tensions=tensions, wishes=self._document.work.wishes)
         self.proposals.ask(robot, moment)
 
     def _publish(self, robot: Robot, shape: RobotShape) -> None:
@@ -352,9 +354,11 @@ class Poser(Stage):
             if before is not None and before.robot is robot:
                 return before
             if before is None or not same_body(before.robot, robot):
-                rests = 0 if before is None else before.wish.rests
-                wish = PoseTargets(mode=Mode.CABLES if robot.cables else Mode.MUSCLES, rests=rests + 1)
-                now = PoseState(robot=robot, wish=wish, anchored=Anchored(robot.body.mesh), shape=rest_shape(robot))
+                rests = 0 if before is None else before.targets.rests
+                targets = PoseTargets(mode=Mode.CABLES if robot.cables else Mode.MUSCLES, rests=rests + 1)
+                now = PoseState(
+                    robot=robot, targets=targets, anchored=Anchored(robot.body.mesh), shape=rest_shape(robot)
+                )
                 self._let_go()
             else:
                 now = before.adapt_to(robot)
@@ -392,5 +396,5 @@ class Poser(Stage):
         mesh = now.robot.body.mesh
         far = FARTHEST * mesh.size
         near = np.clip(target, mesh.nodes.min(axis=0) - far, mesh.nodes.max(axis=0) + far)
-        held = {**now.wish.held, name: replace(point, target=tuple(near.tolist()))}
-        self._now = replace(now, wish=replace(now.wish, held=held))
+        held = {**now.targets.held, name: replace(point, target=tuple(near.tolist()))}
+        self._now = replace(now, targets=replace(now.targets, held=held))

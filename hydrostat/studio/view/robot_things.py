@@ -15,7 +15,7 @@ from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, S
 
 MARKER = "#2b2833"
 PIN = "#5f5a68"
-PREDICTION = "#d9730d"
+PREDICTED = "#d9730d"
 DETAIL = 1500  # so many points of what is drawn on a body are sent with each frame at most, or near that
 
 
@@ -104,7 +104,7 @@ def prediction_things(shape: RobotShape) -> list[Thing]:
     if prediction is None or prediction.exact:
         return []
     return [
-        Dot(at=place, look=Look.MARKER, colour=PREDICTION, label="predicted", stuck=False)
+        Dot(at=place, look=Look.MARKER, colour=PREDICTED, label="predicted", stuck=False)
         for place in prediction.markers.values()
     ]
 

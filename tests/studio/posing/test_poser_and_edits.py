@@ -182,7 +182,7 @@ def test_what_is_shown_is_of_one_robot(starfish: Robot, document: Document, monk
             super().__init__(mesh)  # type: ignore[arg-type]
             fast = poser._now
             assert fast is not None
-            seen.append((len(fast.shape.nodes), set(fast.wish.held)))
+            seen.append((len(fast.shape.nodes), set(fast.targets.held)))
 
     monkeypatch.setattr(module, "Anchored", Watching)
     document.open(Work(robot=tail), folder=None)

@@ -14,7 +14,7 @@ from hydrostat.learning import LearnedModel, Perceptrons, save_model
 from hydrostat.robot import Point, Robot, load_robot, save_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
-from hydrostat.studio.face.panels.pose_panel import prediction_text
+from hydrostat.studio.face.panels.pose_panel import prediction_words
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.session import Session, Tone
@@ -77,7 +77,7 @@ def test_networks_answer_first_and_the_exact_pose_follows(poser: Poser, starfish
     assert not first.contractions.any()  # what is shown of winches, and sent to motors, is of a pose
     dots = {dot.at for dot in prediction_things(first)}
     assert dots == {tuple(model.markers[marker.name].tolist()) for marker in starfish.markers}
-    assert prediction_text(first).startswith("Dots by surrogate model: predicted error 1.0 mm ± 1.0 mm.")
+    assert prediction_words(first).startswith("Dots by surrogate model: predicted error 1.0 mm ± 1.0 mm.")
     poser.step(0.1)
     second = poser.shape()
     assert max(second.errors.values()) < 0.05 * max(first.errors.values())  # one update, as far as the networks lead
@@ -89,7 +89,7 @@ def test_networks_answer_first_and_the_exact_pose_follows(poser: Poser, starfish
     assert last.prediction is not None
     assert last.prediction.exact
     assert prediction_things(last) == []
-    assert prediction_text(last).startswith("Exact: ")
+    assert prediction_words(last).startswith("Exact: ")
     again = Simulation(starfish).solve(last.contractions)
     assert np.abs(again.nodes - last.nodes).max() < 1e-4 * starfish.body.mesh.size
 

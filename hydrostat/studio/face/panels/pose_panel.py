@@ -88,7 +88,7 @@ def held_card(page: WindowPage) -> None:
                 label.set_text(words)
                 near = error is not None and error < NEAR
                 label.style(f"color: {'var(--q-positive)' if near else 'inherit'}")
-        told.set_text(prediction_text(shape))
+        told.set_text(prediction_words(shape))
         told.set_visibility(shape.prediction is not None)
         words = "\n".join(f"{note[:1].upper()}{note[1:]}" for note in shape.notes)
         notes.set_text(words)
@@ -98,7 +98,7 @@ def held_card(page: WindowPage) -> None:
     page.on((Topic.THINGS, Topic.SHAPE), show)
 
 
-def prediction_text(shape: RobotShape) -> str:
+def prediction_words(shape: RobotShape) -> str:
     """State of the shown answer and the networks' predicted error [mm], in words; "" without networks."""
     told = shape.prediction
     if told is None:
