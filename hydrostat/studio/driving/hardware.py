@@ -214,13 +214,12 @@ class Hardware:
             return True
 
     def _stand(self, why: str) -> None:
-        """Stop motors, and say why if they were armed."""
+        """Stop motors; state the reason if they were armed."""
         link = self._link
         if link is not None:
-            before = link.state
+            if link.state is LinkState.ARMED:
+                self.words = why  # first, as whoever sees that motors stand reads why
             link.stop()
-            if before is LinkState.ARMED:
-                self.words = why
 
     def _same(self, robot: Robot) -> bool:
         """True if another state of the document has the same winches."""
