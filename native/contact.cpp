@@ -5,8 +5,8 @@
 // Two edges that are nearly parallel have no certain nearest points, so that F has soft ((s - 1/2)^2 + (t - 1/2)^2) more
 // where that is asked for.
 //
-// A pair of squared distance D has the energy W h phi(D/h), phi(r) = -(r - 1)^2 ln r below r = 1, 0 above (the barrier of
-// Li et al. 2020), h being the square of the distance at which it begins. By the envelope theorem dD = dF and d2D = F_xx -
+// A pair of squared distance D has the energy W h^2 phi(D/h^2), phi(r) = -(r - 1)^2 ln r below r = 1, 0 above (the barrier of
+// Li et al. 2020), h being the distance at which it begins. By the envelope theorem dD = dF and d2D = F_xx -
 // F_xl F_ll^-1 F_lx, exactly, with the parts of l that are free, none at a corner.
 #include <algorithm>
 #include <cmath>

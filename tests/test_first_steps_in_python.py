@@ -174,7 +174,7 @@ ASTRAY = {
         "young must be a number in Pa, not '30 kPa'",
     ),
     "no path": (lambda _: hs.load_robot(None), "not from None"),
-    "a batch": (lambda s: s.solve(np.zeros((3, 10))), r"not an array of \(3, 10\); solve_many takes a row"),
+    "a batch": (lambda s: s.solve(np.zeros((3, 10))), r"not an array of \(3, 10\); solve_batch takes a row"),
     "no robot": (lambda _: hs.Simulation("gallery:starfish"), "is of a Robot, such as load_robot gives, not 'gallery"),
     "nodes to start from": (lambda s: s.solve({}, start=s.rest.nodes), "start must be a solved pose, .*not ndarray"),
     "a time with a unit": (lambda s: s.solve({}, seconds="1 s"), "seconds must be above 0, not '1 s'"),

@@ -46,14 +46,14 @@ def run_bounded(work: Callable[[], _Result], *, file: str, words: str, seconds: 
         _work(work, writer, seconds)
     os.close(writer)
     try:
-        content = _watched(child, reader, file, words, seconds, memory)
+        content = _read_child(child, reader, file, words, seconds, memory)
     finally:
         os.close(reader)
         with suppress(ProcessLookupError):
             os.kill(child, signal.SIGKILL)
         _, status = os.waitpid(child, 0)
     if not content:
-        raise InputError(f"{file}: reading failed ({_ended(status)}). Simplify the file or export it again.")
+        raise InputError(f"{file}: reading failed ({_describe_exit(status)}). Simplify the file or export it again.")
     done, value = pickle.loads(content)  # of our own child
     if not done:
         raise value
@@ -79,7 +79,7 @@ def _work(work: Callable[[], Any], writer: int, seconds: float) -> NoReturn:
         os._exit(code)
 
 
-def _watched(child: int, reader: int, file: str, words: str, seconds: float, memory: int) -> bytes:
+def _read_child(child: int, reader: int, file: str, words: str, seconds: float, memory: int) -> bytes:
     """Return the bytes that the child sends; end it when it takes longer or more memory."""
     parts: list[bytes] = []
     began = told = time.monotonic()
@@ -93,7 +93,7 @@ def _watched(child: int, reader: int, file: str, words: str, seconds: float, mem
             parts.append(part)
             continue
         now = time.monotonic()
-        spent, taken = _spent(usage, now - began)
+        spent, taken = _usage_of(usage, now - began)
         if spent > seconds:
             raise InputError(
                 f"{file}: time limit reached ({seconds:.3g} s). Simplify it or allow more time, e.g. --within 2min."
@@ -105,7 +105,7 @@ def _watched(child: int, reader: int, file: str, words: str, seconds: float, mem
             print(words if now - began < 2 * PATIENCE else f"{words} {now - began:.0f} s", flush=True)
 
 
-def _spent(usage: Path, waited: float) -> tuple[float, int]:
+def _usage_of(usage: Path, waited: float) -> tuple[float, int]:
     """Processor time [s] and memory [bytes] of a process; the time waited and 0 where the system does not say."""
     try:
         fields = (usage / "stat").read_text().rpartition(")")[2].split()
@@ -115,7 +115,7 @@ def _spent(usage: Path, waited: float) -> tuple[float, int]:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), taken
 
 
-def _ended(status: int) -> str:
+def _describe_exit(status: int) -> str:
     code = os.waitstatus_to_exitcode(status)
     return f"signal {-code}" if code < 0 else f"code {code}"
 

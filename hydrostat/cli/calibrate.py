@@ -61,7 +61,7 @@ def calibrate(
     loaded = read_robot(robot)
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
-    chosen = _chosen(spools, loaded)
+    chosen = _winch_indices(spools, loaded)
     file = control.EMULATED_CALIBRATION if port == control.EMULATED else control.CALIBRATION
     new = not (folder / file).exists()
     calibration = control.usual_calibration(loaded) if new else control.read_calibration(folder, loaded, name=file)
@@ -86,7 +86,7 @@ def calibrate(
     _tell(kind, folder / file, loaded, found, model, constants, curves)
 
 
-def _chosen(spools: str, robot: "Robot") -> list[int]:
+def _winch_indices(spools: str, robot: "Robot") -> list[int]:
     """Places of the winches whose spools are measured (InputError: no such winch)."""
     names = [winch.name for winch in robot.winches]
     wanted = names if spools == "all" else [name.strip() for name in spools.split(",") if name.strip()]
@@ -139,7 +139,7 @@ def _measure(
 
             def read(thought: float, place: int = place, name: str = motor.winch) -> float:
                 if truth is None:
-                    return _asked(name)
+                    return _ask_mark(name)
                 taken = truth.motors[place].contraction(float(bus.read().angles[place]))
                 shown = 5e-4 * round(taken / 5e-4)
                 by_motor = f"motor {1e3 * thought:z.1f} mm"
@@ -161,7 +161,7 @@ def _measure(
     return curves
 
 
-def _asked(name: str) -> float:
+def _ask_mark(name: str) -> float:
     """Ask for the position of the mark on the ruler [m] (InputError: there is nobody to ask)."""
     while True:
         try:

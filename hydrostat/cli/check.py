@@ -129,7 +129,7 @@ def _print_out_of_plane(robot: "Robot") -> None:
             print("3D effect when stuffed: not computed (slow). Run hydrostat check --filled")
         return
     try:
-        print(f"3D effect when stuffed: {filled_motion(robot, _pulled(robot))}")
+        print(f"3D effect when stuffed: {filled_motion(robot, _full_contractions(robot))}")
     except (InputError, NotConvergedError) as error:
         print(f"3D effect when stuffed: not computed ({error})")
 
@@ -143,13 +143,13 @@ def _print_filled(robot: "Robot") -> None:
         raise InputError("--filled: needs a flat robot with a drawing. Remove it.")
     if not robot.poses or not robot.cables:
         raise InputError("--filled: needs at least one [[pose]] and one [[cable]]. Add them or remove --filled.")
-    pulled = _pulled(robot)
+    pulled = _full_contractions(robot)
     print("Stuffed 3D body, contractions of the flat model (maximum over markers and poses):")
     for face in Face:
         print(f"  cables {face.words}: {filled_motion(robot, pulled, face)}")
 
 
-def _pulled(robot: "Robot") -> list[Any]:
+def _full_contractions(robot: "Robot") -> list[Any]:
     """Contractions of all winches, for each pose."""
     from hydrostat.ik import IKOptions, solve_ik
     from hydrostat.simulation import Simulation

@@ -173,10 +173,10 @@ def _facts(network: "Network") -> dict[str, object]:
     options = network.request.as_values()["options"]
     told = {name: ", ".join(map(str, value)) if isinstance(value, tuple) else value for name, value in options.items()}
     given = {name.replace("_", " "): value for name, value in told.items() if value is not None}
-    return {**given, **_told(network.constraints)}
+    return {**given, **_constraint_texts(network.constraints)}
 
 
-def _told(constraints: "Constraints") -> dict[str, str]:
+def _constraint_texts(constraints: "Constraints") -> dict[str, str]:
     """Constraints as a person reads them; those that ask nothing are left out."""
     words = {
         field.name.replace("_", " "): _words(field.name, getattr(constraints, field.name))

@@ -95,7 +95,7 @@ def fabricate(
     options = replace(options, tension=kept or limit)
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
-    kit = _built(robot, loaded, options)
+    kit = _build_or_report(robot, loaded, options)
     kit.write(out)
     print_kit(kit)
     if kept is not None:
@@ -104,7 +104,7 @@ def fabricate(
     print(f"Wrote {len(kit.files)} files in {seconds:.1f} s. Start with {out / 'assembly_sheet.pdf'}")
 
 
-def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
+def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
     """The kit; the reasons are printed why there is none (InputError: it cannot be built well)."""
     from hydrostat.fabrication import UnbuildableError, build_kit
     from hydrostat.robot import in_words

@@ -75,7 +75,7 @@ def firmware(
         calibration = control.read_calibration(folder, loaded)
     else:
         calibration = control.usual_calibration(loaded)
-    chosen = known[motor or _meant(known, calibration)]
+    chosen = known[motor or _motor_key(known, calibration)]
     usual, turns = chosen.counts if counts is None else counts, chosen.speed if rpm is None else rpm
     for name, value in (("counts", usual), ("rpm", turns)):
         if not 0 < value < 1e6:
@@ -111,7 +111,7 @@ _USUAL = "25d"
 """The motor that is meant where neither a command nor motors.toml tells one."""
 
 
-def _meant(known: "Mapping[str, Motor]", calibration: "Calibration") -> str:
+def _motor_key(known: "Mapping[str, Motor]", calibration: "Calibration") -> str:
     """Key of the motor whose counts all motors of a robot have, or else of the usual one."""
     told = {each.counts for each in calibration.motors}
     return next((key for key, one in known.items() if told == {one.counts}), _USUAL)

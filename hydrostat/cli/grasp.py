@@ -71,8 +71,8 @@ def grasp(
     held = read_thing(thing, loaded.body.mesh.dim, mass=weight, friction=friction)
     options = PullOptions(direction=_direction(pull, loaded.body.mesh.dim), step=stride)
     with progress_bar() as tell:
-        closing, closed = _closed(loaded, pose, contractions(loaded, contract))
-        placed = _placed(loaded, held, at, closed)
+        closing, closed = _close_robot(loaded, pose, contractions(loaded, contract))
+        placed = _place_object(loaded, held, at, closed)
         found = pull_out(loaded, placed, closing, options, tell=tell)
         cases = pull_bands(loaded, placed, closing, options, tell=tell) if bands else ()
         out.mkdir(parents=True, exist_ok=True)
@@ -94,7 +94,7 @@ def _feeling(robot: "Robot") -> "Robot":
     return robot if robot.contact is not None else replace(robot, contact=Contact())
 
 
-def _closed(robot: "Robot", name: str | None, given: dict[str, float]) -> "tuple[Vector, Points]":
+def _close_robot(robot: "Robot", name: str | None, given: dict[str, float]) -> "tuple[Vector, Points]":
     """Contractions that close the robot [m], and where its markers then are without the thing [m]."""
     import numpy as np
 
@@ -113,7 +113,7 @@ def _closed(robot: "Robot", name: str | None, given: dict[str, float]) -> "tuple
     return found.contractions, places
 
 
-def _placed(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
+def _place_object(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
     """The thing where it shall lie."""
     from hydrostat.grasp import moved_thing, place_thing
 

@@ -132,7 +132,7 @@ def _write(
         "equal": [list(group) for group in limits.equal],
     }
     write_pose(simulation, reached.pose, folder, extra=extra, jacobian=jacobian)
-    taken = _taken(simulation.robot, reached)
+    taken = _contraction_facts(simulation.robot, reached)
     replace_file(folder / "contractions.json", (json.dumps(taken, indent=2) + "\n").encode())
     head = None if reached.target is not None else f"Reached: {shorten(title)}"
     save_png(draw_reached(simulation.robot, reached, title=head, outline=outline), folder / "pose.png")
@@ -141,7 +141,7 @@ def _write(
 def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: float) -> None:
     """Print what was reached, and what keeps it from more."""
     print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.status} ({1e3 * seconds:.0f} ms)")
-    text = ", ".join(f"{winch} {1e3 * value:z.1f} mm" for winch, value in _taken(loaded, reached).items())
+    text = ", ".join(f"{winch} {1e3 * value:z.1f} mm" for winch, value in _contraction_facts(loaded, reached).items())
     print(f"  contractions: {text}")
     if reached.friction_hysteresis:
         band = ", ".join(f"{name} {1e3 * apart:.2f} mm" for name, apart in reached.friction_hysteresis.items())
@@ -173,7 +173,7 @@ def _note_crossings(loaded: "Robot", pose: "Equilibrium") -> None:
         print(f"  warning: {words}")
 
 
-def _taken(loaded: "Robot", reached: "IKResult") -> dict[str, float]:
+def _contraction_facts(loaded: "Robot", reached: "IKResult") -> dict[str, float]:
     return {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
 
 

@@ -90,13 +90,13 @@ def sample(
     print(
         f"{words}; {100 * found.touches.mean():.0f} % in contact"
         if plan.robot.contact
-        else f"{words}{_crossed(found.crosses)}"
+        else f"{words}{_crossing_text(found.crosses)}"
     )
     if export is not None:
         print(f"Wrote {export_samples(out, export)}")
 
 
-def _crossed(crosses: "np.ndarray") -> str:
+def _crossing_text(crosses: "np.ndarray") -> str:
     share = crosses.mean()
     return f"; {100 * share:.0f} % self-intersect. Add --contact to prevent this" if share else ""
 

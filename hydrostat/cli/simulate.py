@@ -141,7 +141,7 @@ def _move(
     start = simulation.motion_at_rest(simulation.solve(profile.at(0.0)) if rests_at_first(simulation.robot) else None)
     began = time.process_time()
     with progress_bar() as tell:
-        motions = _reported(simulation.play(profile, seconds, dt, start=start), seconds, tell)
+        motions = _with_progress(simulation.play(profile, seconds, dt, start=start), seconds, tell)
         files, table, last = write_motion(simulation.robot, motions, out)
     spent = time.process_time() - began
     extra = {"time": last.time, "kinetic": last.kinetic, "seconds": spent, "version": __version__}
@@ -173,7 +173,9 @@ def _profile(
     return profile
 
 
-def _reported(motions: "Iterable[Motion]", seconds: float, tell: Callable[[str, int, int], None]) -> "Iterator[Motion]":
+def _with_progress(
+    motions: "Iterable[Motion]", seconds: float, tell: Callable[[str, int, int], None]
+) -> "Iterator[Motion]":
     """The same motions, told to the progress bar in milliseconds."""
     for motion in motions:
         tell("simulating [ms]", round(1e3 * motion.time), round(1e3 * seconds))

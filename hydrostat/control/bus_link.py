@@ -99,7 +99,7 @@ class BusLink(Link):
         self.facts: tuple[MotorFacts, ...] = ()
         self.reading: Reading | None = None
         self._bus, self._calibration, self.guard, self._log, self._clock = bus, calibration, guard, log, clock
-        self.limits, self._names = limits or LinkLimits(), _named(calibration)
+        self.limits, self._names = limits or LinkLimits(), _winch_names(calibration)
         self._low = np.array([-winch.release for winch in winches], dtype=float)
         self._high = np.array([winch.travel for winch in winches], dtype=float)
         self._places = self._goal = np.zeros(len(winches))
@@ -147,7 +147,7 @@ class BusLink(Link):
             if self._clock is steady:  # a clock of its own, as tests have, is watched by who moves it
                 self.watch()
             if self._stops != stops:  # by another thread, which did not wait for this one
-                raise self._stopped(LinkState.STOPPED, "stopped while they were armed")
+                raise self._stop_with_error(LinkState.STOPPED, "stopped while they were armed")
 
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
         """Let the motors go to contractions, within limits."""
@@ -155,10 +155,10 @@ class BusLink(Link):
             self._must_be_armed()
             if np.shape(contractions) != self._low.shape or not np.isfinite(contractions).all() or not speed >= 0:
                 words = f"told {len(self._names)} finite contractions at a speed, not {contractions} at {speed:g} m/s"
-                raise self._stopped(LinkState.HOLD, f"motors must be {words}; arm them anew")
+                raise self._stop_with_error(LinkState.HOLD, f"motors must be {words}; arm them anew")
             since = self._clock() - self._sent
             if since > DEADLINE:
-                raise self._stopped(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
+                raise self._stop_with_error(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
             self._goal = np.clip(contractions, self._low, self._high)
             self._speed = min(speed, self.limits.speed, self._speed + self.limits.rise * max(since, 1e-3))
             ahead = self._speed * MAX_LEAD_TIME
@@ -187,7 +187,7 @@ class BusLink(Link):
         """Let the motors stand; whoever is about to tell or arm them in another thread sees it, and stops them too."""
         self._stops += 1
         if self.state is LinkState.ARMED:
-            self._stopped(LinkState.STOPPED, "stopped")
+            self._stop_with_error(LinkState.STOPPED, "stopped")
         else:
             with suppress(Exception):
                 self._bus.stop()
@@ -205,7 +205,7 @@ class BusLink(Link):
         if self.state is LinkState.ARMED and self._clock() - self._sent > DEADLINE:
             with self._lock:
                 if self.state is LinkState.ARMED and (since := self._clock() - self._sent) > DEADLINE:
-                    self._stopped(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
+                    self._stop_with_error(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
 
     def watch(self) -> None:
         """Keep the deadline from a thread of its own, whatever else this program is busy with; arming begins it."""
@@ -284,9 +284,9 @@ class BusLink(Link):
             raise HydrostatError(f"the motors do not turn: {self.why or self.state}")
 
     def _fault(self, why: str) -> HydrostatError:
-        return self._stopped(LinkState.FAULT, why)
+        return self._stop_with_error(LinkState.FAULT, why)
 
-    def _stopped(self, state: LinkState, why: str) -> HydrostatError:
+    def _stop_with_error(self, state: LinkState, why: str) -> HydrostatError:
         """Stop the motors, go to a state, and give the error that says why.
 
         The state is another one before they are told, so that whoever tells them meanwhile sees it.
@@ -323,7 +323,7 @@ class BusLink(Link):
             self._log(f"{self._bus.kind}: {self._clock() - self._began:.3f} s: {words}")
 
 
-def _named(calibration: Calibration) -> list[str]:
+def _winch_names(calibration: Calibration) -> list[str]:
     """Names of the winches, with those of their boards where there are several."""
     several = calibration.boards > 1
     return [f"{motor.winch} (board {motor.board})" if several else motor.winch for motor in calibration.motors]

@@ -83,7 +83,7 @@ class DynamixelBus(ServoBus):
     def identify(self) -> tuple[MotorFacts, ...]:
         """Facts of the servos; each watchdog is armed and tried."""
         with self._lock:
-            firmware = {number: self._pinged(number) for number in self._numbers}
+            firmware = {number: self._ping(number) for number in self._numbers}
             self._known, self._holding = True, False
             for number in self._numbers:
                 self._set(number, TORQUE, 0, 1)
@@ -108,7 +108,7 @@ class DynamixelBus(ServoBus):
             for number, most in zip(self._numbers, currents.tolist(), strict=True):
                 self._set(number, WATCHDOG, 0, 1)  # one that has fired refuses goals until it is reset,
                 self._set(number, GOAL, self._steps(number), 4)  # and then goes on to the last
-                self._bound(number, most)
+                self._limit_current(number, most)
                 self._set(number, TORQUE, 1, 1)
             self._holding = True
             self.restart_watchdog()  # at last: who waits for others to be armed would be told nothing
@@ -123,7 +123,7 @@ class DynamixelBus(ServoBus):
                 armed = {packet.number for packet in self._ask_all(WATCHDOG, 1) if packet.content[1] == WATCH}
                 if armed.issuperset(self._numbers):
                     return
-            raise self._refused(min(set(self._numbers) - armed), WATCHDOG)
+            raise self._refusal_error(min(set(self._numbers) - armed), WATCHDOG)
 
     def read(self) -> Reading:
         """Return the latest reading of each servo."""
@@ -133,10 +133,10 @@ class DynamixelBus(ServoBus):
             for packet in self._ask_all(STATE, STATE_BYTES):
                 index, told = self._numbers.index(packet.number), packet.content[1:]
                 model = self._models.get(packet.number, _UNKNOWN)
-                raw = _signed(told[0:2])
+                raw = _to_signed(told[0:2])
                 last["currents"][index] = 1e-3 * raw * (1.0 if model.measures else model.stall)
-                last["angles"][index] = TICK * _signed(told[6:10])
-                last["volts"][index], last["temperatures"][index] = 0.1 * _signed(told[18:20]), told[20]
+                last["angles"][index] = TICK * _to_signed(told[6:10])
+                last["volts"][index], last["temperatures"][index] = 0.1 * _to_signed(told[18:20]), told[20]
                 stamps[index] = self._clock()
                 faults[index] = self._fault(packet)
             return self._heard(Reading(**last, stamps=stamps, faults=tuple(faults)))
@@ -153,7 +153,7 @@ class DynamixelBus(ServoBus):
         with self._lock:
             self._tell_all(PROFILE, values)
 
-    def _bound(self, number: int, current: float) -> None:
+    def _limit_current(self, number: int, current: float) -> None:
         """Bound the current of a servo [A]; its share of power where it does not measure that."""
         model = self._models[number]
         if model.measures:
@@ -191,7 +191,7 @@ class DynamixelBus(ServoBus):
         for number in self._numbers:
             self._set(number, WATCHDOG, 0, 1)
             self._set(number, GOAL, self._steps(number), 4)
-            self._bound(number, 0.3 * self._models[number].stall)
+            self._limit_current(number, 0.3 * self._models[number].stall)
             self._set(number, TORQUE, 1, 1)
         speeds = np.full(len(begin), PROOF / SOON)
         self._tell_all(WATCHDOG, dict.fromkeys(self._numbers, bytes([TRIED])))  # all at once, as they wait so short
@@ -222,7 +222,7 @@ class DynamixelBus(ServoBus):
             reading = self.read()
         return np.where(reading.stamps > asked, reading.angles, np.nan)
 
-    def _pinged(self, number: int) -> int:
+    def _ping(self, number: int) -> int:
         """Version of the firmware of a servo, after its model is known to be one of ours."""
         for _ in range(3):
             self._send(number, PING)
@@ -251,9 +251,9 @@ class DynamixelBus(ServoBus):
             self._answers(1)
             if self._get(number, place, size) == value % (1 << 8 * size):
                 return
-        raise self._refused(number, place)
+        raise self._refusal_error(number, place)
 
-    def _refused(self, number: int, place: int) -> HydrostatError:
+    def _refusal_error(self, number: int, place: int) -> HydrostatError:
         return HydrostatError(f"motor {number} did not take {_NAMES.get(place, place)}; look at its power and cable")
 
     def _ask_all(self, place: int, size: int) -> list[Packet]:
@@ -274,7 +274,7 @@ class DynamixelBus(ServoBus):
         return None
 
     def _send(self, number: int, instruction: int, content: bytes = b"") -> None:
-        self._put(pack(number, instruction, content))
+        self._send_packet(pack(number, instruction, content))
 
     def _answers(self, count: int) -> list[Packet]:
         return self._hear(count, lambda packet: packet.instruction == STATUS)
@@ -291,5 +291,5 @@ _NAMES = {
 }
 
 
-def _signed(data: bytes) -> int:
+def _to_signed(data: bytes) -> int:
     return int.from_bytes(data, "little", signed=True)

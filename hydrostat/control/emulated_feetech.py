@@ -35,7 +35,7 @@ class EmulatedSts(EmulatedServo):
         if place + len(data) <= STATE:
             self.table[place : place + len(data)] = data
             if place == TORQUE and data[0] == 1:
-                self._put(GOAL, round(self.counted_angle / TICK))
+                self._write_register(GOAL, round(self.counted_angle / TICK))
         return 0
 
     def step(self, now: float, dt: float) -> None:
@@ -51,15 +51,15 @@ class EmulatedSts(EmulatedServo):
         self.speed = speed
         self.angle += speed * dt
         current = min(self.load(self.angle) / self.constant, STALL) if on else 0.0
-        self._put(STATE, round(self.counted_angle / TICK))
+        self._write_register(STATE, round(self.counted_angle / TICK))
         self.table[STATE + 6 : STATE + 8] = bytes([74, 85 if self.ails.hot else 35])
-        self._put(STATE + 13, round(current / AMPERE))
+        self._write_register(STATE + 13, round(current / AMPERE))
 
     def _number(self, place: int) -> int:
         value = int.from_bytes(self.table[place : place + 2], "little")
         return -(value & 0x7FFF) if value & 0x8000 else value
 
-    def _put(self, place: int, value: int) -> None:
+    def _write_register(self, place: int, value: int) -> None:
         self.table[place : place + 2] = (abs(value) | (0x8000 if value < 0 else 0)).to_bytes(2, "little")
 
 

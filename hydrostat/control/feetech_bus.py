@@ -82,8 +82,8 @@ class FeetechBus(ServoBus):
             self._send(ALL, SYNC_READ, bytes([STATE, STATE_BYTES, *self._numbers]))
             for packet in self._answers(len(self._numbers), STATE_BYTES):
                 index, told = self._numbers.index(packet.number), packet.content
-                last["angles"][index] = TICK * _signed(told[0:2], 15)
-                last["currents"][index] = AMPERE * _signed(told[13:15], 15)
+                last["angles"][index] = TICK * _to_signed(told[0:2], 15)
+                last["currents"][index] = AMPERE * _to_signed(told[13:15], 15)
                 last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
                 stamps[index] = self._clock()
                 faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)
@@ -124,7 +124,7 @@ class FeetechBus(ServoBus):
         if mode != b"\x00":
             raise HydrostatError(f"motor {number} is not in position mode; set its register {MODE} to 0")
         self._set(number, TORQUE, b"\x00", "its torque switch")
-        low, high = _signed(told[LOW : LOW + 2], 15), _signed(told[LOW + 2 : LOW + 4], 15)
+        low, high = _to_signed(told[LOW : LOW + 2], 15), _to_signed(told[LOW + 2 : LOW + 4], 15)
         self._low[index], self._high[index] = (low, high) if low < high else (-FARTHEST, FARTHEST)
         return MotorFacts(number=number, model=MODELS[model], firmware=100 * told[0] + told[1], watchdog=False)
 
@@ -146,14 +146,14 @@ class FeetechBus(ServoBus):
         return None
 
     def _send(self, number: int, instruction: int, content: bytes = b"") -> None:
-        self._put(pad_bytes(pack(number, instruction, content)))
+        self._send_packet(pad_bytes(pack(number, instruction, content)))
 
     def _answers(self, count: int, size: int) -> list[Packet]:
         """Answers of such a size from servos that are ours."""
         return self._hear(count, lambda packet: packet.number in self._numbers and len(packet.content) == size)
 
 
-def _signed(data: bytes, bit: int) -> int:
+def _to_signed(data: bytes, bit: int) -> int:
     """A number with its sign in a bit of its own."""
     value = int.from_bytes(data, "little")
     return -(value & ~(1 << bit)) if value >> bit & 1 else value

@@ -65,7 +65,7 @@ def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float, sta
     Raises:
         InputError: motors that are not numbered from 1 without a gap, turn the wrong way, or have no counts.
     """
-    ordered = _ordered(calibration, board)
+    ordered = _motors_of_board(calibration, board)
     if [motor.number for motor in ordered] != list(range(1, len(ordered) + 1)):
         raise InputError(f"{CALIBRATION}: motors of a board are numbered 1, 2, ... as they are plugged in")
     for motor in ordered:
@@ -139,14 +139,14 @@ def board_kind(board: str) -> BoardKind:
     return BOARDS[board]
 
 
-def _ordered(calibration: Calibration, board: int) -> list[WinchMotor]:
+def _motors_of_board(calibration: Calibration, board: int) -> list[WinchMotor]:
     return sorted((calibration.motors[place] for place in calibration.places(board)), key=lambda motor: motor.number)
 
 
 def _numbers(robot: Robot, calibration: Calibration, board: int, gain: float) -> str:
     """Limits of the motors in their order, counted from where they stand when the board is switched on."""
     winches, limits, lines = {winch.name: winch for winch in robot.winches}, LinkLimits(), ""
-    for motor in _ordered(calibration, board):
+    for motor in _motors_of_board(calibration, board):
         winch, counts = winches[motor.winch], (motor.counts or 0.0) / (2 * pi * motor.radius)
         numbers = [-counts * (winch.release + SPARE), counts * (winch.travel + SPARE)]
         numbers += [counts * limits.speed, min(counts * limits.rise, gain * motor.current * (motor.counts or 0.0))]

@@ -64,13 +64,13 @@ class TensionLookup:
 
     def nearest(self, contractions: Vector) -> Vector:
         """Pulls [N] however far the next pose is."""
-        return self._mixed(contractions, np.inf)
+        return self._blend_tensions(contractions, np.inf)
 
     def __call__(self, contractions: Vector) -> Vector:
         """Pulls [N]; NaN where no pose is near."""
-        return self._mixed(contractions, self._near)
+        return self._blend_tensions(contractions, self._near)
 
-    def _mixed(self, contractions: Vector, near: float) -> Vector:
+    def _blend_tensions(self, contractions: Vector, near: float) -> Vector:
         places, pulls = self._known
         apart = np.abs(places - contractions)
         away = apart.sum(axis=1)

@@ -61,7 +61,7 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
     """
     check_port(text)
     if text == EMULATED:
-        return _emulated(calibration, tensions)
+        return _make_emulated_bus(calibration, tensions)
     kind, _, rest = text.partition(":")
     make, usual = _KINDS[kind]
     ports, buses = rest.split(","), list[Bus]()
@@ -95,7 +95,7 @@ def check_port(text: str) -> None:
             raise InputError(f"--motors {text}: the baud rate after @ must be a number, such as 57600")
 
 
-def _emulated(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:
+def _make_emulated_bus(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:
     """Servos that stand where nothing is taken in, each with the load of its cables."""
     calibration = calibration.assume_zeros()
     servos = [

@@ -126,7 +126,7 @@ class ServoBus(Bus):
             f"motor {number} does not answer; look at its power, its cable, its number and the baud rate"
         )
 
-    def _put(self, packet: bytes) -> None:
+    def _send_packet(self, packet: bytes) -> None:
         """Send bytes, and forget answers that came too late for what was asked before."""
         try:
             if waiting := getattr(self._port, "in_waiting", 0):

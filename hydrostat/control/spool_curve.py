@@ -42,7 +42,7 @@ class SpoolCurve:
     @property
     def fitted_lengths(self) -> Vector:
         """Cable taken in by the curve, at each reading [m]."""
-        return _taken(self.motor, self.turned)
+        return _cable_length(self.motor, self.turned)
 
     @property
     def scatter(self) -> float:
@@ -135,7 +135,7 @@ def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve
     except InputError as error:
         raise HydrostatError(f"readings of {error}; read them anew") from None
     curve = SpoolCurve(
-        motor=fitted, turned=turned, readings=taken + (found[1] - found[0]), before=_taken(motor, turned)
+        motor=fitted, turned=turned, readings=taken + (found[1] - found[0]), before=_cable_length(motor, turned)
     )
     beside = np.abs(curve.readings - curve.fitted_lengths)
     if (worst := float(beside.max())) > WITHIN:
@@ -146,7 +146,7 @@ def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve
     return curve
 
 
-def _taken(motor: WinchMotor, turned: Vector) -> Vector:
+def _cable_length(motor: WinchMotor, turned: Vector) -> Vector:
     """Cable taken in at angles since the zero [m]."""
     origin = replace(motor, zero=0.0, turns=1)
     return np.array([origin.contraction(angle) for angle in turned.tolist()])

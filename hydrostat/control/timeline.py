@@ -110,7 +110,7 @@ def read_timeline(robot: Robot, name: str, content: bytes) -> Timeline:
     if times[-1] > LONGEST:
         raise InputError(f"{shown}: it lasts {times[-1]:.1f} s; a timeline may last {LONGEST:g} s")
     names = [winch.name for winch in robot.winches]
-    kept = _needed(times, profile.values)
+    kept = _essential_rows(times, profile.values)
     keys = tuple(
         Key(time=float(times[row]), contractions=dict(zip(names, profile.values[row].tolist(), strict=True)))
         for row in kept
@@ -134,7 +134,7 @@ def _times(timeline: Timeline) -> np.ndarray:
     return rows[np.append(True, np.diff(rows) > 1e-4)]
 
 
-def _needed(times: np.ndarray, values: np.ndarray, *, off: float = 2e-5) -> list[int]:
+def _essential_rows(times: np.ndarray, values: np.ndarray, *, off: float = 2e-5) -> list[int]:
     """Rows that lines between cannot do without, to 0.02 mm: the row that is off most is kept, then again each side."""
     kept, spans = {0, len(times) - 1}, [(0, len(times) - 1)]
     while spans:

@@ -5,13 +5,13 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.design.uncertainty import BuildTolerances
-from hydrostat.simulation import Equilibrium, RigSlopes, Simulation
+from hydrostat.simulation import CableSensitivities, Equilibrium, Simulation
 
 Columns = Float[np.ndarray, "rows tolerances"]
 
 
 def spread_columns(
-    simulation: Simulation, pose: Equilibrium, slopes: RigSlopes, uncertainty: BuildTolerances, markers: int
+    simulation: Simulation, pose: Equilibrium, slopes: CableSensitivities, uncertainty: BuildTolerances, markers: int
 ) -> Columns:
     """Moves of the first `markers` rows of `slopes` by one standard deviation of each independent tolerance [m].
 

@@ -115,10 +115,10 @@ def _visible(segments: Segments, buffer: DepthBuffer) -> tuple[tuple[Polyline, .
     ends = [(1 - at) * segments[owner, 0] + at * segments[owner, 1] for at in (share - half, share + half)]
     parts = np.stack(ends, axis=1)[:, :, :2]
     least = 6 * buffer.pixel
-    return _joined(parts, owner, thick, least), _joined(parts, owner, seen & ~thick, least)
+    return _join_steps(parts, owner, thick, least), _join_steps(parts, owner, seen & ~thick, least)
 
 
-def _joined(
+def _join_steps(
     parts: Float[np.ndarray, "parts 2 2"], owner: Int[np.ndarray, " parts"], chosen: np.ndarray, least: float
 ) -> tuple[Polyline, ...]:
     """Chosen small steps as long lines, without those shorter than `least` [mm]."""

@@ -50,9 +50,9 @@ class BoundaryTree:
         """Tree of the boundary of a mesh at rest."""
         self.facets = np.ascontiguousarray(mesh.boundary)
         count, dim = self.facets.shape
-        self.points = _owned(self.facets[:, :, None])[:, :, 0]
+        self.points = _assign_features(self.facets[:, :, None])[:, :, 0]
         turned = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=2)
-        edges = _owned(np.sort(turned, axis=2)) if dim == 3 else np.full((count, 0, 2), -1)
+        edges = _assign_features(np.sort(turned, axis=2)) if dim == 3 else np.full((count, 0, 2), -1)
         self.edges = np.ascontiguousarray(edges.reshape(count, -1))
         self.children = _tree(mesh.nodes[self.facets].mean(axis=1))
         self._rest = mesh.nodes
@@ -72,9 +72,9 @@ class BoundaryTree:
             reach: up to which distance pairs are told [m].
         """
         known = *self._parts, *self._at_rest
-        return self._filled(lambda *pairs: native.sweep_boundary(*known, nodes, move, rest, kept, reach, *pairs))
+        return self._fill_pairs(lambda *pairs: native.sweep_boundary(*known, nodes, move, rest, kept, reach, *pairs))
 
-    def _filled(self, fill: Callable[[np.ndarray, np.ndarray], tuple[float, int]]) -> tuple[float, Pairs]:
+    def _fill_pairs(self, fill: Callable[[np.ndarray, np.ndarray], tuple[float, int]]) -> tuple[float, Pairs]:
         """Run a loop that fills in pairs, again with a larger buffer if needed; return its value and the pairs."""
         room = 64 + 8 * len(self.facets)
         while True:
@@ -156,7 +156,7 @@ def facet_areas(mesh: Mesh) -> tuple[Vector, Vector]:
     return areas, np.bincount(mesh.boundary.ravel(), shares, len(mesh.nodes))
 
 
-def _owned(features: Int[np.ndarray, "facets each corners"]) -> Int[np.ndarray, "facets each corners"]:
+def _assign_features(features: Int[np.ndarray, "facets each corners"]) -> Int[np.ndarray, "facets each corners"]:
     """Features of facets, each kept by the first facet that has it; -1 elsewhere."""
     flat = features.reshape(-1, features.shape[2])
     _, firsts = np.unique(flat, axis=0, return_index=True)

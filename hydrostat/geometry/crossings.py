@@ -75,11 +75,11 @@ def _solid(mesh: Mesh, nodes: Nodes) -> Crossings:
     edge, facet = near["i"], near["j"]
     apart = ~_share(edges[edge], facets[facet])
     edge, facet = edge[apart], facet[apart]
-    pierced, places = _pierced(ends[edge], corners[facet])
+    pierced, places = _intersect_triangles(ends[edge], corners[facet])
     return Crossings(places=places[pierced], facets=np.column_stack([owners[edge], facet])[pierced])
 
 
-def _pierced(
+def _intersect_triangles(
     ends: Float[np.ndarray, "pairs 2 3"], corners: Float[np.ndarray, "pairs 3 3"]
 ) -> tuple[Bool[np.ndarray, " pairs"], Float[np.ndarray, "pairs 3"]]:
     """Mask of the segments that cut their triangles, and the intersection points (Moeller and Trumbore 1997)."""

@@ -53,7 +53,7 @@ def inflate(outline: Outline, height: float, *, spacing: float) -> Surface:
     bulge = torsion(mesh)
     rim = np.zeros(len(mesh.nodes), dtype=bool)
     rim[mesh.boundary_nodes] = True
-    nodes, triangles, bulge = _graded(mesh, rim, bulge)
+    nodes, triangles, bulge = _grade_mesh(mesh, rim, bulge)
     return _both_sides(nodes, triangles, 0.5 * height * np.sqrt(bulge / bulge.max()), int(rim.sum()))
 
 
@@ -87,21 +87,21 @@ def _without_bridges(mesh: Mesh) -> Mesh:
         return mesh
     number = {tuple(edge): len(mesh.nodes) + index for index, edge in enumerate(bridges)}
     nodes = np.concatenate([mesh.nodes, mesh.nodes[np.array(bridges)].mean(axis=1)])
-    elements = [part for element in mesh.elements.tolist() for part in _halved(tuple(element), number)]
+    elements = [part for element in mesh.elements.tolist() for part in _split_triangle(tuple(element), number)]
     return Mesh(nodes, np.array(elements))
 
 
-def _halved(triangle: tuple[int, ...], middles: dict[tuple[int, ...], int]) -> list[tuple[int, ...]]:
+def _split_triangle(triangle: tuple[int, ...], middles: dict[tuple[int, ...], int]) -> list[tuple[int, ...]]:
     """Triangle, cut where its sides have a middle node; one side after another, so that neighbours agree."""
     for turn in range(3):
         a, b, c = (triangle[(turn + corner) % 3] for corner in range(3))
         middle = middles.get((min(a, b), max(a, b)))
         if middle is not None:
-            return _halved((a, middle, c), middles) + _halved((middle, b, c), middles)
+            return _split_triangle((a, middle, c), middles) + _split_triangle((middle, b, c), middles)
     return [triangle]
 
 
-def _graded(mesh: Mesh, rim: Bool[np.ndarray, " _"], bulge: Vector) -> tuple[Nodes, Elements, Vector]:
+def _grade_mesh(mesh: Mesh, rim: Bool[np.ndarray, " _"], bulge: Vector) -> tuple[Nodes, Elements, Vector]:
     """Mesh with its edges that leave the rim divided, finer towards the rim, and u at its nodes.
 
     At shares 1/16, 4/16, 9/16 of the first row the root of u rises in even steps, as u is all but linear there.

@@ -126,25 +126,25 @@ class Curve:
 
     def turning_angles(self, stations: Vector, reach: float) -> Vector:
         """Angle turned within `reach` to either side of each station [rad]."""
-        places = self._unrolled
+        places = self._three_turns
         total = np.concatenate([[0.0], np.cumsum(np.tile(self.turning, 3))])
         upper = np.searchsorted(places, stations + reach * (1 + 1e-9), side="right")
         lower = np.searchsorted(places, stations - reach * (1 + 1e-9), side="left")
         return total[upper] - total[lower]
 
     @cached_property
-    def _unrolled(self) -> Stations:
+    def _three_turns(self) -> Stations:
         """Stations of the corners three times round."""
         return np.concatenate([self.stations[:-1] + turn * self.length for turn in (-1, 0, 1)])
 
     @cached_property
     def _unrolled_corners(self) -> Points:
         """Corners three times round, each where its station is."""
-        return self.at(self._unrolled)
+        return self.at(self._three_turns)
 
     def sagitta(self, start: float, end: float) -> float:
         """Largest distance of the curve from its chord between two stations, start < end."""
-        first, last = np.searchsorted(self._unrolled, start, side="right"), np.searchsorted(self._unrolled, end)
+        first, last = np.searchsorted(self._three_turns, start, side="right"), np.searchsorted(self._three_turns, end)
         if first >= last:
             return 0.0
         ends = self.at(np.array([start, end]))

@@ -124,14 +124,14 @@ class Shell:
     @cached_property
     def _node_normals(self) -> Float[np.ndarray, "nodes dim"]:
         """Sum of the normals of the facets at each node, weighted by their angles there."""
-        return self._summed(self.facets, _angles(self.nodes[self.facets]), len(self.nodes))
+        return self._sum_by_owner(self.facets, _angles(self.nodes[self.facets]), len(self.nodes))
 
     @cached_property
     def _edge_normals(self) -> Float[np.ndarray, "edges 3"]:
         """Sum of the normals of the two triangles at each edge."""
-        return self._summed(self.edges, np.ones(self.edges.shape), int(self.edges.max()) + 1)
+        return self._sum_by_owner(self.edges, np.ones(self.edges.shape), int(self.edges.max()) + 1)
 
-    def _summed(self, owners: Facets, weights: Float[np.ndarray, "facets dim"], count: int) -> np.ndarray:
+    def _sum_by_owner(self, owners: Facets, weights: Float[np.ndarray, "facets dim"], count: int) -> np.ndarray:
         spread = self._normals[:, None, :] * weights[:, :, None]
         return np.column_stack([np.bincount(owners.ravel(), part.ravel(), count) for part in spread.transpose(2, 0, 1)])
 

@@ -148,7 +148,7 @@ def pull_out(
         pulling = with_replaced(closing, held, guide)
         found = pulling.solve(contractions, start=pose, strict=False)
         if not found.result.converged:
-            found = _settled(pulling, contractions, pose)
+            found = _find_settled(pulling, contractions, pose)
         if found is None:
             reason = f"no equilibrium found after {1e3 * pulled:.3g} mm"
             break
@@ -177,7 +177,7 @@ def pull_out(
     )
 
 
-def _settled(simulation: Simulation, contractions: Contractions, pose: Equilibrium) -> Equilibrium | None:
+def _find_settled(simulation: Simulation, contractions: Contractions, pose: Equilibrium) -> Equilibrium | None:
     """Return the equilibrium that a released robot reaches in time; None if it does not.
 
     Masses tell what a balance of forces alone leaves open: which way a thing slips that could slip either way.

@@ -121,7 +121,7 @@ def begin_robot(
         if path.suffix.lower() in suffixes:
             if not path.is_file():
                 raise InputError(f"{source}: there is no such file")
-            return _posed(run(lambda make=make: make(path, wish)))
+            return _add_first_pose(run(lambda make=make: make(path, wish)))
     if path.is_dir():
         raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
     if path.suffix.lower() in CAD_SUFFIXES:
@@ -189,7 +189,7 @@ def _of_mesh(path: Path, wish: NewRobotWish) -> BegunRobot:
     return BegunRobot(robot)
 
 
-def _posed(begun: BegunRobot) -> BegunRobot:
+def _add_first_pose(begun: BegunRobot) -> BegunRobot:
     """Add a target pose that the robot's cable reaches, if it is in space and small enough to solve quickly."""
     mesh = begun.robot.body.mesh
     if mesh.dim == 2:

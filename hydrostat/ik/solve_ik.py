@@ -88,7 +88,7 @@ def solve_ik(
             seconds=seconds,
             progress=progress,
         )
-        return _followed(simulation.with_deadline(patience.deadline), found, start)
+        return _follow_friction(simulation.with_deadline(patience.deadline), found, start)
     simulation = simulation.with_deadline(patience.deadline)
     given = limits or Limits()
     allowed = bounds(simulation, given)
@@ -114,7 +114,7 @@ def solve_ik(
     return replace(reached, friction_hysteresis=_band(simulation, reached.pose))
 
 
-def _followed(simulation: Simulation, found: IKResult, start: Equilibrium | None) -> IKResult:
+def _follow_friction(simulation: Simulation, found: IKResult, start: Equilibrium | None) -> IKResult:
     """Solve an answer that was found without obstacle friction again, with friction along its loading path."""
     pose = simulation.solve(found.pose.contractions, start=start, strict=False)
     if pose.result.reason is Reason.TIME_LIMIT:
@@ -216,7 +216,7 @@ def restarts(search: InverseSearch, best: Callable[[], InverseState]) -> Iterato
 def _contractions(search: InverseSearch, state: InverseState, number: int, draw: np.random.Generator) -> Vector:
     """In turn: one concerned channel alone, some near the best, some anywhere."""
     bounds = search.problem.bounds
-    moved = np.flatnonzero(_concerned(search, state))
+    moved = np.flatnonzero(_channels_of_misses(search, state))
     kind, turn = number % 3, number // 3
     values = state.values.copy()
     span = bounds.span[moved]
@@ -231,7 +231,7 @@ def _contractions(search: InverseSearch, state: InverseState, number: int, draw:
     return np.clip(values, bounds.low, bounds.high)
 
 
-def _concerned(search: InverseSearch, state: InverseState) -> np.ndarray:
+def _channels_of_misses(search: InverseSearch, state: InverseState) -> np.ndarray:
     """Return the mask of the channels that act mostly on the missed targets."""
     slopes = search.problem.jacobian(state) ** 2
     missed = state.residual**2 / max(float(np.max(state.residual**2, initial=0.0)), np.finfo(float).tiny)

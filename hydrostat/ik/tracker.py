@@ -129,12 +129,12 @@ class Tracker:
         search = self._search(target, seconds, objectives)
         state = search.begin(self.pose) if self._state is None else search.adopt_state(self._state)
         weight, reason = search.problem.weight(state), IKStatus.REACHED
-        if not _reached(search.problem, state):
+        if not _is_reached(search.problem, state):
             led = self._predict(search, state, target)
             weight = search.problem.weight(led or state)
             state, reason = (led, IKStatus.ITERATION_LIMIT) if led else self._step(search, state, weight)
         self._state = state
-        if _reached(search.problem, state):
+        if _is_reached(search.problem, state):
             reason = IKStatus.REACHED
         elif state.excess > _RULES.far:
             reason = IKStatus.INFEASIBLE
@@ -216,7 +216,7 @@ class Tracker:
         return InverseProblem(self._simulation, terms, allowed, self._options, ready=True)
 
 
-def _reached(problem: InverseProblem, state: InverseState) -> bool:
+def _is_reached(problem: InverseProblem, state: InverseState) -> bool:
     return state.error <= problem.reached and state.excess <= EXCESS
 
 

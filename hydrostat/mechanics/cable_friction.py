@@ -122,7 +122,7 @@ class FrictionCableEnergy(Energy):
         )
 
     def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
-        """S of each span [m] if nothing slips."""
+        """Elongation of each span if nothing slips [m]."""
         spans = self._spans
         moved = np.where(self._firsts, spans.compute_contractions(controls) - spans.slack, self.slips)
         passed = np.append(np.where(self._firsts, 0.0, self.slips)[1:], 0.0)
@@ -259,7 +259,7 @@ class FrictionCableEnergy(Energy):
         return np.linalg.solve(unit - self._limit_slopes(nodes, tensions, compliance) @ moved, miss)
 
     def moves(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Float[np.ndarray, "dofs controls"]:
-        """D nodes / d controls while the capstan law holds and cable goes on slipping where it is about to.
+        """Derivative of the nodes by the controls, while the capstan law holds and cable goes on slipping where it is about to.
 
         Args:
             nodes: an equilibrium [m].
@@ -271,7 +271,7 @@ class FrictionCableEnergy(Energy):
     def tension_slopes(
         self, nodes: Nodes, controls: Vector, compliance: Compliance, taut: Int[np.ndarray, " some"] | None = None
     ) -> Float[np.ndarray, "spans controls"]:
-        """D T of each span / d controls [N/m], as in `moves`.
+        """Derivative of each span's tension by the controls [N/m], as in `moves`.
 
         Args:
             nodes: an equilibrium [m].
@@ -286,7 +286,7 @@ class FrictionCableEnergy(Energy):
         turned -= turned[self.law.starts[self._owners]]
         little = self.law.stiffness * self.law.smoothing * _JUST_TAUT
         tensions = np.where(joining, little * np.exp(-turned), tensions)
-        by_elongation, by_limit = self._locked(nodes, controls, tensions, joining)
+        by_elongation, by_limit = self._slip_compliance(nodes, controls, tensions, joining)
         pulled = np.zeros((len(tensions), len(controls)))
         pulled[np.arange(len(tensions)), self._spans.winches] = self._by_control(by_elongation)
         unit = np.eye(len(tensions))
@@ -298,7 +298,7 @@ class FrictionCableEnergy(Energy):
     def linearize_tensions(self, nodes: Nodes, controls: Vector) -> LockedTensions:
         """Tensions at an equilibrium with the slopes that they and the capstan's limits have there."""
         tensions = self.span_tensions(nodes, controls)
-        by_elongation, by_limit = self._locked(nodes, controls, tensions, np.zeros(len(tensions), dtype=bool))
+        by_elongation, by_limit = self._slip_compliance(nodes, controls, tensions, np.zeros(len(tensions), dtype=bool))
         angles, larger = self.angles(nodes), np.maximum(tensions, np.append(0.0, tensions[:-1]))
         held = np.exp(-self.friction * angles) * larger
         pulls = tensions > 0
@@ -328,7 +328,7 @@ class FrictionCableEnergy(Energy):
         """D angles / d nodes [rad/m]."""
         return self._turns.gradients(nodes, len(self.slips))
 
-    def _locked(
+    def _slip_compliance(
         self, nodes: Nodes, controls: Vector, tensions: Vector, joining: Bool[np.ndarray, " spans"]
     ) -> tuple[RankMatrix, RankMatrix]:
         """dT/d elongations and dT/d limits while cable slips where it is at the limit, or joins."""

@@ -50,7 +50,7 @@ class CapstanChains:
     def limits(self, tensions: Vector) -> Vector:
         """Largest forces of friction by the capstan's law at these tensions [N]."""
         larger = np.maximum(tensions, np.append(0.0, tensions[:-1]))
-        return -np.expm1(-self.friction * self._turned(tensions)) * larger
+        return -np.expm1(-self.friction * self._turn_limits(tensions)) * larger
 
     def _solve(self, *, turns: bool) -> Vector | None:
         """Tensions; without `turns` angles stay as they are within a round."""
@@ -85,7 +85,7 @@ class CapstanChains:
         unit = scale / float(np.median(soft + self.compliance.diagonal()))
         rows = np.arange(many)
         forth, back = slice(count, count + many), slice(count + many, None)
-        kept = np.exp(-self.friction * self._turned(tensions))[points]
+        kept = np.exp(-self.friction * self._turn_limits(tensions))[points]
         matrix, right = np.zeros((count + 2 * many,) * 2), np.zeros(count + 2 * many)
         matrix[:count, :count] = (np.diag(soft) + self.compliance) * (unit / scale)
         right[:count] = (own - soft * tensions - self.elongations - self.compliance @ self.tensions) / scale
@@ -100,7 +100,7 @@ class CapstanChains:
                 right[part] = rises @ tensions / unit
         return matrix, right, unit
 
-    def _turned(self, tensions: Vector) -> Vector:
+    def _turn_limits(self, tensions: Vector) -> Vector:
         return np.maximum(self.angles - self.turning @ (tensions - self.tensions), 0.0)
 
 

@@ -30,7 +30,7 @@ class ChainLaw(TensionLaw):
     _last: list[tuple[Vector, Vector]] = field(default_factory=list, init=False, repr=False)
 
     def slips(self, elongation: Vector) -> Vector:
-        """P at the point before each span [m], positive towards the winch; 0 for the first span of a cable.
+        """Slip over the point before each span [m], positive towards the winch; 0 for the first span of a cable.
 
         The last answer is kept: energy, forces and Hessian of one state ask for the same. Threads may share the law, so
         question and answer are read and replaced together.
@@ -55,7 +55,7 @@ class ChainLaw(TensionLaw):
     def tangents(self, elongation: Vector) -> RankMatrix:
         """dT/ds [N/m]: springs joined where cable slips are one spring in series."""
         slips = self.slips(elongation)
-        return self._joined(super().tangent(self._own(elongation, slips)), slips != 0)[0]
+        return self._join_spans(super().tangent(self._own(elongation, slips)), slips != 0)[0]
 
     def springs(self, elongation: Vector) -> tuple[Int[np.ndarray, " spans"], Vector]:
         """Spring that each span belongs to, -1 where it is slack, and dT/ds of each [N/m].
@@ -75,7 +75,7 @@ class ChainLaw(TensionLaw):
             signs: slip direction at the point before each span: 1 towards the winch, -1 the other way, 0 for no slip.
         """
         springs = super().tangent(np.where(tensions > 0, self.elongation(tensions), 0.0))
-        by_elongation, soft, same = self._joined(springs, signs != 0)
+        by_elongation, soft, same = self._join_spans(springs, signs != 0)
         # A limit lowers the tension of all spans behind it in its group; then all move so that no length changes.
         lowered = -np.tril(same) * signs
         weights = same * soft
@@ -86,7 +86,9 @@ class ChainLaw(TensionLaw):
         after = np.append(slips[1:], 0.0)
         return elongation + slips - after
 
-    def _joined(self, springs: Vector, slipping: Bool[np.ndarray, " spans"]) -> tuple[RankMatrix, Vector, RankMatrix]:
+    def _join_spans(
+        self, springs: Vector, slipping: Bool[np.ndarray, " spans"]
+    ) -> tuple[RankMatrix, Vector, RankMatrix]:
         """dT/ds, the compliance of each span, and which spans are joined by points that slip."""
         group, series = self._series(springs, slipping)
         same = (group[:, None] == group).astype(float)

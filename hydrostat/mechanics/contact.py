@@ -159,7 +159,7 @@ class ContactEnergy(Energy):
         elif watch.pairs is self.pairs:
             return self
         found = ContactEnergy(self.skin, watch.pairs, watch)
-        if found._felt(nodes) != self._felt(nodes):
+        if found._active_pair_count(nodes) != self._active_pair_count(nodes):
             return found
         if watch is self.watch:
             return self
@@ -194,7 +194,7 @@ class ContactEnergy(Energy):
             pairs = self.skin.tree.pairs(nodes, self._reach)
         return CandidatePairs(nodes - margin, nodes + margin, pairs)
 
-    def _felt(self, nodes: Nodes) -> int:
+    def _active_pair_count(self, nodes: Nodes) -> int:
         """Number of active pairs, that is pairs within the contact distance."""
         return (
             int((self.skin.compute_squared_distances(nodes, self.pairs) < self._begins).sum())

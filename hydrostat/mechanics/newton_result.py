@@ -39,5 +39,5 @@ class NewtonResult:
 
     @property
     def converged(self) -> bool:
-        """True if the residual is at most the allowed one."""
+        """True if the residual, or with `accuracy` the estimated error, is small enough."""
         return self.reason is Reason.CONVERGED

@@ -83,10 +83,10 @@ class ObstacleEnergy(Energy):
 
     def gap(self, nodes: Nodes) -> float:
         """Distance of the nearest sample [m]; negative inside the obstacle."""
-        return float(self._located(nodes)[1].min())
+        return float(self._locate_samples(nodes)[1].min())
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        places, distances = self._located(nodes)
+        places, distances = self._locate_samples(nodes)
         if not distances.min() > 0:
             return np.inf
         some = np.flatnonzero(distances < self.distance)
@@ -124,7 +124,7 @@ class ObstacleEnergy(Energy):
         native.sample_places(nodes, self._corners, self.shares, points)
         return points
 
-    def _located(self, nodes: Nodes) -> tuple[Points, Vector]:
+    def _locate_samples(self, nodes: Nodes) -> tuple[Points, Vector]:
         """Positions of the samples and their distances [m]; the last result is cached.
 
         Threads may share the energy, so all of what is kept is read and replaced at once.
@@ -135,9 +135,9 @@ class ObstacleEnergy(Energy):
             self._seen = seen = nodes.copy(), places, self.field.values(places)
         return seen[1:]
 
-    def _felt(self, nodes: Nodes) -> np.ndarray:
+    def _active_samples(self, nodes: Nodes) -> np.ndarray:
         """Samples in contact with the obstacle, or held by friction."""
-        felt = self._located(nodes)[1] < self.distance
+        felt = self._locate_samples(nodes)[1] < self.distance
         return np.flatnonzero(felt if self.grip is None else felt | (self.grip.limits > 0))
 
     def _forces_in_world(self, nodes: Nodes) -> tuple[np.ndarray, Points]:
@@ -146,8 +146,8 @@ class ObstacleEnergy(Energy):
 
     def _forces(self, nodes: Nodes) -> tuple[np.ndarray, Points]:
         """Samples on which forces act, and the slope of the energy by the place of each in the frame [N]."""
-        some = self._felt(nodes)
-        places = self._located(nodes)[0][some]
+        some = self._active_samples(nodes)
+        places = self._locate_samples(nodes)[0][some]
         found = self.field(places)
         forces = self._derivatives(found, self.weights[some])[0][:, None] * found.normals
         return some, forces if self.grip is None else forces + self.grip.only(some).forces(places)
@@ -163,19 +163,19 @@ class ObstacleEnergy(Energy):
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         size = self.stencils.shape[1] * nodes.shape[1]
-        blocks, some = np.zeros((len(self.stencils), size, size)), self._felt(nodes)
+        blocks, some = np.zeros((len(self.stencils), size, size)), self._active_samples(nodes)
         blocks[some] = self._blocks(nodes, some, share)
         return blocks
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
-        some = self._felt(nodes)
+        some = self._active_samples(nodes)
         if len(some):
             blocks = self._blocks(nodes, some, share)
             native.add_blocks(self.stencils[some], places.slots[some], places.strides, blocks, places.data)
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         """By conservative advancement: a sample cannot meet the obstacle before distance / speed."""
-        distances = self._located(nodes)[1]
+        distances = self._locate_samples(nodes)[1]
         speeds = self._speeds(nodes, move)
         some = np.flatnonzero(((1.0 - _KEPT) * distances < speeds) & (speeds > 0))
         distances, speeds = distances[some], speeds[some]
@@ -210,8 +210,8 @@ class ObstacleEnergy(Energy):
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
         if self.grip is None:
             return 0.0
-        some = self._felt(nodes)
-        places, grip = self._located(nodes)[0][some], self.grip.only(some)
+        some = self._active_samples(nodes)
+        places, grip = self._locate_samples(nodes)[0][some], self.grip.only(some)
         pushes, normals = self._pushes(nodes)
         asked = grip.with_normal_forces(pushes[some], normals[some])
         return float(np.abs(asked.forces(places) - grip.forces(places)).max(initial=0.0))
@@ -222,7 +222,7 @@ class ObstacleEnergy(Energy):
         if self.grip is None:
             return self
         places, grip = (
-            self._located(nodes)[0],
+            self._locate_samples(nodes)[0],
             self.grip.with_adapted_relaxation(self.history_residual(nodes, controls)),
         )
         slips = np.flatnonzero(grip.slipping(places))
@@ -251,7 +251,9 @@ class ObstacleEnergy(Energy):
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        return self._gripping(self.grip.with_normal_forces(*self._pushes(nodes)).drag_anchors(self._located(nodes)[0]))
+        return self._gripping(
+            self.grip.with_normal_forces(*self._pushes(nodes)).drag_anchors(self._locate_samples(nodes)[0])
+        )
 
     def _gripping(self, grip: ObstacleFriction) -> "ObstacleEnergy":
         other = copy(self)
@@ -260,9 +262,9 @@ class ObstacleEnergy(Energy):
 
     def _pushes(self, nodes: Nodes) -> tuple[Vector, Points]:
         """Normal force on each sample [N], and the normals where forces act."""
-        some, pushes = self._felt(nodes), np.zeros(len(self._corners))
+        some, pushes = self._active_samples(nodes), np.zeros(len(self._corners))
         normals = np.zeros((len(pushes), nodes.shape[1]))
-        found = self.field(self._located(nodes)[0][some])
+        found = self.field(self._locate_samples(nodes)[0][some])
         pushes[some], normals[some] = -self._derivatives(found, self.weights[some])[0], found.normals
         return pushes, normals
 
@@ -314,7 +316,7 @@ class ObstacleEnergy(Energy):
 
     def _blocks(self, nodes: Nodes, some: np.ndarray, share: float) -> HessianBlocks:
         """Hessian of some terms without a share of its negative part."""
-        places = self._located(nodes)[0][some]
+        places = self._locate_samples(nodes)[0][some]
         found = self.field(places)
         slope, curve = self._derivatives(found, self.weights[some])
         inner = curve[:, None, None] * (found.normals[:, :, None] * found.normals[:, None, :])

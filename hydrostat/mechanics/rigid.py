@@ -146,11 +146,11 @@ class CarriedWarp:
         )
         for carriage in self._carriages:
             axes, rows = carriage.axes(nodes), carriage.rows[1:]
-            there[rows] = carriage.length * _turned(axes, step[rows] / carriage.length)
+            there[rows] = carriage.length * _turn_axes(axes, step[rows] / carriage.length)
         return there
 
 
-def _turned(axes: Matrix, step: Matrix) -> Matrix:
+def _turn_axes(axes: Matrix, step: Matrix) -> Matrix:
     """Axes after a small change, the part of it that turns them as a rotation."""
     change = np.linalg.solve(axes, step)  # axes are rows: axes (I + change)
     spin = 0.5 * (change - change.T)

@@ -177,7 +177,10 @@ class SelfContactFriction:
             pushes: normal force on each node of the boundary [N].
             normals: its direction.
         """
-        anchors, grip = self._anchored(nodes, pairs, pushes, normals), self.grip.with_normal_forces(pushes, normals)
+        anchors, grip = (
+            self._anchor_points(nodes, pairs, pushes, normals),
+            self.grip.with_normal_forces(pushes, normals),
+        )
         held = (pushes > 0) & (anchors.facets >= 0)
         points = self._positions(nodes, anchors)
         places = np.where(held[:, None], nodes[self.skin.own] - points, 0.0)
@@ -207,7 +210,7 @@ class SelfContactFriction:
         """Positions of points [m]; arbitrary for nodes without a point."""
         return np.einsum("tc,tcd->td", points.weights, nodes[self.skin.facets[points.facets]])
 
-    def _anchored(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> FacetPoints:
+    def _anchor_points(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> FacetPoints:
         """Anchors, also of nodes that were not pushed before."""
         fresh = (self.anchors.facets < 0) & (pushes > 0)
         if not fresh.any():

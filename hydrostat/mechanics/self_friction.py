@@ -17,9 +17,8 @@ class SelfFrictionEnergy(Energy):
     """Contact of a body with itself with Coulomb friction.
 
     Each node that other parts push has a spring to a point of the part opposite (`SelfContactFriction`), against half
-    of the friction that belongs to its force: the nodes on the other side take the other half. Forces along the
-    surface pull at both
-    sides alike. Its history is what each node of the boundary sticks to.
+    of the friction that belongs to its force: the nodes on the other side take the other half. Tangential forces on
+    both sides are equal and opposite. Its history is the point that each node of the boundary sticks to.
     """
 
     convex: ClassVar[bool] = False
@@ -79,16 +78,18 @@ class SelfFrictionEnergy(Energy):
         rows = history.reshape(len(self.clasp.offsets), -1)
         anchors = FacetPoints(np.rint(rows[:, 0]).astype(int), rows[:, 1:])
         clasp = replace(self.clasp, anchors=anchors, before=nodes)
-        return self._with(self.contact.with_active_terms(nodes), clasp)._asked(nodes)
+        return self._with(self.contact.with_active_terms(nodes), clasp)._with_limits_at(nodes)
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
-        return float(np.abs(self._asked(nodes).clasp.forces(nodes) - self.clasp.forces(nodes)).max(initial=0.0))
+        return float(
+            np.abs(self._with_limits_at(nodes).clasp.forces(nodes) - self.clasp.forces(nodes)).max(initial=0.0)
+        )
 
     def with_corrected_history(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> "SelfFrictionEnergy":
         pushes, normals = self._pushes(nodes)
-        clasp = self.clasp.attach_springs(nodes, self._felt(nodes), pushes, normals)
+        clasp = self.clasp.attach_springs(nodes, self._active_pairs(nodes), pushes, normals)
         places, grip = clasp.places(nodes), clasp.grip.with_adapted_relaxation(self.history_residual(nodes, controls))
         slips = np.flatnonzero(grip.slipping(places) | grip.with_normal_forces(pushes, normals).slipping(places))
         if response is None or not len(slips):
@@ -99,7 +100,7 @@ class SelfFrictionEnergy(Energy):
         return self._with(self.contact, clasp.with_grip(grip.with_newton_step(pushes, normals, slips, moves)))
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "SelfFrictionEnergy":
-        return self._with(self.contact, self._asked(nodes).clasp.drag_anchors(nodes))
+        return self._with(self.contact, self._with_limits_at(nodes).clasp.drag_anchors(nodes))
 
     def _with(self, contact: ContactEnergy, clasp: SelfContactFriction) -> "SelfFrictionEnergy":
         """Return another state; it reuses the pattern of its Hessian if the stencils are the same."""
@@ -108,10 +109,10 @@ class SelfFrictionEnergy(Energy):
             other.stencils = self.stencils
         return other
 
-    def _asked(self, nodes: Nodes) -> "SelfFrictionEnergy":
+    def _with_limits_at(self, nodes: Nodes) -> "SelfFrictionEnergy":
         """Return this energy with the limits that belong to a shape."""
         pushes, normals = self._pushes(nodes)
-        clasp = self.clasp.attach_springs(nodes, self._felt(nodes), pushes, normals)
+        clasp = self.clasp.attach_springs(nodes, self._active_pairs(nodes), pushes, normals)
         return self._with(self.contact, clasp.with_grip(clasp.grip.with_normal_forces(pushes, normals)))
 
     def _pushes(self, nodes: Nodes) -> tuple[Vector, Points]:
@@ -123,14 +124,14 @@ class SelfFrictionEnergy(Energy):
         pushes[pushes < _FAINT * self.clasp.grip.springs * self.contact.skin.distance] = 0.0
         return pushes, np.where(pushes > 0, 1.0 / np.where(pushes > 0, pushes, 1.0), 0.0)[:, None] * forces
 
-    def _felt(self, nodes: Nodes) -> Pairs:
+    def _active_pairs(self, nodes: Nodes) -> Pairs:
         """Active contact pairs."""
         skin, pairs = self.contact.skin, self.contact.pairs
         return pairs.only(skin.compute_squared_distances(nodes, pairs) < skin.begins(pairs))
 
     def _rises(self, nodes: Nodes, some: Int[np.ndarray, " some"], normals: Points) -> Float[np.ndarray, "dofs some"]:
         """Slopes of the forces on some nodes of the boundary along their normals by all degrees of freedom [N/m]."""
-        contact, dim = ContactEnergy(self.contact.skin, self._felt(nodes)), nodes.shape[1]
+        contact, dim = ContactEnergy(self.contact.skin, self._active_pairs(nodes)), nodes.shape[1]
         numbers = np.full(len(nodes), -1)
         numbers[self.clasp.skin.own[some]] = np.arange(len(some))
         blocks, columns = contact.hessian(nodes, np.zeros(0)), np.zeros((len(nodes) * len(some), dim))

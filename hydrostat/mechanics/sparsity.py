@@ -59,7 +59,7 @@ class SparsityPattern:
             return np.unique(np.concatenate([keys, *map(self._keys, self.stencils)]))
         shared = {id(own) for own in self._base.stencils}
         keys = [self._keys(own) for own in self.stencils if id(own) not in shared]
-        return _joined(self._base.entries, np.sort(np.concatenate([self._base.entries[:0], *keys])))
+        return _merge_rising(self._base.entries, np.sort(np.concatenate([self._base.entries[:0], *keys])))
 
     @cached_property
     def analysis(self) -> Analysis:
@@ -133,7 +133,7 @@ class SparsityPattern:
         return (stencils[:, None, :].astype(np.int64) * self.shape[0] + stencils[:, :, None]).ravel()
 
 
-def _joined(rising: np.ndarray, others: np.ndarray) -> np.ndarray:
+def _merge_rising(rising: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Numbers that stand in either of two rising lists, once each and rising; the first has no number twice."""
     others = others[np.append(True, others[1:] != others[:-1])[: len(others)]]
     places = np.searchsorted(rising, others)

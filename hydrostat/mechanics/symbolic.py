@@ -53,12 +53,12 @@ def front_seconds(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 def supernodes(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray, dim: int) -> EliminationTree:
     """Supernodes of eliminating a graph in a given order."""
-    order = order[_postordered(_elimination(starts, neighbours, order))]
+    order = order[_postorder(_elimination(starts, neighbours, order))]
     parent = _elimination(starts, neighbours, order)
     count = np.ones(len(order), np.int64)
     native.column_counts(starts, neighbours, order, _inverse(order), parent, count, np.full(len(order), -1))
-    head = _merged(_fundamental(parent, count), parent, count, dim)
-    return _collected(starts, neighbours, order, parent, count, head, dim)
+    head = _merge_supernodes(_fundamental(parent, count), parent, count, dim)
+    return _collect_tree(starts, neighbours, order, parent, count, head, dim)
 
 
 def children(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -87,7 +87,7 @@ def _elimination(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray) 
     return parent
 
 
-def _postordered(parent: np.ndarray) -> np.ndarray:
+def _postorder(parent: np.ndarray) -> np.ndarray:
     """Vertices of a forest, children before parents, each subtree in one piece."""
     child, sibling = children(parent)
     result, stack = np.empty(len(parent), np.int64), np.empty(len(parent), np.int64)
@@ -105,7 +105,7 @@ def _fundamental(parent: np.ndarray, count: np.ndarray) -> np.ndarray:
     return heads[np.searchsorted(heads, nodes)]
 
 
-def _merged(head: np.ndarray, parent: np.ndarray, count: np.ndarray, dim: int) -> np.ndarray:
+def _merge_supernodes(head: np.ndarray, parent: np.ndarray, count: np.ndarray, dim: int) -> np.ndarray:
     """`head` after merging supernodes into their parents where it saves modelled time. A head is its highest node."""
     nodes = np.arange(len(head))
     above = np.where((head == nodes) & (parent >= 0), head[parent], -1)
@@ -114,7 +114,7 @@ def _merged(head: np.ndarray, parent: np.ndarray, count: np.ndarray, dim: int) -
     return into[head]
 
 
-def _collected(
+def _collect_tree(
     starts: np.ndarray,
     neighbours: np.ndarray,
     order: np.ndarray,
@@ -128,7 +128,7 @@ def _collected(
     number = np.full(len(head) + 1, -1)  # the last for the parent -1 of a root
     number[tops] = np.arange(len(tops))
     above = number[np.where(parent[tops] >= 0, head[parent[tops]], -1)]
-    walk = _postordered(above)
+    walk = _postorder(above)
     rank = np.append(_inverse(walk), -1)
     up = rank[above[walk]]
     which = rank[number[head]]

@@ -43,7 +43,7 @@ def gif_bytes(pictures: Iterable[Picture], palette: Palette, times: Sequence[int
             off = np.abs(palette[last].astype(np.int16) - picture).max(axis=2)
             stays = (off <= STAYS) | (indices == last)
             indices = np.where(stays, last, indices)
-            box, shown = _changed(indices, last, len(palette))
+            box, shown = _changed_box(indices, last, len(palette))
         parts.append(_frame(shown, box, time, palette))
         last = indices
     return b"".join(chain([_head(width, height, palette)], parts, [b";"]))
@@ -60,7 +60,7 @@ def _nearest(picture: Picture, palette: Palette) -> Indices:
     return np.take(nearest, places).reshape(picture.shape[:2])
 
 
-def _changed(indices: Indices, last: Indices, clear: int) -> tuple[tuple[int, int, int, int], Indices]:
+def _changed_box(indices: Indices, last: Indices, clear: int) -> tuple[tuple[int, int, int, int], Indices]:
     """The box of what changes: left, upper, right and lower end; and in it `clear` where a pixel stays."""
     rows, columns = np.nonzero(indices != last)
     if not len(rows):
@@ -83,10 +83,10 @@ def _frame(shown: Indices, box: tuple[int, int, int, int], time: int, palette: P
     left, upper, right, lower = box
     control = b"!\xf9\x04" + bytes([0x05]) + time.to_bytes(2, "little") + bytes([len(palette), 0])
     sides = [left, upper, right - left, lower - upper]
-    return control + b"," + b"".join(side.to_bytes(2, "little") for side in sides) + b"\0" + _packed(shown)
+    return control + b"," + b"".join(side.to_bytes(2, "little") for side in sides) + b"\0" + _pack_frame(shown)
 
 
-def _packed(shown: Indices) -> bytes:
+def _pack_frame(shown: Indices) -> bytes:
     """Pixels packed by Pillow: what follows the description of the image in a GIF of its own."""
     from PIL import Image
 
@@ -127,13 +127,13 @@ def save_gif(
         InputError: frames that do not fit the robot, a time or width out of range, a file that cannot be written.
     """
     _check(robot, frames, step, width)
-    pictures = list(_drawn(robot, frames, width, tell))
+    pictures = list(_draw_frames(robot, frames, width, tell))
     some = sorted({int(index) for index in np.linspace(0, len(frames) - 1, SAMPLES).round()})
-    palette = _palette(robot, [_unpacked(pictures[index]) for index in some])
+    palette = _palette(robot, [_unpack_frame(pictures[index]) for index in some])
     runs = _runs(pictures)
     ends = np.round(100 * step * np.cumsum([count for _, count in runs])).astype(int)
     times = [int(end - start) for start, end in pairwise([0, *ends])]
-    content = gif_bytes((_unpacked(packed) for packed, _ in runs), palette, times)
+    content = gif_bytes((_unpack_frame(packed) for packed, _ in runs), palette, times)
     return replace_file(Path(path), content)
 
 
@@ -152,7 +152,7 @@ def save_mp4(
 
     program = find_ffmpeg()
     _check(robot, frames, step, width)
-    drawn = (_even(_unpacked(packed)) for packed in _drawn(robot, frames, width, tell))
+    drawn = (_even(_unpack_frame(packed)) for packed in _draw_frames(robot, frames, width, tell))
     first = next(drawn)
     height, wide, _ = first.shape
     with TemporaryDirectory() as folder:
@@ -162,7 +162,7 @@ def save_mp4(
             "-s", f"{wide}x{height}", "-r", f"{1 / step:.9g}", "-i", "-", "-an", "-c:v", "libx264", "-crf", "20",
             "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-fflags", "+bitexact", "-threads", "1", str(part),
         ]  # fmt: skip
-        words = _piped(command, first, drawn)
+        words = _run_ffmpeg(command, first, drawn)
         if words is not None or not part.is_file():
             raise HydrostatError(f"ffmpeg could not write the film: {words or 'it left no file'}")
         return replace_file(Path(path), part.read_bytes())
@@ -186,7 +186,7 @@ def _check(robot: Robot, frames: Sequence[Frame], step: float, width: int) -> No
         raise InputError(f"the width of a picture must be {WIDTHS[0]} to {WIDTHS[1]} pixels, not {width}")
 
 
-def _drawn(robot: Robot, frames: Sequence[Frame], width: int, tell: Tell | None) -> Iterator[tuple[bytes, tuple]]:
+def _draw_frames(robot: Robot, frames: Sequence[Frame], width: int, tell: Tell | None) -> Iterator[tuple[bytes, tuple]]:
     """Every picture, packed: a long film would not fit into memory otherwise."""
     sheet = FramePictures(robot, frames, width=width)
     last, packed = None, (b"", ())
@@ -199,7 +199,7 @@ def _drawn(robot: Robot, frames: Sequence[Frame], width: int, tell: Tell | None)
             tell("drawing", index + 1, len(frames))
 
 
-def _unpacked(packed: tuple[bytes, tuple]) -> Picture:
+def _unpack_frame(packed: tuple[bytes, tuple]) -> Picture:
     return np.frombuffer(zlib.decompress(packed[0]), dtype=np.uint8).reshape(packed[1])
 
 
@@ -229,7 +229,7 @@ def _even(picture: Picture) -> Picture:
     return np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)), constant_values=255)
 
 
-def _piped(command: list[str], first: Picture, rest: Iterator[Picture]) -> str | None:
+def _run_ffmpeg(command: list[str], first: Picture, rest: Iterator[Picture]) -> str | None:
     """Run ffmpeg on pictures; its last words where it failed."""
     from tempfile import TemporaryFile
 

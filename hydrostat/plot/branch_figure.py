@@ -43,7 +43,7 @@ def draw_branches(
     sheet, panes = open_sheet(
         robot, [rest, *(pose.nodes for pose in poses)], title=head, subtitle=_found_text(found), width=width
     )
-    tracked = _tracked(robot, found, branches)
+    tracked = _tracked_markers(robot, found, branches)
     for pane in panes:
         _draw_poses(sheet, pane, poses)
     if len(poses) > 1:
@@ -70,19 +70,19 @@ def _found_text(found: Multistability) -> str:
     return f"{len(found.poses)} poses at the same contractions, up to {MILLIMETRES * far:.3g} mm apart at {where}"
 
 
-def _tracked(robot: Robot, found: Multistability, branches: Sequence[Branch]) -> list[str]:
+def _tracked_markers(robot: Robot, found: Multistability, branches: Sequence[Branch]) -> list[str]:
     """Names of the markers that have a chart; one empty name for the node that moves most where there are none."""
     names = [marker.name for marker in robot.markers]
     if not names:
         return [""]
     points = [point for branch in branches for point in branch.points]
-    ways = {name: max((_moved(robot, point.pose, name) for point in points), default=0.0) for name in names}
+    ways = {name: max((_displacement(robot, point.pose, name) for point in points), default=0.0) for name in names}
     counts = found.spread if len(found.poses) > 1 else ways
     told = [name for name in names if counts[name] >= TOLD * max(counts.values())]
     return sorted(told, key=lambda name: -counts[name])[:MOST_MARKERS]
 
 
-def _moved(robot: Robot, pose: Equilibrium, name: str) -> float:
+def _displacement(robot: Robot, pose: Equilibrium, name: str) -> float:
     """Displacement of a marker from its rest position, or of the node that moves most if no name is given [m]."""
     if not name:
         return float(np.linalg.norm(pose.nodes - robot.body.mesh.nodes, axis=1).max())
@@ -158,7 +158,7 @@ def _draw_chart(axes: Axes, robot: Robot, name: str, found: Multistability, bran
     axes.set_title(title, loc="left", color=INK, fontsize=8, fontweight="bold", parse_math=False)
     for branch in branches:
         shares = 100 * np.array([_share(point.pose, found.contractions) for point in branch.points])
-        moved = MILLIMETRES * np.array([_moved(robot, point.pose, name) for point in branch.points])
+        moved = MILLIMETRES * np.array([_displacement(robot, point.pose, name) for point in branch.points])
         for part, stable in branch.runs():
             dashes, colour, order = ("-", INK, 3.0) if stable else ((0, (2.5, 1.8)), ERROR, 2.5)
             axes.plot(shares[part], moved[part], linewidth=1.4, linestyle=dashes, color=colour, zorder=order)
@@ -168,7 +168,7 @@ def _draw_chart(axes: Axes, robot: Robot, name: str, found: Multistability, bran
                 shares[point.index], moved[point.index], marker=marker, markersize=4.5, color=ERROR,
                 markeredgecolor="white", markeredgewidth=0.8, zorder=4, linestyle="none",
             )  # fmt: skip
-    heights = [MILLIMETRES * _moved(robot, one.pose, name) for one in found.poses]
+    heights = [MILLIMETRES * _displacement(robot, one.pose, name) for one in found.poses]
     _zoom(axes, _parting(found, branches), heights)
     if len(found.poses) > 1:
         _number_poses(axes, heights)

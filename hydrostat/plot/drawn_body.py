@@ -43,7 +43,7 @@ class DrawnBody:
             places = MILLIMETRES * points
             return DrawnCable(places, [(places, 0.0)], np.zeros(len(points)))
         camera, shift, image, _ = self.sight
-        fine = _divided(points, STEP * image.buffer.pixel / MILLIMETRES)
+        fine = _subdivide(points, STEP * image.buffer.pixel / MILLIMETRES)
         places, fades = camera.see(MILLIMETRES * fine)[:, :2] + shift, self.fades(fine)
         cuts = np.flatnonzero(np.diff(fades)) + 1
         starts, ends = [0, *cuts], [*cuts, len(fades)]
@@ -52,7 +52,7 @@ class DrawnBody:
         return DrawnCable(whole, [part for part in parts if len(part[0]) > 1], self.fades(points))
 
 
-def _divided(points: Points, step: float) -> Spread:
+def _subdivide(points: Points, step: float) -> Spread:
     """Points close together along the lines through points [m]."""
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     parts = [

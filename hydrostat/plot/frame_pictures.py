@@ -34,7 +34,7 @@ class FramePictures:
         """Room for all of the frames, in pictures of a width [pixels]."""
         self._robot, self._carried = robot, Attachments(robot)
         self._scale = TensionScale.of(np.concatenate([frame.tensions for frame in frames]))
-        points = _seen(robot, self._carried, frames)
+        points = _visible_points(robot, self._carried, frames)
         self._sheet, panes = open_sheet(
             with_obstacles(robot, frames[0].things),
             [],
@@ -85,7 +85,7 @@ class FramePictures:
         draw_misses(sheet, [pane], markers, {} if frame.target is None else target_places(frame.target))
 
 
-def _seen(robot: Robot, carried: Attachments, frames: Sequence[Frame]) -> Spread:
+def _visible_points(robot: Robot, carried: Attachments, frames: Sequence[Frame]) -> Spread:
     """Points that every picture must hold [m]: body, cables and winches of all frames, and all targets."""
     shapes = list({id(frame.nodes): frame.nodes for frame in frames}.values())
     parts = outer_points(robot.body, shapes)

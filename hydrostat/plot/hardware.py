@@ -112,7 +112,7 @@ def _draw_winches(
         _draw_spool(sheet, winch, centre, colours[winch.name], float(fade))
         if contractions is not None:
             turn = float(contractions[index]) / winch.spool_radius
-            _draw_hand(sheet, winch, centre, turn, _faded(DARK, float(fade)), 20.3 if fade == 0 else 10.8)
+            _draw_hand(sheet, winch, centre, turn, _fade_colour(DARK, float(fade)), 20.3 if fade == 0 else 10.8)
 
 
 def name_winches(labels: Labels, robot: Robot, centres: Places, notes: Sequence[str] = ()) -> None:
@@ -172,12 +172,12 @@ def _along(run: Places, share: float) -> Place:
 
 def _draw_spool(sheet: PictureSheet, winch: Winch, centre: Place, colour: str, fade: float) -> None:
     """Flange, drum and axle; a winch outside the body sits on a square plate, a covered one beneath markers."""
-    size, light, colour = spool_size(winch, sheet.scale), _faded(LIGHT, fade), _faded(colour, fade)
+    size, light, colour = spool_size(winch, sheet.scale), _fade_colour(LIGHT, fade), _fade_colour(colour, fade)
     order = 19.0 if fade == 0 else 9.5
     if winch.mount is Mount.WORLD:
         sheet.curve(
             centre[None], linestyle="none", marker="s", markersize=1.5 * size, color=light,
-            markeredgecolor=_faded(DARK, fade), markeredgewidth=0.9, zorder=order,
+            markeredgecolor=_fade_colour(DARK, fade), markeredgewidth=0.9, zorder=order,
         )  # fmt: skip
     sheet.dots(centre[None], size, color=colour, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
     sheet.dots(centre[None], 0.58 * size, color=mix(colour, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
@@ -193,7 +193,7 @@ def _draw_hand(sheet: PictureSheet, winch: Winch, centre: Place, turn: float, co
 
 def _draw_sheath(sheet: PictureSheet, pipe: Places, colour: str, width: float, fade: float) -> None:
     """A pale pipe around a piece of a cable, beneath all cables where the body covers it."""
-    wall, order = _faded(colour, fade), 6.0 if fade > 0 else 8.2
+    wall, order = _fade_colour(colour, fade), 6.0 if fade > 0 else 8.2
     sheet.curve(pipe, color=mix(wall, LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=order)
     sheet.curve(pipe, color=mix(wall, LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=order + 0.1)
 
@@ -201,8 +201,8 @@ def _draw_sheath(sheet: PictureSheet, pipe: Places, colour: str, width: float, f
 def _draw_part(sheet: PictureSheet, part: Places, colour: str, width: float, fade: float) -> None:
     """Pieces of a cable: with a pale border where they lie in front, thinner where the body covers them."""
     if fade > 0:
-        sheet.curve(part, color=_faded(LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade)
-        sheet.curve(part, color=_faded(colour, fade), linewidth=0.8 * width, zorder=7 - fade)
+        sheet.curve(part, color=_fade_colour(LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade)
+        sheet.curve(part, color=_fade_colour(colour, fade), linewidth=0.8 * width, zorder=7 - fade)
     else:
         sheet.curve(part, color=LIGHT, linewidth=width + 1.8, alpha=0.85, zorder=8)
         sheet.curve(part, color=colour, linewidth=width, zorder=9)
@@ -211,16 +211,16 @@ def _draw_part(sheet: PictureSheet, part: Places, colour: str, width: float, fad
 def _draw_beads(sheet: PictureSheet, run: DrawnCable, colour: str) -> None:
     fades = run.fades[1:-1]
     for fade in np.unique(fades):
-        look = {"color": _faded(LIGHT, fade), "markeredgecolor": _faded(colour, fade)}
+        look = {"color": _fade_colour(LIGHT, fade), "markeredgecolor": _fade_colour(colour, fade)}
         beads = run.points[1:-1][fades == fade]
         sheet.dots(beads, 2.2 if fade else 3.0, markeredgewidth=0.6 if fade else 0.9, zorder=9.2 - 2 * fade, **look)
 
 
 def _draw_stopper(sheet: PictureSheet, run: DrawnCable, colour: str, width: float) -> None:
     bar, fade = stopper_bar(run.points, sheet.scale), float(run.fades[-1])
-    sheet.curve(bar, color=_faded(LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
-    sheet.curve(bar, color=_faded(colour, fade), linewidth=width + 0.8, zorder=9.4)
+    sheet.curve(bar, color=_fade_colour(LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
+    sheet.curve(bar, color=_fade_colour(colour, fade), linewidth=width + 0.8, zorder=9.4)
 
 
-def _faded(colour: str, fade: float) -> str:
+def _fade_colour(colour: str, fade: float) -> str:
     return mix(colour, FELT, fade) if fade > 0 else colour

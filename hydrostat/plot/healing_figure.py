@@ -35,12 +35,12 @@ def draw_healing(
     are lines below the views; width in inches.
     """
     marked = np.zeros((0, 3)) if places is None else np.asarray(places, dtype=float).reshape(-1, 3)
-    first, second = _welded(before), _welded(after)
+    first, second = _weld(before), _weld(after)
     edges = _bad_edges(first)
     shown = np.concatenate([marked, first.vertices[edges].mean(axis=1)])
     camera = three_quarter(second.vertices, shown)
     spots, healed, rings = (camera.see(MILLIMETRES * points) for points in (first.vertices, second.vertices, marked))
-    lines = _fitted([line for note in notes for line in _lines(note, width)], width)
+    lines = _fit_lines([line for note in notes for line in _lines(note, width)], width)
     layout = _lay_out(np.concatenate([spots, healed, rings])[:, :2], lines, width)
     sheet = new_sheet(layout.corners, title=title, width=width, ruled=False, room=0.0)
     image = _both_sides(spots, first.triangles, _pixel(sheet, spots), camera)
@@ -84,7 +84,7 @@ def _lines(note: str, width: float) -> list[str]:
     return wrap(note, max(int(LETTERS * width / WIDTH), 20), subsequent_indent="   ") or [""]
 
 
-def _fitted(lines: list[str], width: float) -> list[str]:
+def _fit_lines(lines: list[str], width: float) -> list[str]:
     """Lines, as many as leave place for the views; the last says how many more there are."""
     most = max(int((0.55 * TALLEST * 72 * (width - 0.1) - 26 - HEAD) / LINE), 1)
     more = len(lines) - most + 1
@@ -100,7 +100,7 @@ def _apart(rings: Float[np.ndarray, "_ 2"], gap: float) -> Float[np.ndarray, "_ 
     return np.array(kept).reshape(-1, 2)
 
 
-def _welded(surface: Surface) -> Surface:
+def _weld(surface: Surface) -> Surface:
     """The surface with vertices at one place as one, for shades and edges; triangles without area are left out."""
     low = surface.vertices.min(axis=0)
     cells = np.round((surface.vertices - low) / max(WELD * surface.size, 1e-300))

@@ -68,10 +68,10 @@ def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
     corners = np.concatenate([mesh.nodes[outer], *(nodes[outer] for nodes in shapes)])
     ways = corners - np.tile(mesh.nodes[outer], (1 + len(shapes), 1))
     up = way_up(robot)
-    return [three_quarter(mesh.nodes[outer], shown, up, _asked(robot)), along_an_axis(corners, shown, ways, up)]
+    return [three_quarter(mesh.nodes[outer], shown, up, _pose_offsets(robot)), along_an_axis(corners, shown, ways, up)]
 
 
-def _asked(robot: Robot) -> Spread:
+def _pose_offsets(robot: Robot) -> Spread:
     """Displacements of markers to their targets in the poses of a robot [m], or offsets of obstacles next to it."""
     nodes = robot.body.mesh.nodes
     beside = [thing.frame()[0] for thing in robot.obstacles if thing.shape is not ObstacleShape.PLANE]
@@ -110,12 +110,12 @@ def _lay_out(sides: Sequence[Place], paper: float) -> _ViewLayout:
     borders = [_around(ROOM), _around(RULES)]
     scales = []
     for beside in (True, False):
-        need, free = _joined(sides[0], sides[1], beside), _joined(borders[0], borders[1], beside)
+        need, free = _joint_size(sides[0], sides[1], beside), _joint_size(borders[0], borders[1], beside)
         scales.append(max(need[0] / (paper - free[0]), need[1] / (TALLEST * paper - free[1])))
     beside = bool(scales[0] <= 1.4 * scales[1])
     scale = scales[0] if beside else scales[1]
     first, second = (side + border * scale for side, border in zip(sides, borders, strict=True))
-    whole = _joined(first, second, beside)
+    whole = _joint_size(first, second, beside)
     spare = max(paper * scale - whole[0], 0.0)
     whole[0] += spare
     if beside:
@@ -137,7 +137,7 @@ def _around(border: tuple[float, float, float, float]) -> Place:
     return np.array([border[0] + border[1], border[2] + border[3]])
 
 
-def _joined(first: Place, second: Place, beside: bool) -> Place:
+def _joint_size(first: Place, second: Place, beside: bool) -> Place:
     """Size of two boxes beside each other, or one below the other."""
     along = 0 if beside else 1
     size = np.maximum(first, second)

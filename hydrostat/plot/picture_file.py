@@ -27,7 +27,7 @@ from hydrostat.robot import replace_file
 def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
     """Write a figure on white paper as PNG, whole or not at all; returns its path."""
     buffer = io.BytesIO()
-    with drawing(), _haloed(figure):
+    with drawing(), _text_halo(figure):
         figure.savefig(buffer, format="png", dpi=dpi, facecolor=PAPER, metadata={"Software": None})
     return replace_file(Path(path), buffer.getvalue())
 
@@ -100,7 +100,7 @@ def drawing(salt: str = "hydrostat") -> Iterator[None]:
 
 
 @contextmanager
-def _haloed(figure: Figure) -> Iterator[None]:
+def _text_halo(figure: Figure) -> Iterator[None]:
     """Words with a border of paper around their letters, while a PNG is made; a page does this by its style."""
     texts = [text for text in figure.findobj(Text) if text.get_gid() == HALO]
     for text in texts:

@@ -21,11 +21,11 @@ def filled_chapters(network: Network) -> list[Chapter]:
         f"run: {where}."
     )
     if network.filled is not None:
-        return [Chapter(HEAD, words, [_judged(network, network.filled)])]
-    return [Chapter(HEAD, words, [tag("p", _played(network), class_="note")])]
+        return [Chapter(HEAD, words, [_error_table(network, network.filled)])]
+    return [Chapter(HEAD, words, [tag("p", _flat_commands_text(network), class_="note")])]
 
 
-def _played(network: Network) -> str:
+def _flat_commands_text(network: Network) -> str:
     """Return the out-of-plane displacement with the commands of the flat model, in words, if quickly computed."""
     pulled = [reached.pose.contractions for reached in network.reached]
     if network.robot.body.outline is None:
@@ -39,7 +39,7 @@ def _played(network: Network) -> str:
     return f"With the commands above, {found}."
 
 
-def _judged(network: Network, filled: FilledReach) -> Html:
+def _error_table(network: Network, filled: FilledReach) -> Html:
     """Return a table of the pose errors on the stuffed 3D body, by commands that were found there [mm]."""
     rows = [
         (

@@ -147,21 +147,21 @@ def _add_hardware(glb: Glb, film: _Film) -> None:
     for cable in reversed(robot.cables):
         ends = _in_space(np.array(cable.points[:2], dtype=float))
         ways[cable.winch] = ends[1] - ends[0]
-    colours, winches = winch_colours(robot.winches), _carried(film, carried.winches)
+    colours, winches = winch_colours(robot.winches), _carry_places(film, carried.winches)
     for index, winch in enumerate(robot.winches):
         radius = min(max(robot.largest_spool(winch), SPOOL[0] * size), SPOOL[1] * size)
         shape = _shape(f"winch {winch.name}", spool(ways[winch.name], radius), colours[winch.name])
         glb.add_copies(shape, winches[:, [index]], [shape.name])
     if robot.cables:
-        ends = _carried(film, lambda nodes: np.array([points[-1] for points in carried.cables(nodes)]))
+        ends = _carry_places(film, lambda nodes: np.array([points[-1] for points in carried.cables(nodes)]))
         names = [f"stopper {number}" for number in range(1, len(robot.cables) + 1)]
         glb.add_copies(_shape("stopper", sphere(2.2 * CABLE * size), DARK), ends, names)
     if robot.markers:
         names = [f"marker {marker.name}" for marker in robot.markers]
-        glb.add_copies(_shape("marker", sphere(MARKER * size), LIGHT), _carried(film, carried.markers), names)
+        glb.add_copies(_shape("marker", sphere(MARKER * size), LIGHT), _carry_places(film, carried.markers), names)
 
 
-def _carried(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray, "_ _ 3"]:
+def _carry_places(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray, "_ _ 3"]:
     """Places of points in every key [m]."""
     return np.stack([_in_space(places(nodes)) for nodes in film.nodes])
 

@@ -51,7 +51,7 @@ def tube(points: Places, radius: float) -> Solid:
     ends = np.concatenate([ways[:, :1], ways[:, :-1] + ways[:, 1:], ways[:, -1:]], axis=1)
     along = _unit(ends, fallback=np.array([1.0, 0.0, 0.0]))
     across = _across(along[0])
-    sideways = np.stack([_turned(across, along[0], way) for way in along])
+    sideways = np.stack([_rotate(across, along[0], way) for way in along])
     third = np.cross(along, sideways)
     turns = 2 * np.pi * np.arange(SIDES) / SIDES
     normals = np.cos(turns)[:, None] * sideways[:, :, None] + np.sin(turns)[:, None] * third[:, :, None]
@@ -160,7 +160,7 @@ def _across(ways: Float[np.ndarray, "_ 3"]) -> Float[np.ndarray, "_ 3"]:
     return np.array(result)
 
 
-def _turned(
+def _rotate(
     vectors: Float[np.ndarray, "_ 3"], before: Float[np.ndarray, "_ 3"], after: Float[np.ndarray, "_ 3"]
 ) -> Float[np.ndarray, "_ 3"]:
     """Vectors across `before` turned by the shortest turn to `after` (Rodrigues' formula)."""

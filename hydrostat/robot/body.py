@@ -169,7 +169,7 @@ def outline_body(
         return _mesh_arrays(mesh) | _number("ring", rings) | _number("mark", marks)
 
     kept = keep_body(("outline", Path(file).suffix, size, str(inner), element_size), content, make)
-    exterior, *holes = _numbered("ring", kept)
+    exterior, *holes = _numbered_arrays("ring", kept)
     return Body(
         source=Source.OUTLINE,
         file=file,
@@ -182,7 +182,7 @@ def outline_body(
         inner=inner,
         mesh=Mesh(kept["nodes"], kept["elements"]),
         outline=Outline(exterior, tuple(holes)),
-        marks=_numbered("mark", kept),
+        marks=_numbered_arrays("mark", kept),
     )
 
 
@@ -195,7 +195,7 @@ def _number(name: str, arrays: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
     return {f"{name} {number}": array for number, array in enumerate(arrays)}
 
 
-def _numbered(name: str, kept: Arrays) -> tuple[np.ndarray, ...]:
+def _numbered_arrays(name: str, kept: Arrays) -> tuple[np.ndarray, ...]:
     """Arrays of names with a number."""
     return tuple(kept[f"{name} {number}"] for number in range(sum(key.startswith(f"{name} ") for key in kept)))
 

@@ -37,11 +37,11 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
         robot,
         body=body,
         pins=tuple(_pin(pin, float(robot.body.thickness or 0.0)) for pin in robot.pins),
-        winches=tuple(replace(winch, at=_raised(winch.at)) for winch in robot.winches),
-        cables=tuple(lifted for cable in robot.cables for lifted in _lifted(cable, face, body)),
-        markers=tuple(replace(marker, at=_raised(marker.at)) for marker in robot.markers),
+        winches=tuple(replace(winch, at=_raise_place(winch.at)) for winch in robot.winches),
+        cables=tuple(lifted for cable in robot.cables for lifted in _lift_cable(cable, face, body)),
+        markers=tuple(replace(marker, at=_raise_place(marker.at)) for marker in robot.markers),
         poses={
-            name: replace(pose, targets={marker: _raised(place) for marker, place in pose.targets.items()})
+            name: replace(pose, targets={marker: _raise_place(place) for marker, place in pose.targets.items()})
             for name, pose in robot.poses.items()
         },
         gravity=None if flat is None else (*flat, 0.0),
@@ -76,7 +76,7 @@ def _skin(body: Body, places: Points, side: float) -> Vector:
     return side * low
 
 
-def _lifted(cable: Cable, face: Face, body: Body) -> Iterator[Cable]:
+def _lift_cable(cable: Cable, face: Face, body: Body) -> Iterator[Cable]:
     """Cable on its face, all but its first point, which is its winch's; twice for pairs."""
     points = np.array(cable.points)
     for name, side in _HEIGHTS[face]:
@@ -94,7 +94,7 @@ _HEIGHTS = {
 }
 
 
-def _raised(place: Point) -> Point:
+def _raise_place(place: Point) -> Point:
     return (*place, 0.0)
 
 
@@ -105,7 +105,7 @@ def _pin(pin: Pin, thickness: float) -> Pin:
     else:
         low, high = np.array(pin.at) - pin.radius, np.array(pin.at) + pin.radius
     if pin.at is not None and pin.radius == 0.0:
-        return replace(pin, at=_raised(pin.at))
+        return replace(pin, at=_raise_place(pin.at))
     return replace(pin, at=None, radius=0.0, box=((*map(float, low), -thickness), (*map(float, high), thickness)))
 
 

@@ -44,7 +44,7 @@ def split_blocks(text: str) -> tuple[list[TomlBlock], str]:
     blocks: list[TomlBlock] = []
     free = lead = ""
     for (start, name, whole), (end, _, _) in zip(starts, [*starts[1:], (len(text), "", True)], strict=True):
-        own, apart, above = _parted(text[start:end], last=end == len(text))
+        own, apart, above = _split_block(text[start:end], last=end == len(text))
         if blocks and not whole and name == blocks[-1].name:
             before = blocks.pop()
             own = before.text + free + lead + own
@@ -88,7 +88,7 @@ def _headers(text: str) -> Iterator[tuple[int, str, bool]]:
             fresh = False
 
 
-def _parted(text: str, *, last: bool) -> tuple[str, str, str]:
+def _split_block(text: str, *, last: bool) -> tuple[str, str, str]:
     """Split a text into the part of a block, detached text after it, and the comments right above the next one."""
     end = 0
     for place, token, _ in _tokens(text):
@@ -130,7 +130,7 @@ def merged_text(text: str, robot: Robot) -> str:
     """
     fresh = robot_text(robot)
     try:
-        merged = _merged(text if text.endswith("\n") else text + "\n", fresh)
+        merged = _merge_text(text if text.endswith("\n") else text + "\n", fresh)
         if merged is not None and _Check(merged, robot.body, fresh).robot() == robot:
             return text if merged == text + "\n" else merged
     except InputError:
@@ -207,7 +207,7 @@ def _metres(value: Any, factor: Decimal) -> Any:
     return {key: _metres(entry, factor) for key, entry in value.items()} if isinstance(value, dict) else value
 
 
-def _merged(text: str, fresh: str) -> str | None:
+def _merge_text(text: str, fresh: str) -> str | None:
     """Merge new values into the old text; None if its form is too unusual."""
     new = _side(fresh)
     old = _side(text, RobotReader(Path("robot.toml"), fresh).table.length_unit)
@@ -222,10 +222,10 @@ def _merged(text: str, fresh: str) -> str | None:
         slots = sorted(places[before] for before in pairs.values())
         for slot, number in zip(slots, sorted(pairs), strict=True):
             before = old.blocks[places[pairs[number]]]
-            own = _updated(before, old, new, kind, pairs[number], number)
+            own = _update_table(before, old, new, kind, pairs[number], number)
             blocks[slot] = (replace(before, text=own), number)
         added += [(kind, number) for number in range(len(wanted)) if number not in pairs]
-    laid = _kept(old.blocks, blocks)
+    laid = _kept_blocks(old.blocks, blocks)
     for kind, number in added:
         block = TomlBlock(name=kind, free="\n", text=new.blocks[new.blocks_of(kind)[number]].text)
         laid.insert(_place(laid, kind, number), (block, number))
@@ -234,7 +234,9 @@ def _merged(text: str, fresh: str) -> str | None:
     return whole + tail + old.tail
 
 
-def _kept(before: Sequence[TomlBlock], blocks: Sequence[tuple[TomlBlock, int] | None]) -> list[tuple[TomlBlock, int]]:
+def _kept_blocks(
+    before: Sequence[TomlBlock], blocks: Sequence[tuple[TomlBlock, int] | None]
+) -> list[tuple[TomlBlock, int]]:
     """Blocks that stay; comments above the first of a kind apply to all and stay with the next one."""
     laid: list[tuple[TomlBlock, int]] = []
     seen: set[str] = set()
@@ -269,7 +271,7 @@ def _place(laid: Sequence[tuple[TomlBlock, int]], kind: str, number: int) -> int
     return max(place for place, (block, _) in enumerate(laid) if block.name in earlier) + 1
 
 
-def _updated(block: TomlBlock, old: _Side, new: _Side, kind: str, before: int, number: int) -> str:
+def _update_table(block: TomlBlock, old: _Side, new: _Side, kind: str, before: int, number: int) -> str:
     """Update the text of a table with new values."""
     was, now = old.means[kind][before], new.means[kind][number]
     changed = [key for key in dict.fromkeys([*was, *now]) if was.get(key) != now.get(key)]
@@ -339,14 +341,14 @@ def match_entries(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, A
     """Return the index of the old entry of each new one: by name, else an equal one, else the most similar one."""
     pairs: dict[int, int] = {}
     for likeness in (_same_name, _same, _alike):
-        ranked = sorted(_ranked(old, new, pairs, likeness))
+        ranked = sorted(_rank_pairs(old, new, pairs, likeness))
         for _, _, after, before in ranked:
             if after not in pairs and before not in pairs.values():
                 pairs[after] = before
     return pairs
 
 
-def _ranked(
+def _rank_pairs(
     old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]], pairs: Mapping[int, int], likeness: Any
 ) -> Iterator[tuple[float, int, int, int]]:
     """Pairs that may belong together, the most likely and then the nearest in order first."""

@@ -88,12 +88,12 @@ class RobotReader(TablesFile):
             at=None if entry.at is None else self.point(entry.at),
             radius=units.scale_up(entry.radius, self.unit, units.LENGTH),
             box=None if entry.box is None else (self.point(entry.box[0]), self.point(entry.box[1])),
-            **_given(entry, "stiffness"),
+            **_given_keys(entry, "stiffness"),
         )
 
     def _contact(self, entry: Any) -> Contact:
         friction = {} if entry.friction is None else {"friction": float(entry.friction)}
-        return Contact(**_given(entry, "distance"), **friction)
+        return Contact(**_given_keys(entry, "distance"), **friction)
 
     def _obstacle(self, entry: Any) -> Obstacle:
         given: dict[str, Any] = {}
@@ -105,7 +105,7 @@ class RobotReader(TablesFile):
             given["normal"] = tuple(float(value) for value in entry.normal)
         if entry.friction is not None:
             given["friction"] = float(entry.friction)
-        given |= _given(entry, "mass")
+        given |= _given_keys(entry, "mass")
         if entry.file is not None:
             file = self._file("obstacle.file", entry.file)
             content = read_stranger(file, name=file.name)
@@ -115,14 +115,14 @@ class RobotReader(TablesFile):
 
     def _winch(self, entry: Any) -> Winch:
         return Winch(
-            name=entry.name, at=self.point(entry.at), **_given(entry, "spool_radius", "travel", "release", "mount")
+            name=entry.name, at=self.point(entry.at), **_given_keys(entry, "spool_radius", "travel", "release", "mount")
         )
 
     def _cable(self, entry: Any) -> Cable:
         points = tuple(self.point(point) for point in entry.points)
         sheathed = {} if entry.sheathed is None else {"sheathed": tuple((start, end) for start, end in entry.sheathed)}
         friction = {} if entry.friction is None else {"friction": float(entry.friction)}
-        given = _given(entry, "name", "stiffness", "smoothing", "slack", "spool_radius")
+        given = _given_keys(entry, "name", "stiffness", "smoothing", "slack", "spool_radius")
         return Cable(winch=entry.winch, points=points, **sheathed, **friction, **given)
 
     def _marker(self, entry: Any) -> Marker:
@@ -160,7 +160,7 @@ class RobotReader(TablesFile):
                 material=material,
                 size=entry.size,
                 thickness=entry.thickness,
-                **_given(entry, "volume", *(("inner",) if source is Source.OUTLINE else ())),
+                **_given_keys(entry, "volume", *(("inner",) if source is Source.OUTLINE else ())),
             ),
             otherwise=f"body.{source}",
         )
@@ -186,7 +186,7 @@ def read_material(entry: Any) -> Material:
     """Return a material by name or by its values (InputError: an unknown name, or a value out of its range)."""
     if isinstance(entry, str):
         return get_material(entry)
-    viscous = _given(entry, "viscosity")
+    viscous = _given_keys(entry, "viscosity")
     if entry.relaxation is not None:
         viscous["relaxation"] = tuple(_branch(index, branch) for index, branch in enumerate(entry.relaxation))
     if hasattr(entry, "name"):
@@ -207,6 +207,6 @@ def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:
     return gravity_along(entry, dim) if isinstance(entry, str) else tuple(entry)
 
 
-def _given(entry: Any, *keys: str) -> dict[str, Any]:
+def _given_keys(entry: Any, *keys: str) -> dict[str, Any]:
     """Keys that stand in the file; the others keep the record's own defaults."""
     return {key: getattr(entry, key) for key in keys if getattr(entry, key) is not None}

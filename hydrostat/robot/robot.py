@@ -96,11 +96,11 @@ class Robot:
 
     def winch(self, name: str) -> Winch:
         """Return the winch of this name (InputError: there is none)."""
-        return _named("winch", "winches", self.winches, name)
+        return _find_part("winch", "winches", self.winches, name)
 
     def cable(self, name: str) -> Cable:
         """Return the cable of this name (InputError: there is none)."""
-        return _named("cable", "cables", self.cables, name)
+        return _find_part("cable", "cables", self.cables, name)
 
     @property
     def given_cable_names(self) -> tuple[str, ...]:
@@ -333,7 +333,7 @@ def _unique(kind: str, names: list[str]) -> None:
             raise InputError(f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique')
 
 
-def _named(kind: str, kinds: str, parts: Iterable[_Part], name: str) -> _Part:
+def _find_part(kind: str, kinds: str, parts: Iterable[_Part], name: str) -> _Part:
     for part in parts:
         if part.name == name:
             return part

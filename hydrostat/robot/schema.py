@@ -318,7 +318,7 @@ def first_complaint(error: ValidationError, form: type[TomlTable] = RobotTable) 
     errors = error.errors()
     worst: Any = next((entry for entry in errors if entry["type"] == "extra_forbidden"), errors[0])
     location = tuple(step for step in worst["loc"] if not str(step).startswith("<"))
-    return _dotted(location), _message(worst, location, form)
+    return _dotted_path(location), _message(worst, location, form)
 
 
 def allowed_keys(key: str, form: type[TomlTable] = RobotTable) -> list[str]:
@@ -335,7 +335,7 @@ def _message(error: Any, location: tuple[Any, ...], form: type[TomlTable]) -> st
     names = [step for step in location if isinstance(step, str)]
     key, kind = names[-1] if names else "", error["type"]
     if kind == "extra_forbidden":
-        return REFUSED.get(".".join(names)) or _unknown(key, _dotted(location[:-1]), form)
+        return REFUSED.get(".".join(names)) or _unknown(key, _dotted_path(location[:-1]), form)
     if kind == "list_type" and len(location) == 1 and allowed_keys(key, form):
         return f"begin each with [[{key}]], in two pairs of brackets"
     if kind in ("model_type", "dict_type"):
@@ -357,7 +357,7 @@ def _unknown(key: str, table: str, form: type[TomlTable]) -> str:
     return f"unknown key {quote(key)}{hint} allowed here are: {', '.join(allowed)}"
 
 
-def _dotted(location: tuple[Any, ...]) -> str:
+def _dotted_path(location: tuple[Any, ...]) -> str:
     text = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in location)
     return text.removeprefix(".")
 

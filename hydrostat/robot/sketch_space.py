@@ -153,11 +153,11 @@ def _first_robot(body: Body, name: str) -> Robot:
     solid = Solid(Surface(mesh.nodes, mesh.boundary) if body.healing is None else body.healing.surface)
     pin = _hold(mesh)
     limb = _limb(mesh, pin.holds(mesh))
-    middles = _smoothed(np.array([limb.middle(mesh, share) for share in _STATIONS]))
+    middles = _smooth_line(np.array([limb.middle(mesh, share) for share in _STATIONS]))
     side = _side(mesh, middles[-1] - middles[0])
     ways = [limb.reach(mesh, share, side) * side for share in _STATIONS]
-    route = _spaced([_covered(mesh, solid, middle, way) for middle, way in zip(middles, ways, strict=True)])
-    tip = _covered(mesh, solid, limb.middle(mesh, 0.97), 0 * side)
+    route = _space_points([_cover_offset(mesh, solid, middle, way) for middle, way in zip(middles, ways, strict=True)])
+    tip = _cover_offset(mesh, solid, limb.middle(mesh, 0.97), 0 * side)
     spool = min(_SPOOL, max(_LEAST_SPOOL, -0.9 * float(solid.distances(route[:1])[0])))
     cable = Cable(winch="pull", points=tuple(map(_point, route)))
     travel = max(round(0.4 * cable.length, 3), 1e-3)
@@ -252,14 +252,14 @@ def _side(mesh: Mesh, arm: Vector) -> Vector:
     return np.eye(3)[int(np.argmin(spread))]
 
 
-def _smoothed(points: Points) -> Points:
+def _smooth_line(points: Points) -> Points:
     """Line without its zigzag, which is that of the elements; its ends stay."""
     for _ in range(_SMOOTHINGS):
         points = np.concatenate([points[:1], (points[:-2] + 2 * points[1:-1] + points[2:]) / 4, points[-1:]])
     return points
 
 
-def _covered(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
+def _cover_offset(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
     """Place off the middle of a limb towards its skin, in the solid, as far as there is cover, or else the best."""
     places = middle + np.multiply.outer(_OFFS, way)
     found = locate(mesh, np.concatenate([places, middle[None]]))
@@ -268,7 +268,7 @@ def _covered(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
     return places[int(np.argmax(depths > _COVER))] if (depths > _COVER).any() else places[int(np.argmax(depths))]
 
 
-def _spaced(points: list[Vector]) -> Points:
+def _space_points(points: list[Vector]) -> Points:
     """Points that are at least a millimetre apart."""
     kept = [points[0]]
     for point in points[1:]:

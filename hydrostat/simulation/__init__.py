@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.branches.continue_branch import BranchOptions, continue_branch
     from hydrostat.simulation.branches.find_equilibria import FoundPose, Multistability, find_equilibria
     from hydrostat.simulation.branches.friction_hysteresis import friction_hysteresis
-    from hydrostat.simulation.cable_sensitivities import RigSlopes, cable_sensitivities
+    from hydrostat.simulation.cable_sensitivities import CableSensitivities, cable_sensitivities
     from hydrostat.simulation.contraction_profile import (
         ContractionProfile,
         ProfileTable,
@@ -54,6 +54,7 @@ __all__ = [
     "BranchOptions",
     "BranchPoint",
     "BranchReason",
+    "CableSensitivities",
     "ContactPatch",
     "ContractionProfile",
     "Contractions",
@@ -68,7 +69,6 @@ __all__ = [
     "Multistability",
     "PinShifts",
     "ProfileTable",
-    "RigSlopes",
     "Sensitivity",
     "Simulation",
     "StaticSolver",

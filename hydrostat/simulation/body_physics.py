@@ -74,7 +74,7 @@ class BodyPhysics:
             self.rest_unknowns, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness
         )
         self.pins = _pins(robot)
-        carried = [_carried(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
+        carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
         self.masses = _masses(robot)
         self.inertias = np.concatenate([self.masses, *carried]) if carried else self.masses
         energies: list[Energy] = [self.elastic, self.pins]
@@ -85,7 +85,7 @@ class BodyPhysics:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
-            own = ContactEnergy.of(mesh, **_felt(robot), rest=self.rest_unknowns)
+            own = ContactEnergy.of(mesh, **_contact_parameters(robot), rest=self.rest_unknowns)
             rubs = robot.contact.friction
             energies.append(SelfFrictionEnergy.of(mesh, own, rubs) if rubs else own)
         self.obstacles, self.guides = [], dict[int, Obstacle]()
@@ -93,7 +93,7 @@ class BodyPhysics:
             self.obstacles.append(len(energies))
             if index in self.carriages and obstacle.path:
                 self.guides[len(energies) + 1] = obstacle
-            energies += self._met(robot, obstacle, self.carriages.get(index))
+            energies += self._obstacle_energies(robot, obstacle, self.carriages.get(index))
         self.assembly = Assembly(energies, rest=self.rest_unknowns, control_count=0)
 
     @property
@@ -147,11 +147,11 @@ class BodyPhysics:
                 "move (`hydrostat simulate --dynamic`, or `Simulation.play`), or pin it"
             )
 
-    def _met(self, robot: Robot, obstacle: Obstacle, carriage: RigidBodyDofs | None) -> list[Energy]:
+    def _obstacle_energies(self, robot: Robot, obstacle: Obstacle, carriage: RigidBodyDofs | None) -> list[Energy]:
         """Return the contact energy of an obstacle and the energy that keeps a moving one rigid or on its path."""
         field = (obstacle if carriage is None or obstacle.path else obstacle.to_own_frame()).field()
         friction = robot.friction_of(obstacle)
-        met = ObstacleEnergy(robot.body.mesh, field, **_felt(robot), friction=friction, carriage=carriage)
+        met = ObstacleEnergy(robot.body.mesh, field, **_contact_parameters(robot), friction=friction, carriage=carriage)
         met, rigid = met.with_friction_at_rest(self.rest_unknowns), _RIGID * robot.body.material.young
         if carriage is None:
             return [met]
@@ -203,7 +203,7 @@ class BodyPhysics:
         return scale, reach, max(springs, default=0.0), body.mesh.size
 
 
-def _felt(robot: Robot) -> dict[str, Any]:
+def _contact_parameters(robot: Robot) -> dict[str, Any]:
     """Return the contact parameters of the body's surface."""
     body = robot.body
     return {"distance": robot.contact_distance, "young": body.material.young, "thickness": body.thickness}
@@ -229,7 +229,7 @@ def _begin(obstacle: Obstacle) -> tuple[Vector, Points]:
     return (np.zeros(dim), np.eye(dim)) if obstacle.path else obstacle.frame()
 
 
-def _carried(obstacle: Obstacle, carriage: RigidBodyDofs) -> Float[np.ndarray, " rows"]:
+def _obstacle_masses(obstacle: Obstacle, carriage: RigidBodyDofs) -> Float[np.ndarray, " rows"]:
     """Masses of the rows of an obstacle that moves [kg]: its own, then that of each of its axes."""
     if obstacle.mass is None:
         return np.zeros(1 + len(obstacle.at))

@@ -1,4 +1,4 @@
-"""`cable_sensitivities`: sensitivities of markers and tensions of a pose to all that a cable is made of."""
+"""`cable_sensitivities`: sensitivities of markers and tensions to contraction, slack, spool ratio and route."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from hydrostat.simulation.simulation import Simulation
 
 
 @dataclass(frozen=True, eq=False)
-class RigSlopes:
+class CableSensitivities:
     """Sensitivities of marker coordinates and tensions: a row for each coordinate, then for each tension.
 
     Attributes:
@@ -30,7 +30,7 @@ class RigSlopes:
     fields: Float[np.ndarray, "rows nodes dim"]
 
 
-def cable_sensitivities(simulation: Simulation, pose: Equilibrium, markers: list[int]) -> RigSlopes:
+def cable_sensitivities(simulation: Simulation, pose: Equilibrium, markers: list[int]) -> CableSensitivities:
     """Slopes of some markers and of all tensions at an equilibrium, by one adjoint solve for all rows.
 
     Args:
@@ -55,14 +55,14 @@ def cable_sensitivities(simulation: Simulation, pose: Equilibrium, markers: list
     own[len(markers) * dim :] = np.eye(len(tangents))
     if simulation.friction is not None:
         found = simulation.friction_sensitivities(pose, (rows, own))
-        return RigSlopes(found.contractions, found.slack, found.ratios, found.points, found.fields)
+        return CableSensitivities(found.contractions, found.slack, found.ratios, found.points, found.fields)
     rows += (own * tangents) @ columns.T
     fields = simulation.response(pose, rows.T).T
     by_elongation = tangents * (own - fields @ columns)
     by_winch = np.zeros((len(tangents), len(robot.winches)))
     by_winch[np.arange(len(tangents)), cables.winches] = cables.ratios
     shaped = fields.reshape(len(rows), *nodes.shape)
-    return RigSlopes(
+    return CableSensitivities(
         contractions=by_elongation @ by_winch,
         slack=-by_elongation,
         ratios=by_elongation * pose.contractions[cables.winches],

@@ -190,7 +190,7 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
     if values.ndim > 1:
         raise InputError(
             f"contractions must be one number for each of {len(winches)} winches, not an array of {values.shape}; "
-            "solve_many takes a row for each pose"
+            "solve_batch takes a row for each pose"
         )
     names = ", ".join(winch.name for winch in winches)
     if values.ndim == 0:

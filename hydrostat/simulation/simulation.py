@@ -142,7 +142,7 @@ class Simulation:
             contractions: cable taken in [m], (poses, winches), or each as in `solve`.
             jacobians: also compute Jacobians of the markers.
             nodes: keep all nodes.
-            threads: number of threads, by default one per core; for small bodies, where two are slower, one.
+            threads: largest number of threads; small bodies, where two are slower, use one.
             start: a pose to begin each from; the rest pose if left out.
             seconds: after which one pose is given up; no limit if left out.
 

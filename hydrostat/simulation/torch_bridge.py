@@ -97,7 +97,7 @@ class _Equilibrium(torch.autograd.Function):
         simulation, start, contractions, *others = given
         if any(value is not None for value in others):
             numbers = (None if value is None else value.detach().numpy() for value in others)
-            robot = _altered(simulation.robot, *numbers)
+            robot = _alter_robot(simulation.robot, *numbers)
             body = simulation.body if simulation.body.fits(robot) else None
             simulation = Simulation(robot, options=simulation.options, body=body)
         pose = simulation.solve(contractions.detach().numpy(), start=start)
@@ -132,7 +132,7 @@ def _check_routes(robot: Robot, routes: Sequence[Tensor]) -> None:
         raise InputError(f"routes must hold the points of each cable, of shapes {wanted}, not {given}")
 
 
-def _altered(
+def _alter_robot(
     robot: Robot,
     slack: np.ndarray | None,
     routes: np.ndarray | None,

@@ -71,14 +71,14 @@ class Document:
         now = self._now
         made = now.simulation
         if made is None:
-            made = now.simulation = self._made(now.work.robot)
+            made = now.simulation = self._make_simulation(now.work.robot)
         return made
 
     def simulation_of(self, robot: Robot) -> Simulation:
         """Physics of a robot such as the open one; on a body whose physics were made last, they are soon made."""
-        return self.simulation if self.is_open and self.robot is robot else self._made(robot)
+        return self.simulation if self.is_open and self.robot is robot else self._make_simulation(robot)
 
-    def _made(self, robot: Robot) -> Simulation:
+    def _make_simulation(self, robot: Robot) -> Simulation:
         """New physics of a robot, sharing those of its body where only its network was changed."""
         body = self._body
         simulation = Simulation(robot, body=body if body is not None and body.fits(robot) else None)

@@ -221,7 +221,7 @@ class Jobs:
         patience = 0.0
         try:
             worker.pipe.send(("work", *work))
-            self._begun(worker)
+            self._on_begin(worker)
             error = self._hear(worker.pipe, on_part, on_done)
             patience = PATIENCE
         except (EOFError, OSError):
@@ -234,7 +234,7 @@ class Jobs:
         worker.end(patience)
         return "stopped" if error and self._given_up() else error
 
-    def _begun(self, worker: "_Worker") -> None:
+    def _on_begin(self, worker: "_Worker") -> None:
         """The process has its work: it can be asked to stop."""
         with self._lock:
             worker.begun = True

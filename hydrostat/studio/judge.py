@@ -88,7 +88,7 @@ class Judge:
             self._seen = (robot, wishes, self.options, now)
         elif now - seen[3] >= QUIET and not held:
             options, known = self.options, self._of(robot)
-            review = _Review(robot, wishes, options, known, _said(robot, wishes, options, known))
+            review = _Review(robot, wishes, options, known, _all_findings(robot, wishes, options, known))
             self._reviews = (review, *self._reviews)[:KEPT]
             self.skins.look(robot.body, options)
             self._bell.ring(Topic.JOB, Topic.THINGS)
@@ -159,7 +159,9 @@ def _alike(one: Robot, other: Robot) -> bool:
     )
 
 
-def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _RobotFacts | None) -> tuple[Diagnostic, ...]:
+def _all_findings(
+    robot: Robot, wishes: Wishes, options: KitOptions, known: _RobotFacts | None
+) -> tuple[Diagnostic, ...]:
     """All findings, the reasons of a refused kit among them; what cannot be judged is not said."""
     try:
         constraints = wished_constraints(robot, wishes)

@@ -85,15 +85,15 @@ class Skins:
                 return
             self._next, self._working = None, skin
         try:
-            self._jobs.start(TITLE, lay_flat, skin.body, skin.pattern, on_done=self._keep, on_end=self._ended)
+            self._jobs.start(TITLE, lay_flat, skin.body, skin.pattern, on_done=self._keep, on_end=self._on_end)
         except InputError as error:  # the studio is closing
-            self._ended(str(error))
+            self._on_end(str(error))
 
     def _keep(self, sewing: Sewing) -> None:
         if self._working is not None:
             self._note(replace(self._working, sewing=sewing))
 
-    def _ended(self, error: str) -> None:
+    def _on_end(self, error: str) -> None:
         if error and self._working is not None:
             self._note(replace(self._working, error=error))
         with self._lock:

@@ -42,7 +42,7 @@ class Keys(DriveSource):
     def read(self) -> DriveWish:
         """Return the commands of the keys pressed since the previous read."""
         steps, places, over = dict[str, float](), dict[str, float](), False
-        for key in self._pressed():
+        for key in self._pressed_keys():
             if key == "q":
                 over = True
             elif key == " ":
@@ -76,7 +76,7 @@ class Keys(DriveSource):
         which, sign = ways[key.lower()]
         return self._channels.names[group[which]], sign * (COARSE if key.isupper() else FINE)
 
-    def _pressed(self) -> list[str]:
+    def _pressed_keys(self) -> list[str]:
         data = b""
         while select.select([self._file], [], [], 0.0)[0]:
             try:

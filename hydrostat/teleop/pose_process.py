@@ -64,7 +64,7 @@ class WinchPoses:
         if not pose.result.converged:
             return None, False
         self._pose = pose
-        return _found(0, self._simulation.robot, pose), False
+        return _find_pose(0, self._simulation.robot, pose), False
 
 
 class FingertipPoses:
@@ -96,7 +96,7 @@ class FingertipPoses:
             "outlook": self._tracker.linearize(seconds=LONGEST),
             "done": not more,
         }
-        return replace(_found(number, self._simulation.robot, reached.pose), **told), more
+        return replace(_find_pose(number, self._simulation.robot, reached.pose), **told), more
 
 
 class PoseProcess:
@@ -201,7 +201,7 @@ def _serve(pipe: Connection, make: Callable, arguments: tuple) -> None:
             pipe.send(str(error) or type(error).__name__)
 
 
-def _found(job: int, robot: Robot, pose: Equilibrium) -> PoseOnWay:
+def _find_pose(job: int, robot: Robot, pose: Equilibrium) -> PoseOnWay:
     return PoseOnWay(
         job=job,
         contractions=pose.contractions,

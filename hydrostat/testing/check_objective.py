@@ -80,7 +80,7 @@ class _ObjectiveCheck:
 
     def posture(self, contractions: Vector) -> None:
         """Another pose has as many rows, all finite, and errors that fit them."""
-        self._values(state_at(self.simulation, self._solved(contractions)))
+        self._values(state_at(self.simulation, self._solve(contractions)))
 
     def repeats(self) -> None:
         """An answer is the same when asked again, of this term or a new one, whatever was asked in between."""
@@ -132,9 +132,9 @@ class _ObjectiveCheck:
                 raise ConformanceError("errors", f"{name} is {error:.3g} m where the residual is zero")
 
     def _residual(self, contractions: Vector) -> Float[np.ndarray, " rows"]:
-        return np.asarray(self.term.residual(state_at(self.simulation, self._solved(contractions))))
+        return np.asarray(self.term.residual(state_at(self.simulation, self._solve(contractions))))
 
-    def _solved(self, contractions: Vector) -> Equilibrium:
+    def _solve(self, contractions: Vector) -> Equilibrium:
         start = None if self.simulation.assembly.has_history else self.pose
         return self.simulation.solve(contractions, start=start)
 

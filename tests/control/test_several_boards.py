@@ -40,7 +40,7 @@ def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
 
         monkeypatch.setattr(BusLink, "__init__", without_limits)
     elif bug == "boards without names":
-        monkeypatch.setattr(bus_link, "_named", lambda calibration: [motor.winch for motor in calibration.motors])
+        monkeypatch.setattr(bus_link, "_winch_names", lambda calibration: [motor.winch for motor in calibration.motors])
     elif bug == "an unplugged board is hushed up":
         read = JoinedBus._each
 

@@ -9,7 +9,7 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.ik import IKStatus, solve_ik
-from hydrostat.ik.solve_ik import _followed
+from hydrostat.ik.solve_ik import _follow_friction
 from hydrostat.robot import Obstacle
 from hydrostat.simulation import Simulation
 
@@ -54,6 +54,6 @@ def test_an_answer_followed_with_friction_says_that_time_is_up() -> None:
     simulation = Simulation(replace(gallery_robot("starfish"), obstacles=(wall,)))
     target = {"top": simulation.rest.markers["top"] + np.array([0.01, -0.002])}
     found = solve_ik(simulation, target)
-    late = _followed(simulation.with_deadline(time.monotonic() - 1.0), found, None)
+    late = _follow_friction(simulation.with_deadline(time.monotonic() - 1.0), found, None)
     assert found.status is not IKStatus.TIME_LIMIT
     assert late.status is IKStatus.TIME_LIMIT

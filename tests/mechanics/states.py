@@ -1,4 +1,4 @@
-"""All energies, each at random and strongly deformed states."""
+"""Energies of body, cable, pin, weight and fibers at random and strongly deformed states; others have their own tests."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

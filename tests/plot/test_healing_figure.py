@@ -12,7 +12,7 @@ from PIL import Image
 from hydrostat import plot
 from hydrostat.drawing import ERROR
 from hydrostat.geometry import Surface
-from hydrostat.plot.healing_figure import _bad_edges, _welded
+from hydrostat.plot.healing_figure import _bad_edges, _weld
 
 
 def whole() -> Surface:
@@ -41,10 +41,10 @@ def reds(figure: Figure) -> int:
 
 def test_edges_that_do_not_agree() -> None:
     """Oracle: counting. A closed box has none, a triangle away or turned over leaves three, welded or not."""
-    assert len(_bad_edges(_welded(whole()))) == 0
-    assert len(_bad_edges(_welded(soup(whole())))) == 0
-    assert len(_bad_edges(_welded(soup(whole(), away=1)))) == 3
-    assert len(_bad_edges(_welded(soup(whole(), over=1)))) == 3
+    assert len(_bad_edges(_weld(whole()))) == 0
+    assert len(_bad_edges(_weld(soup(whole())))) == 0
+    assert len(_bad_edges(_weld(soup(whole(), away=1)))) == 3
+    assert len(_bad_edges(_weld(soup(whole(), over=1)))) == 3
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKOptions, IKResult, Limits, reach_extent, solve_ik, usable_spans
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.simulation import BodyPhysics, Equilibrium, RigSlopes, Simulation, cable_sensitivities
+from hydrostat.simulation import BodyPhysics, CableSensitivities, Equilibrium, Simulation, cable_sensitivities
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Trial:
     layout: Layout  # winches and cables
     simulation: Simulation  # of the robot with them
     poses: tuple[Equilibrium, ...]  # at equilibrium, one for each target
-    slopes: tuple[RigSlopes, ...]  # of the markers of each pose and of all tensions there
+    slopes: tuple[CableSensitivities, ...]  # of the markers of each pose and of all tensions there
     columns: tuple[Columns, ...]  # what each tolerance does to the markers of each pose: see `spread_columns` [m]
     error: float  # root of the mean squared marker error over all poses [m]
     spread: float  # root of the mean variance of the markers as built, over all poses [m]
@@ -157,7 +157,7 @@ class Bench:
 
     def scattered(
         self, layout: Layout, near: Equilibrium, contractions: Vector, index: int
-    ) -> tuple[Simulation, Nodes, RigSlopes] | None:
+    ) -> tuple[Simulation, Nodes, CableSensitivities] | None:
         """A layout built otherwise, near a pose: its nodes there [m], and slopes; None where it has no equilibrium."""
         try:
             simulation = Simulation(layout.robot(), body=self.body)
@@ -201,7 +201,7 @@ class Bench:
         near = self.nearness(simulation.robot, slopes)
         return Trial(layout, simulation, tuple(poses), slopes, columns, error, float(spread), pull, near=near)
 
-    def nearness(self, robot: Robot, slopes: Sequence[RigSlopes]) -> float:
+    def nearness(self, robot: Robot, slopes: Sequence[CableSensitivities]) -> float:
         """Factor of the cost of a network by its reach at some poses: (size / reach)^weight, at least 1."""
         if not self.reach:
             return 1.0

@@ -140,7 +140,7 @@ class _ModelSpace:
         for entity in entities:
             self._spend(1, depth)
             kind = entity.dxftype()
-            if self._hidden(entity):
+            if self._is_hidden(entity):
                 self.ignored["hidden"] += 1
             elif kind == "INSERT":
                 block = entity.block()
@@ -152,7 +152,7 @@ class _ModelSpace:
             elif kind in _LINES and not (kind == "POLYLINE" and (entity.is_poly_face_mesh or entity.is_polygon_mesh)):
                 points = _flatten(entity)
                 if len(points) > 1:
-                    yield points, _closed(entity, points)
+                    yield points, _is_closed(entity, points)
             else:
                 self.ignored[kind] += 1
 
@@ -164,7 +164,7 @@ class _ModelSpace:
         if depth > _MOST_DEPTH:
             raise OutlineError(f"{self.name}: blocks nested deeper than {_MOST_DEPTH}: explode the blocks")
 
-    def _hidden(self, entity: Any) -> bool:
+    def _is_hidden(self, entity: Any) -> bool:
         """Return True if an entity or its layer is switched off."""
         layers = self.document.layers
         layer = entity.dxf.get("layer", "0")
@@ -213,7 +213,7 @@ def _spline(entity: Any) -> Ring:
         count *= 2
 
 
-def _closed(entity: Any, points: Ring) -> bool:
+def _is_closed(entity: Any, points: Ring) -> bool:
     """Return True if an entity is closed, by its own flag or by its points."""
     if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") and entity.is_closed:
         return True

@@ -206,7 +206,7 @@ def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
         return []
     extent = float(np.ptp(np.concatenate(lines), axis=0).max()) or 1.0
     ends = _numbers_of_ends(np.array([[line[0], line[-1]] for line in lines]), extent)
-    kept = _unrepeated(lines, ends, extent)
+    kept = _unique_lines(lines, ends, extent)
     lines, ends = [lines[index] for index in kept], ends[kept]
     dead = _dead_ends(ends)
     walks = _walks(ends, np.flatnonzero(~dead)) + _walks(ends, np.flatnonzero(dead))
@@ -243,7 +243,7 @@ def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _
     return numbers.reshape(-1, 2)
 
 
-def _unrepeated(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarray, " kept"]:
+def _unique_lines(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarray, " kept"]:
     """Lines that are no repetition of another and have a length."""
     seen, kept = set(), []
     for index, (line, (start, end)) in enumerate(zip(lines, ends.tolist(), strict=True)):

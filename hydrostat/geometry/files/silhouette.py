@@ -50,7 +50,7 @@ def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
         field = np.linalg.norm(pixels - ground, axis=2)
     faint = _faint(noise)
     edge = float((field[border] > faint).mean())
-    return Contrast(field, max(_otsu(field), faint), faint, _shaded(pixels, ground, 0.5 * faint), edge)
+    return Contrast(field, max(_otsu(field), faint), faint, _find_shadow(pixels, ground, 0.5 * faint), edge)
 
 
 def _faint(noise: float) -> float:
@@ -96,7 +96,7 @@ def _mean(sums: Vector, counts: np.ndarray) -> Vector:
     return sums / np.maximum(counts, 1)
 
 
-def _shaded(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bool[np.ndarray, "rows columns"]:
+def _find_shadow(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bool[np.ndarray, "rows columns"]:
     """Find the pixels that are the ground times a number below one."""
     share = np.einsum("rcd,rcd->rc", pixels, ground) / np.maximum(np.einsum("rcd,rcd->rc", ground, ground), 1.0)
     off = np.linalg.norm(pixels - share[..., None] * ground, axis=2)
@@ -164,7 +164,7 @@ class Silhouette:
 
 def count_covered_pixels(mask: _Mask) -> int:
     """Pixels of the largest part of a mask, its holes filled."""
-    return max((patch.area for patch in _patches(_filled(mask))[1]), default=0)
+    return max((patch.area for patch in _patches(_fill_holes(mask))[1]), default=0)
 
 
 def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouette:
@@ -177,7 +177,7 @@ def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouett
     too small, a second body, or lines that do not close; it names the picture.
     """
     mask = field > level
-    filled = _filled(mask)
+    filled = _fill_holes(mask)
     labels, patches = _patches(filled)
     if not patches or max(patch.area for patch in patches) < _LEAST_PIXELS:
         raise OutlineError(f"{name}: no body is seen in the picture: draw or photograph it large on plain ground")
@@ -189,11 +189,11 @@ def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouett
     main = inner == 1 + int(np.argmax([patch.area for patch in islands]))
     specks = _specks(filled & ~main & ~holes, int(body.sum()), name)
     cut = bool(main[0].any() or main[-1].any() or main[:, 0].any() or main[:, -1].any())
-    rings = _rings(_signed(field - level, main, mask), _is_stepped(field, level, main), int(body.sum()))
+    rings = _rings(_signed_field(field - level, main, mask), _is_stepped(field, level, main), int(body.sum()))
     return Silhouette(rings[0], tuple(rings[1:]), specks, shut, lines, cut)
 
 
-def _filled(mask: _Mask) -> _Mask:
+def _fill_holes(mask: _Mask) -> _Mask:
     """Mask with its holes filled."""
     parts = _parts(np.pad(~mask, 1, constant_values=True), corners=False)
     return (parts != parts[0, 0])[1:-1, 1:-1]
@@ -249,7 +249,7 @@ def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[PixelP
     open_[0] = False
     for number in np.flatnonzero(open_):
         hole = labels == number
-        held = _filled(hole) & ~hole
+        held = _fill_holes(hole) & ~hole
         open_[number] = not _HOLE * areas[number] < held.sum() <= _SECOND * body.sum()
     bare[0] = False
     shut = _patches((bare & ~open_)[labels])[1]
@@ -269,7 +269,7 @@ def _specks(mask: _Mask, body: int, name: str) -> tuple[PixelPatch, ...]:
     return tuple(patch for patch in patches if patch.area > _NOISE)
 
 
-def _signed(field: Field, main: _Mask, mask: _Mask) -> Field:
+def _signed_field(field: Field, main: _Mask, mask: _Mask) -> Field:
     """Field that is above 0 in the body and nowhere else, and crosses 0 where the picture does."""
     step = 1e-3 * max(float(np.ptp(field)), 1e-300)
     field = np.where(main & ~mask, step, field)

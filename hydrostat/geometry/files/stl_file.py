@@ -19,7 +19,7 @@ _PIECE = 4_000_000  # bytes of text taken apart at once
 def read_stl(content: bytes, name: str) -> Soup:
     """Read an STL file, each place as one vertex, no normals (SurfaceError: cut short, a wrong count, no number)."""
     corners = _text(content, name) if is_stl_text(content) else _binary(content, name)
-    return _joined(corners)
+    return _weld_corners(corners)
 
 
 def is_stl_text(content: bytes) -> bool:
@@ -79,7 +79,7 @@ def _vertices(piece: bytes, name: str, before: int) -> np.ndarray:
         raise SurfaceError(f"{name}: after vertex {before}, a coordinate is no number: export it again") from None
 
 
-def _joined(corners: np.ndarray) -> Soup:
+def _weld_corners(corners: np.ndarray) -> Soup:
     """Corners as vertices, each place once, in the order of their first use."""
     rows = np.ascontiguousarray(corners.reshape(-1, 3) + 0.0)  # turns -0 into 0
     _, first, place = np.unique(_keys(rows), return_index=True, return_inverse=True)

@@ -56,7 +56,7 @@ def read_3mf(content: bytes, name: str) -> Soup:
             model = _read_archive(archive, name)
     except (BadZipFile, zlib.error, EOFError, OSError, RuntimeError, NotImplementedError, ValueError) as error:
         raise SurfaceError(f"{name}: no archive that can be read ({_first_line(error)}): export it again") from None
-    return _built(model, name)
+    return _read_objects(model, name)
 
 
 def _first_line(error: BaseException) -> str:
@@ -156,9 +156,9 @@ def _read_xml(text: bytes, part: str, model: _Model, *, root: bool, name: str) -
                 case "object":
                     now = model.objects[part, attributes["id"]] = _Object()
                 case "component":
-                    now.parts.append(_placed(attributes, part, model))
+                    now.parts.append(_read_item(attributes, part, model))
                 case "item" if root:
-                    model.items.append(_placed(attributes, part, model))
+                    model.items.append(_read_item(attributes, part, model))
                 case "model" if root:
                     model.unit = attributes.get("unit", "millimeter")
         except (KeyError, ValueError, OverflowError):
@@ -169,7 +169,7 @@ def _read_xml(text: bytes, part: str, model: _Model, *, root: bool, name: str) -
     _parse(text, start, name)
 
 
-def _placed(attributes: dict[str, str], part: str, model: _Model) -> tuple[_Key, np.ndarray]:
+def _read_item(attributes: dict[str, str], part: str, model: _Model) -> tuple[_Key, np.ndarray]:
     """Object and where it goes: four rows of three, for row vectors."""
     path = next((text for key, text in attributes.items() if key.rpartition("}")[2] == "path"), "").lstrip("/")
     if path:
@@ -180,7 +180,7 @@ def _placed(attributes: dict[str, str], part: str, model: _Model) -> tuple[_Key,
     return (path or part, attributes["objectid"]), transform
 
 
-def _built(model: _Model, name: str) -> Soup:
+def _read_objects(model: _Model, name: str) -> Soup:
     """Meshes of all built objects, moved to their positions."""
     if model.unit not in _METRES:
         raise SurfaceError(f"{name}: its unit {model.unit[:40]!r} is none of {', '.join(_METRES)}: export it again")

@@ -140,7 +140,7 @@ class _Reader:
                 source, encoding = self.appended[int(data.attributes.get("offset", "0")) :], self.encoding
             else:
                 source, encoding = "".join(data.text).strip().encode("ascii", "replace"), "base64"
-            content = self._unpacked(source, encoding) if self.packed else self._plain(source, encoding)
+            content = self._decompress(source, encoding) if self.packed else self._plain(source, encoding)
             found = np.frombuffer(content, np.dtype(self.order + kind))
         except (ValueError, binascii.Error, zlib.error):
             raise make_damage_error(self.name, "has an array that cannot be unpacked") from None
@@ -157,14 +157,14 @@ class _Reader:
     def _plain(self, source: bytes, encoding: str) -> bytes:
         """Bytes behind their number."""
         size = self.head.itemsize
-        count = int(np.frombuffer(self._cut(source, encoding, 0, size), self.head)[0])
-        return self._cut(source, encoding, size, count)
+        count = int(np.frombuffer(self._encoded_slice(source, encoding, 0, size), self.head)[0])
+        return self._encoded_slice(source, encoding, size, count)
 
-    def _unpacked(self, source: bytes, encoding: str) -> bytes:
+    def _decompress(self, source: bytes, encoding: str) -> bytes:
         """Bytes of blocks that are packed one by one, behind their number and sizes."""
         size = self.head.itemsize
-        blocks = int(np.frombuffer(self._cut(source, encoding, 0, size), self.head)[0])
-        heads = np.frombuffer(self._cut(source, encoding, 0, size * (3 + blocks)), self.head).tolist()
+        blocks = int(np.frombuffer(self._encoded_slice(source, encoding, 0, size), self.head)[0])
+        heads = np.frombuffer(self._encoded_slice(source, encoding, 0, size * (3 + blocks)), self.head).tolist()
         whole, last, packed = heads[1], heads[2], heads[3:]
         if last > whole:
             raise ValueError
@@ -173,14 +173,14 @@ class _Reader:
         # the head is encoded on its own, so the rest begins anew
         start = size * (3 + blocks)
         rest = source[start if encoding == "raw" else 4 * -(-start // 3) :]
-        content, at, result = self._cut(rest, encoding, 0, sum(packed)), 0, []
+        content, at, result = self._encoded_slice(rest, encoding, 0, sum(packed)), 0, []
         for number, length in enumerate(packed):
             most = last if number == blocks - 1 and last else whole
             result.append(zlib.decompressobj().decompress(content[at : at + length], max(most, 1)))
             at += length
         return b"".join(result)
 
-    def _cut(self, source: bytes, encoding: str, start: int, count: int) -> bytes:
+    def _encoded_slice(self, source: bytes, encoding: str, start: int, count: int) -> bytes:
         """Return some of the encoded bytes (ValueError: there are not as many)."""
         end = start + count
         if encoding == "raw":

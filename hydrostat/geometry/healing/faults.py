@@ -45,8 +45,8 @@ def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
         cross = np.zeros(len(pairs), dtype=bool)
         for count, test in ((0, _apart_cross), (1, _corner_cross), (2, _side_cross)):
             some = np.flatnonzero(shared == count)
-            one = _rolled(first[some], same[some].any(axis=2), count)
-            two = _rolled(second[some], same[some].any(axis=1), count)
+            one = _roll_triangles(first[some], same[some].any(axis=2), count)
+            two = _roll_triangles(second[some], same[some].any(axis=1), count)
             cross[some] = test(surface.vertices[one], surface.vertices[two], _NEAR * surface.size)
         found.append(pairs[cross])
         if sum(map(len, found)) >= MOST_PAIRS:
@@ -54,7 +54,7 @@ def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
     return np.concatenate(found)
 
 
-def _rolled(triangles: np.ndarray, shared: np.ndarray, count: int) -> np.ndarray:
+def _roll_triangles(triangles: np.ndarray, shared: np.ndarray, count: int) -> np.ndarray:
     """Triangles turned so that one common corner comes first, or, of two, the corner that is not common."""
     if count == 0:
         return triangles

@@ -17,13 +17,13 @@ def manifold(nodes: Nodes, elements: Elements) -> tuple[Mesh, Points]:
     of what went [m].
     """
     part = _parts(elements)
-    mesh, breaks = _parted(nodes, elements[part == _largest(part)]), [_breaks(nodes, elements, part)]
-    while (gone := _crowded(mesh)).any() or (gone := _pinched(mesh)).any():
+    mesh, breaks = _split_nodes(nodes, elements[part == _largest(part)]), [_breaks(nodes, elements, part)]
+    while (gone := _crowded_edge_elements(mesh)).any() or (gone := _pinched_node_elements(mesh)).any():
         left = np.flatnonzero(~gone)
         part = _parts(mesh.elements[left])
         left = left[part == _largest(part)]
         breaks.append(mesh.nodes[np.delete(mesh.elements, left, axis=0)].mean(axis=1))
-        mesh = _parted(mesh.nodes, mesh.elements[left])
+        mesh = _split_nodes(mesh.nodes, mesh.elements[left])
     return mesh, np.concatenate(breaks)
 
 
@@ -64,7 +64,7 @@ def _largest(part: Numbers) -> int:
     return int(np.argmax(np.bincount(part, minlength=1)))
 
 
-def _parted(nodes: Nodes, elements: Elements) -> Mesh:
+def _split_nodes(nodes: Nodes, elements: Elements) -> Mesh:
     """Node for every group of elements that faces join about it."""
     group = joined_groups(_joins(elements), elements.size)
     first = np.unique(group, return_index=True)[1]
@@ -75,7 +75,7 @@ def _parted(nodes: Nodes, elements: Elements) -> Mesh:
     return Mesh(nodes[origin[order]], rank[group].reshape(-1, 4))
 
 
-def _crowded(mesh: Mesh) -> np.ndarray:
+def _crowded_edge_elements(mesh: Mesh) -> np.ndarray:
     """Choose elements to leave out for edges of the boundary between more than two facets: the smaller groups there."""
     sides = np.sort(
         np.concatenate([mesh.boundary[:, [0, 1]], mesh.boundary[:, [1, 2]], mesh.boundary[:, [2, 0]]]), axis=1
@@ -91,7 +91,7 @@ def _crowded(mesh: Mesh) -> np.ndarray:
     return out
 
 
-def _pinched(mesh: Mesh) -> np.ndarray:
+def _pinched_node_elements(mesh: Mesh) -> np.ndarray:
     """Choose elements to leave out for nodes of the boundary with several fans of facets: those at the smaller fans."""
     fan = joined_groups(_joins(mesh.boundary), mesh.boundary.size)
     _, first, sizes = np.unique(fan, return_index=True, return_counts=True)

@@ -141,10 +141,10 @@ _DEEP = 0.1  # a tetrahedron with all corners on the surface is kept if its midd
 
 def stuff(solid: Solid, nodes: Nodes, elements: Elements, distances: Vector) -> tuple[Places, Tetrahedra]:
     """Cut a solid out of a lattice with these nodal distances: return nodes [m] and elements."""
-    return _cut(solid, *_snapped(solid, nodes, elements, distances))
+    return _cut_tetrahedra(solid, *_snap_nodes(solid, nodes, elements, distances))
 
 
-def _snapped(
+def _snap_nodes(
     solid: Solid, nodes: Nodes, elements: Elements, distances: Vector
 ) -> tuple[Nodes, Elements, Int[np.ndarray, " nodes"], Edges, Places]:
     """Nodes with the side they are on (-1 in, 0 on the surface, 1 out), edges that are cut and where.
@@ -188,7 +188,7 @@ def _edge_crossings(
     return share
 
 
-def _cut(
+def _cut_tetrahedra(
     solid: Solid, nodes: Nodes, elements: Elements, sides: Int[np.ndarray, " nodes"], edges: Edges, cuts: Places
 ) -> tuple[Places, Tetrahedra]:
     """Parts of all tetrahedra inside: whole ones, corners, wedges."""

@@ -86,10 +86,10 @@ def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
     solid = Solid(surface)
     _check_element_size(surface, element_size)
     cell = element_size / MEAN_EDGE
-    nodes, elements = _trimmed(
+    nodes, elements = _trim_elements(
         solid, *lattice(surface.box, cell, lambda middles: solid.distances(middles) < 2 * cell), cell
     )
-    draft = _stuffed(solid, nodes, elements, element_size)
+    draft = _stuff_lattice(solid, nodes, elements, element_size)
     if draft.whole < _WHOLE:
         raise SurfaceError(f"much of the body is thinner than {_advice(surface, element_size)}")
     for size in element_size / 2.0 ** (np.arange(_FINER) * _BISECTIONS / 3):
@@ -97,7 +97,7 @@ def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
             break
         for _ in range(_BISECTIONS):
             nodes, elements = bisect(nodes, elements, _too_long_near(nodes, elements, draft.places, size))
-        draft = _stuffed(solid, nodes, elements, element_size)
+        draft = _stuff_lattice(solid, nodes, elements, element_size)
     if draft.lost > _CRUMB:
         x, y, z = 1e3 * draft.places[0]
         raise SurfaceError(
@@ -117,7 +117,7 @@ class _Filling:
     places: Points
 
 
-def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> _Filling:
+def _stuff_lattice(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> _Filling:
     distances = solid.distances(nodes)
     inner = stuff(solid, nodes, elements, distances)
     if not len(inner[1]):
@@ -160,7 +160,7 @@ def _check_element_size(surface: Surface, element_size: float) -> None:
         raise InputError(f"{size} would be about {count:.2g}, at most {_MOST} are made: take {least:.2g} mm or more")
 
 
-def _trimmed(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Places, Tetrahedra]:
+def _trim_elements(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Places, Tetrahedra]:
     """Those elements of which some node is inside or near, and the nodes they have."""
     used, kept = np.unique(elements, return_inverse=True)
     nodes, elements = nodes[used], kept.reshape(-1, 4)

@@ -169,18 +169,18 @@ class Draft:
         return Polygon(rings[0], rings[1:])
 
     @cached_property
-    def _triangulated(self) -> tuple[Elements, Edges]:
+    def _triangulation(self) -> tuple[Elements, Edges]:
         return triangles_inside(self.points, self.edges, self.polygon)
 
     @property
     def triangles(self) -> Elements:
         """Constrained Delaunay triangles."""
-        return self._triangulated[0]
+        return self._triangulation[0]
 
     @property
     def missing_sides(self) -> Edges:
         """Sides that no triangle has; they must be split."""
-        return self._triangulated[1]
+        return self._triangulation[1]
 
     def place(self, node: int) -> tuple[int, int]:
         """Ring and number on it of a boundary node; ring -1 and number inside for the others."""

@@ -91,7 +91,7 @@ def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft
     start = np.concatenate([np.zeros(int(slides.sum())), draft.interior.ravel()])
 
     def objective(variables: Vector) -> tuple[float, Vector]:
-        moved = _moved(draft, variables, slides)
+        moved = _move_points(draft, variables, slides)
         value, gradient = _energy(moved.points, triangles, power)
         if not np.isfinite(value):
             return 1e12, np.zeros_like(variables)
@@ -100,10 +100,10 @@ def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft
         return value, np.concatenate([along, gradient[len(tangents) :].ravel()])
 
     best = minimize(objective, start, jac=True, method="L-BFGS-B", options={"maxiter": iterations}).x
-    return _moved(draft, best, slides)
+    return _move_points(draft, best, slides)
 
 
-def _moved(draft: Draft, variables: Vector, slides: Bool[np.ndarray, " boundary"]) -> Draft:
+def _move_points(draft: Draft, variables: Vector, slides: Bool[np.ndarray, " boundary"]) -> Draft:
     """Return the draft with its sliding nodes shifted along their rings and its inner points moved."""
     shifts = np.zeros(len(slides))
     shifts[slides] = variables[: int(slides.sum())]

@@ -63,7 +63,7 @@ class MarkerTarget(Objective):
         chosen = [_index(robot, name) for name in names]
         anchors = simulation.marker_anchors.select_points(chosen)
         scales = np.array([not_negative(f"weight of marker {name}", weights.get(name, 1.0)) for name in names])
-        held = np.array([_held(name, free.get(name, ""), mesh.dim) for name in names])
+        held = np.array([_held_axes(name, free.get(name, ""), mesh.dim) for name in names])
         goals = np.array(
             [place(f"target {name}", targets[name], mesh, held=axes) for name, axes in zip(names, held, strict=True)]
         )
@@ -127,11 +127,11 @@ def _index(robot: Robot, name: str) -> int:
     return names.index(name)
 
 
-def _held(name: str, free: object, dim: int) -> list[bool]:
+def _held_axes(name: str, free: object, dim: int) -> list[bool]:
     if not isinstance(free, str) or set(free) - set(AXES[:dim]):
-        raise InputError(f'free axes of marker {name} must be of "{AXES[:dim]}", not {_quoted(free)}')
+        raise InputError(f'free axes of marker {name} must be of "{AXES[:dim]}", not {_quote(free)}')
     return [axis not in free for axis in AXES[:dim]]
 
 
-def _quoted(given: object) -> str:
+def _quote(given: object) -> str:
     return f'"{given}"' if isinstance(given, str) else describe(given)

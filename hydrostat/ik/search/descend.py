@@ -49,12 +49,12 @@ class Curvature:
             self._trusted = abs(missed - 0.5 * float(step @ known @ step)) < abs(missed)
         if new.residual @ new.residual < _FALLS * (old.residual @ old.residual):
             self._trusted = False
-        self._matrix = _updated(
+        self._matrix = _broyden_update(
             known, step, new.gradient() - old.gradient(new.residual), new.gradient() - old.gradient()
         )
 
 
-def _updated(known: Square, step: np.ndarray, change: np.ndarray, total: np.ndarray) -> Square:
+def _broyden_update(known: Square, step: np.ndarray, change: np.ndarray, total: np.ndarray) -> Square:
     """Least change of an estimate, scaled down if too large, that makes it true along a step of the channels.
 
     The estimate times the step should be `change`; `total` is the change of the whole gradient.
@@ -117,7 +117,7 @@ class _TrustRegionDescent:
                 return self._end(IKStatus.TIME_LIMIT, iteration)
             self.search.report_progress(self.state)
             if not self.fixed:
-                if self.state.error <= problem.reached and self._sharpen() and self._reached():
+                if self.state.error <= problem.reached and self._sharpen() and self._is_reached():
                     return self._end(IKStatus.REACHED, iteration)
                 self.weight = min(self.weight, problem.weight(self.state))
             step = self._step()
@@ -164,7 +164,7 @@ class _TrustRegionDescent:
         if state.sharp and state.excess <= EXCESS:
             self.rested = state
 
-    def _reached(self) -> bool:
+    def _is_reached(self) -> bool:
         return self.state.error <= self.problem.reached and self.state.excess <= EXCESS
 
     def _sharpen(self) -> bool:
@@ -179,7 +179,7 @@ class _TrustRegionDescent:
         """State if it rests within its limits, else the last one that did."""
         if not self._sharpen() or self.state.excess > EXCESS:
             self.state = self.rested or self.state
-        if self._reached():
+        if self._is_reached():
             reason = IKStatus.REACHED
             self.state = self.search.drop_slack(self.state)
         elif self.state.excess > EXCESS:

@@ -57,11 +57,11 @@ class InverseSearch:
             found = self.problem.state(values, given)
             if found.sharp:
                 return self.problem.idle(found)
-        found = self._relaxed(values, given)
+        found = self._solve_newton(values, given)
         if found is not None:
             return found
         solved = self.problem.simulation.solve(self.problem.bounds.spread @ values, start=pose, strict=False)
-        return self.problem.state(values, self._result(_begun(solved)))
+        return self.problem.state(values, self._result(_usable_start(solved)))
 
     def _begin_where(self, values: Vector, pose: Equilibrium) -> InverseState:
         """Return the state of a pose if loading paths start there, else that at the end of the path to it."""
@@ -69,11 +69,11 @@ class InverseSearch:
         origin = self._origin or simulation.rest
         contractions = self.problem.bounds.spread @ values
         if pose is not origin or (contractions != pose.contractions).any():
-            pose = _begun(simulation.solve(contractions, start=self._origin, strict=False))
+            pose = _usable_start(simulation.solve(contractions, start=self._origin, strict=False))
         stiffness = simulation.stiffness(pose)
-        return self._idled(self.problem.state(values, replace(pose.result, stiffness=stiffness), pose.history))
+        return self._idle_slack(self.problem.state(values, replace(pose.result, stiffness=stiffness), pose.history))
 
-    def _travelled(self, values: Vector) -> InverseState | None:
+    def _follow_path(self, values: Vector) -> InverseState | None:
         """State at the end of the straight path to contractions of the channels [m]; None if it cannot be followed."""
         simulation = self.problem.simulation
         pose = simulation.solve(self.problem.bounds.spread @ values, start=self._origin, strict=False)
@@ -84,17 +84,17 @@ class InverseSearch:
     def _reached_at_once(self, near: NewtonResult, values: Vector) -> InverseState | None:
         """Solve from nodes close by in a single increment while that does as well as many."""
         if self._turns:
-            return self._travelled(values)
+            return self._follow_path(values)
         path, contractions = self.problem.simulation.path, self.problem.bounds.spread @ values
         result, history = path.at_once(contractions, self._origin, near)
         if not _sound(result) or result.stiffness is None:
             return None
         return self.problem.state(values, result, history, whole=False)
 
-    def _idled(self, state: InverseState) -> InverseState:
+    def _idle_slack(self, state: InverseState) -> InverseState:
         """State with slack channels at their preferred positions, at the end of the path to these contractions."""
         idle = self.problem.idle(state)
-        return state if idle is state else self._travelled(idle.values) or state
+        return state if idle is state else self._follow_path(idle.values) or state
 
     def jump(self, values: Vector) -> InverseState | None:
         """State reached directly from rest by contractions of the channels [m]; None without an equilibrium."""
@@ -103,8 +103,8 @@ class InverseSearch:
         if self._remembers:
             begin = self._origin or simulation.rest
             near = self._reached_at_once(replace(begin.result, stiffness=simulation.stiffness(begin)), values)
-            return self.problem.idle(near) if near else self._relaxed(values, begin.result)
-        return self._relaxed(values, self._result(simulation.rest))
+            return self.problem.idle(near) if near else self._solve_newton(values, begin.result)
+        return self._solve_newton(values, self._result(simulation.rest))
 
     def approach(self, state: InverseState, values: Vector) -> InverseState | None:
         """State at other contractions, near enough to equilibrium to continue; None if no stable one is found."""
@@ -122,18 +122,18 @@ class InverseSearch:
                 before, contractions, result.stiffness, iterations=iterations, tolerance=tolerance
             )
             if not result.stable:
-                return None if far else self._relaxed(values, state.result)
+                return None if far else self._solve_newton(values, state.result)
             found = self.problem.state(values, result)
             left = np.abs(found.posture.nodes - result.nodes).max()
             if found.sharp or left <= _LEFT * np.abs(result.nodes - before).max():
                 return self.problem.idle(found)
             far = False
-        return self._relaxed(values, state.result)
+        return self._solve_newton(values, state.result)
 
     def follow(self, state: InverseState, values: Vector) -> InverseState | None:
         """State at other contractions, at equilibrium; None if Newton alone does not find it."""
         self.solves += 1
-        return self._relaxed(values, state.result)
+        return self._solve_newton(values, state.result)
 
     def adopt_state(self, state: InverseState) -> InverseState:
         """Return a state of another search of the same robot as a state of this one."""
@@ -146,7 +146,7 @@ class InverseSearch:
             return state
         self.solves += 1
         if self._remembers:
-            whole = self._travelled(state.values)
+            whole = self._follow_path(state.values)
             if whole is not None:
                 apart = np.abs(whole.result.nodes - state.result.nodes).max()
                 self._turns = self._turns or bool(apart > _APART * self.problem.simulation.robot.body.mesh.size)
@@ -180,11 +180,11 @@ class InverseSearch:
         residual = float(np.abs(self.problem.simulation.forces(pose.nodes, pose.contractions)).max())
         return replace(pose.result, stiffness=stiffness, residual=residual, stable=stiffness.definite)
 
-    def _relaxed(self, values: Vector, start: NewtonResult) -> InverseState | None:
+    def _solve_newton(self, values: Vector, start: NewtonResult) -> InverseState | None:
         """Solve by Newton's method alone; a longer solve is better done in smaller steps."""
         if self._remembers:
-            found = self._travelled(values)
-            return found and self._idled(found)
+            found = self._follow_path(values)
+            return found and self._idle_slack(found)
         result = self.solver.relax(
             start.nodes, self.problem.bounds.spread @ values, start.stiffness, iterations=_ITERATIONS
         )
@@ -205,7 +205,7 @@ def _sound(result: NewtonResult) -> bool:
     return result.converged and result.stable
 
 
-def _begun(pose: Equilibrium) -> Equilibrium:
+def _usable_start(pose: Equilibrium) -> Equilibrium:
     """Pose, if a search can begin from it."""
     if not _sound(pose.result):
         raise NotConvergedError(

@@ -186,9 +186,9 @@ class InverseProblem:
             step = least_squares(matrix, right, np.vstack([eye, -eye]), np.concatenate([up, down]))
             if step is not None:
                 values[slack] = state.values[slack] + self.bounds.span[slack] * np.clip(step, -down, up)
-        return state if (values == state.values).all() else self._idled(state, values)
+        return state if (values == state.values).all() else self._idle_slack(state, values)
 
-    def _idled(self, state: InverseState, values: Vector) -> InverseState:
+    def _idle_slack(self, state: InverseState, values: Vector) -> InverseState:
         history = state.history if self.simulation.assembly.has_history else None
         return self.state(values, state.result, history, whole=False)
 

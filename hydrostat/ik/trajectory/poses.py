@@ -63,7 +63,7 @@ def _go(
     """
     if (pose.contractions == goal).all():
         return pose, 0.0
-    predicted = _predicted(simulation, pose, goal)
+    predicted = _predict_nodes(simulation, pose, goal)
     if simulation.assembly.has_history:
         found = simulation.solve(goal, start=pose, strict=False)
     else:
@@ -82,7 +82,7 @@ def _go(
     return found, largest_distance(found.nodes, predicted)
 
 
-def _predicted(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Nodes:
+def _predict_nodes(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Nodes:
     """Node positions predicted to first order."""
     try:
         return pose.nodes + simulation.jacobian(pose) @ (goal - pose.contractions)

@@ -110,7 +110,7 @@ def solve_ik_trajectory(
     found = _find(search, frames, begin, tell)
     course, arrivals = _course(kind, begin, found, pace, hold, 1 / chosen.rate)
     fastest, hardest = course.peaks()
-    times, samples = _sampled(course.times, chosen.rate)
+    times, samples = _sample_times(course.times, chosen.rate)
     contractions, speeds, accelerations = course.at(times)
     contractions[samples] = _exact(begin, found, hold)  # as they were found, without rounding
     poses, snaps = follow(simulation, begin, times, contractions, jump=near, tell=tell)
@@ -210,7 +210,7 @@ def _check_times(
             )
 
 
-def _sampled(times: Vector, rate: float) -> tuple[Vector, np.ndarray]:
+def _sample_times(times: Vector, rate: float) -> tuple[Vector, np.ndarray]:
     """Even steps in each leg, its ends among them; and where these are."""
     seconds = float(times[-1] - times[0])
     if not seconds * rate <= _MOST_SAMPLES:

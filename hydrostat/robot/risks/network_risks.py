@@ -111,7 +111,7 @@ def _points_in_body(robot: Robot, cable: Cable) -> Points:
     return np.array(cable.points[1:] if outside else cable.points, dtype=float)
 
 
-def _sampled(points: Points) -> Float[np.ndarray, "places dim"]:
+def _sample_line(points: Points) -> Float[np.ndarray, "places dim"]:
     """Points and places between them, at most `_STEP` apart, with `_MOST_STEPS` on a segment at most."""
     places = [points[:1]]
     for start, end in pairwise(points):
@@ -126,7 +126,7 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
         inside = _points_in_body(robot, cable)
         if len(inside) < 2:
             continue
-        places = _sampled(inside)
+        places = _sample_line(inside)
         if robot.body.outline is None:
             out = locate(robot.body.mesh, places).distances
             leaves = out.max() > _CORNER * np.median(spacings(robot.body.mesh))
@@ -147,7 +147,7 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
 def _near_the_surface(robot: Robot) -> Iterator[Risk]:
     edge = "edge" if robot.body.mesh.dim == 2 else "surface"
     for index, cable in enumerate(robot.cables):
-        places = _sampled(_points_in_body(robot, cable))
+        places = _sample_line(_points_in_body(robot, cable))
         if robot.winch(cable.winch).mount is Mount.WORLD:  # it has to come in somewhere
             places = places[np.linalg.norm(places - places[0], axis=1) > 2 * LEAST_COVER]
         if not len(places):

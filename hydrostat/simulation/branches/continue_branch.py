@@ -225,7 +225,7 @@ class _Follower:
 
     def _keep(self, place: PathPoint) -> None:
         self.points.append(
-            BranchPoint(share=float(place.share), pose=_solved(self.simulation, self.system.controls, place))
+            BranchPoint(share=float(place.share), pose=_solve_at(self.simulation, self.system.controls, place))
         )
 
     def _branch(self, reason: BranchReason) -> Branch:
@@ -238,7 +238,7 @@ class _Follower:
         )
 
 
-def _solved(simulation: Simulation, controls: Callable[[float], Vector], place: PathPoint) -> Equilibrium:
+def _solve_at(simulation: Simulation, controls: Callable[[float], Vector], place: PathPoint) -> Equilibrium:
     """Place on a branch as a pose like any other."""
     contractions = controls(place.share)
     positions = simulation.marker_anchors.positions(place.nodes)

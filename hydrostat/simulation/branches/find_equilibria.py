@@ -88,13 +88,13 @@ class Multistability:
                 lines.append("cable friction is on: the pose depends on the loading path")
             lines += [self._line(number, found) for number, found in enumerate(self.poses, 1)]
         if self.lost:
-            lines.append(f"no stable pose on {plural(len(self.lost), 'loading path')}: {_told(self.lost)}")
+            lines.append(f"no stable pose on {plural(len(self.lost), 'loading path')}: {_path_names(self.lost)}")
         return lines
 
     def _line(self, number: int, found: FoundPose) -> str:
         return (
             f"pose {number}: energy {found.pose.energy:.4g} J, from {len(found.ways)} of {self.starts}: "
-            f"{_told(found.ways)}"
+            f"{_path_names(found.ways)}"
         )
 
 
@@ -180,7 +180,7 @@ def _marker_spread(simulation: Simulation, poses: tuple[FoundPose, ...]) -> dict
     return spread
 
 
-def _told(ways: tuple[str, ...]) -> str:
+def _path_names(ways: tuple[str, ...]) -> str:
     """Descriptions of loading paths, each once, with its count."""
     kinds = Counter(name.partition(":")[0] for name in ways)
     return ", ".join(name if times == 1 else f"{name} ({times} times)" for name, times in kinds.items())

@@ -139,11 +139,11 @@ def _let_go(simulation: Simulation, pose: Equilibrium, push: Nodes, reach: float
     robot = simulation.robot
     step = stiffness.solve(push.ravel()).reshape(push.shape)
     step *= reach * robot.body.mesh.size / np.linalg.norm(step, axis=1).max()
-    pushed = _pushed(simulation, pose, step)
+    pushed = _push_nodes(simulation, pose, step)
     return simulation.solve(pose.contractions, start=replace(pose, nodes=pushed), strict=False)
 
 
-def _pushed(simulation: Simulation, pose: Equilibrium, step: Nodes) -> Nodes:
+def _push_nodes(simulation: Simulation, pose: Equilibrium, step: Nodes) -> Nodes:
     """Nodes moved by a step along arcs; by less where an element would be inverted."""
     for _ in range(_HALVINGS):
         nodes = simulation.body.warp(pose.nodes, step)

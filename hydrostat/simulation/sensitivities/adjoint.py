@@ -116,12 +116,12 @@ def cotangents(
         raise InputError(f"an adjoint needs an Equilibrium, as solve() returns it, not a {type(pose).__name__}")
     if pose.nodes.shape != shape or pose.tensions.shape != (cables,):
         raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {shape}")
-    return _checked("nodes", nodes, shape), _checked(
+    return _check_shape("nodes", nodes, shape), _check_shape(
         "tensions", np.zeros(cables) if tensions is None else tensions, (cables,)
     )
 
 
-def _checked(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+def _check_shape(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     try:
         values = np.asarray(given, dtype=float)
     except (TypeError, ValueError):

@@ -151,10 +151,10 @@ def solve_rows(
     mesh, markers = robot.body.mesh, (len(robot.markers), robot.body.mesh.dim)
     return BatchResult(
         contractions=contractions,
-        markers=_stacked([row.markers for row in rows], markers),
-        tensions=_stacked([row.tensions for row in rows], (len(robot.cables),)),
-        jacobians=_stacked([row.jacobian for row in rows], (*markers, contractions.shape[1])) if jacobians else None,
-        nodes=_stacked([row.nodes for row in rows], mesh.nodes.shape) if nodes else None,
+        markers=_stack([row.markers for row in rows], markers),
+        tensions=_stack([row.tensions for row in rows], (len(robot.cables),)),
+        jacobians=_stack([row.jacobian for row in rows], (*markers, contractions.shape[1])) if jacobians else None,
+        nodes=_stack([row.nodes for row in rows], mesh.nodes.shape) if nodes else None,
         reasons=tuple(row.reason for row in rows),
         stable=np.array([row.stable for row in rows], dtype=bool),
         errors=tuple(row.trouble for row in rows),
@@ -203,7 +203,7 @@ def _below(numbers: Iterator[int], size: int) -> Iterator[int]:
         yield number
 
 
-def _stacked(parts: Sequence[np.ndarray | None], shape: tuple[int, ...]) -> np.ndarray:
+def _stack(parts: Sequence[np.ndarray | None], shape: tuple[int, ...]) -> np.ndarray:
     """One array of all parts; NaN for those that are missing."""
     result = np.full((len(parts), *shape), np.nan)
     for place, part in enumerate(parts):

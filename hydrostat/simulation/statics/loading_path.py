@@ -122,13 +122,13 @@ class LoadingPath:
                 assembly = state.assembly.with_active_terms(result.nodes)
                 state = _PathState(result.nodes, goal, assembly.with_advanced_history(result.nodes, goal), result)
                 if not result.converged:
-                    return _counted(state, iterations)
+                    return _with_count(state, iterations)
             found = self._solve(state, goal)
             assert found.result is not None
             iterations += found.result.iterations
             if found.arrived:
                 break
-        return _counted(found, iterations)
+        return _with_count(found, iterations)
 
     def _solve(self, state: _PathState, goal: Vector) -> _PathState:
         """Equilibrium at `goal` after one increment, consistent with the path-dependent quantities."""
@@ -153,7 +153,7 @@ def _stiffness(state: _PathState) -> Stiffness | None:
     return None if state.result is None else state.result.stiffness
 
 
-def _counted(state: _PathState, iterations: int) -> _PathState:
+def _with_count(state: _PathState, iterations: int) -> _PathState:
     """State with another count of iterations."""
     assert state.result is not None
     return replace(state, result=replace(state.result, iterations=iterations))

@@ -125,7 +125,7 @@ class StaticSolver:
             result = self._in_steps((rest[0], np.zeros_like(goal), rest[1]), goal, with_load=True)
             spent += result.iterations
         if not result.converged:
-            result = min(self._judged(result, goal), direct, key=lambda found: found.energy)
+            result = min(self._failed_result(result, goal), direct, key=lambda found: found.energy)
             result = replace(result, reason=Reason.TIME_LIMIT) if self._late else result
         return replace(result, iterations=spent)
 
@@ -133,7 +133,7 @@ class StaticSolver:
     def _late(self) -> bool:
         return time.monotonic() >= self.options.deadline
 
-    def _judged(self, result: NewtonResult, goal: Vector) -> NewtonResult:
+    def _failed_result(self, result: NewtonResult, goal: Vector) -> NewtonResult:
         """Result of a failed solve, with residual and energy at `goal`."""
         assembly = self.assembly.with_active_terms(result.nodes)
         return replace(

@@ -178,7 +178,7 @@ class Dynamics:
         """Take one step; return the motion and its last minimisation. If that failed, the motion is invalid."""
         begin = _state(motion)
         end, rates = begin, []
-        acceleration = _joined(motion.accelerations, motion, 2)
+        acceleration = _stack_rows(motion.accelerations, motion, 2)
         history, at = motion.history, motion.contractions
         result, iterations = None, 0
         for *weights, diagonal in SCHEMES[options.scheme].table:
@@ -306,9 +306,9 @@ class Dynamics:
 
 def _state(motion: Motion) -> _MotionState:
     """State of motion of all unknowns."""
-    return _MotionState(_joined(motion.nodes, motion, 0), _joined(motion.velocities, motion, 1), motion.metrics)
+    return _MotionState(_stack_rows(motion.nodes, motion, 0), _stack_rows(motion.velocities, motion, 1), motion.metrics)
 
 
-def _joined(rows: Nodes, motion: Motion, part: int) -> Nodes:
+def _stack_rows(rows: Nodes, motion: Motion, part: int) -> Nodes:
     """Rows of the nodes, and those of the obstacles that move."""
     return rows if motion.carried is None else np.concatenate([rows, motion.carried[part]])

@@ -153,8 +153,8 @@ class Designer(Stage):
             best=starting_robot(robot, request),
         )
         self.running, self.outcome = True, ""
-        ended = partial(self._ended, request)
-        calls: dict[str, Any] = {"on_part": self._glimpsed, "on_done": self._found, "on_end": ended}
+        ended = partial(self._on_end, request)
+        calls: dict[str, Any] = {"on_part": self._on_better, "on_done": self._on_found, "on_end": ended}
         try:
             self._jobs.start(TITLE, design_work, robot, request, **calls)
         except InputError:
@@ -305,7 +305,7 @@ class Designer(Stage):
             return []
         return [(pose.targets, colours[pose.name] if len(poses) > 1 else INK) for pose in poses]
 
-    def _glimpsed(self, glimpse: BestSoFar) -> None:
+    def _on_better(self, glimpse: BestSoFar) -> None:
         """A better network was found; called in a thread of the jobs."""
         run = self.run
         if run is None:
@@ -321,7 +321,7 @@ class Designer(Stage):
         self.run = replace(run, best=best, trail=(*run.trail, mark))
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
 
-    def _found(self, found: DesignsFound) -> None:
+    def _on_found(self, found: DesignsFound) -> None:
         """The design has ended; called in a thread of the jobs."""
         run = self.run
         if run is None:
@@ -354,7 +354,7 @@ class Designer(Stage):
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name
 
-    def _ended(self, request: DesignRequest, error: str) -> None:
+    def _on_end(self, request: DesignRequest, error: str) -> None:
         """Called in a thread of the jobs, whatever came of it."""
         if self.run is None or self.run.request is not request:
             return  # the next design has begun

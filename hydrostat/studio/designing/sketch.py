@@ -55,7 +55,7 @@ class BodySketch:
 
     @cached_property
     def _box(self) -> tuple[np.ndarray, np.ndarray]:
-        flat = _seen(self.body.mesh.nodes)
+        flat = _to_plane(self.body.mesh.nodes)
         return flat.min(axis=0), flat.max(axis=0)
 
     @property
@@ -66,7 +66,7 @@ class BodySketch:
     def _places(self, points: Points) -> Float[np.ndarray, "points 2"]:
         """Points [m] in the picture, y down."""
         low = self._box[0]
-        seen = self._scale * (_seen(points) - low) + MARGIN
+        seen = self._scale * (_to_plane(points) - low) + MARGIN
         seen[:, 1] = self._size[1] - seen[:, 1]
         return seen
 
@@ -86,7 +86,7 @@ class BodySketch:
         return "".join(_path(np.array(ring.coords)) + "Z" for ring in rings)
 
 
-def _seen(points: Points) -> Float[np.ndarray, "points 2"]:
+def _to_plane(points: Points) -> Float[np.ndarray, "points 2"]:
     """Places of points in the plane of a picture, y up [m]."""
     return points.astype(float) if points.shape[1] == 2 else points @ SIGHT.T
 

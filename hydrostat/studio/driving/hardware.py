@@ -121,7 +121,7 @@ class Hardware:
             link.close()
             raise
         names = tuple(self._names(robot))
-        link.guard = TensionGuard(self._expected, np.array([fact.constant for fact in facts]), names)
+        link.guard = TensionGuard(self._expected_tensions, np.array([fact.constant for fact in facts]), names)
         with self._lock:  # another window may have connected, or the studio closed, meanwhile
             if self._over.is_set() or self._link is not None or self._robot is not robot:
                 link.close()
@@ -225,7 +225,7 @@ class Hardware:
         """True if another state of the document has the same winches."""
         return self._robot is not None and robot.winches == self._robot.winches
 
-    def _expected(self, contractions: Vector) -> Vector:
+    def _expected_tensions(self, contractions: Vector) -> Vector:
         """Tensions of the winches where motors are near what is shown [N]; NaN, not judged, where they are not."""
         return np.where(np.abs(contractions - self._goal) < NEAR, self._pulls, np.nan)
 

@@ -72,7 +72,7 @@ class Machine:
         robot, posed = self._document.robot, self._posed
         if posed is None or posed[0] is not robot:
             return rest_shape(robot)
-        notes = ((self.notice,) if self.notice else ()) + _strained(robot, posed[1].tensions, self.strongest)
+        notes = ((self.notice,) if self.notice else ()) + _tension_warnings(robot, posed[1].tensions, self.strongest)
         notes += posed[1].notes
         return replace(posed[1], notes=notes)
 
@@ -207,7 +207,7 @@ class Machine:
             motors.hold()
 
 
-def _strained(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:
+def _tension_warnings(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:
     """Sentences on cables that bear what they should not."""
     return tuple(
         f"{robot.cables[index].winch}: cable tension {tensions[index]:.1f} N, maximum {most:g} N"

@@ -261,7 +261,7 @@ class Editor(Stage):
             return
         try:
             robot, hold = self._hold.drawn_out(self._document.robot)
-            moved = self._dragged(robot, hold, hold.asked(robot, hit.world, self.snap))
+            moved = self._drag(robot, hold, hold.asked(robot, hit.world, self.snap))
         except InputError as error:
             self._refused = str(error)
             return
@@ -285,7 +285,7 @@ class Editor(Stage):
             key = hit.key if find_part(self._document.robot, hit.key) else ""
             self.choose(key, also=hit.shift or (self.several and bool(key)))
         else:
-            at = self._clicked(hit, skin=self.tool is not Tool.WINCH)
+            at = self._clicked_place(hit, skin=self.tool is not Tool.WINCH)
             add = {Tool.PIN: add_pin, Tool.MARKER: add_marker, Tool.WINCH: add_winch}[self.tool]
             self._add(add, at)
 
@@ -328,7 +328,7 @@ class Editor(Stage):
 
     def _lay(self, hit: Hit) -> None:
         """One more point of the cable that is being laid."""
-        robot, at = self._document.robot, self._clicked(hit, skin=False)
+        robot, at = self._document.robot, self._clicked_place(hit, skin=False)
         if self.draft is None:
             self.draft = begin_cable(robot, at, hit.key)
             self._chosen = ()
@@ -343,7 +343,7 @@ class Editor(Stage):
         """Tell whether a part is one of several that are selected."""
         return key in self.selection and len(self.selection) > 1
 
-    def _dragged(self, robot: Robot, hold: Hold, at: Point) -> Robot:
+    def _drag(self, robot: Robot, hold: Hold, at: Point) -> Robot:
         """The robot with what is held at a place, and all that is selected with it moved as far."""
         before = place_of(robot, hold.key)
         if before is None or not self._many(hold.key):
@@ -358,7 +358,7 @@ class Editor(Stage):
         self.ruler = Ruler((at,)) if self.ruler is None else self.ruler.to(at)
         self._ring()
 
-    def _clicked(self, hit: Hit, *, skin: bool) -> Point:
+    def _clicked_place(self, hit: Hit, *, skin: bool) -> Point:
         """The place in the body that a click means."""
         robot = self._document.robot
         if hit.rest is None:

@@ -31,16 +31,16 @@ def find_part(robot: Robot, key: str) -> Part | None:
     """The part that a key names; None if the robot has none such."""
     kind, _, rest = key.partition(":")
     if kind == Kind.PIN:
-        return _numbered(Kind.PIN, rest, len(robot.pins))
+        return _parse_numbered(Kind.PIN, rest, len(robot.pins))
     if kind == Kind.CABLE:
-        return _numbered(Kind.CABLE, rest, len(robot.cables))
+        return _parse_numbered(Kind.CABLE, rest, len(robot.cables))
     if kind == Kind.WINCH:
-        return _named(Kind.WINCH, rest, [winch.name for winch in robot.winches])
+        return _parse_named(Kind.WINCH, rest, [winch.name for winch in robot.winches])
     if kind == Kind.MARKER:
-        return _named(Kind.MARKER, rest, [marker.name for marker in robot.markers])
+        return _parse_named(Kind.MARKER, rest, [marker.name for marker in robot.markers])
     if kind == Kind.VIA:
         index, _, place = rest.partition(":")
-        cable = _numbered(Kind.CABLE, index, len(robot.cables))
+        cable = _parse_numbered(Kind.CABLE, index, len(robot.cables))
         if cable is not None and place.isdecimal() and 0 < int(place) < len(robot.cables[cable.index].points):
             return Part(kind=Kind.VIA, index=cable.index, place=int(place))
     return None
@@ -84,11 +84,11 @@ def title_of(key: str) -> str:
     return f"{kind} {int(rest) + 1}" if kind in (Kind.PIN, Kind.CABLE) else f"{kind} {rest}"
 
 
-def _numbered(kind: Kind, text: str, count: int) -> Part | None:
+def _parse_numbered(kind: Kind, text: str, count: int) -> Part | None:
     return Part(kind=kind, index=int(text)) if text.isdecimal() and int(text) < count else None
 
 
-def _named(kind: Kind, name: str, names: list[str]) -> Part | None:
+def _parse_named(kind: Kind, name: str, names: list[str]) -> Part | None:
     return Part(kind=kind, index=names.index(name)) if name in names else None
 
 

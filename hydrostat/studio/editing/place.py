@@ -113,7 +113,7 @@ def remove(robot: Robot, keys: Collection[str]) -> Robot:
     gone: dict[Kind, set[int]] = {kind: set() for kind in Kind}
     vias: dict[int, set[int]] = {}
     for key in keys:
-        part = _found(robot, key)
+        part = _find(robot, key)
         if part.kind is Kind.VIA:
             vias.setdefault(part.index, set()).add(part.place)
         gone[part.kind].add(part.index)
@@ -136,7 +136,7 @@ def remove(robot: Robot, keys: Collection[str]) -> Robot:
     )
 
 
-def _found(robot: Robot, key: str) -> Part:
+def _find(robot: Robot, key: str) -> Part:
     part = find_part(robot, key)
     if part is None:
         raise InputError(f"unknown part {key}")

@@ -52,11 +52,11 @@ def make_kit(report: Report, robot: Robot, options: KitOptions) -> KitMade:
         problems=kit.problems,
         checks=kit.checks,
         pages=page_pictures(kit.files[SHEET]),
-        pattern=_seen(kit.files[PATTERN]) if PATTERN in kit.files else None,
+        pattern=_screen_pattern(kit.files[PATTERN]) if PATTERN in kit.files else None,
     )
 
 
-def _seen(pattern: bytes) -> bytes:
+def _screen_pattern(pattern: bytes) -> bytes:
     """A pattern with lines as thin as a screen shows, rather than as a laser cuts."""
     head, end, rest = pattern.partition(b"<title>")
     return head + THICK + end + rest

@@ -114,7 +114,7 @@ def robot_report(solved: SolvedPoses) -> str:
     """The page as text; it needs no other file and no network."""
     robot = solved.robot
     targets = [target_chapter(robot, robot.poses.values())] if robot.poses else []
-    chapters = [_body(robot), *targets, *_network(robot), *_reached(solved)]
+    chapters = [_body(robot), *targets, *_network(robot), *_pose_chapters(solved)]
     sections = [section(number, chapter) for number, chapter in enumerate(chapters, start=1)]
     return page(robot.name, _hero(solved), *sections, _footer(robot))
 
@@ -161,7 +161,7 @@ def _network(robot: Robot) -> list[Chapter]:
     return [Chapter("Winches and cables", words, [network_part(robot, ": cables by number")])]
 
 
-def _reached(solved: SolvedPoses) -> list[Chapter]:
+def _pose_chapters(solved: SolvedPoses) -> list[Chapter]:
     if not solved.reached and not solved.missed:
         return []
     poses = []

@@ -71,9 +71,9 @@ class Guard:
         elif scope["type"] == "websocket":
             await self._app(scope, receive, send)
         elif self._token is not None and "token" in _query(scope):
-            await self._welcome(scope["path"])(scope, receive, _dressed(send))
+            await self._welcome(scope["path"])(scope, receive, _with_headers(send))
         else:
-            body = _Body(receive, _dressed(send), self._largest)
+            body = _Body(receive, _with_headers(send), self._largest)
             await body.serve(self._app, scope)
 
     def _refusal(self, scope: Scope, headers: Headers) -> str:
@@ -172,7 +172,7 @@ def _query(scope: Scope) -> dict[str, list[str]]:
     return parse_qs(scope.get("query_string", b"").decode("latin-1"), errors="replace")
 
 
-def _dressed(send: Send) -> Send:
+def _with_headers(send: Send) -> Send:
     """The same, with headers that keep other pages out."""
 
     async def dressed(message: Message) -> None:
@@ -190,4 +190,4 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, reason: str) -> No
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": reason})
     elif scope["type"] == "http":
-        await PlainTextResponse(f"hydrostat: {reason}\n", status_code=403)(scope, receive, _dressed(send))
+        await PlainTextResponse(f"hydrostat: {reason}\n", status_code=403)(scope, receive, _with_headers(send))

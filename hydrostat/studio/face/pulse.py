@@ -72,11 +72,11 @@ class Pulse:
         while not self._ended:
             self._stepping = begun = time.monotonic()
             self._wake.clear()
-            more = self._guarded(partial(self._session.step, begun))
+            more = self._run_guarded(partial(self._session.step, begun))
             self._stepping = None
             if self._stale or more:
                 self._stale = False
-                self._guarded(self._hand_over)
+                self._run_guarded(self._hand_over)
             self._pause(begun + SHORTEST)
             if not more and not self._stale:
                 self._wake.wait(PATIENCE)
@@ -87,7 +87,7 @@ class Pulse:
             since = self._stepping
             if self._stale and since is not None and time.monotonic() - since > LONG:
                 self._stale = False
-                self._guarded(self._hand_over)
+                self._run_guarded(self._hand_over)
 
     def _pause(self, until: float) -> None:
         """Sleep until a time, or until a drag waits for its answer."""
@@ -104,7 +104,7 @@ class Pulse:
                 self._publish(shown)
         return False
 
-    def _guarded(self, action: Callable[[], bool]) -> bool:
+    def _run_guarded(self, action: Callable[[], bool]) -> bool:
         """The studio must go on whatever happens; what did is logged and told."""
         try:
             return action()

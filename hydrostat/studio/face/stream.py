@@ -95,7 +95,7 @@ class Stream:
         elif isinstance(message, LetGo):
             self._session.release(name)
         else:
-            hit = self._hit(message)
+            hit = self._parse_hit(message)
             if message.kind == "grab":
                 self._session.grab(name, hit, message.stamp)
             elif message.kind == "drag":
@@ -103,7 +103,7 @@ class Stream:
             else:
                 self._session.click(name, hit)
 
-    def _hit(self, message: Pointer) -> Hit:
+    def _parse_hit(self, message: Pointer) -> Hit:
         """Return the object under the pointer, with as many coordinates as the body."""
         dim = 3
         if self._session.document.is_open:

@@ -95,7 +95,7 @@ class CableMover(Mover):
             if self._exact:
                 self._follow(self._rough)
             self._near = False
-        targets = self._asked(held)
+        targets = self._model_targets(held)
         if targets and self._updates == 0 and not self._told and self.predictor is not None:
             self._told = True  # the exact answer is next, even if the pointer has gone on
             self.predictor.stay(self._pose)
@@ -128,7 +128,7 @@ class CableMover(Mover):
             shape = replace(shape, prediction=self.predictor.solve(targets).as_prediction(exact=not more))
         return shape, more
 
-    def _asked(self, held: Mapping[str, HeldPoint]) -> dict[str, Point] | None:
+    def _model_targets(self, held: Mapping[str, HeldPoint]) -> dict[str, Point] | None:
         """Targets of what is held, if there are networks that know all of it."""
         if self.predictor is None or not self.predictor.knows(held):
             return None

@@ -46,7 +46,7 @@ class Movers:
         before = self._cables
         if before is None or not self.ready(robot, mode):
             simulation = self._document.simulation_of(robot)
-            start, predictor = _resumed(simulation, before), self._predictor(simulation.robot)
+            start, predictor = _resume_pose(simulation, before), self._predictor(simulation.robot)
             self._cables = CableMover(simulation, tension=tension, start=start, predictor=predictor)
         elif before.tension != tension:
             self._cables = before.with_tension_limit(tension)
@@ -82,7 +82,7 @@ def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
     )  # fmt: skip
 
 
-def _resumed(simulation: Simulation, before: CableMover | None) -> Equilibrium | None:
+def _resume_pose(simulation: Simulation, before: CableMover | None) -> Equilibrium | None:
     """The pose that a robot was in before it was changed, if it still is one."""
     robot = simulation.robot
     if before is None or not same_body(before.robot, robot):

@@ -90,7 +90,7 @@ def outline_of(loops: Sequence[Loop]) -> Outline:
     for loop in loops:
         if len(loop) < 3:
             raise InputError(f"a loop has {plural(len(loop), 'corner')} (minimum 3)")
-    return Outline(*_sorted([1e-3 * curve(loop) for loop in loops]))
+    return Outline(*_sort_rings([1e-3 * curve(loop) for loop in loops]))
 
 
 def loops_svg(loops: Sequence[Loop]) -> tuple[bytes, tuple[float, float]]:
@@ -109,10 +109,10 @@ def loops_svg(loops: Sequence[Loop]) -> tuple[bytes, tuple[float, float]]:
 
 def fit_loops(outline: Outline) -> tuple[Loop, ...]:
     """Fit loops with the fewest corners that follow an outline to within a share of its size."""
-    return tuple(_fitted(1e3 * ring, 1e3 * outline.size) for ring in outline.rings)
+    return tuple(_fit_ring(1e3 * ring, 1e3 * outline.size) for ring in outline.rings)
 
 
-def _fitted(rim: Ring, size: float) -> Loop:
+def _fit_ring(rim: Ring, size: float) -> Loop:
     """Corners where a ring [mm] is followed worst, stretch by stretch, until all of it is followed well."""
     ring = get_coordinates(Polygon(rim).simplify(_THIN * size))[:-1]
     whole, places = LinearRing(ring), shapely_points(ring)
@@ -160,7 +160,7 @@ def _sharp(ring: Ring, window: float) -> np.ndarray:
     return np.abs((turns + np.pi) % (2 * np.pi) - np.pi) > _SHARP
 
 
-def _sorted(rings: list[Ring]) -> tuple[Ring, tuple[Ring, ...]]:
+def _sort_rings(rings: list[Ring]) -> tuple[Ring, tuple[Ring, ...]]:
     if not rings:
         raise InputError("no outline yet. Click to set its corners")
     areas = [abs(Polygon(ring).area) if len(ring) > 2 else 0.0 for ring in rings]

@@ -111,7 +111,7 @@ def reshape_outline(work: Work, drawing: bytes, corner: tuple[float, float]) -> 
     def move(point: Point) -> Point:
         return tuple(float(value) for value in np.round(np.array(point) - middle, 9))
 
-    robot, dropped = _within_body(_moved(work.robot, move), work.robot, body)
+    robot, dropped = _within_body(_move_parts(work.robot, move), work.robot, body)
     return Reshaped(work=_matching(work, robot, move), dropped=dropped)
 
 
@@ -124,7 +124,7 @@ class _Parts:
     poses: tuple[PoseTarget, ...]
 
 
-def _moved(robot: Robot, move: Move) -> _Parts:
+def _move_parts(robot: Robot, move: Move) -> _Parts:
     def pin_moved(pin: Pin) -> Pin:
         if pin.at is not None:
             return replace(pin, at=move(pin.at))

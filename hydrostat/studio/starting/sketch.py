@@ -55,7 +55,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         if draft.is_picture:
             behind = backdrop(draft.content, content, name=file, size=size)
         if draft.inflate is None:
-            made = _drawn(report, draft, _flat(report, draft, file, content), lines, None)
+            made = _with_pictures(report, draft, _flat(report, draft, file, content), lines, None)
             return replace(made, behind=behind)
         report.progress("inflating the outline", 0, 2)
         content, file, size = inflate_outline(drawing.outline, draft.inflate), f"{PurePath(file).stem}.ply", None
@@ -69,7 +69,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         material=draft.material,
         tell=lambda stage: report.progress(stage, 0, 2),
     )
-    return _drawn(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
+    return _with_pictures(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
 
 
 def _here(words: str) -> str:
@@ -92,7 +92,7 @@ def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:
     )
 
 
-def _drawn(
+def _with_pictures(
     report: Report, draft: BodyDraft, robot: Robot, lines: tuple[str, ...], sketch: SurfaceSketch | None
 ) -> Sketch:
     """With its pictures, and without the pose that a first robot has as an example: a person makes poses here."""

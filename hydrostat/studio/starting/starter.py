@@ -224,7 +224,7 @@ class Starter(Stage):
     def _begin(self, draft: BodyDraft) -> None:
         self._working = draft
         try:
-            self._jobs.start(TITLE, make_sketch, draft, on_done=self._found, on_end=self._ended)
+            self._jobs.start(TITLE, make_sketch, draft, on_done=self._on_found, on_end=self._on_end)
         except InputError as error:
             self._working, self.problem = None, str(error)
 
@@ -234,12 +234,12 @@ class Starter(Stage):
             self._jobs.stop()
             self._jobs.stop()  # asked twice, it is ended at once
 
-    def _found(self, sketch: Sketch) -> None:
+    def _on_found(self, sketch: Sketch) -> None:
         with self._lock:
             if self.draft is not None and sketch.draft == self.draft:
                 self.sketch = replace(sketch, draft=self.draft)  # what came from the process is a copy
 
-    def _ended(self, error: str) -> None:
+    def _on_end(self, error: str) -> None:
         with self._lock:
             again = self.draft is not None and self.draft is not self._working and not self._halted
             if self.draft is not None and not again and not self._halted:

@@ -29,7 +29,7 @@ def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
     try:
         with ZipFile(BytesIO(content)) as archive, TemporaryDirectory() as scratch:
             folder = Path(scratch)
-            entries = _checked(archive.infolist(), shown)
+            entries = _check_entries(archive.infolist(), shown)
             home = _home(list(entries), shown)
             for path, entry in entries.items():
                 if path.parent == home or home in path.parents:
@@ -44,7 +44,7 @@ def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
         raise InputError(f"{shown}: cannot be unpacked ({words}); download the robot again") from None
 
 
-def _checked(entries: list[ZipInfo], shown: str) -> dict[PurePosixPath, ZipInfo]:
+def _check_entries(entries: list[ZipInfo], shown: str) -> dict[PurePosixPath, ZipInfo]:
     """Files by their paths, none of which leads out of the archive."""
     files = [entry for entry in entries if not entry.is_dir()]
     if len(files) > MOST_FILES:

@@ -71,7 +71,7 @@ class Picture:
         self.robot, self.serial = robot, serial
         self.signature = _signature(robot, things)
         self._shown = _shown_nodes(robot)
-        self._stuck, self._rest = _stuck(things, robot.body.mesh.dim)
+        self._stuck_flags, self._rest = _stuck_flags(things, robot.body.mesh.dim)
         self._things = tuple(things)
 
     def fits(self, robot: Robot, things: Sequence[Thing]) -> bool:
@@ -106,8 +106,8 @@ class Picture:
     ) -> bytes:
         """All that changes: nodes [m] and their colours from 0 to 1, if any, places and loads of things, words."""
         points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
-        if self._stuck.any():
-            points[self._stuck] = self._anchors.positions(nodes) + self._beside
+        if self._stuck_flags.any():
+            points[self._stuck_flags] = self._anchors.positions(nodes) + self._beside
         loads = np.array([thing.load for thing in things if isinstance(thing, Strand)], dtype=np.float32)
         arrays = {"nodes": _in_space(nodes[self._shown]), "points": _in_space(points), "loads": loads}
         if values is not None:
@@ -117,12 +117,12 @@ class Picture:
     @cached_property
     def _anchors(self) -> Anchors:
         """The points that are stuck to the body."""
-        return locate(self.robot.body.mesh, self._rest[self._stuck])
+        return locate(self.robot.body.mesh, self._rest[self._stuck_flags])
 
     @cached_property
     def _beside(self) -> Points:
         """Offsets of stuck points from the body at rest [m], such as corners of a zone beyond it; 0 on the body."""
-        return self._rest[self._stuck] - self._anchors.positions(self.robot.body.mesh.nodes)
+        return self._rest[self._stuck_flags] - self._anchors.positions(self.robot.body.mesh.nodes)
 
 
 def _shown_nodes(robot: Robot) -> np.ndarray:
@@ -148,7 +148,7 @@ def _points(thing: Thing) -> Points:
     return np.zeros((0, (thing.nodes if isinstance(thing, Ghost) else thing.points).shape[1]))
 
 
-def _stuck(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]:
+def _stuck_flags(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]:
     """Return flags of the points that are stuck to the body, and all points as given [m]."""
     flags, places = [np.zeros(0, dtype=bool)], [np.zeros((0, dim))]
     for thing in things:

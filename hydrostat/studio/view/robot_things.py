@@ -39,7 +39,7 @@ def robot_things(
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, colour=MUTED, loose=-1)
         for line in obstacle_lines(obstacles_in_pose(robot, carried))
     ]
-    things += _drawn(robot)
+    things += _drawing_things(robot)
     held = pinned_points(robot)
     if len(held):
         things.append(Cloud(name="pins", points=held, colour=PIN))
@@ -73,7 +73,7 @@ def robot_things(
     return things
 
 
-def _drawn(robot: Robot) -> list[Thing]:
+def _drawing_things(robot: Robot) -> list[Thing]:
     """Eyes, a mouth: lines that are drawn on the body, with fewer points where they have very many."""
     marks = robot.body.marks
     step = max(1, sum(map(len, marks)) // DETAIL)

@@ -93,7 +93,7 @@ class _Card:
         self._knob.on_turn(
             lambda millimetres: page.act(driver.turn, winch.name, 1e-3 * millimetres), page.doing(driver.let_go)
         )
-        self._box.on("update:model-value", self._typed)  # only what a person types comes this way
+        self._box.on("update:model-value", self._on_typed)  # only what a person types comes this way
         self._box.on("focus", lambda: self._type(True))
         self._box.on("blur", lambda: self._type(False))
 
@@ -108,7 +108,7 @@ class _Card:
             colour = ERROR if tension > most else self._colour
             self._bar.style(f"width: {100 * min(tension / most, 1.0):.0f}%; background: {colour}")
 
-    def _typed(self, event: events.GenericEventArguments) -> None:
+    def _on_typed(self, event: events.GenericEventArguments) -> None:
         number = sent_number(event.args)
         if self._typing and number is not None:
             driver = self._page.session.driver

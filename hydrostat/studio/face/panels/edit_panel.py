@@ -234,12 +234,12 @@ def _colour(robot: Robot, key: str) -> str:
     """Colour of its winch; the quiet one for all else."""
     part, colours = find_part(robot, key), winch_colours(robot.winches)
     if part is not None and part.kind is Kind.WINCH:
-        return _seen(colours[robot.winches[part.index].name])
+        return _page_colour(colours[robot.winches[part.index].name])
     if part is not None and part.kind is Kind.CABLE:
-        return _seen(colours[robot.cables[part.index].winch])
+        return _page_colour(colours[robot.cables[part.index].winch])
     return "var(--muted)"
 
 
-def _seen(colour: str) -> str:
+def _page_colour(colour: str) -> str:
     """A colour of the view on a page that is light or dark."""
     return f"color-mix(in srgb, {colour} 78%, var(--ink))"

@@ -207,7 +207,7 @@ def kit_choices(page: WindowPage) -> None:
     given |= _more_choices()
 
     def show() -> None:
-        for name, value in _told(exporter.options).items():
+        for name, value in _control_values(exporter.options).items():
             given[name].set_value(value)
 
     def take() -> None:
@@ -246,7 +246,7 @@ def kit_result(page: WindowPage) -> None:
     if kit is None:
         return
     if kit.zip is None:
-        _refused(page)
+        _show_refusal(page)
         return
     download_button(kit.zip)
     if replace(kit.options, force=False, tension=None) != replace(exporter.options, force=False, tension=None):
@@ -262,7 +262,7 @@ def kit_result(page: WindowPage) -> None:
     _checks(kit)
 
 
-def _refused(page: WindowPage) -> None:
+def _show_refusal(page: WindowPage) -> None:
     """Its reasons are among the findings above."""
     refused = ui.label("Errors prevent the kit").classes("studio-section").props('data-testid="kit-refused"')
     button = ui.button("Build anyway", on_click=page.doing(lambda: page.session.exporter.make_kit(force=True)))
@@ -312,7 +312,7 @@ def _length(words: str, step: float) -> ui.number:
     return field.tooltip(f"{words} [mm]").classes("export-number")
 
 
-def _told(options: KitOptions) -> dict[str, Any]:
+def _control_values(options: KitOptions) -> dict[str, Any]:
     """The choices as the controls show them."""
     bed = dict(zip(("bed_x", "bed_y", "bed_z"), options.mould.bed, strict=True))
     return {

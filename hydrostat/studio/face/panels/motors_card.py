@@ -60,7 +60,9 @@ def motors_card(page: WindowPage) -> None:
         after.set_visibility(now is not None)
         arm.set_enabled(now not in (None, LinkState.IDENTIFIED, LinkState.ARMED))
         currents = hardware.currents
-        lines = [f"{name}: {1e3 * at:.1f} mm{_drawn(currents.get(name))}" for name, at in hardware.places.items()]
+        lines = [
+            f"{name}: {1e3 * at:.1f} mm{_current_text(currents.get(name))}" for name, at in hardware.places.items()
+        ]
         found.set_text("\n".join(lines))
         found.set_visibility(hardware.is_armed)
         words.set_text(hardware.words)
@@ -78,5 +80,5 @@ def stop_button(page: WindowPage) -> None:
     page.on(Topic.DRIVE, lambda: button.set_visibility(hardware.is_armed), lasting=True)
 
 
-def _drawn(current: float | None) -> str:
+def _current_text(current: float | None) -> str:
     return "" if current is None or isnan(current) else f", {current:.2f} A"

@@ -310,7 +310,7 @@ class _Length:
         self._ask, self._shown = ask, None
         self._field = ui.number(label, suffix="mm", format="%.4g")
         self._field.props(f'outlined dense debounce=700 data-testid="{mark}"')
-        self._field.on_value_change(lambda event: self._typed(event.value))
+        self._field.on_value_change(lambda event: self._on_typed(event.value))
 
     def show(self, value: float | None) -> None:
         """Show a length [m]."""
@@ -320,6 +320,6 @@ class _Length:
     def set_visibility(self, visible: bool) -> None:
         self._field.set_visibility(visible)
 
-    def _typed(self, value: float | None) -> None:
+    def _on_typed(self, value: float | None) -> None:
         if value is not None and value != self._shown:
             self._ask(1e-3 * value)

@@ -60,7 +60,7 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
             await page.act_slowly(starter.outline_done)
             return
         found = await page.act_slowly(outlining.apply_outline, page.session.document.work)
-        if found is not None and await _agreed(page, found):
+        if found is not None and await _confirm_outside(page, found):
             serial = page.session.document.serial
             await page.act_slowly(starter.outline_apply)
             if page.session.document.serial != serial:
@@ -88,7 +88,7 @@ def _tools(editor: OutlineEditor, *, new: bool) -> None:
     ui.switch("Snap", value=True, on_change=lambda event: editor.set_snap(bool(event.value)))
 
 
-async def _agreed(page: WindowPage, found: Reshaped) -> bool:
+async def _confirm_outside(page: WindowPage, found: Reshaped) -> bool:
     """Ask whether what lies outside may go; True if nothing does."""
     words = f"If you apply it, these are removed: {', '.join(found.dropped)}."
     title = "Parts outside the new outline"

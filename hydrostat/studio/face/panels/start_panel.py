@@ -29,7 +29,7 @@ def shelf_view(page: WindowPage) -> Callable[[], None]:
     """Build it."""
     starter = page.session.starter
     for left in starter.autosave.find_recovered()[:MOST_LEFT]:
-        _left(page, left)
+        _show_recovered(page, left)
     ui.label("New robot").classes("start-title")
     with ui.element("div").classes("start-ways"):
         _drop(page)
@@ -69,7 +69,7 @@ def _rest(card: ui.element) -> bool:
     return True
 
 
-def _left(page: WindowPage, left: RecoveredWork) -> None:
+def _show_recovered(page: WindowPage, left: RecoveredWork) -> None:
     autosave = page.session.starter.autosave
     with ui.element("div").classes("start-left") as row:
         ui.icon("history").classes("text-xl")
