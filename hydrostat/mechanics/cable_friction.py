@@ -259,7 +259,7 @@ class FrictionCableEnergy(Energy):
         return np.linalg.solve(unit - self._limit_slopes(nodes, tensions, compliance) @ moved, miss)
 
     def moves(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Float[np.ndarray, "dofs controls"]:
-        """Derivative of the nodes by the controls, while the capstan law holds and cable goes on slipping where it is about to.
+        """Derivative of the nodes by the controls, while all points at the capstan limit go on slipping.
 
         Args:
             nodes: an equilibrium [m].

@@ -1,4 +1,4 @@
-"""Energies of body, cable, pin, weight and fibers at random and strongly deformed states; others have their own tests."""
+"""Energies of body, cable, pin, weight and fibers in random, strongly deformed states; others have their own tests."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
