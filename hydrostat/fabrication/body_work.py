@@ -92,7 +92,7 @@ _STEP = 1e-3  # distance of the places that are looked at [m]
 
 
 def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:
-    """Tell which sheaths come too near the skin between two deeper places, a line each; at their ends they may."""
+    """Return a line for each sheath that comes too near the skin between two deeper places; near its ends it may."""
     solid = robot.body.solid
     if solid is None:
         return ()
@@ -175,7 +175,7 @@ def _size(pattern: Pattern) -> str:
 
 
 def _cloth(pattern: Pattern) -> Cloth:
-    """What the sheet takes: all of its felt, and every seam that is drawn once for each of two panels."""
+    """Felt, seam and zipper that the sheet needs; each seam is drawn on two panels and counts once."""
     seams = (
         shape.geometry.length
         for panel in pattern.panels

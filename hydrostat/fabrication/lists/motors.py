@@ -218,8 +218,8 @@ class PowerPlan:
     """Power supply of the motors of a robot.
 
     Attributes:
-        motor: of all winches.
-        winches: their names, in the order of the motors' numbers.
+        motor: motor of all winches.
+        winches: names of the winches, in the order of the motors' numbers.
         largest: current of all motors at their largest torque at once [A].
     """
 
@@ -229,7 +229,7 @@ class PowerPlan:
 
     @property
     def servos(self) -> bool:
-        """Tell whether the motors are servos on a bus; else DC motors on boards."""
+        """True if the motors are servos on a bus; else they are DC motors on boards."""
         return self.motor.horn is not None
 
     @property

@@ -75,7 +75,7 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
 
 
 def _poisoned(material: Material, *, silicone: bool) -> tuple[str, ...]:
-    """Tell whether the mould keeps the body from curing."""
+    """Return a problem if the mold keeps the body from curing; else nothing."""
     if not (silicone and material.name.startswith(_PLATINUM)):
         return ()
     return (
@@ -85,7 +85,7 @@ def _poisoned(material: Material, *, silicone: bool) -> tuple[str, ...]:
 
 
 def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
-    """What a body is cast of: its own material where that comes as two parts, else the thesis's foam."""
+    """Return the casting material and problems: the body's own if it comes as two parts, else the default foam."""
     if material.name.startswith(_EQUAL):
         return material, ()
     foam = MATERIALS["flexfoam-it x"]

@@ -1,4 +1,4 @@
-"""What holds two halves together and lets them part: keys, bolt holes, pry slots, all in the rim round the cavity.
+"""Keys, bolt holes and pry slots of a mold, all in the rim round the cavity.
 
 In the coordinates of the mould: x across, y upwards as it stands when poured, z along the pull, parted at z = 0.
 """

@@ -68,7 +68,7 @@ def make_halves(
 
 
 def _voids(block: MouldBlock, cavity: Manifold, openings: dict[str, Manifold], closing: Closing) -> dict[str, float]:
-    """What each opening takes of the plastic [mm^3], where two meet the first of them; and the gaps round the keys."""
+    """Volume that each opening removes from the plastic [mm^3], overlaps by the first, and of the gaps round keys."""
     account, taken = {}, cavity
     for name, opening in openings.items():
         inside = opening ^ block.solid
@@ -85,7 +85,7 @@ def volume(solid: Manifold) -> float:
 
 
 def _taken(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> tuple[float, float]:
-    """What dents take of the body [mm^3], and what pockets take of the rest."""
+    """Volumes that dents remove from the body, and pockets from the rest [mm^3]."""
     cores = joined(pocket.core for pocket in pockets)
     return volume(body ^ dents), volume(cores ^ body) - volume(cores ^ body ^ dents)
 

@@ -57,7 +57,7 @@ class Mould:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Inside:
-    """What is in the block, in the coordinates of the mould."""
+    """Contents of the block, in the coordinates of the mold."""
 
     body: Manifold
     dents: Manifold
@@ -170,7 +170,7 @@ def _block(body: Manifold, options: MouldOptions) -> MouldBlock:
 
 
 def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positive, block: MouldBlock) -> PartAssembly:
-    """What belongs where, in the coordinates of the mould."""
+    """Assembly of the mold, in its coordinates."""
     ahead, aback = (0.0, 0.0, 0.6 * block.size[2]), (0.0, 0.0, -0.6 * block.size[2])
     if frames is None:
         pieces = (
@@ -198,7 +198,7 @@ STIFF = 1e6  # Young's modulus from which on a body is not squeezed past an unde
 
 
 def set_upright(stance: MouldOrientation, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
-    """Tell how the mould stands when it is poured."""
+    """Return the sentences on how to set up the mold for pouring."""
     held = ", the end that is held at the top" if stance.held_upwards else ""
     upward = sum(vent.upward for vent in vents)
     backward = len(vents) - upward
@@ -229,7 +229,7 @@ def mould_problems(
     *,
     links: tuple[int, int] = (0, 0),
 ) -> tuple[str, ...]:
-    """Tell why the mould cannot be built well; `links` counts holes of the body that the lower and upper half close."""
+    """Return the problems of a mold; `links` counts holes of the body that the lower and upper half close."""
     found = [pocket.problem for pocket in pockets if pocket.problem] + clashes(pockets)
     rigid = options.kind is MouldKind.PRINTED
     if rigid and any(links):
@@ -260,7 +260,7 @@ def mould_problems(
 
 
 def _reaches(links: tuple[int, int]) -> str:
-    """Which half reaches through how many holes."""
+    """Return the words on how many holes of the body each half reaches through."""
     parts = [
         f"the {half} half of the mould reaches through {plural(count, 'hole')} of the body"
         for half, count in zip(("lower", "upper"), links, strict=True)
@@ -272,7 +272,7 @@ def _reaches(links: tuple[int, int]) -> str:
 def mould_warnings(
     pull: Pull, material: Material, kind: MouldKind, *, links: tuple[int, int] = (0, 0)
 ) -> tuple[str, ...]:
-    """Tell what a person should mind; `links` as in `mould_problems`."""
+    """Return the warnings for the builder; `links` as in `mould_problems`."""
     found = []
     if kind is MouldKind.SILICONE and any(links):
         found.append(

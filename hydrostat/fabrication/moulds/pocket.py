@@ -112,7 +112,7 @@ def _worth(pocket: Pocket, others: list[Pocket]) -> tuple[float, bool, float, fl
 
 
 def _shared(one: Manifold, other: Manifold) -> float:
-    """What two boxes along the axes share [mm^3]."""
+    """Overlap volume of two boxes along the axes [mm^3]."""
     (low, high), (low_other, high_other) = (np.reshape(box.bounding_box(), (2, 3)) for box in (one, other))
     return float(np.prod(np.maximum(np.minimum(high, high_other) - np.maximum(low, low_other), 0.0)))
 
@@ -227,7 +227,7 @@ def _upright_box(at: np.ndarray, width: float, height: float, deep: float, far: 
 
 
 def _holds(part: Manifold, at: np.ndarray) -> bool:
-    """Tell whether a point is in a solid, seen by a small box round it."""
+    """Return True if a point is in a solid, tested with a small box round it."""
     return float((Manifold.cube((0.1, 0.1, 0.1), True).translate(tuple(at.tolist())) ^ part).volume()) > 0
 
 

@@ -59,7 +59,7 @@ def make_positive(cavity: Manifold, sprue: Sprue | None) -> Positive:
 
 
 def _with_sprue(cavity: Manifold, sprue: Sprue | None) -> Manifold:
-    """What is cast with as much of the sprue as the silicone is thick: there it meets the frame."""
+    """Return the cavity with a stub of the sprue as long as the silicone is thick, where it meets the frame."""
     if sprue is None:
         return cavity
     return cavity + _stub(cavity, sprue)

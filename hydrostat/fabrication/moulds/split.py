@@ -73,13 +73,13 @@ def split(solid: Manifold, x_cuts: tuple[float, ...], y_cuts: tuple[float, ...])
 
 
 def _bodies(piece: Manifold) -> list[Manifold]:
-    """What of a piece hangs together; one with a closed room in it stays as it is."""
+    """Return the connected bodies of a piece; a piece with a closed void stays whole."""
     shells = piece.decompose()
     return shells if all(shell.volume() > 0 for shell in shells) else [piece]
 
 
 def _printable(part: Manifold) -> bool:
-    """Tell whether it is more than a crumb that a cut leaves."""
+    """Return True if a part is larger than a crumb that a cut leaves."""
     low, high = np.reshape(part.bounding_box(), (2, 3))
     return bool((high - low).min() > _THIN) and part.volume() > _CRUMB
 
@@ -134,7 +134,7 @@ def _strip(section: CrossSection, axis: int, span: tuple[float, float]) -> Cross
 
 
 def _has_room(solid: Manifold, spot: Float[np.ndarray, "3"], axis: int) -> bool:
-    """Tell whether a dowel with a wall round it lies inside the solid."""
+    """Return True if a dowel with a wall round it lies inside the solid."""
     rod_with_wall = _dowel(spot, axis, _WALL / 2)
     return float((rod_with_wall - solid).volume()) < 1e-6
 

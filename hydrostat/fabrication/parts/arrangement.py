@@ -94,7 +94,7 @@ class _Ways:
         return _Ways([place for place in inside if place.depth <= least + 1e-9], self._thickness)
 
     def _shared(self, other: UnitPlace) -> tuple[UnitPlace, Vector, Vector]:
-        """What each way shares with another unit, where one cannot lie above the other, and where it can."""
+        """Areas shared with another unit for each placement [mm^2]: where stacking is impossible, and possible."""
         if id(other) not in self._shares:
             near = shapely.intersects(self._footprints, other.footprint)
             area = np.zeros(len(self.places))
@@ -131,7 +131,7 @@ def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float]
 
 
 def _meet(places: Sequence[UnitPlace], numbers: Sequence[int]) -> bool:
-    """Tell whether some units all cover a common part of the plane."""
+    """Return True if some units all cover a common part of the plane."""
     return float(shapely.intersection_all([places[number].footprint for number in numbers]).area) > TOUCHES
 
 
@@ -156,7 +156,7 @@ def _piles(places: Sequence[UnitPlace]) -> list[tuple[int, ...]]:
 
 
 def _piled(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
-    """What is said of units above each other, and whether that can be built."""
+    """Return the sentence on units above each other, and True if they can be built."""
     high = sum(place.depth for place in pile)
     names = " and ".join(f'"{place.box.winch}"' for place in pile) + _sizes(pile)
     possible = high <= (1 + GIVES) * thickness
@@ -175,7 +175,7 @@ def _piled(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
 
 
 def _sizes(pile: Sequence[UnitPlace]) -> str:
-    """How large units are, and of two how far apart the robot has their winches, in brackets."""
+    """Sizes of units, and for two the distance between their winches, in brackets."""
     sides = [sides_text(place.box.size) for place in pile]
     alike = len(set(sides)) == 1
     apart = f", {math.dist(pile[0].box.at, pile[1].box.at):.0f} mm apart" if len(pile) == 2 else ""

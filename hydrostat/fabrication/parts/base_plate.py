@@ -93,7 +93,7 @@ def base_plate(
 def _tubes(
     robot: Robot, units: Sequence[WinchUnit], plan: BasePlan, options: PartOptions
 ) -> tuple[tuple[int, float], ...]:
-    """How long each tube is up to where its cable begins [mm].
+    """Length of each tube up to the first point of its cable [mm].
 
     Beyond its holder it goes the run straight on, as far to the side as the other end of the row, and from the nearest
     of the places where cables begin to the farthest. A tube that bends gently, never back, is no longer than the way

@@ -185,7 +185,7 @@ class _SeatPlan:
 
 
 def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPlan | str":
-    """How the seat is laid out, or why there can be none."""
+    """Return the layout of the seat, or the reason why there can be none."""
     if robot.body.mesh.dim == 2:
         return "the body is flat"
     if len(robot.pins) != 1:
@@ -239,7 +239,7 @@ def _reach(pin: Pin, turn: Float[np.ndarray, "3 3"]) -> tuple[float, float]:
 
 
 def _outline(body: Manifold, top: float, options: PartOptions) -> Polygon | None:
-    """What the end of a body covers from above, a little wider; None where it is in several pieces."""
+    """Return the footprint of the end of a body with its clearance [mm]; None if it is in several pieces."""
     rings = body.trim_by_plane((0, 0, -1), -top).project().to_polygons()
     covered = unary_union([Polygon(ring).buffer(0) for ring in rings]).buffer(options.clearance).simplify(0.1)
     return orient(Polygon(covered.exterior)) if isinstance(covered, Polygon) else None
@@ -258,7 +258,7 @@ def _flange(cavity: Polygon, lines: Sequence[Line], options: PartOptions) -> Pol
 
 
 def _way(line: Line, radius: float) -> Construction:
-    """What a straight cable or tube needs, from its beginning to 2 mm beyond its end [mm]."""
+    """Return the channel of a straight cable or tube, up to 2 mm beyond its end [mm]."""
     along = line[1] - line[0]
     length = float(np.linalg.norm(along))
     tilt = math.degrees(math.acos(along[2] / length))

@@ -11,7 +11,7 @@ _LINE = 0.4  # what a nozzle lays in one go: the thinnest sleeve [mm]
 _PLAY = 0.4  # how much wider the bore is than the cable, at least [mm]
 
 _MOUTH = ((1.0, 0.0), (0.65, 0.3), (0.25, 0.75), (0.0, 1.3))
-"""How much wider than the bore the mouth is, at heights above the bed [mm]: a rounding in steps of less than 50
+"""Excess of the mouth's radius over the bore's, and height above the bed [mm]: a rounding in steps of less than 50
 degrees from upright, which prints without support."""
 
 _FLANGE = 1.6

@@ -24,8 +24,8 @@ _LENGTHS = (8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.
 _SEAT = 5.0
 _ROOF = 2.0
 _TRY = 0.1
-"""Of the screws that are sold; depth of the seat of a tube; least thickness of the roof; step of the search for a place
-of the screws [mm]."""
+"""Lengths of available screws, depth of the seat of a tube, minimum thickness of the roof, and search step for the
+position of the screws [mm]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class Drive:
 
     @property
     def inside(self) -> float:
-        """How much of the shaft is in the spool [mm]; negative: it does not reach it."""
+        """Length of the shaft in the spool [mm]; negative if it does not reach it."""
         return self.tip - self.start
 
 
@@ -100,7 +100,7 @@ class Housing:
 
     @cached_property
     def post(self) -> float:
-        """How far the screws of the box are from the axis, along x and along y [mm].
+        """Distance of the screws of the box from the axis, along x and along y [mm].
 
         Clear of the channels, of the room of the spool, of the screws in the face, and outside of the motor if there is
         a base.
@@ -116,7 +116,7 @@ class Housing:
         return found
 
     def _blocked(self, post: float) -> bool:
-        """Tell whether a screw would get into the way of a screw in the face, or of a motor below the base."""
+        """Return True if a screw would collide with a screw in the face, or with a motor below the base."""
         mine = self.screw.passage / 2
         corners = MultiPoint([(x, y) for x in (-post, post) for y in (-post, post)])
         if self.outside:
@@ -160,7 +160,7 @@ class Housing:
 
     @property
     def sunk(self) -> float:
-        """How far the heads of these screws lie below the upper side of the roof [mm]."""
+        """Depth of the heads of these screws below the upper side of the roof [mm]."""
         return 0.0 if self.outside else max(0.0, self.top - 0.3 - self.screw.length)
 
     def height(self, groove: int) -> float:
@@ -178,7 +178,7 @@ class Housing:
         return self.half
 
     def seat(self, cable: int) -> float:
-        """How deep the tube of a cable goes into the box [mm]."""
+        """Depth of the tube of a cable in the box [mm]."""
         radius = self.spool.grooves[cable].radius
         wall = self.half - math.sqrt(max(0.0, self.cavity**2 - radius**2))
         return min(_SEAT, 0.65 * wall)

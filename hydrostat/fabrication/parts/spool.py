@@ -78,7 +78,7 @@ class Spool:
 
     @cached_property
     def ties(self) -> tuple[float, ...]:
-        """How far the hole of each knot is from the axis [mm]: in the flange above its groove."""
+        """Distance of the hole of each knot from the axis [mm], in the flange above its groove."""
         above = (*self.drums[1:], self.pin)
         return tuple(
             max(mine + groove.eye(self.cable) + 0.1, other + knot)

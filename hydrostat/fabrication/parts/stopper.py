@@ -10,11 +10,11 @@ from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, 
 from hydrostat.fabrication.solids.printed import Printed
 
 PRELOAD = 50.0
-"""What the screw keeps pressing with [N], assumed: 0.05 N m of a small screwdriver give about 80 N by T = K F d with
+"""Clamping force that the screw keeps [N], assumed: 0.05 N m of a small screwdriver give about 80 N by T = K F d with
 K = 0.3 in plastic, of which creep of PLA takes a third. Measured on none, check yours."""
 
 FRICTION = 0.1
-"""Of braided polyethylene on plastic: the lower end of 0.1 to 0.2, as tables give for UHMWPE. Measured on none."""
+"""Friction coefficient of braided polyethylene on plastic: the lower end of 0.1 to 0.2 for UHMWPE. Not measured."""
 
 _POST = 2.4
 _KEY = 2.2
@@ -34,7 +34,7 @@ _TIP = 0.4  # below the point of the screw: plastic, and air [mm]
 _SMOOTH = 0.6  # chamfer of what lies on the cloth and of what a hand feels [mm]
 
 _OFF_CENTRE = 0.8
-"""How far the middle of the button is from the screw towards the cable, so that it is pulled flat [mm]."""
+"""Distance of the middle of the button from the screw towards the cable, so that it is pulled flat [mm]."""
 
 _EXIT = 300.0  # where the cable leaves, counted round the post from where it comes up [degrees]
 

@@ -55,7 +55,7 @@ def _largest(mesh: SkinMesh, label: Int[np.ndarray, " triangles"], value: int) -
 
 
 def _looks(mesh: SkinMesh, direction: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " vertices"]:
-    """How far the skin at each vertex looks along a direction: 1 along it, -1 against it."""
+    """Cosine between the skin's normal at each vertex and a direction."""
     normals = mesh.facing
     return (normals @ direction) / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
 
@@ -71,8 +71,8 @@ def _smoothed(mesh: SkinMesh, values: Float[np.ndarray, " vertices"]) -> Float[n
 
 
 MOST_GIVE = 0.12
-"""How much the cloth may have to give in 95 % of a patch. Felt and woven plush give about that much; assumed, measured
-on none."""
+"""Maximum stretch of the cloth in 95 % of a patch. Felt and woven plush stretch about that much; assumed, not
+measured."""
 
 MOST_EASE = 0.05  # How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed.
 MOST_PATCHES = 6  # a person loses track of more
@@ -172,13 +172,13 @@ def _on(mesh: SkinMesh, number: int, patch: Patch) -> Patch:
 
 
 GIVES_LITTLE = 0.06
-"""What any cloth gives: above that a pattern asks for one that stretches. Assumed, measured on none."""
+"""Stretch of any cloth: above that a pattern requires a stretch fabric. Assumed, not measured."""
 
 
 def patch_problems(
     names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
 ) -> tuple[str, ...]:
-    """Tell why the patches cannot be sewn, a line each."""
+    """Return the reasons why the patches cannot be sewn, one line each."""
     problems = []
     for name, patch, skin in zip(names, patches, skins, strict=True):
         give = distortion(patch).give(0.95)
@@ -209,7 +209,7 @@ def patch_problems(
 def patch_warnings(
     names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
 ) -> tuple[str, ...]:
-    """Tell what to mind with the cloth, a line each."""
+    """Return the warnings about the cloth, one line each."""
     warnings = []
     gives = {name: distortion(patch).give(0.95) for name, patch in zip(names, patches, strict=True)}
     most = max(gives, key=lambda name: gives[name])

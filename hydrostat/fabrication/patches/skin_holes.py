@@ -44,7 +44,7 @@ class SkinHole:
 
     @property
     def in_seam(self) -> bool:
-        """Tell whether the cable passes between two stitches of a seam, without a hole."""
+        """True if the cable passes between two stitches of a seam, without a hole."""
         return len(self.places) > 1
 
     def on(self, patch: int) -> Place | None:
@@ -118,7 +118,7 @@ def find_holes(
 
 
 def _sewn(cable: Cable, near: list[int], side: Side) -> Iterator[tuple[int, bool, Side]]:
-    """Tell of each point near the skin whether the cable passes there, and the side after it."""
+    """Yield each point near the skin, True if the cable passes there, and the side after it."""
     passes = dict.fromkeys(near, False)
     now = side
     for bare, points in runs_of(cable):
@@ -151,7 +151,7 @@ def _into_seam(
 
 
 def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple[str, ...]:
-    """Tell which cables have holes that overlap others, a line each."""
+    """Return a line for each cable with holes that overlap others."""
     close: dict[int, tuple[float, SkinHole, SkinHole]] = {}
     cut = [hole for hole in holes if hole.passes and not hole.in_seam]
     for one, other in combinations(cut, 2):
@@ -167,7 +167,7 @@ def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple
 
 
 def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
-    """Tell which cables would run outside where they were simulated deep in the body, a line each."""
+    """Return a line for each cable that would run outside where it was simulated deep in the body."""
     nearest, problems = NearestOnSkin(patches).nearest, {}
     for one, other in pairwise([hole for hole in holes if hole.passes]):
         if one.cable != other.cable or one.after is Side.INSIDE:
@@ -185,7 +185,7 @@ def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole
 
 
 def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
-    """Tell what cables that are sewn to the skin do otherwise than the simulated ones, a line each."""
+    """Return the differences between cables sewn to the skin and the simulated ones, one line each."""
     warnings, shallow, free = [], {}, {}
     for number, cable in enumerate(robot.cables, start=1):
         near = {hole.point for hole in holes if hole.cable == number}

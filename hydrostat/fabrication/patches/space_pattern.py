@@ -127,7 +127,7 @@ class FrontView:
     up: Float[np.ndarray, " 3"]  # unit direction that points up in it
 
     def on_paper(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
-        """Where points are in it."""
+        """Project points to the view."""
         return points @ np.stack([self.right, self.up], axis=1)
 
 
@@ -294,7 +294,7 @@ def _level(places: Float[np.ndarray, "places 2"]) -> Float[np.ndarray, "places 3
 
 
 def skin_stitches(robot: Robot, holes: tuple[SkinHole, ...], view: FrontView) -> tuple[CableStitches, ...]:
-    """Tell how each cable is sewn; points deep inside stay on the side of the one before."""
+    """Return the stitches of each cable; points deep inside stay on the side of the one before."""
     sewn = []
     for number, cable in enumerate(robot.cables, start=1):
         begins = Side.OUTSIDE if robot.winch(cable.winch).mount is Mount.WORLD else Side.INSIDE

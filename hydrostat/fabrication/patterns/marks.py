@@ -1,4 +1,4 @@
-"""What is engraved on a panel, before its labels: seam, notches, cables, sheaths, winches, markers."""
+"""Engravings of a panel, without its labels: seam, notches, cables, sheaths, winches, markers."""
 
 from collections.abc import Iterable
 
@@ -81,7 +81,7 @@ def marker_marks(robot: Robot) -> tuple[Shape, ...]:
 
 
 def decoration_marks(robot: Robot, seam: Polygon, pinholes: Iterable[Pinhole]) -> tuple[Shape, ...]:
-    """What is drawn on the body, such as eyes, but for where a hole is."""
+    """Return the decorations of the body, such as eyes, with gaps at the holes."""
     holes = shapely.union_all([shapely.Point(hole.centre).buffer(hole.radius + _CLEAR) for hole in pinholes])
     lines = [LineString([place(point) for point in line]) for line in robot.body.marks]
     drawn = [line.intersection(seam).difference(holes) for line in lines]

@@ -22,7 +22,7 @@ _TURNS = (0, 90, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75)
 """Directions that are tried, from the row of winches [degrees], the best first."""
 
 _SHIFTS = (0, 6, -6, 12, -12, 18, -18)
-"""How far beside the winches a slit may be, to stay off pinholes [mm], the best first."""
+"""Offsets of a slit from the winches that keep it off pinholes [mm], the best first."""
 
 
 @dataclass(frozen=True)

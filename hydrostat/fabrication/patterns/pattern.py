@@ -50,7 +50,7 @@ class Pattern:
 
 @dataclass(frozen=True, kw_only=True)
 class _PatternDraft:
-    """What the panels are drawn from."""
+    """Inputs from which the panels are drawn."""
 
     robot: Robot
     options: PatternOptions

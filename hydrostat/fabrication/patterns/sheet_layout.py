@@ -81,7 +81,7 @@ def _ruler() -> tuple[LaserLine, ...]:
 
 
 def _key(width: float) -> tuple[LaserLine, ...]:
-    """What the lines of cables are, right of the bar, as far as the sheet is wide enough."""
+    """Return the legend of the cable lines, right of the bar, as far as it fits the sheet's width [mm]."""
     dashes = tuple(((start, 0.0), (start + 2.0, 0.0)) for start in (0.0, 3.3, 6.7, 10.0))
     samples: tuple[tuple[str, PatternPart, tuple[tuple[Place, ...], ...]], ...] = (
         ("cable outside", PatternPart.CABLE, (((0.0, 0.0), (12.0, 0.0)),)),

@@ -147,7 +147,7 @@ def find_notches(skin: Skin) -> tuple[Notch, ...]:
 
 
 def seam_top(seam: LinearRing) -> float:
-    """How far along a seam its highest corner is [mm]: the double notch, and the join of the side strip."""
+    """Distance of a seam's highest corner along it [mm]: the double notch, and the join of the side strip."""
     return seam.project(shapely.Point(max(seam.coords, key=lambda corner: corner[1])))
 
 

@@ -39,7 +39,7 @@ _MARGIN = 7.0  # room round the body for labels [mm]
 _DRAWN = 0.45  # grey of what is drawn on the body
 _HOLE = 0.65  # radius of a drawn hole [mm]
 _NEAR = 3.2  # a number further than this from its hole is led to it by a line [mm]
-_SOFT = 0.008  # over what share of the picture the light on a body is blurred
+_SOFT = 0.008  # share of the picture over which the light on a body is blurred
 
 
 _MANY = 6  # more winches than this have smaller marks
@@ -50,10 +50,10 @@ class CableRun:
     """One cable on paper."""
 
     cable: int  # number, from 1
-    spots: list[Spot]  # of its points, from the winch [mm]
-    solid: Sequence[bool]  # which of its segments run on the outside, or in front
-    sheathed: Sequence[bool]  # which of them run in a tube
-    holes: Sequence[bool]  # at which points it goes through the skin or is held by it
+    spots: list[Spot]  # paper positions of its points, from the winch [mm]
+    solid: Sequence[bool]  # True for each segment that runs on the outside, or in front
+    sheathed: Sequence[bool]  # True for each segment that runs in a tube
+    holes: Sequence[bool]  # True for each point that goes through the skin or is held by it
     twin: int | None = None  # number of the cable behind it, on the other panel
 
     @property
@@ -297,14 +297,14 @@ class _Scene:
 def single_maps(
     robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float, view: Camera | None = None
 ) -> list[Canvas]:
-    """Pages of at most twelve small maps, each of such a size [mm]; none of fewer than three cables.
+    """Return pages of at most twelve small maps; none for fewer than three cables.
 
     Args:
-        robot: whose cables they show.
-        stitches: of a flat body that is sewn.
-        width: of a page.
-        height: of a page, at most.
-        view: of a body in space; None for a flat one.
+        robot: robot with the cables.
+        stitches: stitches of a flat body that is sewn.
+        width: page width [mm].
+        height: maximum page height [mm].
+        view: camera for a body in space; None for a flat one.
     """
     if len(robot.cables) < FEWEST:
         return []

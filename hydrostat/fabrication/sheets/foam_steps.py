@@ -49,7 +49,7 @@ _OPEN_FOAM = " Squeeze the body all over to open its cells."
 
 
 def foam_expansion(mould: Mould) -> bool:
-    """Tell whether what is poured is a foam; what else is cast is silicone."""
+    """Return True if the casting material is a foam; the others are silicones."""
     return mould.casting.expansion > 1
 
 
@@ -101,7 +101,7 @@ def mould_steps(plan: KitPlan, lists: Lists, mould: Mould) -> tuple[AssemblyStep
 
 
 def _in_pieces(plan: KitPlan) -> bool:
-    """Tell whether a half of the mould is printed in pieces that are joined."""
+    """Return True if a half of the mold is printed in pieces that are joined."""
     return any(part.kind for part in plan.work.printed)
 
 

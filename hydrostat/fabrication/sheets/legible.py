@@ -24,10 +24,10 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class PrintableText:
-    """Makes words of the user legible.
+    """Text of the user with every letter printable.
 
     Args:
-        robot: whose winches are called by their marks if their names cannot be printed.
+        robot: robot with the winches; their marks replace names that cannot be printed.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -85,7 +85,7 @@ def _power(found: re.Match[str]) -> str:
 
 @cache
 def _drawn(letter: str) -> bool:
-    """Tell whether a letter can be printed: a page for archives (PDF/A) is refused where no font has it."""
+    """Return True if a letter can be printed: typst rejects a PDF/A page if no font has the letter."""
     if letter.isascii():
         return letter.isprintable()
     import typst  # Imported here: few names need it.
