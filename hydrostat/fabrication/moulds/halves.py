@@ -8,7 +8,7 @@ from hydrostat.fabrication.moulds.closing import Closing, MouldBlock
 from hydrostat.fabrication.moulds.openings import Sprue, Vent
 from hydrostat.fabrication.moulds.pocket import Pocket
 from hydrostat.fabrication.moulds.positive import Frames, Positive
-from hydrostat.fabrication.moulds.solids import joined
+from hydrostat.fabrication.moulds.solids import join_solids
 from hydrostat.fabrication.moulds.split import Pieces, grid, split
 from hydrostat.fabrication.solids.printed import Printed
 
@@ -49,7 +49,7 @@ def make_halves(
     cavity = make_cavity(body, dents, pockets)
     openings = {
         "sprue": Manifold() if sprue is None else sprue.solid,
-        "vents": joined(vent.solid for vent in vents),
+        "vents": join_solids(vent.solid for vent in vents),
         "bolts": closing.holes,
         "slots": closing.slots,
     }
@@ -86,7 +86,7 @@ def volume(solid: Manifold) -> float:
 
 def _taken(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> tuple[float, float]:
     """Volumes that dents remove from the body, and pockets from the rest [mm^3]."""
-    cores = joined(pocket.core for pocket in pockets)
+    cores = join_solids(pocket.core for pocket in pockets)
     return volume(body ^ dents), volume(cores ^ body) - volume(cores ^ body ^ dents)
 
 

@@ -10,7 +10,7 @@ from manifold3d import Manifold
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
-from hydrostat.fabrication.moulds.solids import joined, rod
+from hydrostat.fabrication.moulds.solids import join_solids, rod
 from hydrostat.fabrication.moulds.stance import MouldOrientation
 from hydrostat.fabrication.solids.body_solid import MILLIMETRES
 from hydrostat.fabrication.solids.construct import Cuboid, Sides, sides_text
@@ -260,7 +260,7 @@ def cable_dents(robot: Robot, surface: FineSurface, stance: MouldOrientation, *,
     for place in range(len(spots)):
         if all(np.linalg.norm(spots[place] - spots[other]) > 2 * _DENT_RADIUS for other in kept):
             kept.append(place)
-    return joined(_dent(spots[place], inward[place]) for place in kept)  # their roots meet where cables are near
+    return join_solids(_dent(spots[place], inward[place]) for place in kept)  # their roots meet where cables are near
 
 
 def _dent(spot: Float[np.ndarray, "3"], inward: Float[np.ndarray, "3"]) -> Manifold:

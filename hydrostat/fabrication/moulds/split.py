@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from manifold3d import CrossSection, JoinType, Manifold
 
-from hydrostat.fabrication.moulds.solids import joined, rod
+from hydrostat.fabrication.moulds.solids import join_solids, rod
 
 DOWEL = 1.6  # radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm]
 DOWEL_DEPTH = 8.0  # of the hole in each of two pieces [mm]
@@ -64,7 +64,7 @@ def split(solid: Manifold, x_cuts: tuple[float, ...], y_cuts: tuple[float, ...])
         for place in places:
             pieces = [part for piece in pieces for part in piece.split_by_plane(normal, place)]
     parts = [part for piece in pieces for part in _bodies(piece)]
-    holes = float((joined(dowels) ^ solid).volume())
+    holes = float((join_solids(dowels) ^ solid).volume())
     return Pieces(
         solids=tuple(sorted((part for part in parts if _printable(part)), key=_corner)),
         dowels=len(dowels),

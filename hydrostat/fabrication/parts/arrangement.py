@@ -1,4 +1,4 @@
-"""`arranged`: how all units in a flat body are laid: within its seam, and clear of each other if there is a way."""
+"""`arrange_units`: layout of all winch units in a flat body, within its seam and clear of each other if possible."""
 
 import math
 from collections.abc import Sequence
@@ -24,11 +24,11 @@ class LaidUnit:
     warnings: tuple[str, ...] = ()  # what to mind
 
 
-def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
-    """Lay each unit, in their order, within a seam and a thickness [mm], and tell what is wrong with it.
+def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
+    """Lay each unit, in their order, within a seam and a thickness [mm], with its problems and warnings.
 
     Each in turn takes the way in which it is within the seam, shares least of the plane with the others, bulges least
-    and is moved least, until none changes. Those that meet all the same lie one above the other, if the body is thick
+    and is moved least, until none changes. Those that still meet lie one above the other, if the body is thick
     enough for that.
     """
     ways = [_Ways(ways_to_lie(box, seam), thickness) for box in boxes]

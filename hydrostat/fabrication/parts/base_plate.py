@@ -171,7 +171,7 @@ def _assembly(
             replace(
                 piece,
                 name=f"{piece.name} ({unit.winch})",
-                solid=seat.placed(piece.solid),
+                solid=seat.place_solid(piece.solid),
                 pulled=(0, 0, unit.motor.depth + 20),
             )
             for piece in unit.assembly.pieces

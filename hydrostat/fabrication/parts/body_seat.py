@@ -121,14 +121,14 @@ class _SeatPlan:
         """Flange and cup, with room for the cables and holes for the thread that holds the body; its floor at z = 0."""
         around = Polygon(self.cavity.buffer(_WALL).simplify(0.1).exterior)  # type: ignore[attr-defined]
         made = Prism(_ring(self.flange), _FLOOR) + Prism(_ring(around), _FLOOR + self.depth)
-        made = made - Prism(_ring(self.cavity), self.depth + 1).moved(z=_FLOOR)
+        made = made - Prism(_ring(self.cavity), self.depth + 1).move(z=_FLOOR)
         for spot, turn in self._ties():
-            hole = Cylinder(3 * _WALL, _TIE / 2).turned(y=90, z=turn)
-            made = made - hole.moved(*spot, _FLOOR + self.depth / 2)
+            hole = Cylinder(3 * _WALL, _TIE / 2).rotate(y=90, z=turn)
+            made = made - hole.move(*spot, _FLOOR + self.depth / 2)
         for x, y in self._posts:
-            made = made - Cylinder(_FLOOR + 2, _SCREW / 2).moved(x, y, -1)
+            made = made - Cylinder(_FLOOR + 2, _SCREW / 2).move(x, y, -1)
         for line in self.lines:
-            made = made - _way(line, options.tube / 2 + 0.75).moved(z=_FLOOR)
+            made = made - _way(line, options.tube / 2 + 0.75).move(z=_FLOOR)
         return made
 
     def _ties(self) -> list[tuple[Corner, float]]:
@@ -145,15 +145,15 @@ class _SeatPlan:
 
     def _plate(self, options: PartOptions) -> Construction:
         """The plate, its upper side at z = 0; a tube that ends in it stops below a lip, any other goes through."""
-        made: Construction = Prism(_ring(self._board), _PLATE).moved(z=-_PLATE)
+        made: Construction = Prism(_ring(self._board), _PLATE).move(z=-_PLATE)
         for line, stops in zip(self.lines, self.ends, strict=True):
             x, y = line[0, :2]
             top, play = (-_LIP, 0.05) if stops else (1.0, 0.25)
-            made = made - Cylinder(_PLATE + 1 + top, options.tube / 2 + play).moved(x, y, -_PLATE - 1)
-            made = made - Cylinder(_PLATE, options.cable + 0.2).moved(x, y, -_PLATE + 1)
+            made = made - Cylinder(_PLATE + 1 + top, options.tube / 2 + play).move(x, y, -_PLATE - 1)
+            made = made - Cylinder(_PLATE, options.cable + 0.2).move(x, y, -_PLATE + 1)
         for x, y in (*self._posts, *self._legs):
-            made = made - Cylinder(_PLATE + 2, _SCREW / 2).moved(x, y, -_PLATE - 1)
-        return made.moved(z=_PLATE)
+            made = made - Cylinder(_PLATE + 2, _SCREW / 2).move(x, y, -_PLATE - 1)
+        return made.move(z=_PLATE)
 
     def _assembly(self, name: str, solids: Sequence[Printed]) -> PartAssembly:
         cup, plate, posts, legs = solids
@@ -262,8 +262,8 @@ def _way(line: Line, radius: float) -> Construction:
     along = line[1] - line[0]
     length = float(np.linalg.norm(along))
     tilt = math.degrees(math.acos(along[2] / length))
-    rod = Cylinder(length + 2.0, radius).turned(y=tilt, z=math.degrees(math.atan2(along[1], along[0])))
-    return rod.moved(*(float(value) for value in line[0]))
+    rod = Cylinder(length + 2.0, radius).rotate(y=tilt, z=math.degrees(math.atan2(along[1], along[0])))
+    return rod.move(*(float(value) for value in line[0]))
 
 
 def _bounds(points: Float[np.ndarray, "points 3"]) -> tuple[float, float, float, float]:

@@ -50,7 +50,7 @@ def _model(options: PartOptions, hole: float) -> Construction:
     model: Construction = eyelet
     for angle in (45, 135, 225, 315):
         x, y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-        model = model - needle.moved(stitches * x, stitches * y, -1)
+        model = model - needle.move(stitches * x, stitches * y, -1)
     return model
 
 

@@ -8,7 +8,7 @@ from itertools import chain, combinations
 from manifold3d import Manifold
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.arrangement import LaidUnit, arranged
+from hydrostat.fabrication.parts.arrangement import LaidUnit, arrange_units
 from hydrostat.fabrication.parts.housing import Housing, drive_of, roof_of
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.places import UnitBox, UnitPlace, seam_of
@@ -146,7 +146,7 @@ class WinchParts:
 
     def of(self, housing: Housing, winch: str) -> tuple[tuple[Printed, ...], PartAssembly]:
         """Make what is printed for a winch (spool, box, plate, the coupling of a servo) and put it together."""
-        box = housing.box().turned(x=180).moved(0, 0, housing.top)
+        box = housing.box().rotate(x=180).move(0, 0, housing.top)
         printed = [
             self._printed("spool", "Spool", housing.spool.construction(), _SPOOL),
             self._printed("housing", "Housing", box, _BOX),
@@ -265,8 +265,8 @@ def unit_room(robot: Robot, winch: Winch, options: PartOptions, motor: Motor) ->
     return _UnitDraft.of(robot, winch, wound_cables(robot, winch), options, motor).housing.room
 
 
-def crowded(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
-    """Sentences for units in a body of space that stand closer than they are wide; flat ones are laid one by one."""
+def find_crowded_units(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
+    """Return a sentence for each two units in a body in space that are closer than they are wide."""
     inside = [unit for unit in units if unit.mount is Mount.BODY and unit.place is None]
     found = []
     for one, other in combinations(inside, 2):
@@ -334,7 +334,7 @@ def _lay_units(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit
         )
         for draft in drafts
     ]
-    laid = arranged(boxes, seam_of(robot.body), 1e3 * robot.body.thickness)
+    laid = arrange_units(boxes, seam_of(robot.body), 1e3 * robot.body.thickness)
     return {each.place.box.winch: each for each in laid}
 
 

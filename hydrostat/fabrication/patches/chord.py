@@ -14,7 +14,7 @@ from shapely.ops import split
 from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Disc, Patch
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
-from hydrostat.fabrication.solids.printed import connected
+from hydrostat.fabrication.solids.printed import number_groups
 
 _DIRECTIONS = 12
 _SHIFTS = (0.0, -0.06, 0.06)  # offsets beside the worst place that are tried, as shares of the root of the patch's area
@@ -104,10 +104,10 @@ def cut_chord(mesh: SkinMesh, patch: Patch, number: int, chord: Chord) -> SkinMe
     one, other = sorted(pieces[sides[nearest]].tolist())
     links = np.sort(pieces[sides[border]], axis=1)
     links = links[(links != [one, other]).any(axis=1)]
-    group = connected(links, int(pieces.max()) + 1)
+    group = number_groups(links, int(pieces.max()) + 1)
     halves = [(cut.patch == number) & (group[pieces] == group[piece]) for piece in (one, other)]
     lesser = min(halves, key=lambda half: cut.areas[half].sum())
-    return cut.labelled(np.where(lesser, int(cut.patch.max()) + 1, cut.patch))
+    return cut.relabel_patches(np.where(lesser, int(cut.patch.max()) + 1, cut.patch))
 
 
 def _worst_place(patch: Patch, limit: float) -> Float[np.ndarray, " 2"]:
@@ -130,7 +130,7 @@ def _groups(triangles: Int[np.ndarray, "triangles 3"], label: Int[np.ndarray, " 
     order = np.lexsort((ends[:, 1], ends[:, 0]))
     shared = (ends[order[:-1]] == ends[order[1:]]).all(axis=1)
     links = np.column_stack([order[:-1][shared], order[1:][shared]]) // 3
-    return connected(links[label[links[:, 0]] == label[links[:, 1]]], len(triangles))
+    return number_groups(links[label[links[:, 0]] == label[links[:, 1]]], len(triangles))
 
 
 def _chord(outline: BaseGeometry, through: np.ndarray, along: np.ndarray) -> Chord | None:

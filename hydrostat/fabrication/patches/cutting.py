@@ -35,7 +35,7 @@ def front_and_back(mesh: SkinMesh) -> SkinMesh:
     direction = thin_direction(mesh)
     field = _smoothed(mesh, _looks(mesh, direction))
     cut, _, side = cut_at_zero(mesh, field, np.ones(len(mesh.triangles), dtype=bool))
-    return cut.labelled(two_discs(cut, side))
+    return cut.relabel_patches(two_discs(cut, side))
 
 
 def two_discs(mesh: SkinMesh, side: Int[np.ndarray, " triangles"]) -> Int[np.ndarray, " triangles"]:

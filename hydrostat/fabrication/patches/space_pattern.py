@@ -28,7 +28,7 @@ from hydrostat.fabrication.patches.skin_holes import (
 )
 from hydrostat.fabrication.patches.skin_mesh import skin_mesh
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.marks import dashed
+from hydrostat.fabrication.patterns.marks import dash_lines
 from hydrostat.fabrication.patterns.opening import Opening, opening_at
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.pinholes import Pinhole
@@ -114,7 +114,7 @@ def _cable_lines(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options
         drawn = LineString([place, there]).intersection(seam).difference(ends)
         drawn = shapely.MultiLineString([part for part in shapely.get_parts(drawn).tolist() if part.length])
         if hole.after is Side.INSIDE:
-            drawn = dashed(drawn)
+            drawn = dash_lines(drawn)
         shapes += trace(drawn, Layer.MARK, PatternPart.CABLE)
     return tuple(shapes)
 

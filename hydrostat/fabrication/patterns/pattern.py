@@ -59,13 +59,13 @@ class _PatternDraft:
     stitches: tuple[CableStitches, ...]
     opening: Opening | None
 
-    def sewn(self, panel: str) -> tuple[CableStitches, ...]:
+    def stitches_on(self, panel: str) -> tuple[CableStitches, ...]:
         """Stitches on one panel, of each cable of the robot or of none."""
         return tuple(stitches for stitches in self.stitches if stitches.panel == panel)
 
     def label_cables(self, labels: PanelLabels, panel: str) -> None:
         """Numbers of the cables that are sewn on a panel."""
-        sewn = self.sewn(panel)
+        sewn = self.stitches_on(panel)
         if sewn:
             labels.cable_numbers(self.robot, first=sewn[0].cable)
 
@@ -100,7 +100,7 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
     cloth = (*edges, *seam_marks(skin, draft.notches), *winch_marks(robot, skin.seam))
     pinholes = tuple(hole.circle for hole in holes)
     markers = marker_marks(robot) if options.marker_names else ()
-    marks = {side: cable_marks(robot, draft.sewn(side), skin.seam, holes) for side in sides}
+    marks = {side: cable_marks(robot, draft.stitches_on(side), skin.seam, holes) for side in sides}
     drawn = decoration_marks(robot, skin.seam, holes)
     front = (*cloth, *(pinholes if "front" in sides else ()), *marks.get("front", ()), *markers, *drawn)
     back = (*cloth, *(pinholes if behind else ()), *marks.get("back", ()))
@@ -138,7 +138,7 @@ def _front(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
     draft.label_cables(labels, "front")
     labels.winch_names(draft.robot)
     labels.marker_names(draft.robot, draft.options)
-    labels.hole_numbers(draft.sewn("front"))
+    labels.hole_numbers(draft.stitches_on("front"))
     labels.title(f"{draft.robot.name} - front")
     labels.grain()
     return Panel(name="front", origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
@@ -147,14 +147,14 @@ def _front(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
 def _back(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
     """The back panel about the robot's origin, seen from behind, with its labels."""
     zipper = (draft.opening.mark, *draft.opening.placket) if draft.opening else ()
-    mirror = tuple(shape.mirrored() for shape in (*shapes, *zipper))
+    mirror = tuple(shape.mirror() for shape in (*shapes, *zipper))
     labels = PanelLabels(draft.skin.seam, mirror, mirrored=True)
     labels.notch_names([(notch.name, notch.stroke) for notch in draft.notches], draft.skin.cut)
     if draft.opening:
         labels.opening(draft.opening)
     draft.label_cables(labels, "back")
     labels.winch_names(draft.robot)
-    labels.hole_numbers(draft.sewn("back"))
+    labels.hole_numbers(draft.stitches_on("back"))
     labels.title(f"{draft.robot.name} - back")
     labels.grain()
     return Panel(name="back", origin=(0.0, 0.0), mirrored=True, shapes=(*mirror, *labels.shapes()))
@@ -200,7 +200,7 @@ def _over_zipper(draft: _PatternDraft) -> list[str]:
         return []
     crossed = [
         f"C{sewn.cable}"
-        for sewn in draft.sewn("back")
+        for sewn in draft.stitches_on("back")
         if LineString([stitch.place for stitch in sewn.stitches]).intersects(draft.opening.slit)
     ]
     if not crossed:

@@ -139,7 +139,7 @@ def _put_pane(canvas: Canvas, robot: Robot, pane: SightedBody, room: Box) -> Non
     labels = LabelPlaces((left + 0.2, top + 0.2, right - 0.2, bottom - 0.2))
     for way in pane.drawing.outlines:
         labels.take_line(frame.way(way), weight=3)
-    runs = [sighted(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
+    runs = [project_cable(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
     stands = {mark: frame.on(stand) for mark, stand in zip(_stands(robot), pane.winches, strict=True)}
     _put_runs(canvas, labels, runs, stands)
 
@@ -161,10 +161,10 @@ def _within(robot: Robot, index: int, frame: CanvasFrame) -> CableRun:
     return CableRun(index + 1, way, [True] * (count - 1), (~cable.bare).tolist(), holes)
 
 
-def sighted(
+def project_cable(
     robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Visibility, frame: CanvasFrame
 ) -> CableRun:
-    """A cable in space, its way as a camera sees it [mm]."""
+    """Project a cable in space to the page, along its path as seen by a camera [mm]."""
     cable = robot.cables[index]
     solid = sight.in_front((way[:-1] + way[1:]) / 2).tolist()
     holes = [robot.winch(cable.winch).mount is Mount.BODY, *[True] * (len(cable.points) - 1)]
@@ -340,7 +340,7 @@ def _space_scene(robot: Robot, view: Camera) -> _Scene:
     pane: SightedBody = pane_of(robot, view, 500)
 
     def runs(frame: CanvasFrame) -> list[CableRun]:
-        return [sighted(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
+        return [project_cable(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
 
     def draw(canvas: Canvas, frame: CanvasFrame) -> None:
         canvas.line([frame.way(way) for way in pane.drawing.outlines], width=THIN, grey=0.35, closed=True)

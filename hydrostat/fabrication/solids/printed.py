@@ -177,7 +177,7 @@ class TriangleMesh:
         return facing
 
 
-def connected(links: Int[np.ndarray, "links 2"], count: int) -> Int[np.ndarray, " count"]:
+def number_groups(links: Int[np.ndarray, "links 2"], count: int) -> Int[np.ndarray, " count"]:
     """Number the groups of so many things that links join, in the order of their first members."""
     graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
     return connected_components(graph, directed=False)[1].astype(np.int64)

@@ -13,7 +13,7 @@ from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.spool import capacity
-from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, find_crowded_units, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly, interferences
 from hydrostat.robot import Mount, Robot, list_gallery
 
@@ -166,10 +166,10 @@ def test_cables_leave_an_upright_unit_as_they_go_on():
 
 def test_winches_too_close_are_named():
     units = units_of(gallery_robot("bear"))
-    (text,) = crowded(gallery_robot("bear"), units)
+    (text,) = find_crowded_units(gallery_robot("bear"), units)
     assert '"hug" and "nod" are 20.1 mm apart' in text
-    assert crowded(gallery_robot("starfish"), units_of(gallery_robot("starfish"))) == ()
-    assert crowded(gallery_robot("trunk"), units_of(gallery_robot("trunk"))) == ()
+    assert find_crowded_units(gallery_robot("starfish"), units_of(gallery_robot("starfish"))) == ()
+    assert find_crowded_units(gallery_robot("trunk"), units_of(gallery_robot("trunk"))) == ()
 
 
 def test_screws_are_counted():
