@@ -152,7 +152,7 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
         *solid_checks((*plan.printed, *work.spare), (*rigid.assemblies, *work.assemblies)),
     )
     failed = (
-        f"the self-check failed: {check.what}: {check.measured} (allowed: {check.allowed})"
+        f"quality check failed: {check.what}: {check.measured} (allowed: {check.allowed})"
         for check in checks
         if not check.passed
     )
@@ -219,5 +219,5 @@ def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
         *plan.work.summary,
         f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}" if plan.rigid.units else "Winches: none",
         f"To print: {plural(count, 'piece')}, about {mass:.0f} g",
-        f"To buy: about {used:.0f} USD of what is used up, {packs:.0f} USD in whole packs",
+        f"Material used: about {used:.0f} USD; to buy (full packs): {packs:.0f} USD",
     )

@@ -90,8 +90,8 @@ class _PoseLoads:
             return
         if reached.rms_error > FAR * self._robot.body.mesh.size:
             self._far.append(
-                f"{name} is missed by {1e3 * reached.rms_error:.0f} mm (rms): its loads are those of the nearest pose "
-                "that the winches can make"
+                f"{name} is missed by {1e3 * reached.rms_error:.0f} mm (rms). Its loads are those of the nearest pose "
+                "that the winches reach"
             )
 
     def pull(self, winch: Winch) -> None:

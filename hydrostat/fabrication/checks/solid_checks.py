@@ -94,7 +94,7 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly])
 def too_large(printed: Iterable[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:
     """Why parts do not fit on the bed of the printer [mm], a line each; they may be turned on it, not tilted."""
     return tuple(
-        f"{part.name} of {sides_text(part.size)} mm is more than the printer takes ({sides_text(bed)} mm): use a "
+        f"{part.name} of {sides_text(part.size)} mm does not fit the printer ({sides_text(bed)} mm). Use a "
         "larger printer"
         for part in printed
         if not part.fits(bed)

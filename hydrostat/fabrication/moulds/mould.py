@@ -234,17 +234,17 @@ def mould_problems(
     rigid = options.kind is MouldKind.PRINTED
     if rigid and any(links):
         found.append(
-            f"{_reaches(links)} and closes behind it like a link of a chain: it cannot come off; close "
+            f"{_reaches(links)} and closes behind it like a link of a chain, so it cannot come off. Close "
             f"{'that hole' if sum(links) == 1 else 'these holes'} in the surface and cut the foam out afterwards, or "
             "choose a mould of silicone, which is cut open there"
         )
     if rigid and (pull.share > TOLERATED or (pull.share > UNNOTICED and material.young > STIFF)):
         found.append(
             f"{100 * pull.share:.0f} % of the surface is undercut along the best of {len(pull.shares)} pulls: the body "
-            "would tear as a rigid mould comes off; choose a mould of silicone, which gives way"
+            "would tear as a rigid mould comes off. Choose a mould of silicone, which yields"
         )
     if sprue is None:
-        found.append("the parting plane does not cross the body, so that nothing can be poured; simplify its surface")
+        found.append("the parting plane does not cross the body, so it cannot be poured. Simplify its surface")
     if rigid:
         found += [
             f"the {half} half of the mould falls into {len(parts)} pieces: the body reaches through its walls"
@@ -253,9 +253,7 @@ def mould_problems(
         ]
     for piece in printed:
         if not piece.fits(options.bed):
-            found.append(
-                f"{piece.title}: {sides_text(piece.size)} mm is more than the printer takes; use a larger printer"
-            )
+            found.append(f"{piece.title}: {sides_text(piece.size)} mm does not fit the printer. Use a larger printer")
     return tuple(found)
 
 
@@ -276,13 +274,13 @@ def mould_warnings(
     found = []
     if kind is MouldKind.SILICONE and any(links):
         found.append(
-            f"{_reaches(links)} and closes behind it: silicone gives way, but a closed loop cannot be drawn out; "
-            "cut the silicone open there with a knife, and tape the cut from outside before you pour"
+            f"{_reaches(links)} and closes behind it. Silicone yields, but a closed loop cannot be drawn out. "
+            "Cut the silicone open there with a knife, and tape the cut from outside before you pour"
         )
     if pull.share <= (UNNOTICED if kind is MouldKind.PRINTED else TOLERATED):
         return tuple(found)
     return (
         *found,
-        f"{100 * pull.share:.0f} % of the surface is undercut: {material.name or 'the body'} is squeezed past it; use "
+        f"{100 * pull.share:.0f} % of the surface is undercut: {material.name or 'the body'} is squeezed past it. Use "
         "plenty of release agent, open the mould slowly and draw the body out part by part",
     )

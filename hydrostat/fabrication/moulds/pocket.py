@@ -174,13 +174,13 @@ def _pocket(name: str, body: Manifold, way: _Lying, upper: bool, clearance: floa
     problem = ""
     if core.is_empty() or out > _OUTSIDE:
         problem = (
-            f'winch "{name}": the pocket of {side} mm does not fit into the body at its place, {100 * out:.0f} % of it '
-            "is outside; move the winch to where the body is thicker, or choose a smaller motor"
+            f'winch "{name}": the pocket of {side} mm does not fit into the body at its place ({100 * out:.0f} % '
+            "outside). Move the winch to a thicker part of the body or choose a smaller motor"
         )
     elif float((skin - body).volume()) > _BARE * float(skin.volume()):
         problem = (
-            f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left beside the pocket of {side} mm; '
-            "move the winch to where the body is thicker, or choose a smaller motor"
+            f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left next to the pocket of {side} mm. '
+            "Move the winch to a thicker part of the body or choose a smaller motor"
         )
     return Pocket(
         winch=name,

@@ -50,7 +50,7 @@ def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float
     if moved:
         ways_told = "; ".join(places[number].instruction for number in moved)
         warnings[moved[0]].append(
-            f"lay these units so, seen from the front, or they meet or reach the seam: {ways_told}"
+            f"place these winch units as listed (front view), or they collide or reach the seam: {ways_told}"
         )
     return tuple(
         LaidUnit(place=place, problems=tuple(wrong), warnings=tuple(minded))
@@ -163,13 +163,13 @@ def _piled(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
     if possible:
         bulge = f", so it bulges by {high - thickness:.0f} mm" if high > thickness else ""
         return (
-            f"the units of winches {names} meet wherever they were tried: lay them one above the other, "
+            f"the units of winches {names} overlap in every tested place. Lay them one above the other, "
             f"{high:.0f} mm in a body of {thickness:.0f} mm{bulge}",
             True,
         )
     return (
-        f"the units of winches {names} meet wherever they were tried, and one above the other they take "
-        f"{high:.0f} mm of a body of {thickness:.0f} mm: move the winches apart, or take smaller motors",
+        f"the units of winches {names} overlap in every tested place, and one above the other they need "
+        f"{high:.0f} mm in a body of {thickness:.0f} mm. Move the winches apart or choose smaller motors",
         False,
     )
 
@@ -189,13 +189,13 @@ def _alone(place: UnitPlace, thickness: float) -> list[str]:
         share = 100 * place.outside / place.footprint.area
         words = f"{share:.0f}" if share >= 1 else "less than 1"
         found.append(
-            f"{place.box.words} does not lie within the seam in any turn about its place, {words} % of it would be "
-            "outside: move the winch inwards, or take a smaller motor or spool"
+            f"{place.box.words} does not fit within the seam at any angle ({words} % outside). Move the winch inwards "
+            "or choose a smaller motor or spool"
         )
     if place.depth > (1 + GIVES) * thickness:
         found.append(
-            f"{place.box.words} takes {place.depth:.0f} mm of a body of {thickness:.0f} mm, which gives by about "
-            f"{100 * GIVES:.0f} % at most: take a smaller motor or spool, or a thicker body"
+            f"{place.box.words} needs {place.depth:.0f} mm in a body of {thickness:.0f} mm, which bulges by "
+            f"{100 * GIVES:.0f} % at most. Choose a smaller motor or spool, or a thicker body"
         )
     return found
 
@@ -204,6 +204,6 @@ def _bulging(place: UnitPlace, thickness: float) -> list[str]:
     if not thickness < place.depth <= (1 + GIVES) * thickness:
         return []
     return [
-        f"{place.box.words} is thicker than the body of {thickness:.0f} mm: it will bulge by "
-        f"{place.depth - thickness:.0f} mm; take a smaller motor or spool, or a thicker body"
+        f"{place.box.words} is thicker than the body of {thickness:.0f} mm, which will bulge by "
+        f"{place.depth - thickness:.0f} mm. Choose a smaller motor or spool, or a thicker body"
     ]

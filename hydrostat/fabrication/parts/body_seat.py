@@ -56,7 +56,7 @@ def body_seat(robot: Robot, options: PartOptions, bed: tuple[float, float, float
         return BodySeat()
     plan = _plan(robot, cables, options)
     if isinstance(plan, str):
-        return BodySeat(warnings=(f"no seat is made for the body, as {plan}: clamp it where it is held",))
+        return BodySeat(warnings=(f"no seat is made for the body: {plan}. Clamp the body at its pins",))
     return plan.seat(robot.name, options, bed)
 
 
@@ -189,7 +189,7 @@ def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPl
     if robot.body.mesh.dim == 2:
         return "the body is flat"
     if len(robot.pins) != 1:
-        return f"it is held in {len(robot.pins)} places" if robot.pins else "it is held nowhere"
+        return f"it has {len(robot.pins)} pins" if robot.pins else "it has no pin"
     ways = MILLIMETRES * np.array([robot.cables[index].points[:2] for index in cables])
     back = (ways[:, 0] - ways[:, 1]).mean(axis=0)
     body, turn = body_solid(robot.body), _upright(back)
@@ -198,12 +198,12 @@ def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPl
     body, lines = body.translate((0, 0, -floor)), ways @ turn.T - [0, 0, floor]
     low, top = (reach - floor for reach in _reach(robot.pins[0], turn))
     if low > 1.0 or top < 1.0:
-        return "it is not held at the end where its cables begin"
+        return "it is not pinned at the end where its cables begin"
     pinned = robot.pins[0].holds(robot.body.mesh)
     own = Polygon(box(*_bounds(MILLIMETRES * robot.body.mesh.nodes[pinned] @ turn.T)))
     cavity = _outline(body, top, options)
     if cavity is None or cavity.area > _WIDER * own.buffer(5.0).area:
-        return "another part of it is beside the end where it is held"
+        return "another part of it is next to the pinned end"
     below = float(np.median(-lines[:, 0, 2]))
     level = [place for place in range(len(cables)) if abs(-lines[place, 0, 2] - below) <= _LEVEL]
     if below - _LIP - _FLOOR < _SHORTEST:

@@ -63,12 +63,12 @@ class UnitPlace:
         slid = ""
         if right or ahead:
             way = self.turn - math.degrees(math.atan2(right, ahead))
-            slid = f", slid {math.hypot(right, ahead):g} mm to {_clock(way)}"
+            slid = f", shifted {math.hypot(right, ahead):g} mm toward {_clock(way)}"
         if self.across:
             channel = self.turn - 90 + self.azimuth(self.box.along)
-            return f'"{self.box.winch}" across the body, the channel of its first cable to {_clock(channel)}{slid}'
+            return f'"{self.box.winch}" across the body, channel of its first cable toward {_clock(channel)}{slid}'
         motor = self.turn + (-90 if self.flipped else 90)
-        return f'"{self.box.winch}" lying, its motor to {_clock(motor)}{slid}'
+        return f'"{self.box.winch}" flat, motor toward {_clock(motor)}{slid}'
 
 
 def seam_of(body: Body) -> BaseGeometry:

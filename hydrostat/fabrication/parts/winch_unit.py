@@ -56,7 +56,7 @@ def spool_for(
     if drive.inside < least_inside:
         problems.append(
             f'winch "{winch.name}": only {max(drive.inside, 0):.1f} mm of the shaft of {motor.title} would be in the '
-            f"spool, {least_inside:.1f} mm are needed: take thinner walls or another motor"
+            f"spool (minimum {least_inside:.1f} mm). Choose thinner walls or another motor"
         )
     radii, small = _radii(robot, winch, wound, options, motor)
     lines = [len(cables) for cables in wound]
@@ -70,7 +70,7 @@ def spool_for(
     if spool.body > _LONGEST:
         problems.append(
             f'winch "{winch.name}": {turns:.1f} turns of cable do not fit on a spool of {_LONGEST:g} mm in '
-            f"{_MOST_LAYERS} layers: take a larger spool radius or less travel"
+            f"{_MOST_LAYERS} layers. Choose a larger spool radius or less travel"
         )
     return spool, (*small, *problems), _layers(spool, winch, wound)
 
@@ -86,7 +86,7 @@ def _radii(
         if radius < least - 1e-9:
             small.append(
                 f'winch "{winch.name}": spool radius {radius:.2f} mm of cable C{index + 1} is too small for the shaft '
-                f"of {motor.title} in a wall of {options.wall:g} mm: at least {least:.2f} mm, which is what is printed"
+                f"of {motor.title} in a wall of {options.wall:g} mm. The printed spool has {least:.2f} mm, the minimum"
             )
         radii.append(max(radius, least))
     return radii, small
@@ -106,8 +106,8 @@ def _layers(spool: Spool, winch: Winch, wound: Wound) -> tuple[str, ...]:
         lies, radius = ("lies", "its radius") if len(names) == 1 else ("lie", "their radius")
         found.append(
             f'{who} of winch "{winch.name}" {lies} in {groove.layers} layers: {radius} grows from '
-            f"{groove.radius:.1f} to {outer:.1f} mm, so the last turns take in "
-            f"{100 * (outer / groove.radius - 1):.0f} % more than was simulated"
+            f"{groove.radius:.1f} to {outer:.1f} mm, so the last turns wind "
+            f"{100 * (outer / groove.radius - 1):.0f} % more than simulated"
         )
     return tuple(found)
 
@@ -275,7 +275,7 @@ def find_crowded_units(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, .
         if apart < needed:
             found.append(
                 f'winches "{one.winch}" and "{other.winch}" are {apart:.1f} mm apart, their housings need '
-                f"{needed:.1f} mm: move one, or lay one above the other"
+                f"{needed:.1f} mm. Move one, or lay one above the other"
             )
     return tuple(found)
 

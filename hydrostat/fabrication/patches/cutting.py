@@ -184,15 +184,15 @@ def patch_problems(
         give = distortion(patch).give(0.95)
         if give > MOST_GIVE:
             problems.append(
-                f"patch {name} would have to stretch or shrink by {give:.1%} to lie on the body, more than "
-                f"{MOST_GIVE:.0%}, which felt gives: cast this body in a mould, or simplify its shape"
+                f"patch {name} would have to stretch or shrink by {give:.1%} to fit the body, more than "
+                f"felt allows ({MOST_GIVE:.0%}). Cast this body in a mould or simplify its shape"
             )
         if not patch.outline.is_valid:
-            problems.append(f"patch {name} laps over itself when it lies flat: cast this body in a mould")
+            problems.append(f"patch {name} overlaps itself when flat. Cast this body in a mould")
         elif is_narrow(patch.outline):
             problems.append(
-                f"patch {name} is narrower than {NARROWEST:g} mm somewhere: it cannot be sewn and turned; cast this "
-                "body in a mould, or make it larger"
+                f"patch {name} is narrower than {NARROWEST:g} mm somewhere and cannot be sewn and turned. Cast this "
+                "body in a mould or make it larger"
             )
         problems += [f"patch {name}: {problem}" for problem in skin.problems]
     worst = max(seams, key=lambda seam: seam.mismatch)
@@ -200,8 +200,8 @@ def patch_problems(
         one, other = (names[number] for number in worst.patches)
         lengths = " and ".join(f"{length:.0f} mm" for length in worst.lengths)
         problems.append(
-            f"the seam between patches {one} and {other} is {lengths} long on them, {worst.mismatch:.0%} apart: more "
-            f"than {MOST_EASE:.0%} cannot be eased in"
+            f"the seam between patches {one} and {other} is {lengths} long on them, {worst.mismatch:.0%} apart. You "
+            f"cannot ease in more than {MOST_EASE:.0%}"
         )
     return tuple(problems)
 
@@ -215,14 +215,12 @@ def patch_warnings(
     most = max(gives, key=lambda name: gives[name])
     if gives[most] > GIVES_LITTLE:
         warnings.append(
-            f"the cloth has to give up to {gives[most]:.0%} (patch {most}, 95 % of its area): take a cloth that "
+            f"the cloth must stretch by up to {gives[most]:.0%} (patch {most}, 95 % of its area). Choose a cloth that "
             "stretches, such as knitted plush or soft felt"
         )
     ease = max((seam.mismatch for seam in seams), default=0.0)
     if ease > 0.01:
-        warnings.append(
-            f"sides of seams differ by up to {ease:.1%}: pin notch to notch, ease the longer one in between"
-        )
+        warnings.append(f"sides of seams differ by up to {ease:.1%}. Pin notch to notch and ease in the longer side")
     for name, skin in zip(names, skins, strict=True):
         warnings += [f"patch {name}: {warning}" for warning in skin.warnings]
     return tuple(warnings)

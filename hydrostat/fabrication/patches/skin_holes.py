@@ -161,7 +161,7 @@ def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple
             close[one.cable] = (apart, one, other)
     return tuple(
         f"the holes of cable {one.cable} at point {one.point} and of cable {other.cable} at point {other.point} are "
-        f"{apart:.2f} mm apart on the cloth: pinholes of {options.pinhole:g} mm overlap; move one point away"
+        f"{apart:.2f} mm apart on the cloth: pinholes of {options.pinhole:g} mm overlap. Move one point away"
         for apart, one, other in close.values()
     )
 
@@ -178,7 +178,7 @@ def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole
         if depth > DEEPEST:
             problems[one.cable] = (
                 f"cable {one.cable} would run outside from point {one.point} to point {other.point}, but was simulated "
-                f"{depth:.0f} mm under the skin there, through the body: cast this body in a mould, or lay the cable "
+                f"{depth:.0f} mm under the skin there. Cast this body in a mould or lay the cable "
                 "along the skin"
             )
     return tuple(problems.values())
@@ -195,23 +195,23 @@ def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
             free[number] = len(bare - near)
         if not own:
             warnings.append(
-                f"cable {number} is nowhere within {DEEPEST:g} mm of the skin: it gets no hole; move it to the skin, "
+                f"cable {number} is nowhere within {DEEPEST:g} mm of the skin and gets no hole. Move it to the skin "
                 "or make the robot of foam"
             )
             continue
         if max(hole.depth for hole in own) > _SHALLOW:
             shallow[number] = max(hole.depth for hole in own)
         if own[-1].after is Side.INSIDE or own[-1].point != len(cable.points):
-            warnings.append(f"the stopper of cable {number} sits inside: adjust it through the opening")
+            warnings.append(f"the stopper of cable {number} is inside the body. Adjust it through the opening")
     if shallow:
         warnings.append(
-            f"{_cables(shallow)} simulated up to {max(shallow.values()):.0f} mm from the skin to which they are sewn: "
-            "they will act on other levers; move their points onto the skin to simulate what is built"
+            f"{_cables(shallow)} simulated up to {max(shallow.values()):.0f} mm from the skin to which they are sewn. "
+            "Their lever arms will differ. Move their points onto the skin to simulate the robot as built"
         )
     if free:
         warnings.append(
             f"{_cables(free)} simulated through {plural(sum(free.values()), 'point')} deeper than {DEEPEST:g} mm "
-            "under the skin: nothing holds them there, they run straight through the stuffing to the next hole"
+            "under the skin. Nothing holds them there: they run straight through the stuffing to the next hole"
         )
     return tuple(warnings)
 

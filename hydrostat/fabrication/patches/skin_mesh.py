@@ -108,10 +108,10 @@ def skin_of_surface(surface: Surface) -> SkinMesh:
     )
     edges = mesh.edges[0]
     if mesh.pieces(mesh.patch).max() > 0:
-        raise InputError("the body is hollow or in several pieces: a sewn skin needs one closed surface")
+        raise InputError("the body is hollow or in several pieces. A sewn skin needs one closed surface")
     if len(mesh.vertices) - len(edges) + len(mesh.triangles) != 2:
         raise InputError(
-            "a hole goes through the body: it cannot be cut into patches that lie flat; cast it in a mould"
+            "a hole goes through the body, so its skin cannot be cut into flat patches. Cast it in a mould"
         )
     return _fine(_coarse(mesh), _SHARE * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))))
 

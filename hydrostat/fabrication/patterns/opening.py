@@ -55,8 +55,8 @@ class Opening:
         if self.slit.length > ZIPPERS[0] - 1e-6:
             return ()
         return (
-            f"the opening has room for {self.slit.length:.0f} mm only: cut a zipper of {self.zipper} mm down to that, "
-            "and mind that the winch goes through",
+            f"the opening has room for {self.slit.length:.0f} mm only. Cut a zipper of {self.zipper} mm down to that, "
+            "and check that the winch fits through",
         )
 
 

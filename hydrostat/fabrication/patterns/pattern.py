@@ -167,17 +167,17 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
     if not gusset and thickness > stuffed:
         warnings.append(
             f"without a gusset the stuffed body is about {stuffed:.0f} mm thick, but it was simulated with "
-            f"{thickness:g} mm: it will be softer; sew it with the gusset, or simulate it thinner"
+            f"{thickness:g} mm. It will be softer. Sew it with the gusset or simulate it thinner"
         )
     if draft.robot.cables and len(sewn_sides(draft.robot)) == 1:
         (panel,) = sewn_sides(draft.robot)
         warnings.append(
-            f"the cables are sewn on the {panel} alone, so they also curl the body towards it (`hydrostat check` tells "
-            'how far): with face = "pairs" before [body] in its file each is drawn and sewn on both panels'
+            f"the cables are sewn on the {panel} only, so they also curl the body toward it (`hydrostat check` prints "
+            'by how much). Set face = "pairs" before [body] in the robot file to sew each on both panels'
         )
     warnings += _over_zipper(draft)
     warnings += [
-        f"the stopper of cable {sewn.cable} sits inside: adjust it through the opening"
+        f"the stopper of cable {sewn.cable} is inside the body. Adjust it through the opening"
         for sewn in draft.stitches
         if sewn.stopper is Side.INSIDE
     ]
@@ -189,7 +189,7 @@ def _unheld(robot: Robot) -> tuple[str, ...]:
     if robot.face is not Face.MIDDLE or not robot.cables:
         return ()
     return (
-        'cables in the middle are held by nothing in loose filling: set face = "pairs", which is as flat, or cast it '
+        'cables in the middle are held by nothing in loose filling. Set face = "pairs", which is as flat, or cast it '
         "(--method foam)",
     )
 
@@ -205,7 +205,7 @@ def _over_zipper(draft: _PatternDraft) -> list[str]:
     ]
     if not crossed:
         return []
-    return [f"the zipper crosses {', '.join(crossed)} on the back: lead them inside there, under its tape"]
+    return [f"the zipper crosses {', '.join(crossed)} on the back. Route them inside there, under its tape"]
 
 
 _GAP = 10.0  # round the plate [mm]

@@ -35,9 +35,7 @@ _MODEL_FIRST = (
 
 _STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: it rises at once."
 _STIR_SILICONE = "Stir slowly, scrape sides and bottom, and let the bubbles rise, in a vacuum if you have one."
-_POUR_FOAM = (
-    "At once, in a thin stream down the sprue. Close a vent with tape when foam looks out of it; the sprue last."
-)
+_POUR_FOAM = "At once, in a thin stream down the sprue. Tape each vent as foam appears, then the sprue."
 _POUR_SILICONE = (
     "In a thin stream down the sprue, until it stands in all vents. Tap the mould; fill up what sinks as bubbles rise."
 )

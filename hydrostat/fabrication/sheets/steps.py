@@ -145,7 +145,7 @@ def _base_step(outside: tuple[str, ...]) -> AssemblyStep:
         "Build the base",
         5 + 10 * len(outside),
         f"Screw {marks_text(outside)} to the base plate (print it, or cut parts/base.svg from acrylic), legs below. "
-        "Push each tube into its holder and lead it to where its cable begins, in wide bends, none tighter than a cup. "
+        "Push each tube into its holder and lead it to where its cable begins, bend radius at least 40 mm. "
         "Hold both ends: only so does the tube keep the cable's length. The base stands anywhere the tubes reach.",
     )
 
