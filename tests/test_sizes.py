@@ -42,7 +42,7 @@ MANY_PARAMETERS = {
 }
 """What may be larger, with the reason."""
 
-PLAIN_ROOMS = {"", "drawing", "geometry", "grasp", "ik", "mechanics", "robot", "shapes", "simulation"}
+PLAIN_ROOMS = {"", "drawing", "fabrication", "geometry", "grasp", "ik", "mechanics", "robot", "shapes", "simulation"}
 """Rooms in which no docstring begins with a question word or a fragment; "" for the modules outside rooms."""
 HEADLESS = re.compile(r"(What|How|Whether|Where|Which|Of|That|As)\b")
 PARTICIPLE = re.compile(

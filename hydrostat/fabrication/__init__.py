@@ -1,4 +1,4 @@
-"""What a robot is built from: patterns, printed parts, moulds, lists and pages; lengths in millimetres."""
+"""Build kits of robots: patterns, printed parts, molds, lists and pages. Lengths are in millimetres."""
 
 from typing import TYPE_CHECKING
 

@@ -71,8 +71,8 @@ def _inside(robot: Robot) -> tuple[str, ...]:
     if robot.face in (None, Face.MIDDLE) or not robot.cables:
         return ()
     return (
-        f"the robot says that its cables run {robot.face.words}, but a cast body has them in the middle of its "
-        "thickness, where pairs are not needed: both keep it flat",
+        f"the robot file places its cables {robot.face.words}, but in a cast body they run in the middle of its "
+        "thickness. Both keep the body flat, and pairs are not needed",
     )
 
 
@@ -82,7 +82,7 @@ def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
     if pieces <= MANY_PIECES and mass <= MUCH_PLASTIC:
         return ()
     return (
-        f"the mould takes {plural(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic: make the body smaller, use "
+        f"the mould needs {plural(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic. Make the body smaller, use "
         "a printer with a larger bed, or cut the body out of a block of foam",
     )
 
@@ -92,7 +92,7 @@ _STEP = 1e-3  # distance of the places that are looked at [m]
 
 
 def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:
-    """Tell which sheaths come too near the skin between two deeper places, a line each; at their ends they may."""
+    """Return a line for each sheath that comes too near the skin between two deeper places; near its ends it may."""
     solid = robot.body.solid
     if solid is None:
         return ()
@@ -107,7 +107,7 @@ def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:
                 at = ", ".join(f"{1e3 * value:.0f}" for value in places[thin])
                 problems.append(
                     f"cable {number}: its tube comes within {max(depths[thin], 0.0):.1f} mm of the skin at [{at}] mm, "
-                    f"but needs {needed:.1f} mm of depth; move the points of the sheath inwards"
+                    f"but needs {needed:.1f} mm of depth. Move the points of the sheath inwards"
                 )
     return tuple(problems)
 
@@ -165,7 +165,7 @@ def stuffing_problems(robot: Robot) -> tuple[str, ...]:
     if not name or name in STUFFINGS:
         return ()
     return (
-        f'the body was simulated as "{name}", which is not stuffed into cloth: set its material to '
+        f'the body was simulated as "{name}", which is no stuffing for cloth. Set its material to '
         f'"{STUFFINGS[0]}" and simulate again, or cast it (--method foam)',
     )
 
@@ -175,7 +175,7 @@ def _size(pattern: Pattern) -> str:
 
 
 def _cloth(pattern: Pattern) -> Cloth:
-    """What the sheet takes: all of its felt, and every seam that is drawn once for each of two panels."""
+    """Felt, seam and zipper that the sheet needs; each seam is drawn on two panels and counts once."""
     seams = (
         shape.geometry.length
         for panel in pattern.panels

@@ -100,7 +100,7 @@ class _Stages:
         self.part(0, 1)
 
     def part(self, done: int, total: int) -> None:
-        """Tell that so much of the stage is done."""
+        """Report the progress of the current stage."""
         self._total = total
         if self._progress is not None and self._stage:
             self._progress(self._stage, done, total)
@@ -152,7 +152,7 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
         *solid_checks((*plan.printed, *work.spare), (*rigid.assemblies, *work.assemblies)),
     )
     failed = (
-        f"the self-check failed: {check.what}: {check.measured} (allowed: {check.allowed})"
+        f"quality check failed: {check.what}: {check.measured} (allowed: {check.allowed})"
         for check in checks
         if not check.passed
     )
@@ -202,7 +202,7 @@ def _base_files(name: str, rigid: RigidParts) -> dict[str, bytes]:
 
 
 def _cable_summary(plan: KitPlan) -> tuple[str, ...]:
-    """Where the cables of a flat robot run, a line if it says so."""
+    """Return one line on the side of the cables of a flat robot; empty if the robot does not set it."""
     robot = plan.drawn
     if robot.face is None or not plan.robot.cables:
         return ()
@@ -211,7 +211,7 @@ def _cable_summary(plan: KitPlan) -> tuple[str, ...]:
 
 
 def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
-    """What is in a kit, a line each."""
+    """Return the summary of a kit, one line for each of its contents."""
     count = sum(part.count for part in plan.printed)
     mass = sum(part.count * part.mass for part in plan.printed)
     used, packs = lists.cost
@@ -219,5 +219,5 @@ def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
         *plan.work.summary,
         f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}" if plan.rigid.units else "Winches: none",
         f"To print: {plural(count, 'piece')}, about {mass:.0f} g",
-        f"To buy: about {used:.0f} USD of what is used up, {packs:.0f} USD in whole packs",
+        f"Material used: about {used:.0f} USD; to buy (full packs): {packs:.0f} USD",
     )

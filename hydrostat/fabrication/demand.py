@@ -13,7 +13,7 @@ from hydrostat.robot import PoseTarget, Robot, Winch
 from hydrostat.simulation import Equilibrium, Simulation
 
 _ONCE = IKOptions(restarts=0)
-"""Whether another beginning would reach a pose better by some micrometres does not matter to a motor."""
+"""No restarts: a pose that is better by some micrometres makes no difference to a motor."""
 
 
 FAR = 0.1
@@ -90,8 +90,8 @@ class _PoseLoads:
             return
         if reached.rms_error > FAR * self._robot.body.mesh.size:
             self._far.append(
-                f"{name} is missed by {1e3 * reached.rms_error:.0f} mm (rms): its loads are those of the nearest pose "
-                "that the winches can make"
+                f"{name} is missed by {1e3 * reached.rms_error:.0f} mm (rms). Its loads are those of the nearest pose "
+                "that the winches reach"
             )
 
     def pull(self, winch: Winch) -> None:

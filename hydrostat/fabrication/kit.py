@@ -18,12 +18,12 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """A claim that was measured on the finished drawing or solid, not on what it was made from."""
+    """A claim that was measured on the finished drawing or solid, not on its inputs."""
 
     what: str  # the claim, such as "pinholes are where the cables pass"
-    measured: str  # what was found, with its unit, such as "at most 0.004 mm off"
-    allowed: str  # such as "0.1 mm"
-    passed: bool  # whether it holds
+    measured: str  # measured value with its unit, such as "at most 0.004 mm off"
+    allowed: str  # tolerance, such as "0.1 mm"
+    passed: bool  # True if the measured value is allowed
 
 
 MANIFEST = "manifest.json"  # its file in a kit; written last, so that a kit without it is not whole
@@ -36,7 +36,7 @@ class UnbuildableError(InputError):
     """A robot cannot be built well as it is.
 
     Attributes:
-        reasons: a line each.
+        reasons: problems, one line each.
     """
 
     def __init__(self, reasons: tuple[str, ...]) -> None:
@@ -50,15 +50,15 @@ class Kit:
     """Everything that a robot is built from.
 
     Attributes:
-        robot: that is built.
-        method: how its body is made.
+        robot: robot of the kit.
+        method: method by which the body is made.
         motor: key of the motor in its winches.
         printed: all parts for a 3D printer.
         files: content by path.
-        summary: what is in it, a line each.
-        problems: why it cannot be built well; only with `force`.
-        warnings: what to mind.
-        checks: whether the files are true to the robot that was simulated.
+        summary: contents, one line each.
+        problems: reasons why it cannot be built well; empty without `force`.
+        warnings: warnings for the builder, one line each.
+        checks: comparisons of the files with the simulated robot.
     """
 
     robot: Robot

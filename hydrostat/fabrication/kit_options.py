@@ -1,4 +1,4 @@
-"""`KitOptions`: what kind of robot is built, and how: its pattern, its printed parts, its mould."""
+"""`KitOptions`: fabrication method, motor, and options for the pattern, the printed parts and the mold."""
 
 import math
 from dataclasses import dataclass, field, fields
@@ -59,19 +59,19 @@ class PatternOptions:
     """Choices for a pattern; lengths in millimetres, as everywhere in fabrication.
 
     Attributes:
-        seam_allowance: cloth between the seam and the cut [mm].
-        corner: how the cut goes round an outward corner.
+        seam_allowance: width of cloth between the seam and the cut [mm].
+        corner: shape of the cut at an outward corner.
         pinhole: diameter of the hole for a cable [mm].
-        cloth: least cloth between a pinhole and the seam [mm].
-        gap: between the panels, and round the sheet [mm].
-        back_pinholes: whether the back panel gets the pinholes too, mirrored.
-        marker_names: whether markers are drawn, with their names.
-        opening_reach: how far the opening goes beyond the outermost winches [mm]; 0 for no opening.
-        gusset: whether a strip of cloth between front and back makes the body as thick as it was simulated. None: where
-            two panels alone, stuffed, would stay thinner. A limb that is thinner than simulated is softer, holds less
-            cable, and is harder to turn right side out; the price is a second seam round the body.
+        cloth: minimum width of cloth between a pinhole and the seam [mm].
+        gap: distance between the panels, and margin of the sheet [mm].
+        back_pinholes: True to cut the mirrored pinholes in the back panel too.
+        marker_names: True to draw the markers with their names.
+        opening_reach: distance by which the opening passes the outermost winches [mm]; 0 for no opening.
+        gusset: True to sew a strip of cloth between front and back, which makes the body as thick as simulated. None:
+            only if two stuffed panels alone would stay thinner. A limb that is thinner than simulated is softer, holds
+            less cable, and is harder to turn right side out; the price is a second seam round the body.
         gusset_piece: longest piece of that strip, its seam allowances not counted [mm].
-        force: draw what cannot be cut honestly all the same; `Pattern.problems` then says what.
+        force: True to draw the pattern even if it cannot be cut well; `Pattern.problems` then holds the reasons.
 
     Raises:
         InputError: a length out of its range, or a text that is no corner.
@@ -98,17 +98,17 @@ class PatternOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class PartOptions:
-    """Sizes that depend on the printer and on what is bought; lengths in millimetres.
+    """Sizes that depend on the printer and on the parts that you buy; lengths in millimetres.
 
     Attributes:
-        clearance: between parts that move in each other, on each side [mm].
-        fit: between parts that are put into each other and stay, on each side [mm].
-        wall: least thickness of a wall [mm].
+        clearance: gap between parts that move in each other, on each side [mm].
+        fit: gap between parts that are pressed into each other, on each side [mm].
+        wall: minimum wall thickness [mm].
         cable: diameter of the cable, a braided line [mm].
         tube: outer diameter of the PTFE sheath [mm].
         bore: inner diameter of the sheath [mm].
-        run: how far in front of the base for winches outside a body can stand [mm].
-        spare_wraps: turns of cable that stay on a spool when it is let out as far as it may be.
+        run: distance between the base of winches outside the body and the body [mm].
+        spare_wraps: turns of cable that stay on a spool at maximum payout.
 
     Raises:
         InputError: a number out of its range.
@@ -137,13 +137,13 @@ class MouldOptions:
     """Choices for a mould; lengths in millimetres.
 
     Attributes:
-        kind: printed halves, or silicone cast round a printed positive (R52).
-        wall: least thickness round the body [mm].
+        kind: material of the mold: printed halves, or silicone cast round a printed positive (R52).
+        wall: minimum thickness round the body [mm].
         bed: largest piece that the printer takes, along x, y and z [mm].
-        key_clearance: between a key and its socket, on each side [mm].
-        pocket_clearance: between a winch in the body and the foam, on each side [mm].
-        mark_cables: dents in the foam show where cables run.
-        mark_depth: cable points that lie no deeper below the surface are marked [mm].
+        key_clearance: gap between a key and its socket, on each side [mm].
+        pocket_clearance: gap between a winch in the body and the foam, on each side [mm].
+        mark_cables: True to mark the cable paths by dents in the foam.
+        mark_depth: maximum depth of the cable points that are marked [mm].
 
     Raises:
         InputError: a length that is not above 0 (a clearance of pockets may be 0), or a text that is no kind of mould.
@@ -167,19 +167,19 @@ class MouldOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class KitOptions:
-    """Choices for the kit of a robot: what kind of robot is built, and how.
+    """Options for the kit of a robot.
 
     Attributes:
-        method: None: plush for a flat body and for one that is stuffed, foam for others.
+        method: fabrication method. None: plush for a flat or stuffed body, foam for others.
         motor: key of a motor in the table, or "auto": the first that is strong enough.
-        tension: the most that its poses pull a cable with [N], as motors and lines are chosen for; None: as much as its
-            winches can. A designed robot keeps to the limit of its design.
-        paper: of the pages.
+        tension: maximum cable tension in its poses [N], for the choice of motors and lines. None: the limit of its
+            winches. A designed robot keeps to the limit of its design.
+        paper: paper size of the pages.
         step: also write each printed part as STEP; needs the extra `cad`.
-        force: write what cannot be built well all the same, with the reasons on the sheet.
-        pattern: of a plush robot; its `force` is that of the kit.
-        parts: of the printed parts.
-        mould: of a robot of foam.
+        force: True to write a kit that cannot be built well, with the reasons on the sheet.
+        pattern: options for the pattern of a plush robot; its `force` is that of the kit.
+        parts: options for the printed parts.
+        mould: options for the mold of a foam robot.
 
     Raises:
         InputError: a text that is no method or no paper, a tension that is not above 0.
@@ -210,5 +210,5 @@ class KitOptions:
         return self.method or (Method.PLUSH if stuffed else Method.FOAM)
 
     def sews_skin(self, body: Body) -> bool:
-        """Whether its kit sews a skin that has to be cut and laid flat: that of a body in space, stuffed."""
+        """Return True if the kit sews a skin that is cut and flattened: for a stuffed body in space."""
         return body.mesh.dim == 3 and self.method_for(body) is Method.PLUSH

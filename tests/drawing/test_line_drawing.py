@@ -81,7 +81,7 @@ def test_a_cube_in_front_hides_what_is_behind_it():
 
 def test_a_cube_behind_changes_nothing():
     view, cube = Camera.isometric(), solid_of(Box((SIDE, SIDE, SIDE)))
-    small = solid_of(Box((2, 2, 2)).moved(4, 4, 4))
+    small = solid_of(Box((2, 2, 2)).move(4, 4, 4))
     alone = line_drawing([drawn_solid(cube)], view)
     both = line_drawing([drawn_solid(cube), drawn_solid(small)], view)
     assert lines_of(both).hausdorff_distance(lines_of(alone)) < 0.05
@@ -105,7 +105,7 @@ def test_a_cylinder_from_the_side_is_a_rectangle():
 
 
 def test_a_hole_through_a_plate_is_seen_from_above():
-    plate = Box((20, 20, 2)) - Cylinder(2, 4).moved(10, 10, 0)
+    plate = Box((20, 20, 2)) - Cylinder(2, 4).move(10, 10, 0)
     drawing = line_drawing([drawn_solid(solid_of(plate))], Camera.at(0, 90))
     total = sum(shapely.linestrings(way).length for way in (*drawing.outlines, *drawing.lines))
     assert total == pytest.approx(80 + 2 * np.pi * 4, rel=0.01)
@@ -135,7 +135,7 @@ def test_a_line_in_space_is_seen_as_far_as_nothing_hides_it():
 
 
 def test_a_piece_is_pointed_at_where_it_is_seen():
-    pieces = [drawn_solid(solid_of(Box((10, 10, 10)))), drawn_solid(solid_of(Box((2, 2, 2)).moved(4, 4, 4)))]
+    pieces = [drawn_solid(solid_of(Box((10, 10, 10)))), drawn_solid(solid_of(Box((2, 2, 2)).move(4, 4, 4)))]
     drawing = line_drawing(pieces, Camera.isometric())
     assert drawing.spot_on(1) is None
     spot = drawing.spot_on(0)
@@ -144,7 +144,7 @@ def test_a_piece_is_pointed_at_where_it_is_seen():
 
 
 def test_the_same_drawing_twice():
-    piece = drawn_solid(solid_of(Box((20, 20, 2)) - Cylinder(2, 4).moved(10, 10, 0)))
+    piece = drawn_solid(solid_of(Box((20, 20, 2)) - Cylinder(2, 4).move(10, 10, 0)))
     one, two = (line_drawing([piece], Camera.isometric()) for _ in range(2))
     assert len(one.outlines) == len(two.outlines)
     assert all(np.array_equal(a, b) for a, b in zip(one.outlines, two.outlines, strict=True))

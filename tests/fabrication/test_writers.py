@@ -41,7 +41,7 @@ def test_the_check_of_the_scale_can_fail(write, see):
     robot = crossed()
     pattern = plush_pattern(robot)
     front = pattern.panel("front")
-    off = tuple(shape.moved(0.2, 0.0) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes)
+    off = tuple(shape.move(0.2, 0.0) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes)
     wrong = replace(pattern, panels=(replace(front, shapes=off), pattern.panel("back")))
     assert worst_hole(see(write(wrong)), robot, pattern) > 0.1
 

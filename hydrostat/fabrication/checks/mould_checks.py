@@ -49,7 +49,7 @@ def _body(mould: Mould) -> float:
 
 
 def _filled(mould: Mould) -> Check:
-    """What is poured is one room, with a way in."""
+    """Check that sprue, cavity and vents form one connected volume."""
     rooms = sum(room.volume() > 0 for room in mould.poured.decompose())
     sprue = mould.volumes["sprue"]
     measured = "no sprue" if sprue <= 0 else "one room" if rooms == 1 else f"{rooms} rooms"

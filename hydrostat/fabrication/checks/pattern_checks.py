@@ -67,7 +67,7 @@ class SeenDxf:
 
     @property
     def millimetres(self) -> bool:
-        """Tell whether it says that it counts millimetres."""
+        """True if the drawing is in millimetres."""
         return self._document.header.get("$INSUNITS") == _MILLIMETRES
 
     @cached_property
@@ -90,7 +90,7 @@ class SeenDxf:
 
 
 def drawing_checks(svg: SeenSvg, dxf: SeenDxf) -> tuple[Check, ...]:
-    """Tell whether both drawings show the same holes, and the bar of 100 mm at its length."""
+    """Check that both drawings show the same holes, and the scale bar at its length of 100 mm."""
     return _same_holes(svg.circles(PatternPart.PINHOLE), dxf.pinholes), _bar(svg, dxf)
 
 
@@ -159,7 +159,7 @@ def _flat_holes(robot: Robot, panel: Panel, circles: Float[np.ndarray, "holes 3"
 
 
 def _on(panel: Panel, robot: Robot) -> str:
-    """Which panel it is, where that has to be said."""
+    """Name of the panel for a check; empty if only the front is sewn."""
     return "" if sewn_sides(robot) == ("front",) else f"of the {panel.name} "
 
 

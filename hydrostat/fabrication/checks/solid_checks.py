@@ -10,7 +10,7 @@ from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interferences
 from hydrostat.fabrication.solids.construct import sides_text
-from hydrostat.fabrication.solids.printed import Printed, connected, loose_edges
+from hydrostat.fabrication.solids.printed import Printed, loose_edges, number_groups
 from hydrostat.robot import Robot
 
 _ON_BED = 1e-4  # how far from the bed the lowest point may be [mm]
@@ -33,7 +33,7 @@ def watertight_problems(printed: Printed) -> tuple[str, ...]:
     problems = []
     if loose := loose_edges(triangles):
         problems.append(f"{printed.name}: {loose} edges do not have exactly one triangle on either side")
-    volume = enclosed(vertices, triangles)
+    volume = compute_volume(vertices, triangles)
     if not volume > 0:
         problems.append(f"{printed.name}: its triangles enclose no volume, or are inside out")
     elif abs(volume - printed.volume) > _CHANGE * volume:
@@ -46,7 +46,7 @@ def watertight_problems(printed: Printed) -> tuple[str, ...]:
     return tuple(problems)
 
 
-def enclosed(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray, "triangles 3"]) -> float:
+def compute_volume(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray, "triangles 3"]) -> float:
     """Volume within triangles [mm^3] by the divergence theorem; negative if they are inside out."""
     corners = vertices[triangles] - vertices.mean(axis=0)
     return float(_wedges(corners).sum())
@@ -60,7 +60,7 @@ def _wedges(corners: Float[np.ndarray, "triangles 3 3"]) -> Float[np.ndarray, " 
 def _pieces(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray, "triangles 3"]) -> int:
     """Bodies that share no vertex; hollows within a body are inside out and do not count."""
     links = np.stack([triangles, np.roll(triangles, 1, axis=1)], axis=2).reshape(-1, 2)
-    body = connected(links, len(vertices))
+    body = number_groups(links, len(vertices))
     volumes = np.bincount(body[triangles[:, 0]], _wedges(vertices[triangles] - vertices.mean(axis=0)))
     return int(np.count_nonzero(volumes > _CRUMB))
 
@@ -94,7 +94,7 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly])
 def too_large(printed: Iterable[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:
     """Why parts do not fit on the bed of the printer [mm], a line each; they may be turned on it, not tilted."""
     return tuple(
-        f"{part.name} of {sides_text(part.size)} mm is more than the printer takes ({sides_text(bed)} mm): use a "
+        f"{part.name} of {sides_text(part.size)} mm does not fit the printer ({sides_text(bed)} mm). Use a "
         "larger printer"
         for part in printed
         if not part.fits(bed)

@@ -109,16 +109,16 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
         pulls = f'cable C{number} of winch "{cable.winch}" pulls {tension:.1f} N'
         verdict = "holds"
         if tension > line.at_knot:
-            problems.append(f"{pulls}, but {line.name} breaks at its knot at {line.at_knot:.0f} N; {_remedy(tension)}")
+            problems.append(f"{pulls}, but {line.name} breaks at its knot at {line.at_knot:.0f} N. {_remedy(tension)}")
             verdict = "breaks"
         elif tension > line.working_load:
             load = f"above the working load of {line.name}, {line.working_load:.0f} N"
-            warnings.append(f"{pulls}, {load}; {_remedy(tension)}")
+            warnings.append(f"{pulls}, {load}. {_remedy(tension)}")
             verdict = "above the working load"
         if hold is not None and tension > hold:
             warnings.append(
-                f"{pulls}, but its stopper may slip at {hold:.0f} N (estimated): tie a knot behind the stopper once it "
-                "is set"
+                f"{pulls}, but its stopper may slip at {hold:.0f} N (estimated). Tie a knot behind the stopper "
+                "after you set it"
             )
             verdict = f"{verdict}; knot the stopper"
         rows.append(
@@ -150,7 +150,7 @@ def _line_table(rows: tuple[LineRow, ...], line: FishingLine, *, largest: float)
             f"At a knot a line keeps {KNOT:g} of its strength, if badly tied; tie a doubled Palomar. Working load: "
             f"{SAFETY:g} of that.",
             *(
-                [f"{enough.name} ({enough.diameter:g} mm) would do, but thin lines cut into felt and foam."]
+                [f"{enough.name} ({enough.diameter:g} mm) is strong enough, but thin lines cut into felt and foam."]
                 if enough and enough.diameter < line.diameter
                 else []
             ),
@@ -163,5 +163,5 @@ def _remedy(tension: float) -> str:
     """Name a line that withstands a tension [N]."""
     for line in LINES:
         if line.working_load >= tension:
-            return f"use {line.name} ({line.diameter:g} mm) or thicker, or ask for less"
-    return f"no line of the table bears that ({LINES[-1].working_load:.0f} N at most): share it among more cables"
+            return f"Use {line.name} ({line.diameter:g} mm) or thicker, or lower the tension"
+    return f"No listed line is strong enough (maximum {LINES[-1].working_load:.0f} N). Split the load over more cables"

@@ -90,7 +90,7 @@ def make_lists(plan: KitPlan) -> Lists:
         power=power,
         problems=strength.problems,
         warnings=(
-            *(f"not solved, so its loads are in no list: {missed}" for missed in demand.missed),
+            *(f"pose not solved, its loads are missing from the lists: {missed}" for missed in demand.missed),
             *strength.warnings,
             *motor_warnings(sizings),
             *minded,

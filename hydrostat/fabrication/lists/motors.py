@@ -67,10 +67,10 @@ class WinchSizing:
 
 
 _MINDS = {
-    "too weak": "but the motor stalls at {0.stall_torque:.0f} N mm: it cannot reach the poses; take a stronger one, or "
-    "a smaller spool",
-    "no margin": "but the motor stalls at {0.stall_torque:.0f} N mm: it may stand still before a pose is reached",
-    "holds for seconds": "more than the {0.rated_torque:.0f} N mm that the motor bears for long: hold such poses for "
+    "too weak": "above the motor's stall torque ({0.stall_torque:.0f} N mm). It cannot reach the poses. Choose a "
+    "stronger motor or a smaller spool",
+    "no margin": "above the motor's stall torque ({0.stall_torque:.0f} N mm). It may stall before it reaches a pose",
+    "holds for seconds": "above the motor's continuous rating ({0.rated_torque:.0f} N mm). Hold such poses for "
     "seconds only",
 }
 """Warning on a winch, by its verdict."""
@@ -84,14 +84,14 @@ def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
         if alike:
             worst = max(alike, key=lambda sizing: sizing.torque)
             names = ", ".join(f'"{sizing.winch}"' for sizing in alike)
-            who = f"winch {names} asks for" if len(alike) == 1 else f"winches {names} ask for up to"
+            who = f"winch {names} needs" if len(alike) == 1 else f"winches {names} need up to"
             margin = "" if verdict == "too weak" else f", {worst.needed:.0f} N mm with the margin of {MARGIN:g}"
             found.append(f"{who} {worst.torque:.0f} N mm{margin}, {mind.format(worst.motor)}")
     slow = (sizing for sizing in sizings if sizing.time is not None and sizing.time > SLOW)
     return (
         *found,
         *(
-            f'winch "{sizing.winch}" takes {sizing.time:.0f} s for its travel of {sizing.travel:.0f} mm'
+            f'winch "{sizing.winch}" needs {sizing.time:.0f} s for its travel of {sizing.travel:.0f} mm'
             for sizing in slow
         ),
     )
@@ -218,8 +218,8 @@ class PowerPlan:
     """Power supply of the motors of a robot.
 
     Attributes:
-        motor: of all winches.
-        winches: their names, in the order of the motors' numbers.
+        motor: motor of all winches.
+        winches: names of the winches, in the order of the motors' numbers.
         largest: current of all motors at their largest torque at once [A].
     """
 
@@ -229,7 +229,7 @@ class PowerPlan:
 
     @property
     def servos(self) -> bool:
-        """Tell whether the motors are servos on a bus; else DC motors on boards."""
+        """True if the motors are servos on a bus; else they are DC motors on boards."""
         return self.motor.horn is not None
 
     @property

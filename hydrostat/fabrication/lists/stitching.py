@@ -251,7 +251,7 @@ def close_warnings(robot: Robot) -> tuple[str, ...]:
         return ()
     cables = f"cable{'s' if len(close) > 1 else ''} {', '.join(close)}"
     least = min(close.values())
-    return (f"{cables}: points as near to each other as {least:.1f} mm, below {CLOSE:g} mm, are sewn by one stitch",)
+    return (f"{cables}: points less than {CLOSE:g} mm apart (minimum {least:.1f} mm) share one stitch",)
 
 
 def deep_warnings(table: Table[DepthRow]) -> tuple[str, ...]:
@@ -261,7 +261,7 @@ def deep_warnings(table: Table[DepthRow]) -> tuple[str, ...]:
         if row.how is PointAccess.LAID:
             deep[row.cable] = max(deep.get(row.cable, 0.0), row.depth)
     return tuple(
-        f"cable {cable} runs up to {depth:.0f} mm under the skin, too deep for a needle ({NEEDLE:g} mm): lay a tube in "
-        "the mould before the foam is poured"
+        f"cable {cable} runs up to {depth:.0f} mm under the skin, too deep for a needle ({NEEDLE:g} mm). Lay a tube in "
+        "the mould before you pour the foam"
         for cable, depth in deep.items()
     )

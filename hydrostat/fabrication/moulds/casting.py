@@ -75,25 +75,25 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
 
 
 def _poisoned(material: Material, *, silicone: bool) -> tuple[str, ...]:
-    """Tell whether the mould keeps the body from curing."""
+    """Return a problem if the mold keeps the body from curing; else nothing."""
     if not (silicone and material.name.startswith(_PLATINUM)):
         return ()
     return (
         f"{material.name} is cured by platinum and does not cure against Mold Max 30, which is cured by tin (its maker "
-        "Smooth-On, FAQ 129: neither cures against the other): print the mould (--mould printed)",
+        "Smooth-On, FAQ 129: neither cures against the other). Print the mould (--mould printed)",
     )
 
 
 def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
-    """What a body is cast of: its own material where that comes as two parts, else the thesis's foam."""
+    """Return the casting material and problems: the body's own if it comes as two parts, else the default foam."""
     if material.name.startswith(_EQUAL):
         return material, ()
     foam = MATERIALS["flexfoam-it x"]
     name = f'"{material.name}"' if material.name else "the body's material, given by its numbers,"
     problem = (
-        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts; of {foam.name} ({foam.density:.0f} "
-        "kg/m^3), for which this mould is reckoned, it would be another robot than was simulated: set the "
-        f"body's material to what you pour, such as {foam.name}, and simulate again, or choose plush if it is flat"
+        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts. This mould is sized for {foam.name} "
+        f"({foam.density:.0f} kg/m^3), so the robot would differ from the simulated one. Set the body's material to "
+        f"what you pour, such as {foam.name}, and simulate again, or choose plush if the body is flat"
     )
     return foam, (problem,)
 

@@ -1,4 +1,4 @@
-"""What holds two halves together and lets them part: keys, bolt holes, pry slots, all in the rim round the cavity.
+"""Keys, bolt holes and pry slots of a mold, all in the rim round the cavity.
 
 In the coordinates of the mould: x across, y upwards as it stands when poured, z along the pull, parted at z = 0.
 """
@@ -10,7 +10,7 @@ import numpy as np
 from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.openings import Sprue
-from hydrostat.fabrication.moulds.solids import joined, rod
+from hydrostat.fabrication.moulds.solids import join_solids, rod
 from hydrostat.fabrication.solids.construct import Cuboid
 
 RIM = 13.0  # least width of the rim round the cavity [mm]: a key or a bolt with walls on both sides
@@ -72,10 +72,10 @@ def make_closing(block: MouldBlock, *, sprue: Sprue | None, vents: tuple[float, 
     return Closing(
         keys=keys,
         bolts=bolts,
-        bumps=joined([_key(spot, radius, 0.0) for spot, radius in keys]),
-        sockets=joined([_key(spot, radius, clearance) for spot, radius in keys]),
-        holes=joined([rod(np.array([x, y, low - 1.0]), np.array([x, y, high + 1.0]), BOLT) for x, y in bolts]),
-        slots=joined([_slot(block, side, [y for x, y in bolts if x == xs[side]]) for side in (0, 1)]),
+        bumps=join_solids([_key(spot, radius, 0.0) for spot, radius in keys]),
+        sockets=join_solids([_key(spot, radius, clearance) for spot, radius in keys]),
+        holes=join_solids([rod(np.array([x, y, low - 1.0]), np.array([x, y, high + 1.0]), BOLT) for x, y in bolts]),
+        slots=join_solids([_slot(block, side, [y for x, y in bolts if x == xs[side]]) for side in (0, 1)]),
     )
 
 

@@ -8,7 +8,7 @@ from hydrostat.fabrication.moulds.closing import Closing, MouldBlock
 from hydrostat.fabrication.moulds.openings import Sprue, Vent
 from hydrostat.fabrication.moulds.pocket import Pocket
 from hydrostat.fabrication.moulds.positive import Frames, Positive
-from hydrostat.fabrication.moulds.solids import joined
+from hydrostat.fabrication.moulds.solids import join_solids
 from hydrostat.fabrication.moulds.split import Pieces, grid, split
 from hydrostat.fabrication.solids.printed import Printed
 
@@ -49,7 +49,7 @@ def make_halves(
     cavity = make_cavity(body, dents, pockets)
     openings = {
         "sprue": Manifold() if sprue is None else sprue.solid,
-        "vents": joined(vent.solid for vent in vents),
+        "vents": join_solids(vent.solid for vent in vents),
         "bolts": closing.holes,
         "slots": closing.slots,
     }
@@ -68,7 +68,7 @@ def make_halves(
 
 
 def _voids(block: MouldBlock, cavity: Manifold, openings: dict[str, Manifold], closing: Closing) -> dict[str, float]:
-    """What each opening takes of the plastic [mm^3], where two meet the first of them; and the gaps round the keys."""
+    """Volume that each opening removes from the plastic [mm^3], overlaps by the first, and of the gaps round keys."""
     account, taken = {}, cavity
     for name, opening in openings.items():
         inside = opening ^ block.solid
@@ -85,8 +85,8 @@ def volume(solid: Manifold) -> float:
 
 
 def _taken(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> tuple[float, float]:
-    """What dents take of the body [mm^3], and what pockets take of the rest."""
-    cores = joined(pocket.core for pocket in pockets)
+    """Volumes that dents remove from the body, and pockets from the rest [mm^3]."""
+    cores = join_solids(pocket.core for pocket in pockets)
     return volume(body ^ dents), volume(cores ^ body) - volume(cores ^ body ^ dents)
 
 

@@ -57,7 +57,7 @@ class Mould:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Inside:
-    """What is in the block, in the coordinates of the mould."""
+    """Contents of the block, in the coordinates of the mold."""
 
     body: Manifold
     dents: Manifold
@@ -170,7 +170,7 @@ def _block(body: Manifold, options: MouldOptions) -> MouldBlock:
 
 
 def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positive, block: MouldBlock) -> PartAssembly:
-    """What belongs where, in the coordinates of the mould."""
+    """Assembly of the mold, in its coordinates."""
     ahead, aback = (0.0, 0.0, 0.6 * block.size[2]), (0.0, 0.0, -0.6 * block.size[2])
     if frames is None:
         pieces = (
@@ -198,7 +198,7 @@ STIFF = 1e6  # Young's modulus from which on a body is not squeezed past an unde
 
 
 def set_upright(stance: MouldOrientation, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
-    """Tell how the mould stands when it is poured."""
+    """Return the sentences on how to set up the mold for pouring."""
     held = ", the end that is held at the top" if stance.held_upwards else ""
     upward = sum(vent.upward for vent in vents)
     backward = len(vents) - upward
@@ -229,22 +229,22 @@ def mould_problems(
     *,
     links: tuple[int, int] = (0, 0),
 ) -> tuple[str, ...]:
-    """Tell why the mould cannot be built well; `links` counts holes of the body that the lower and upper half close."""
+    """Return the problems of a mold; `links` counts holes of the body that the lower and upper half close."""
     found = [pocket.problem for pocket in pockets if pocket.problem] + clashes(pockets)
     rigid = options.kind is MouldKind.PRINTED
     if rigid and any(links):
         found.append(
-            f"{_reaches(links)} and closes behind it like a link of a chain: it cannot come off; close "
+            f"{_reaches(links)} and closes behind it like a link of a chain, so it cannot come off. Close "
             f"{'that hole' if sum(links) == 1 else 'these holes'} in the surface and cut the foam out afterwards, or "
             "choose a mould of silicone, which is cut open there"
         )
     if rigid and (pull.share > TOLERATED or (pull.share > UNNOTICED and material.young > STIFF)):
         found.append(
             f"{100 * pull.share:.0f} % of the surface is undercut along the best of {len(pull.shares)} pulls: the body "
-            "would tear as a rigid mould comes off; choose a mould of silicone, which gives way"
+            "would tear as a rigid mould comes off. Choose a mould of silicone, which yields"
         )
     if sprue is None:
-        found.append("the parting plane does not cross the body, so that nothing can be poured; simplify its surface")
+        found.append("the parting plane does not cross the body, so it cannot be poured. Simplify its surface")
     if rigid:
         found += [
             f"the {half} half of the mould falls into {len(parts)} pieces: the body reaches through its walls"
@@ -253,14 +253,12 @@ def mould_problems(
         ]
     for piece in printed:
         if not piece.fits(options.bed):
-            found.append(
-                f"{piece.title}: {sides_text(piece.size)} mm is more than the printer takes; use a larger printer"
-            )
+            found.append(f"{piece.title}: {sides_text(piece.size)} mm does not fit the printer. Use a larger printer")
     return tuple(found)
 
 
 def _reaches(links: tuple[int, int]) -> str:
-    """Which half reaches through how many holes."""
+    """Return the words on how many holes of the body each half reaches through."""
     parts = [
         f"the {half} half of the mould reaches through {plural(count, 'hole')} of the body"
         for half, count in zip(("lower", "upper"), links, strict=True)
@@ -272,17 +270,17 @@ def _reaches(links: tuple[int, int]) -> str:
 def mould_warnings(
     pull: Pull, material: Material, kind: MouldKind, *, links: tuple[int, int] = (0, 0)
 ) -> tuple[str, ...]:
-    """Tell what a person should mind; `links` as in `mould_problems`."""
+    """Return the warnings for the builder; `links` as in `mould_problems`."""
     found = []
     if kind is MouldKind.SILICONE and any(links):
         found.append(
-            f"{_reaches(links)} and closes behind it: silicone gives way, but a closed loop cannot be drawn out; "
-            "cut the silicone open there with a knife, and tape the cut from outside before you pour"
+            f"{_reaches(links)} and closes behind it. Silicone yields, but a closed loop cannot be drawn out. "
+            "Cut the silicone open there with a knife, and tape the cut from outside before you pour"
         )
     if pull.share <= (UNNOTICED if kind is MouldKind.PRINTED else TOLERATED):
         return tuple(found)
     return (
         *found,
-        f"{100 * pull.share:.0f} % of the surface is undercut: {material.name or 'the body'} is squeezed past it; use "
+        f"{100 * pull.share:.0f} % of the surface is undercut: {material.name or 'the body'} is squeezed past it. Use "
         "plenty of release agent, open the mould slowly and draw the body out part by part",
     )

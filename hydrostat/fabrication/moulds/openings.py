@@ -102,7 +102,7 @@ def make_vents(cavity: Manifold, sprue: Sprue | None, *, low: float, high: float
 
 
 def _leaves_by_sprue(at: Float[np.ndarray, "3"], across: Vector, tops: Vector, sprue: Sprue) -> bool:
-    """Tell whether air at a high point finds the sprue: it lies under it, or a roof leads there that hardly dips."""
+    """Return True if air at a high point escapes by the sprue: from below it, or along a roof that hardly dips."""
     if np.hypot(at[0] - sprue.x, at[2]) < sprue.radius and at[1] > sprue.mouth - _SUNK:
         return True
     first, last = sorted((at[0], sprue.x))

@@ -10,7 +10,7 @@ from manifold3d import Manifold
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
-from hydrostat.fabrication.moulds.solids import joined, rod
+from hydrostat.fabrication.moulds.solids import join_solids, rod
 from hydrostat.fabrication.moulds.stance import MouldOrientation
 from hydrostat.fabrication.solids.body_solid import MILLIMETRES
 from hydrostat.fabrication.solids.construct import Cuboid, Sides, sides_text
@@ -112,7 +112,7 @@ def _worth(pocket: Pocket, others: list[Pocket]) -> tuple[float, bool, float, fl
 
 
 def _shared(one: Manifold, other: Manifold) -> float:
-    """What two boxes along the axes share [mm^3]."""
+    """Overlap volume of two boxes along the axes [mm^3]."""
     (low, high), (low_other, high_other) = (np.reshape(box.bounding_box(), (2, 3)) for box in (one, other))
     return float(np.prod(np.maximum(np.minimum(high, high_other) - np.maximum(low, low_other), 0.0)))
 
@@ -174,13 +174,13 @@ def _pocket(name: str, body: Manifold, way: _Lying, upper: bool, clearance: floa
     problem = ""
     if core.is_empty() or out > _OUTSIDE:
         problem = (
-            f'winch "{name}": the pocket of {side} mm does not fit into the body at its place, {100 * out:.0f} % of it '
-            "is outside; move the winch to where the body is thicker, or choose a smaller motor"
+            f'winch "{name}": the pocket of {side} mm does not fit into the body at its place ({100 * out:.0f} % '
+            "outside). Move the winch to a thicker part of the body or choose a smaller motor"
         )
     elif float((skin - body).volume()) > _BARE * float(skin.volume()):
         problem = (
-            f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left beside the pocket of {side} mm; '
-            "move the winch to where the body is thicker, or choose a smaller motor"
+            f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left next to the pocket of {side} mm. '
+            "Move the winch to a thicker part of the body or choose a smaller motor"
         )
     return Pocket(
         winch=name,
@@ -227,7 +227,7 @@ def _upright_box(at: np.ndarray, width: float, height: float, deep: float, far: 
 
 
 def _holds(part: Manifold, at: np.ndarray) -> bool:
-    """Tell whether a point is in a solid, seen by a small box round it."""
+    """Return True if a point is in a solid, tested with a small box round it."""
     return float((Manifold.cube((0.1, 0.1, 0.1), True).translate(tuple(at.tolist())) ^ part).volume()) > 0
 
 
@@ -260,7 +260,7 @@ def cable_dents(robot: Robot, surface: FineSurface, stance: MouldOrientation, *,
     for place in range(len(spots)):
         if all(np.linalg.norm(spots[place] - spots[other]) > 2 * _DENT_RADIUS for other in kept):
             kept.append(place)
-    return joined(_dent(spots[place], inward[place]) for place in kept)  # their roots meet where cables are near
+    return join_solids(_dent(spots[place], inward[place]) for place in kept)  # their roots meet where cables are near
 
 
 def _dent(spot: Float[np.ndarray, "3"], inward: Float[np.ndarray, "3"]) -> Manifold:

@@ -12,7 +12,7 @@ from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.closing import MouldBlock
 from hydrostat.fabrication.moulds.openings import Sprue
-from hydrostat.fabrication.moulds.solids import joined
+from hydrostat.fabrication.moulds.solids import join_solids
 from hydrostat.fabrication.moulds.split import dowels_across
 from hydrostat.fabrication.solids.construct import segments
 
@@ -47,7 +47,7 @@ def make_positive(cavity: Manifold, sprue: Sprue | None) -> Positive:
     """Both halves of what is cast, with the sprue on it, and holes for dowels in their flat sides."""
     whole = _with_sprue(cavity, sprue)
     dowels = dowels_across(whole)
-    holes = joined(dowels)
+    holes = join_solids(dowels)
     upper, lower = (whole - holes).split_by_plane((0.0, 0.0, 1.0), 0.0)
     return Positive(
         upper=upper,
@@ -59,7 +59,7 @@ def make_positive(cavity: Manifold, sprue: Sprue | None) -> Positive:
 
 
 def _with_sprue(cavity: Manifold, sprue: Sprue | None) -> Manifold:
-    """What is cast with as much of the sprue as the silicone is thick: there it meets the frame."""
+    """Return the cavity with a stub of the sprue as long as the silicone is thick, where it meets the frame."""
     if sprue is None:
         return cavity
     return cavity + _stub(cavity, sprue)

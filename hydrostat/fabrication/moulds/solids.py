@@ -29,8 +29,8 @@ def rod(
     return upright.rotate(_TURNS[axis, bool(way[axis] > 0)]).translate(tuple(start.tolist()))
 
 
-def joined(solids: Iterable[Manifold]) -> Manifold:
-    """All of them as one."""
+def join_solids(solids: Iterable[Manifold]) -> Manifold:
+    """Return the union of solids."""
     whole = Manifold()
     for solid in solids:
         whole = whole + solid

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from manifold3d import CrossSection, JoinType, Manifold
 
-from hydrostat.fabrication.moulds.solids import joined, rod
+from hydrostat.fabrication.moulds.solids import join_solids, rod
 
 DOWEL = 1.6  # radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm]
 DOWEL_DEPTH = 8.0  # of the hole in each of two pieces [mm]
@@ -64,7 +64,7 @@ def split(solid: Manifold, x_cuts: tuple[float, ...], y_cuts: tuple[float, ...])
         for place in places:
             pieces = [part for piece in pieces for part in piece.split_by_plane(normal, place)]
     parts = [part for piece in pieces for part in _bodies(piece)]
-    holes = float((joined(dowels) ^ solid).volume())
+    holes = float((join_solids(dowels) ^ solid).volume())
     return Pieces(
         solids=tuple(sorted((part for part in parts if _printable(part)), key=_corner)),
         dowels=len(dowels),
@@ -73,13 +73,13 @@ def split(solid: Manifold, x_cuts: tuple[float, ...], y_cuts: tuple[float, ...])
 
 
 def _bodies(piece: Manifold) -> list[Manifold]:
-    """What of a piece hangs together; one with a closed room in it stays as it is."""
+    """Return the connected bodies of a piece; a piece with a closed void stays whole."""
     shells = piece.decompose()
     return shells if all(shell.volume() > 0 for shell in shells) else [piece]
 
 
 def _printable(part: Manifold) -> bool:
-    """Tell whether it is more than a crumb that a cut leaves."""
+    """Return True if a part is larger than a crumb that a cut leaves."""
     low, high = np.reshape(part.bounding_box(), (2, 3))
     return bool((high - low).min() > _THIN) and part.volume() > _CRUMB
 
@@ -134,7 +134,7 @@ def _strip(section: CrossSection, axis: int, span: tuple[float, float]) -> Cross
 
 
 def _has_room(solid: Manifold, spot: Float[np.ndarray, "3"], axis: int) -> bool:
-    """Tell whether a dowel with a wall round it lies inside the solid."""
+    """Return True if a dowel with a wall round it lies inside the solid."""
     rod_with_wall = _dowel(spot, axis, _WALL / 2)
     return float((rod_with_wall - solid).volume()) < 1e-6
 

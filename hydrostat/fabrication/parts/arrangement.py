@@ -1,4 +1,4 @@
-"""`arranged`: how all units in a flat body are laid: within its seam, and clear of each other if there is a way."""
+"""`arrange_units`: layout of all winch units in a flat body, within its seam and clear of each other if possible."""
 
 import math
 from collections.abc import Sequence
@@ -24,11 +24,11 @@ class LaidUnit:
     warnings: tuple[str, ...] = ()  # what to mind
 
 
-def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
-    """Lay each unit, in their order, within a seam and a thickness [mm], and tell what is wrong with it.
+def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
+    """Lay each unit, in their order, within a seam and a thickness [mm], with its problems and warnings.
 
     Each in turn takes the way in which it is within the seam, shares least of the plane with the others, bulges least
-    and is moved least, until none changes. Those that meet all the same lie one above the other, if the body is thick
+    and is moved least, until none changes. Those that still meet lie one above the other, if the body is thick
     enough for that.
     """
     ways = [_Ways(ways_to_lie(box, seam), thickness) for box in boxes]
@@ -50,7 +50,7 @@ def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> 
     if moved:
         ways_told = "; ".join(places[number].instruction for number in moved)
         warnings[moved[0]].append(
-            f"lay these units so, seen from the front, or they meet or reach the seam: {ways_told}"
+            f"place these winch units as listed (front view), or they collide or reach the seam: {ways_told}"
         )
     return tuple(
         LaidUnit(place=place, problems=tuple(wrong), warnings=tuple(minded))
@@ -94,7 +94,7 @@ class _Ways:
         return _Ways([place for place in inside if place.depth <= least + 1e-9], self._thickness)
 
     def _shared(self, other: UnitPlace) -> tuple[UnitPlace, Vector, Vector]:
-        """What each way shares with another unit, where one cannot lie above the other, and where it can."""
+        """Areas shared with another unit for each placement [mm^2]: where stacking is impossible, and possible."""
         if id(other) not in self._shares:
             near = shapely.intersects(self._footprints, other.footprint)
             area = np.zeros(len(self.places))
@@ -131,7 +131,7 @@ def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float]
 
 
 def _meet(places: Sequence[UnitPlace], numbers: Sequence[int]) -> bool:
-    """Tell whether some units all cover a common part of the plane."""
+    """Return True if some units all cover a common part of the plane."""
     return float(shapely.intersection_all([places[number].footprint for number in numbers]).area) > TOUCHES
 
 
@@ -156,26 +156,26 @@ def _piles(places: Sequence[UnitPlace]) -> list[tuple[int, ...]]:
 
 
 def _piled(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
-    """What is said of units above each other, and whether that can be built."""
+    """Return the sentence on units above each other, and True if they can be built."""
     high = sum(place.depth for place in pile)
     names = " and ".join(f'"{place.box.winch}"' for place in pile) + _sizes(pile)
     possible = high <= (1 + GIVES) * thickness
     if possible:
         bulge = f", so it bulges by {high - thickness:.0f} mm" if high > thickness else ""
         return (
-            f"the units of winches {names} meet wherever they were tried: lay them one above the other, "
+            f"the units of winches {names} overlap in every tested place. Lay them one above the other, "
             f"{high:.0f} mm in a body of {thickness:.0f} mm{bulge}",
             True,
         )
     return (
-        f"the units of winches {names} meet wherever they were tried, and one above the other they take "
-        f"{high:.0f} mm of a body of {thickness:.0f} mm: move the winches apart, or take smaller motors",
+        f"the units of winches {names} overlap in every tested place, and one above the other they need "
+        f"{high:.0f} mm in a body of {thickness:.0f} mm. Move the winches apart or choose smaller motors",
         False,
     )
 
 
 def _sizes(pile: Sequence[UnitPlace]) -> str:
-    """How large units are, and of two how far apart the robot has their winches, in brackets."""
+    """Sizes of units, and for two the distance between their winches, in brackets."""
     sides = [sides_text(place.box.size) for place in pile]
     alike = len(set(sides)) == 1
     apart = f", {math.dist(pile[0].box.at, pile[1].box.at):.0f} mm apart" if len(pile) == 2 else ""
@@ -189,13 +189,13 @@ def _alone(place: UnitPlace, thickness: float) -> list[str]:
         share = 100 * place.outside / place.footprint.area
         words = f"{share:.0f}" if share >= 1 else "less than 1"
         found.append(
-            f"{place.box.words} does not lie within the seam in any turn about its place, {words} % of it would be "
-            "outside: move the winch inwards, or take a smaller motor or spool"
+            f"{place.box.words} does not fit within the seam at any angle ({words} % outside). Move the winch inwards "
+            "or choose a smaller motor or spool"
         )
     if place.depth > (1 + GIVES) * thickness:
         found.append(
-            f"{place.box.words} takes {place.depth:.0f} mm of a body of {thickness:.0f} mm, which gives by about "
-            f"{100 * GIVES:.0f} % at most: take a smaller motor or spool, or a thicker body"
+            f"{place.box.words} needs {place.depth:.0f} mm in a body of {thickness:.0f} mm, which bulges by "
+            f"{100 * GIVES:.0f} % at most. Choose a smaller motor or spool, or a thicker body"
         )
     return found
 
@@ -204,6 +204,6 @@ def _bulging(place: UnitPlace, thickness: float) -> list[str]:
     if not thickness < place.depth <= (1 + GIVES) * thickness:
         return []
     return [
-        f"{place.box.words} is thicker than the body of {thickness:.0f} mm: it will bulge by "
-        f"{place.depth - thickness:.0f} mm; take a smaller motor or spool, or a thicker body"
+        f"{place.box.words} is thicker than the body of {thickness:.0f} mm, which will bulge by "
+        f"{place.depth - thickness:.0f} mm. Choose a smaller motor or spool, or a thicker body"
     ]

@@ -32,15 +32,15 @@ def tube_holder(heights: Sequence[float], options: PartOptions) -> Construction:
     lowest, highest = min(heights), max(heights)
     screw = highest + options.tube / 2 + _ABOVE
     top = screw + 3.0
-    body: Construction = Box((HOLDER_WIDTH, HOLDER_DEPTH, top)).moved(-HOLDER_WIDTH / 2, -HOLDER_DEPTH / 2, 0)
+    body: Construction = Box((HOLDER_WIDTH, HOLDER_DEPTH, top)).move(-HOLDER_WIDTH / 2, -HOLDER_DEPTH / 2, 0)
     for height in heights:
-        body = body - Cylinder(HOLDER_DEPTH + 2, options.tube / 2).turned(x=90).moved(0, HOLDER_DEPTH / 2 + 1, height)
+        body = body - Cylinder(HOLDER_DEPTH + 2, options.tube / 2).rotate(x=90).move(0, HOLDER_DEPTH / 2 + 1, height)
     deep = lowest - options.tube / 2 - 0.5
-    body = body - Box((_SLOT, HOLDER_DEPTH + 2, top)).moved(-_SLOT / 2, -HOLDER_DEPTH / 2 - 1, deep)
-    body = body - Cylinder(HOLDER_WIDTH, 1.2).turned(y=90).moved(0, 0, screw)
-    body = body - Cylinder(HOLDER_WIDTH, 0.85).turned(y=-90).moved(0, 0, screw)
+    body = body - Box((_SLOT, HOLDER_DEPTH + 2, top)).move(-_SLOT / 2, -HOLDER_DEPTH / 2 - 1, deep)
+    body = body - Cylinder(HOLDER_WIDTH, 1.2).rotate(y=90).move(0, 0, screw)
+    body = body - Cylinder(HOLDER_WIDTH, 0.85).rotate(y=-90).move(0, 0, screw)
     depth = min(_INTO, deep - 1.2)
-    return body - Cylinder(depth + 1, _PILOT / 2).moved(0, 0, -1)
+    return body - Cylinder(depth + 1, _PILOT / 2).move(0, 0, -1)
 
 
 POST = 12.0  # width of a post [mm]
@@ -48,9 +48,9 @@ POST = 12.0  # width of a post [mm]
 
 def post(height: float) -> Construction:
     """A post [mm] with a hole for a screw M3 at both ends, as it stands on the bed."""
-    body: Construction = Box((POST, POST, height)).moved(-POST / 2, -POST / 2, 0)
-    body = body - Cylinder(13, 1.3).moved(0, 0, -1)
-    return body - Cylinder(13, 1.3).moved(0, 0, height - 12)
+    body: Construction = Box((POST, POST, height)).move(-POST / 2, -POST / 2, 0)
+    body = body - Cylinder(13, 1.3).move(0, 0, -1)
+    return body - Cylinder(13, 1.3).move(0, 0, height - 12)
 
 
 Ring = tuple[Corner, ...]  # a closed line, its first corner not repeated [mm]
@@ -79,7 +79,7 @@ class Hole:
     @property
     def raised(self) -> Construction:
         """Shape that is taken away for it."""
-        return Cylinder(SHEET + 2, self.radius).moved(*self.middle, -1)
+        return Cylinder(SHEET + 2, self.radius).move(*self.middle, -1)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,8 +93,8 @@ class Seat:
         """A point of the unit on the base [mm]."""
         return self.x + point[0], point[1]
 
-    def placed(self, solid: Manifold) -> Manifold:
-        """A solid of the unit on the base."""
+    def place_solid(self, solid: Manifold) -> Manifold:
+        """Move a solid of the unit to its seat on the base."""
         return solid.translate((self.x, 0, 0))
 
 
@@ -167,10 +167,10 @@ class BaseTile:
         """Shape of it as it lies on the bed."""
         body: Construction = Prism(_rectangle(self.low, self.high), SHEET)
         for cut in self.cuts:
-            body = body - Prism(cut, SHEET + 2).moved(0, 0, -1)
+            body = body - Prism(cut, SHEET + 2).move(0, 0, -1)
         for hole in self.holes:
             body = body - hole.raised
-        return body.moved(-self.low[0], -self.low[1], 0)
+        return body.move(-self.low[0], -self.low[1], 0)
 
 
 def _rectangle(low: Corner, high: Corner) -> Ring:

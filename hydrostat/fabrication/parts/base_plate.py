@@ -93,7 +93,7 @@ def base_plate(
 def _tubes(
     robot: Robot, units: Sequence[WinchUnit], plan: BasePlan, options: PartOptions
 ) -> tuple[tuple[int, float], ...]:
-    """How long each tube is up to where its cable begins [mm].
+    """Length of each tube up to the first point of its cable [mm].
 
     Beyond its holder it goes the run straight on, as far to the side as the other end of the row, and from the nearest
     of the places where cables begin to the farthest. A tube that bends gently, never back, is no longer than the way
@@ -120,7 +120,7 @@ def _to_hold(robot: Robot, units: Sequence[WinchUnit], held: Collection[int]) ->
             if cable.bare[0] and index not in held:
                 place = ", ".join(f"{1e3 * value + 0.0:.1f}" for value in cable.points[0])
                 found.append(
-                    f'cable C{index + 1} of winch "{unit.winch}" is bare from its beginning: clamp the end of its '
+                    f'cable C{index + 1} of winch "{unit.winch}" has no sheath at its start. Clamp the end of its '
                     f"tube at ({place}) mm, in the robot's coordinates, to what the robot is fixed to"
                 )
     return tuple(found)
@@ -171,7 +171,7 @@ def _assembly(
             replace(
                 piece,
                 name=f"{piece.name} ({unit.winch})",
-                solid=seat.placed(piece.solid),
+                solid=seat.place_solid(piece.solid),
                 pulled=(0, 0, unit.motor.depth + 20),
             )
             for piece in unit.assembly.pieces
@@ -190,8 +190,8 @@ def _assembly(
 
 def _too_large(pieces: Sequence[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:
     return tuple(
-        f"{piece.name} is {sides_text(piece.size)} mm, the bed {sides_text(bed)} mm: cut the base from acrylic, or "
-        "take smaller motors"
+        f"{piece.name} is {sides_text(piece.size)} mm, the bed {sides_text(bed)} mm. Cut the base from acrylic or "
+        "choose smaller motors"
         for piece in pieces
         if any(side > room + 1e-6 for side, room in zip(piece.size, bed, strict=True))
     )

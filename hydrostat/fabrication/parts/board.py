@@ -9,10 +9,10 @@ class BoardKind:
     """A board that the firmware is for.
 
     Attributes:
-        chip: its processor, as compilers call it.
-        motors: geared DC motors with encoders that it bears.
-        loader: how avrdude talks to what it starts with.
-        wiring: for each motor: PWM and direction to the driver, encoder A and B, the driver's current sense.
+        chip: processor, by its name in compilers.
+        motors: number of geared DC motors with encoders that it drives.
+        loader: options of avrdude for its bootloader.
+        wiring: pins for each motor: PWM and direction to the driver, encoder A and B, the driver's current sense.
     """
 
     chip: str

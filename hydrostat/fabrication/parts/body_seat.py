@@ -56,7 +56,7 @@ def body_seat(robot: Robot, options: PartOptions, bed: tuple[float, float, float
         return BodySeat()
     plan = _plan(robot, cables, options)
     if isinstance(plan, str):
-        return BodySeat(warnings=(f"no seat is made for the body, as {plan}: clamp it where it is held",))
+        return BodySeat(warnings=(f"no seat is made for the body: {plan}. Clamp the body at its pins",))
     return plan.seat(robot.name, options, bed)
 
 
@@ -121,14 +121,14 @@ class _SeatPlan:
         """Flange and cup, with room for the cables and holes for the thread that holds the body; its floor at z = 0."""
         around = Polygon(self.cavity.buffer(_WALL).simplify(0.1).exterior)  # type: ignore[attr-defined]
         made = Prism(_ring(self.flange), _FLOOR) + Prism(_ring(around), _FLOOR + self.depth)
-        made = made - Prism(_ring(self.cavity), self.depth + 1).moved(z=_FLOOR)
+        made = made - Prism(_ring(self.cavity), self.depth + 1).move(z=_FLOOR)
         for spot, turn in self._ties():
-            hole = Cylinder(3 * _WALL, _TIE / 2).turned(y=90, z=turn)
-            made = made - hole.moved(*spot, _FLOOR + self.depth / 2)
+            hole = Cylinder(3 * _WALL, _TIE / 2).rotate(y=90, z=turn)
+            made = made - hole.move(*spot, _FLOOR + self.depth / 2)
         for x, y in self._posts:
-            made = made - Cylinder(_FLOOR + 2, _SCREW / 2).moved(x, y, -1)
+            made = made - Cylinder(_FLOOR + 2, _SCREW / 2).move(x, y, -1)
         for line in self.lines:
-            made = made - _way(line, options.tube / 2 + 0.75).moved(z=_FLOOR)
+            made = made - _way(line, options.tube / 2 + 0.75).move(z=_FLOOR)
         return made
 
     def _ties(self) -> list[tuple[Corner, float]]:
@@ -145,15 +145,15 @@ class _SeatPlan:
 
     def _plate(self, options: PartOptions) -> Construction:
         """The plate, its upper side at z = 0; a tube that ends in it stops below a lip, any other goes through."""
-        made: Construction = Prism(_ring(self._board), _PLATE).moved(z=-_PLATE)
+        made: Construction = Prism(_ring(self._board), _PLATE).move(z=-_PLATE)
         for line, stops in zip(self.lines, self.ends, strict=True):
             x, y = line[0, :2]
             top, play = (-_LIP, 0.05) if stops else (1.0, 0.25)
-            made = made - Cylinder(_PLATE + 1 + top, options.tube / 2 + play).moved(x, y, -_PLATE - 1)
-            made = made - Cylinder(_PLATE, options.cable + 0.2).moved(x, y, -_PLATE + 1)
+            made = made - Cylinder(_PLATE + 1 + top, options.tube / 2 + play).move(x, y, -_PLATE - 1)
+            made = made - Cylinder(_PLATE, options.cable + 0.2).move(x, y, -_PLATE + 1)
         for x, y in (*self._posts, *self._legs):
-            made = made - Cylinder(_PLATE + 2, _SCREW / 2).moved(x, y, -_PLATE - 1)
-        return made.moved(z=_PLATE)
+            made = made - Cylinder(_PLATE + 2, _SCREW / 2).move(x, y, -_PLATE - 1)
+        return made.move(z=_PLATE)
 
     def _assembly(self, name: str, solids: Sequence[Printed]) -> PartAssembly:
         cup, plate, posts, legs = solids
@@ -185,11 +185,11 @@ class _SeatPlan:
 
 
 def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPlan | str":
-    """How the seat is laid out, or why there can be none."""
+    """Return the layout of the seat, or the reason why there can be none."""
     if robot.body.mesh.dim == 2:
         return "the body is flat"
     if len(robot.pins) != 1:
-        return f"it is held in {len(robot.pins)} places" if robot.pins else "it is held nowhere"
+        return f"it has {len(robot.pins)} pins" if robot.pins else "it has no pin"
     ways = MILLIMETRES * np.array([robot.cables[index].points[:2] for index in cables])
     back = (ways[:, 0] - ways[:, 1]).mean(axis=0)
     body, turn = body_solid(robot.body), _upright(back)
@@ -198,12 +198,12 @@ def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPl
     body, lines = body.translate((0, 0, -floor)), ways @ turn.T - [0, 0, floor]
     low, top = (reach - floor for reach in _reach(robot.pins[0], turn))
     if low > 1.0 or top < 1.0:
-        return "it is not held at the end where its cables begin"
+        return "it is not pinned at the end where its cables begin"
     pinned = robot.pins[0].holds(robot.body.mesh)
     own = Polygon(box(*_bounds(MILLIMETRES * robot.body.mesh.nodes[pinned] @ turn.T)))
     cavity = _outline(body, top, options)
     if cavity is None or cavity.area > _WIDER * own.buffer(5.0).area:
-        return "another part of it is beside the end where it is held"
+        return "another part of it is next to the pinned end"
     below = float(np.median(-lines[:, 0, 2]))
     level = [place for place in range(len(cables)) if abs(-lines[place, 0, 2] - below) <= _LEVEL]
     if below - _LIP - _FLOOR < _SHORTEST:
@@ -239,7 +239,7 @@ def _reach(pin: Pin, turn: Float[np.ndarray, "3 3"]) -> tuple[float, float]:
 
 
 def _outline(body: Manifold, top: float, options: PartOptions) -> Polygon | None:
-    """What the end of a body covers from above, a little wider; None where it is in several pieces."""
+    """Return the footprint of the end of a body with its clearance [mm]; None if it is in several pieces."""
     rings = body.trim_by_plane((0, 0, -1), -top).project().to_polygons()
     covered = unary_union([Polygon(ring).buffer(0) for ring in rings]).buffer(options.clearance).simplify(0.1)
     return orient(Polygon(covered.exterior)) if isinstance(covered, Polygon) else None
@@ -258,12 +258,12 @@ def _flange(cavity: Polygon, lines: Sequence[Line], options: PartOptions) -> Pol
 
 
 def _way(line: Line, radius: float) -> Construction:
-    """What a straight cable or tube needs, from its beginning to 2 mm beyond its end [mm]."""
+    """Return the channel of a straight cable or tube, up to 2 mm beyond its end [mm]."""
     along = line[1] - line[0]
     length = float(np.linalg.norm(along))
     tilt = math.degrees(math.acos(along[2] / length))
-    rod = Cylinder(length + 2.0, radius).turned(y=tilt, z=math.degrees(math.atan2(along[1], along[0])))
-    return rod.moved(*(float(value) for value in line[0]))
+    rod = Cylinder(length + 2.0, radius).rotate(y=tilt, z=math.degrees(math.atan2(along[1], along[0])))
+    return rod.move(*(float(value) for value in line[0]))
 
 
 def _bounds(points: Float[np.ndarray, "points 3"]) -> tuple[float, float, float, float]:

@@ -11,7 +11,7 @@ _LINE = 0.4  # what a nozzle lays in one go: the thinnest sleeve [mm]
 _PLAY = 0.4  # how much wider the bore is than the cable, at least [mm]
 
 _MOUTH = ((1.0, 0.0), (0.65, 0.3), (0.25, 0.75), (0.0, 1.3))
-"""How much wider than the bore the mouth is, at heights above the bed [mm]: a rounding in steps of less than 50
+"""Excess of the mouth's radius over the bore's, and height above the bed [mm]: a rounding in steps of less than 50
 degrees from upright, which prints without support."""
 
 _FLANGE = 1.6
@@ -50,7 +50,7 @@ def _model(options: PartOptions, hole: float) -> Construction:
     model: Construction = eyelet
     for angle in (45, 135, 225, 315):
         x, y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-        model = model - needle.moved(stitches * x, stitches * y, -1)
+        model = model - needle.move(stitches * x, stitches * y, -1)
     return model
 
 

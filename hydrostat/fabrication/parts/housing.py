@@ -24,8 +24,8 @@ _LENGTHS = (8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.
 _SEAT = 5.0
 _ROOF = 2.0
 _TRY = 0.1
-"""Of the screws that are sold; depth of the seat of a tube; least thickness of the roof; step of the search for a place
-of the screws [mm]."""
+"""Lengths of available screws, depth of the seat of a tube, minimum thickness of the roof, and search step for the
+position of the screws [mm]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class Drive:
 
     @property
     def inside(self) -> float:
-        """How much of the shaft is in the spool [mm]; negative: it does not reach it."""
+        """Length of the shaft in the spool [mm]; negative if it does not reach it."""
         return self.tip - self.start
 
 
@@ -100,7 +100,7 @@ class Housing:
 
     @cached_property
     def post(self) -> float:
-        """How far the screws of the box are from the axis, along x and along y [mm].
+        """Distance of the screws of the box from the axis, along x and along y [mm].
 
         Clear of the channels, of the room of the spool, of the screws in the face, and outside of the motor if there is
         a base.
@@ -116,7 +116,7 @@ class Housing:
         return found
 
     def _blocked(self, post: float) -> bool:
-        """Tell whether a screw would get into the way of a screw in the face, or of a motor below the base."""
+        """Return True if a screw would collide with a screw in the face, or with a motor below the base."""
         mine = self.screw.passage / 2
         corners = MultiPoint([(x, y) for x in (-post, post) for y in (-post, post)])
         if self.outside:
@@ -160,7 +160,7 @@ class Housing:
 
     @property
     def sunk(self) -> float:
-        """How far the heads of these screws lie below the upper side of the roof [mm]."""
+        """Depth of the heads of these screws below the upper side of the roof [mm]."""
         return 0.0 if self.outside else max(0.0, self.top - 0.3 - self.screw.length)
 
     def height(self, groove: int) -> float:
@@ -178,7 +178,7 @@ class Housing:
         return self.half
 
     def seat(self, cable: int) -> float:
-        """How deep the tube of a cable goes into the box [mm]."""
+        """Depth of the tube of a cable in the box [mm]."""
         radius = self.spool.grooves[cable].radius
         wall = self.half - math.sqrt(max(0.0, self.cavity**2 - radius**2))
         return min(_SEAT, 0.65 * wall)
@@ -202,22 +202,22 @@ class Housing:
     def plate(self) -> Construction:
         """Plate as it lies on the motor."""
         half, drive, motor = self.half, self.drive, self.motor
-        body: Construction = Box((2 * half, 2 * half, drive.plate)).moved(-half, -half, 0)
+        body: Construction = Box((2 * half, 2 * half, drive.plate)).move(-half, -half, 0)
         if motor.horn is not None:
             (low_x, low_y), (high_x, _) = self.tongue
-            body = body + Box((high_x - low_x, -low_y, drive.floor)).moved(low_x, low_y, 0)
-            body = body - Cylinder(drive.plate + 2, self.recess).moved(0, 0, -1)
+            body = body + Box((high_x - low_x, -low_y, drive.floor)).move(low_x, low_y, 0)
+            body = body - Cylinder(drive.plate + 2, self.recess).move(0, 0, -1)
         else:
-            body = body - Cylinder(drive.plate, self.recess).moved(0, 0, drive.floor)
-            body = body - Cylinder(drive.plate, motor.shaft.boss + self.options.clearance).moved(0, 0, -1)
+            body = body - Cylinder(drive.plate, self.recess).move(0, 0, drive.floor)
+            body = body - Cylinder(drive.plate, motor.shaft.boss + self.options.clearance).move(0, 0, -1)
         for x, y in motor.holes:
-            body = body - self._slot(motor.screw.hole / 2).moved(x, y, -1)
+            body = body - self._slot(motor.screw.hole / 2).move(x, y, -1)
             if motor.horn is not None:
-                body = body - self._slot(motor.screw.head / 2 + self.options.fit).moved(x, y, drive.floor)
+                body = body - self._slot(motor.screw.head / 2 + self.options.fit).move(x, y, drive.floor)
         if self.outside:
-            hole = Cylinder(drive.plate + 2, self.screw.passage / 2).moved(0, 0, -1)
+            hole = Cylinder(drive.plate + 2, self.screw.passage / 2).move(0, 0, -1)
         else:
-            hole = Cylinder(drive.plate, self.screw.pilot / 2).moved(0, 0, 0.4)
+            hole = Cylinder(drive.plate, self.screw.pilot / 2).move(0, 0, 0.4)
         return self._at_posts(body, hole)
 
     def _slot(self, radius: float) -> Construction:
@@ -225,42 +225,42 @@ class Housing:
         tall, slot = self.drive.plate + 2, self.motor.slot
         hole: Construction = Cylinder(tall, radius)
         if slot:
-            ends = hole.moved(-slot, 0, 0) + hole.moved(slot, 0, 0)
-            hole = ends + Box((2 * slot, 2 * radius, tall)).moved(-slot, -radius, 0)
+            ends = hole.move(-slot, 0, 0) + hole.move(slot, 0, 0)
+            hole = ends + Box((2 * slot, 2 * radius, tall)).move(-slot, -radius, 0)
         return hole
 
     def _at_posts(self, body: Construction, hole: Construction) -> Construction:
         for x in (-self.post, self.post):
             for y in (-self.post, self.post):
-                body = body - hole.moved(x, y, 0)
+                body = body - hole.move(x, y, 0)
         return body
 
     def box(self) -> Construction:
         """Box as it stands on the plate."""
         half, low, top = self.half, self.drive.plate, self.top
-        body: Construction = Box((2 * half, 2 * half, top - low)).moved(-half, -half, low)
-        body = body - Cylinder(self.under_roof - low + 1, self.cavity).moved(0, 0, low - 1)
-        body = body - Cylinder(self.roof + 2, self.spool.pin + self.options.clearance).moved(0, 0, self.under_roof - 1)
+        body: Construction = Box((2 * half, 2 * half, top - low)).move(-half, -half, low)
+        body = body - Cylinder(self.under_roof - low + 1, self.cavity).move(0, 0, low - 1)
+        body = body - Cylinder(self.roof + 2, self.spool.pin + self.options.clearance).move(0, 0, self.under_roof - 1)
         screw, sunk = self.screw, self.sunk
         cone = (screw.head - screw.passage) / 2 + 0.1
-        hole: Construction = Cylinder(top - low + 2, screw.passage / 2).moved(0, 0, low - 1)
-        hole = hole + Cylinder(cone, screw.passage / 2, screw.head / 2 + 0.1).moved(0, 0, top - sunk - cone)
-        hole = hole + Cylinder(sunk + 1, screw.head / 2 + 0.1).moved(0, 0, top - sunk)
+        hole: Construction = Cylinder(top - low + 2, screw.passage / 2).move(0, 0, low - 1)
+        hole = hole + Cylinder(cone, screw.passage / 2, screw.head / 2 + 0.1).move(0, 0, top - sunk - cone)
+        hole = hole + Cylinder(sunk + 1, screw.head / 2 + 0.1).move(0, 0, top - sunk)
         body = self._at_posts(body, hole)
         for place, azimuth in enumerate(self.azimuths):
-            body = body - self._channel(place).turned(z=azimuth)
+            body = body - self._channel(place).rotate(z=azimuth)
         return body
 
     def _channel(self, place: int) -> Construction:
         """Channels of the cables of a groove that leave along +x."""
         seat = self.seat(place)
-        bore = Cylinder(self.half + 1, self.options.bore / 2).turned(y=90)
-        end = Cylinder(seat + 1, self._seat_radius).turned(y=90).moved(self.half - seat, 0, 0)
+        bore = Cylinder(self.half + 1, self.options.bore / 2).rotate(y=90)
+        end = Cylinder(seat + 1, self._seat_radius).rotate(y=90).move(self.half - seat, 0, 0)
         aside = -self.spool.grooves[place].radius
         first, *others = self.heights(place)
-        channels = (bore + end).moved(0, aside, first)
+        channels = (bore + end).move(0, aside, first)
         for height in others:
-            channels = channels + (bore + end).moved(0, aside, height)
+            channels = channels + (bore + end).move(0, aside, height)
         return channels
 
     def coupling(self) -> Construction | None:
@@ -270,7 +270,7 @@ class Housing:
             return None
         body: Construction = Cylinder(drive.disc, horn.radius)
         body = body + self.motor.shaft.shape(drive.tip - horn.height)
-        hole = Cylinder(drive.disc + 2, horn.screw.hole / 2).moved(horn.circle, 0, -1)
+        hole = Cylinder(drive.disc + 2, horn.screw.hole / 2).move(horn.circle, 0, -1)
         for step in range(horn.count):
-            body = body - hole.turned(z=360 / horn.count * step)
+            body = body - hole.rotate(z=360 / horn.count * step)
         return body

@@ -53,7 +53,7 @@ class Shaft:
         radius = self.diameter / 2 + grown
         flat = self.across - self.diameter / 2 + grown
         side = 2 * radius + 2
-        return Cylinder(length, radius) & Box((side, side, length)).moved(flat - side, -side / 2, 0)
+        return Cylinder(length, radius) & Box((side, side, length)).move(flat - side, -side / 2, 0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +121,7 @@ _M3 = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=3.0)
 _N20 = Motor(
     key="n20",
     title="Pololu micro metal gearmotor LP 6V, 298:1 (N20)",
-    body=Box((12, 10, 9)).moved(-6, -5, -9) + (Cylinder(16, 6) & Box((12, 10, 16)).moved(-6, -5, 0)).moved(0, 0, -25),
+    body=Box((12, 10, 9)).move(-6, -5, -9) + (Cylinder(16, 6) & Box((12, 10, 16)).move(-6, -5, 0)).move(0, 0, -25),
     outline=_box_outline((-6, -5), (6, 5)),
     depth=25.0,
     shaft=Shaft(diameter=3.0, across=2.5, length=9.0, boss=2.0, boss_height=0.8),
@@ -146,7 +146,7 @@ _N20 = Motor(
 _XL330 = Motor(
     key="xl330",
     title="Robotis Dynamixel XL330-M288-T",
-    body=Box((20, 34, 23)).moved(-10, -24.5, -23),
+    body=Box((20, 34, 23)).move(-10, -24.5, -23),
     outline=_box_outline((-10, -24.5), (10, 9.5)),
     depth=23.0,
     shaft=Shaft(diameter=6.0, across=5.0, length=0.0, boss=8.0, boss_height=0.0),
@@ -173,7 +173,7 @@ _XL330 = Motor(
 _POLOLU_25D = Motor(
     key="25d",
     title="Pololu 25D metal gearmotor LP 6V, 172:1, with encoder (item 4828)",
-    body=Cylinder(71, 12.5).moved(0, 0, -71),
+    body=Cylinder(71, 12.5).move(0, 0, -71),
     outline=_disc_outline(12.5),
     depth=71.0,
     shaft=Shaft(diameter=4.0, across=3.5, length=12.5, boss=3.5, boss_height=2.5),

@@ -14,7 +14,7 @@ GIVES = 0.25  # Share of its thickness that stuffing and cloth give for a unit. 
 TOUCHES = 1.0  # area that units may share, or that may stand over the seam [mm^2]: corners of boxes drawn square
 
 _SLIDE = 6.0
-"""How far a unit is slid from where the robot file has it [mm]: its place is still in its housing, and its tubes bend
+"""Offset of a unit from its place in the robot file [mm]: this place is still in its housing, and its tubes can bend
 that much."""
 
 _STEP = 30  # between the turns that are tried [degrees]: an hour of a clock, which is how a person is told
@@ -48,7 +48,7 @@ class UnitPlace:
 
     @property
     def depth(self) -> float:
-        """How much of the thickness it takes [mm]."""
+        """Height of the unit across the body's thickness [mm]."""
         return self.box.size[2 if self.across else 0]
 
     def azimuth(self, way: float) -> int:
@@ -63,12 +63,12 @@ class UnitPlace:
         slid = ""
         if right or ahead:
             way = self.turn - math.degrees(math.atan2(right, ahead))
-            slid = f", slid {math.hypot(right, ahead):g} mm to {_clock(way)}"
+            slid = f", shifted {math.hypot(right, ahead):g} mm toward {_clock(way)}"
         if self.across:
             channel = self.turn - 90 + self.azimuth(self.box.along)
-            return f'"{self.box.winch}" across the body, the channel of its first cable to {_clock(channel)}{slid}'
+            return f'"{self.box.winch}" across the body, channel of its first cable toward {_clock(channel)}{slid}'
         motor = self.turn + (-90 if self.flipped else 90)
-        return f'"{self.box.winch}" lying, its motor to {_clock(motor)}{slid}'
+        return f'"{self.box.winch}" flat, motor toward {_clock(motor)}{slid}'
 
 
 def seam_of(body: Body) -> BaseGeometry:

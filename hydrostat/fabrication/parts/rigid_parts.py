@@ -10,7 +10,7 @@ from hydrostat.fabrication.parts.body_seat import BodySeat, body_seat
 from hydrostat.fabrication.parts.grommet import grommet
 from hydrostat.fabrication.parts.motor import Motor, choose_motor
 from hydrostat.fabrication.parts.stopper import Stopper, stopper
-from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, find_crowded_units, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
@@ -158,7 +158,7 @@ def rigid_parts(
         stopper=stopper(options) if robot.cables else None,
         grommet=replace(grommet(options, hole), count=holes) if holes else None,
         cables=len(robot.cables),
-        between=crowded(robot, units),
+        between=find_crowded_units(robot, units),
     )
 
 

@@ -20,8 +20,8 @@ class Screw:
     @property
     def envelope(self) -> Construction:
         """The screw without its thread, head at z = 0 and point at z = -length."""
-        shank = Cylinder(self.length, self.core / 2).moved(0, 0, -self.length)
-        head = Cylinder(self.head_height, self.core / 2, self.head / 2).moved(0, 0, -self.head_height)
+        shank = Cylinder(self.length, self.core / 2).move(0, 0, -self.length)
+        head = Cylinder(self.head_height, self.core / 2, self.head / 2).move(0, 0, -self.head_height)
         return shank + head
 
 

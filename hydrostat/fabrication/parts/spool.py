@@ -78,7 +78,7 @@ class Spool:
 
     @cached_property
     def ties(self) -> tuple[float, ...]:
-        """How far the hole of each knot is from the axis [mm]: in the flange above its groove."""
+        """Distance of the hole of each knot from the axis [mm], in the flange above its groove."""
         above = (*self.drums[1:], self.pin)
         return tuple(
             max(mine + groove.eye(self.cable) + 0.1, other + knot)
@@ -131,20 +131,20 @@ class Spool:
         body: Construction = Revolve(self._profile())
         deep = self.inside + 0.5
         if deep + self.pin > top - 0.4:
-            bore = self.shaft.shape(top + 2, self.play).moved(0, 0, -1)
+            bore = self.shaft.shape(top + 2, self.play).move(0, 0, -1)
         else:
             radius = self.shaft.diameter / 2 + self.play
             cone = Cylinder(deep + radius, radius) & Cylinder(deep + radius, deep + radius, 0.0)
-            bore = self.shaft.shape(deep + radius + 1, self.play).moved(0, 0, -1) & (
-                cone + Cylinder(2, radius).moved(0, 0, -1.5)
+            bore = self.shaft.shape(deep + radius + 1, self.play).move(0, 0, -1) & (
+                cone + Cylinder(2, radius).move(0, 0, -1.5)
             )
         body = body - bore
         holes = zip(self.ties, self.knots, self.floors[1:], self.flanges[1:], self.drums, strict=True)
         for tie, knot, floor, flange, drum in holes:
             low = floor - (flange - drum) - self.wall / 2
             sunk = min(3 * self.cable, flange - tie - knot + self.wall / 2 - _SKIN)
-            body = body - Cylinder(floor - low + 2, knot / 2).moved(tie, 0, low)
-            body = body - Cylinder(sunk + 1, knot).moved(tie, 0, floor - sunk)
+            body = body - Cylinder(floor - low + 2, knot / 2).move(tie, 0, low)
+            body = body - Cylinder(sunk + 1, knot).move(tie, 0, floor - sunk)
         return body
 
     def _profile(self) -> tuple[tuple[float, float], ...]:

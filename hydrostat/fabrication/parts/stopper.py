@@ -10,11 +10,11 @@ from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, 
 from hydrostat.fabrication.solids.printed import Printed
 
 PRELOAD = 50.0
-"""What the screw keeps pressing with [N], assumed: 0.05 N m of a small screwdriver give about 80 N by T = K F d with
+"""Clamping force that the screw keeps [N], assumed: 0.05 N m of a small screwdriver give about 80 N by T = K F d with
 K = 0.3 in plastic, of which creep of PLA takes a third. Measured on none, check yours."""
 
 FRICTION = 0.1
-"""Of braided polyethylene on plastic: the lower end of 0.1 to 0.2, as tables give for UHMWPE. Measured on none."""
+"""Friction coefficient of braided polyethylene on plastic: the lower end of 0.1 to 0.2 for UHMWPE. Not measured."""
 
 _POST = 2.4
 _KEY = 2.2
@@ -34,7 +34,7 @@ _TIP = 0.4  # below the point of the screw: plastic, and air [mm]
 _SMOOTH = 0.6  # chamfer of what lies on the cloth and of what a hand feels [mm]
 
 _OFF_CENTRE = 0.8
-"""How far the middle of the button is from the screw towards the cable, so that it is pulled flat [mm]."""
+"""Distance of the middle of the button from the screw towards the cable, so that it is pulled flat [mm]."""
 
 _EXIT = 300.0  # where the cable leaves, counted round the post from where it comes up [degrees]
 
@@ -73,7 +73,7 @@ def stopper(options: PartOptions) -> Stopper:
             note="Flat side on the bed, no support, 0.12 mm layers, all walls (100 % infill).",
         ),
         Printed.of(
-            lid.turned(x=180).moved(0, 0, _LID),
+            lid.rotate(x=180).move(0, 0, _LID),
             name="stopper_lid",
             title="Stopper lid",
             note="Outer side on the bed, ribs up, no support, 0.12 mm layers, all walls (100 % infill).",
@@ -81,11 +81,11 @@ def stopper(options: PartOptions) -> Stopper:
     )
     pieces = (
         Placed(name="stopper_base", title="Stopper base", solid=solid_of(base)),
-        Placed(name="stopper_lid", title="Stopper lid", solid=solid_of(lid.moved(0, 0, closed)), pulled=(0, 0, 6)),
+        Placed(name="stopper_lid", title="Stopper lid", solid=solid_of(lid.move(0, 0, closed)), pulled=(0, 0, 6)),
         Placed(
             name="stopper_screw",
             title=M2X6.title,
-            solid=solid_of(M2X6.envelope.moved(0, 0, closed + _LID)),
+            solid=solid_of(M2X6.envelope.move(0, 0, closed + _LID)),
             pulled=(0, 0, 14),
             printed=False,
         ),
@@ -120,7 +120,7 @@ def _button(options: PartOptions, height: float) -> Construction:
     """The outline of both pieces: a disc about a point between the screw and the cable, its lower edge smooth."""
     radius = _OFF_CENTRE + _track(options) + _RIM
     side = ((0, 0), (radius - _SMOOTH, 0), (radius, _SMOOTH), (radius, height), (0, height))
-    return Revolve(side).moved(_OFF_CENTRE, 0, 0)
+    return Revolve(side).move(_OFF_CENTRE, 0, 0)
 
 
 def _rib_angles(options: PartOptions) -> list[float]:
@@ -133,45 +133,45 @@ def _rib_angles(options: PartOptions) -> list[float]:
 
 def _rib(angle: float, height: float, inside: float, outside: float) -> Construction:
     """A wall across the track at an angle [degrees], between two distances from the axis."""
-    return Box((outside - inside, _RIB, height)).moved(inside, -_RIB / 2, 0).turned(z=angle)
+    return Box((outside - inside, _RIB, height)).move(inside, -_RIB / 2, 0).rotate(z=angle)
 
 
 def _key(radius: float, flat: float, height: float) -> Construction:
     """A post with one flat, on the side away from the cable."""
-    return Cylinder(height, radius) & Box((2 * radius + 2, 4 * radius, height)).moved(-flat, -2 * radius, 0)
+    return Cylinder(height, radius) & Box((2 * radius + 2, 4 * radius, height)).move(-flat, -2 * radius, 0)
 
 
 def _base(options: PartOptions, rib: float) -> Construction:
     deck, track = _deck(), _track(options)
-    body: Construction = _button(options, deck + rib) - Cylinder(rib + 1, track).moved(0, 0, deck)
+    body: Construction = _button(options, deck + rib) - Cylinder(rib + 1, track).move(0, 0, deck)
     for angle in _rib_angles(options)[::2]:
-        body = body + _rib(angle, rib + 0.2, _POST - 0.2, track + 0.2).moved(0, 0, deck - 0.2)
-    body = body + Cylinder(rib + options.cable / 4 + 0.2, _POST).moved(0, 0, deck - 0.2)
-    body = body + _key(_KEY, _FLAT, rib + _KEY_HEIGHT).moved(0, 0, deck - 0.2)
-    body = body - Cylinder(20, M2X6.pilot / 2).moved(0, 0, _FLOOR)
+        body = body + _rib(angle, rib + 0.2, _POST - 0.2, track + 0.2).move(0, 0, deck - 0.2)
+    body = body + Cylinder(rib + options.cable / 4 + 0.2, _POST).move(0, 0, deck - 0.2)
+    body = body + _key(_KEY, _FLAT, rib + _KEY_HEIGHT).move(0, 0, deck - 0.2)
+    body = body - Cylinder(20, M2X6.pilot / 2).move(0, 0, _FLOOR)
     body = body - _way_up(options)
-    notch = Box((20, options.cable + _ROOM, 20)).moved(_POST, -(options.cable + _ROOM) / 2, deck)
-    return body - notch.turned(z=_EXIT)
+    notch = Box((20, options.cable + _ROOM, 20)).move(_POST, -(options.cable + _ROOM) / 2, deck)
+    return body - notch.rotate(z=_EXIT)
 
 
 def _way_up(options: PartOptions) -> Construction:
     """Air where the cable comes up beside the post: a hole with chamfers, and the slot by which it is laid in."""
     deck, radius = _deck(), (options.cable + _ROOM) / 2
     x, slot = _POST + radius, options.cable + 0.4
-    below = Cylinder(0.7, radius + 0.7, radius).moved(x, 0, -0.1)
-    above = Cylinder(0.5, radius, radius + 0.5).moved(x, 0, deck - 0.4)
+    below = Cylinder(0.7, radius + 0.7, radius).move(x, 0, -0.1)
+    above = Cylinder(0.5, radius, radius + 0.5).move(x, 0, deck - 0.4)
     track = Cylinder(20, _track(options)) - Cylinder(20, _POST)
-    sides = Box((20, slot, 30)).moved(x, -slot / 2, -1)
-    return Cylinder(20, radius).moved(x, 0, -1) + below + (above & track) + sides
+    sides = Box((20, slot, 30)).move(x, -slot / 2, -1)
+    return Cylinder(20, radius).move(x, 0, -1) + below + (above & track) + sides
 
 
 def _lid(options: PartOptions, rib: float) -> Construction:
     """Lid with its lower face at z = 0, as it lies on the base; ribs hang below."""
     free = options.fit
-    body: Construction = _button(options, _LID).turned(x=180).moved(0, 0, _LID)
+    body: Construction = _button(options, _LID).rotate(x=180).move(0, 0, _LID)
     for angle in _rib_angles(options)[1::2]:
-        body = body + _rib(angle, rib + 0.2, _POST + free, _track(options) - 0.2).moved(0, 0, -rib)
-    body = body - _key(_KEY + free, _FLAT + free, _KEY_HEIGHT + 1).moved(0, 0, -1)
-    body = body - Cylinder(20, M2X6.passage / 2).moved(0, 0, -1)
+        body = body + _rib(angle, rib + 0.2, _POST + free, _track(options) - 0.2).move(0, 0, -rib)
+    body = body - _key(_KEY + free, _FLAT + free, _KEY_HEIGHT + 1).move(0, 0, -1)
+    body = body - Cylinder(20, M2X6.passage / 2).move(0, 0, -1)
     sunk = (M2X6.head - M2X6.passage) / 2 + 0.1
-    return body - Cylinder(sunk + 0.1, M2X6.passage / 2, M2X6.head / 2 + 0.2).moved(0, 0, _LID - sunk)
+    return body - Cylinder(sunk + 0.1, M2X6.passage / 2, M2X6.head / 2 + 0.2).move(0, 0, _LID - sunk)

@@ -8,7 +8,7 @@ from itertools import chain, combinations
 from manifold3d import Manifold
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.arrangement import LaidUnit, arranged
+from hydrostat.fabrication.parts.arrangement import LaidUnit, arrange_units
 from hydrostat.fabrication.parts.housing import Housing, drive_of, roof_of
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.places import UnitBox, UnitPlace, seam_of
@@ -56,7 +56,7 @@ def spool_for(
     if drive.inside < least_inside:
         problems.append(
             f'winch "{winch.name}": only {max(drive.inside, 0):.1f} mm of the shaft of {motor.title} would be in the '
-            f"spool, {least_inside:.1f} mm are needed: take thinner walls or another motor"
+            f"spool (minimum {least_inside:.1f} mm). Choose thinner walls or another motor"
         )
     radii, small = _radii(robot, winch, wound, options, motor)
     lines = [len(cables) for cables in wound]
@@ -70,7 +70,7 @@ def spool_for(
     if spool.body > _LONGEST:
         problems.append(
             f'winch "{winch.name}": {turns:.1f} turns of cable do not fit on a spool of {_LONGEST:g} mm in '
-            f"{_MOST_LAYERS} layers: take a larger spool radius or less travel"
+            f"{_MOST_LAYERS} layers. Choose a larger spool radius or less travel"
         )
     return spool, (*small, *problems), _layers(spool, winch, wound)
 
@@ -86,7 +86,7 @@ def _radii(
         if radius < least - 1e-9:
             small.append(
                 f'winch "{winch.name}": spool radius {radius:.2f} mm of cable C{index + 1} is too small for the shaft '
-                f"of {motor.title} in a wall of {options.wall:g} mm: at least {least:.2f} mm, which is what is printed"
+                f"of {motor.title} in a wall of {options.wall:g} mm. The printed spool has {least:.2f} mm, the minimum"
             )
         radii.append(max(radius, least))
     return radii, small
@@ -106,8 +106,8 @@ def _layers(spool: Spool, winch: Winch, wound: Wound) -> tuple[str, ...]:
         lies, radius = ("lies", "its radius") if len(names) == 1 else ("lie", "their radius")
         found.append(
             f'{who} of winch "{winch.name}" {lies} in {groove.layers} layers: {radius} grows from '
-            f"{groove.radius:.1f} to {outer:.1f} mm, so the last turns take in "
-            f"{100 * (outer / groove.radius - 1):.0f} % more than was simulated"
+            f"{groove.radius:.1f} to {outer:.1f} mm, so the last turns wind "
+            f"{100 * (outer / groove.radius - 1):.0f} % more than simulated"
         )
     return tuple(found)
 
@@ -146,7 +146,7 @@ class WinchParts:
 
     def of(self, housing: Housing, winch: str) -> tuple[tuple[Printed, ...], PartAssembly]:
         """Make what is printed for a winch (spool, box, plate, the coupling of a servo) and put it together."""
-        box = housing.box().turned(x=180).moved(0, 0, housing.top)
+        box = housing.box().rotate(x=180).move(0, 0, housing.top)
         printed = [
             self._printed("spool", "Spool", housing.spool.construction(), _SPOOL),
             self._printed("housing", "Housing", box, _BOX),
@@ -265,8 +265,8 @@ def unit_room(robot: Robot, winch: Winch, options: PartOptions, motor: Motor) ->
     return _UnitDraft.of(robot, winch, wound_cables(robot, winch), options, motor).housing.room
 
 
-def crowded(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
-    """Sentences for units in a body of space that stand closer than they are wide; flat ones are laid one by one."""
+def find_crowded_units(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
+    """Return a sentence for each two units in a body in space that are closer than they are wide."""
     inside = [unit for unit in units if unit.mount is Mount.BODY and unit.place is None]
     found = []
     for one, other in combinations(inside, 2):
@@ -275,7 +275,7 @@ def crowded(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
         if apart < needed:
             found.append(
                 f'winches "{one.winch}" and "{other.winch}" are {apart:.1f} mm apart, their housings need '
-                f"{needed:.1f} mm: move one, or lay one above the other"
+                f"{needed:.1f} mm. Move one, or lay one above the other"
             )
     return tuple(found)
 
@@ -334,7 +334,7 @@ def _lay_units(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit
         )
         for draft in drafts
     ]
-    laid = arranged(boxes, seam_of(robot.body), 1e3 * robot.body.thickness)
+    laid = arrange_units(boxes, seam_of(robot.body), 1e3 * robot.body.thickness)
     return {each.place.box.winch: each for each in laid}
 
 

@@ -14,14 +14,14 @@ from shapely.ops import split
 from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Disc, Patch
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
-from hydrostat.fabrication.solids.printed import connected
+from hydrostat.fabrication.solids.printed import number_groups
 
 _DIRECTIONS = 12
 _SHIFTS = (0.0, -0.06, 0.06)  # offsets beside the worst place that are tried, as shares of the root of the patch's area
 _FINER = (-0.03, -0.015, 0.0, 0.015, 0.03)  # offsets beside the best of those that are tried then
 
 _LENGTH = 0.25
-"""How much a chord as long as the root of the patch's area counts against it: a shorter seam is less work."""
+"""Penalty of a chord as long as the root of the patch's area: a shorter seam is less work."""
 
 _LEAST = 0.03  # a piece of less than this share of the patch is not worth cutting off
 
@@ -40,7 +40,7 @@ class Chord:
         return (places - self.through) @ np.array([-self.along[1], self.along[0]])
 
     def crosses(self, ends: Float[np.ndarray, "edges 2 2"]) -> Bool[np.ndarray, " edges"]:
-        """Which edges it crosses."""
+        """Return True for each edge that it crosses."""
         one, other = self.heights(ends[:, 0]), self.heights(ends[:, 1])
         over = one * other <= 0
         share = np.abs(one) / np.maximum(np.abs(one) + np.abs(other), 1e-300)
@@ -52,7 +52,7 @@ NARROWEST = 8.0  # A neck of a patch narrower than that [mm] cannot be sewn and 
 
 
 def is_narrow(outline: BaseGeometry) -> bool:
-    """Tell whether an outline [mm] has such a neck, or is no wider anywhere."""
+    """Return True if an outline [mm] has such a neck, or is no wider anywhere."""
     inner = outline.buffer(-NARROWEST / 2)
     return inner.is_empty or isinstance(inner, shapely.MultiPolygon)
 
@@ -104,10 +104,10 @@ def cut_chord(mesh: SkinMesh, patch: Patch, number: int, chord: Chord) -> SkinMe
     one, other = sorted(pieces[sides[nearest]].tolist())
     links = np.sort(pieces[sides[border]], axis=1)
     links = links[(links != [one, other]).any(axis=1)]
-    group = connected(links, int(pieces.max()) + 1)
+    group = number_groups(links, int(pieces.max()) + 1)
     halves = [(cut.patch == number) & (group[pieces] == group[piece]) for piece in (one, other)]
     lesser = min(halves, key=lambda half: cut.areas[half].sum())
-    return cut.labelled(np.where(lesser, int(cut.patch.max()) + 1, cut.patch))
+    return cut.relabel_patches(np.where(lesser, int(cut.patch.max()) + 1, cut.patch))
 
 
 def _worst_place(patch: Patch, limit: float) -> Float[np.ndarray, " 2"]:
@@ -130,7 +130,7 @@ def _groups(triangles: Int[np.ndarray, "triangles 3"], label: Int[np.ndarray, " 
     order = np.lexsort((ends[:, 1], ends[:, 0]))
     shared = (ends[order[:-1]] == ends[order[1:]]).all(axis=1)
     links = np.column_stack([order[:-1][shared], order[1:][shared]]) // 3
-    return connected(links[label[links[:, 0]] == label[links[:, 1]]], len(triangles))
+    return number_groups(links[label[links[:, 0]] == label[links[:, 1]]], len(triangles))
 
 
 def _chord(outline: BaseGeometry, through: np.ndarray, along: np.ndarray) -> Chord | None:
@@ -149,7 +149,7 @@ def _chord(outline: BaseGeometry, through: np.ndarray, along: np.ndarray) -> Cho
 
 
 def _pieces(outline: BaseGeometry, chord: Chord) -> list[BaseGeometry]:
-    """What a chord leaves of an outline."""
+    """Return the pieces into which a chord cuts an outline."""
     through, along = np.array(chord.through), np.array(chord.along)
     ends = shapely.LineString([through + chord.low * along, through + chord.high * along])
     return shapely.get_parts(split(outline, _longer(ends))).tolist()

@@ -35,7 +35,7 @@ def front_and_back(mesh: SkinMesh) -> SkinMesh:
     direction = thin_direction(mesh)
     field = _smoothed(mesh, _looks(mesh, direction))
     cut, _, side = cut_at_zero(mesh, field, np.ones(len(mesh.triangles), dtype=bool))
-    return cut.labelled(two_discs(cut, side))
+    return cut.relabel_patches(two_discs(cut, side))
 
 
 def two_discs(mesh: SkinMesh, side: Int[np.ndarray, " triangles"]) -> Int[np.ndarray, " triangles"]:
@@ -55,7 +55,7 @@ def _largest(mesh: SkinMesh, label: Int[np.ndarray, " triangles"], value: int) -
 
 
 def _looks(mesh: SkinMesh, direction: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " vertices"]:
-    """How far the skin at each vertex looks along a direction: 1 along it, -1 against it."""
+    """Cosine between the skin's normal at each vertex and a direction."""
     normals = mesh.facing
     return (normals @ direction) / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
 
@@ -71,8 +71,8 @@ def _smoothed(mesh: SkinMesh, values: Float[np.ndarray, " vertices"]) -> Float[n
 
 
 MOST_GIVE = 0.12
-"""How much the cloth may have to give in 95 % of a patch. Felt and woven plush give about that much; assumed, measured
-on none."""
+"""Maximum stretch of the cloth in 95 % of a patch. Felt and woven plush stretch about that much; assumed, not
+measured."""
 
 MOST_EASE = 0.05  # How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed.
 MOST_PATCHES = 6  # a person loses track of more
@@ -172,27 +172,27 @@ def _on(mesh: SkinMesh, number: int, patch: Patch) -> Patch:
 
 
 GIVES_LITTLE = 0.06
-"""What any cloth gives: above that a pattern asks for one that stretches. Assumed, measured on none."""
+"""Stretch of any cloth: above that a pattern requires a stretch fabric. Assumed, not measured."""
 
 
 def patch_problems(
     names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
 ) -> tuple[str, ...]:
-    """Tell why the patches cannot be sewn, a line each."""
+    """Return the reasons why the patches cannot be sewn, one line each."""
     problems = []
     for name, patch, skin in zip(names, patches, skins, strict=True):
         give = distortion(patch).give(0.95)
         if give > MOST_GIVE:
             problems.append(
-                f"patch {name} would have to stretch or shrink by {give:.1%} to lie on the body, more than "
-                f"{MOST_GIVE:.0%}, which felt gives: cast this body in a mould, or simplify its shape"
+                f"patch {name} would have to stretch or shrink by {give:.1%} to fit the body, more than "
+                f"felt allows ({MOST_GIVE:.0%}). Cast this body in a mould or simplify its shape"
             )
         if not patch.outline.is_valid:
-            problems.append(f"patch {name} laps over itself when it lies flat: cast this body in a mould")
+            problems.append(f"patch {name} overlaps itself when flat. Cast this body in a mould")
         elif is_narrow(patch.outline):
             problems.append(
-                f"patch {name} is narrower than {NARROWEST:g} mm somewhere: it cannot be sewn and turned; cast this "
-                "body in a mould, or make it larger"
+                f"patch {name} is narrower than {NARROWEST:g} mm somewhere and cannot be sewn and turned. Cast this "
+                "body in a mould or make it larger"
             )
         problems += [f"patch {name}: {problem}" for problem in skin.problems]
     worst = max(seams, key=lambda seam: seam.mismatch)
@@ -200,8 +200,8 @@ def patch_problems(
         one, other = (names[number] for number in worst.patches)
         lengths = " and ".join(f"{length:.0f} mm" for length in worst.lengths)
         problems.append(
-            f"the seam between patches {one} and {other} is {lengths} long on them, {worst.mismatch:.0%} apart: more "
-            f"than {MOST_EASE:.0%} cannot be eased in"
+            f"the seam between patches {one} and {other} is {lengths} long on them, {worst.mismatch:.0%} apart. You "
+            f"cannot ease in more than {MOST_EASE:.0%}"
         )
     return tuple(problems)
 
@@ -209,20 +209,18 @@ def patch_problems(
 def patch_warnings(
     names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
 ) -> tuple[str, ...]:
-    """Tell what to mind with the cloth, a line each."""
+    """Return the warnings about the cloth, one line each."""
     warnings = []
     gives = {name: distortion(patch).give(0.95) for name, patch in zip(names, patches, strict=True)}
     most = max(gives, key=lambda name: gives[name])
     if gives[most] > GIVES_LITTLE:
         warnings.append(
-            f"the cloth has to give up to {gives[most]:.0%} (patch {most}, 95 % of its area): take a cloth that "
+            f"the cloth must stretch by up to {gives[most]:.0%} (patch {most}, 95 % of its area). Choose a cloth that "
             "stretches, such as knitted plush or soft felt"
         )
     ease = max((seam.mismatch for seam in seams), default=0.0)
     if ease > 0.01:
-        warnings.append(
-            f"sides of seams differ by up to {ease:.1%}: pin notch to notch, ease the longer one in between"
-        )
+        warnings.append(f"sides of seams differ by up to {ease:.1%}. Pin notch to notch and ease in the longer side")
     for name, skin in zip(names, skins, strict=True):
         warnings += [f"patch {name}: {warning}" for warning in skin.warnings]
     return tuple(warnings)

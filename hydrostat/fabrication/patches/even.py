@@ -36,7 +36,7 @@ _NOWHERE = 1e12  # of images with a triangle on its back
 
 
 class PatchEnergy:
-    """What `relax_patch` brings down, with its slope: of cloth the mean of s^3, of the rim what its edges are off."""
+    """Energy that `relax_patch` minimizes, with its gradient: mean of s^3 over the cloth, and error of the rim."""
 
     def __init__(self, patch: Patch, ease: float) -> None:
         disc, self._ease = patch.disc, ease

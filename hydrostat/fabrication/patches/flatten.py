@@ -22,7 +22,7 @@ class Distortion:
 
     @property
     def gives(self) -> Float[np.ndarray, " triangles"]:
-        """How much the cloth has to give in its worst direction: 0.1 for 10 %, stretched or squeezed."""
+        """Strain of the cloth in its worst direction: 0.1 for 10 %, stretched or compressed."""
         return np.maximum(self.longest, 1 / self.shortest) - 1
 
     @property

@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from shapely import Polygon
 
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh
-from hydrostat.fabrication.solids.printed import TriangleMesh, connected
+from hydrostat.fabrication.solids.printed import TriangleMesh, number_groups
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -53,7 +53,7 @@ def disc_of(mesh: SkinMesh, number: int) -> Disc:
         [3 * place[side] + (mesh.triangles[side] == vertex[:, None]).argmax(axis=1) for side in ends[shared].T]
         for vertex in mesh.edges[0][shared].T
     ]
-    groups = connected(np.concatenate(links, axis=1).T, len(corners))
+    groups = number_groups(np.concatenate(links, axis=1).T, len(corners))
     of = np.zeros(int(groups.max()) + 1, dtype=np.int64)
     of[groups] = corners
     triangles = groups.reshape(-1, 3)

@@ -25,7 +25,7 @@ class Seam:
 
     @cached_property
     def along(self) -> Float[np.ndarray, " vertices"]:
-        """How far along the seam each vertex is on the body [mm]."""
+        """Distance of each vertex along the seam on the body [mm]."""
         return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.solid, axis=0), axis=1))])
 
     @property
@@ -41,7 +41,7 @@ class Seam:
 
     @property
     def mismatch(self) -> float:
-        """How much longer the longer side is beyond what hands see (`SEEN`): 0.01 for 1 %."""
+        """Excess length of the longer side over the shorter, less the visible limit (`SEEN`): 0.01 for 1 %."""
         return max(max(self.lengths) - min(self.lengths) - SEEN, 0.0) / min(self.lengths)
 
     def place(self, along: float, side: int) -> tuple[float, float]:
@@ -123,7 +123,7 @@ class PatchNotch:
 
 
 def _notch_places(seam: Seam) -> list[tuple[float, bool]]:
-    """How far along a seam its notches are [mm], and whether each has a letter."""
+    """Return the distance of each notch along a seam [mm], and True if it has a letter."""
     if seam.length < _SHORTEST:
         return []
     if not seam.closed:
@@ -149,7 +149,7 @@ def patch_notches(seams: tuple[Seam, ...]) -> dict[int, list[PatchNotch]]:
 
 
 def stuffing_gap(seams: tuple[Seam, ...], names: tuple[str, ...]) -> tuple[str, ...]:
-    """Tell where a body without a zipper is turned and stuffed."""
+    """Return the sentence on where a body without a zipper is turned and stuffed."""
     lengths = [seam.length for seam in seams]
     longest = int(np.argmax(lengths))
     seam, named = seams[longest], [notch for notch in _named(seams)[longest] if notch[0]]

@@ -17,11 +17,11 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True, kw_only=True)
 class Sewing:
-    """What sewing the skin of a body takes, cables aside."""
+    """Sewing work for the skin of a body, without its cables."""
 
-    patches: int  # of cloth; 0 where it cannot be cut at all
-    give: float  # how much the cloth has to give in 95 % of the worst patch: 0.1 for 10 %
-    problems: tuple[str, ...]  # why it cannot be sewn, a line each
+    patches: int  # number of patches of cloth; 0 if it cannot be cut at all
+    give: float  # stretch of the cloth in 95 % of the worst patch: 0.1 for 10 %
+    problems: tuple[str, ...]  # reasons why it cannot be sewn, one line each
 
     def __str__(self) -> str:
         """In words, such as "2 patches, cloth with 9 % stretch"."""
@@ -29,7 +29,7 @@ class Sewing:
 
 
 def find_sewing(body: Body, *, options: PatternOptions | None = None) -> Sewing:
-    """Cut and flatten the skin of a body in space as its kit will, and say why it cannot be sewn, if so.
+    """Cut and flatten the skin of a body in space as its kit will, with the reasons if it cannot be sewn.
 
     It takes seconds. Raises InputError: a flat body.
     """
@@ -43,7 +43,7 @@ def find_sewing(body: Body, *, options: PatternOptions | None = None) -> Sewing:
 
 
 def sewing_of(mesh: SkinMesh, options: PatternOptions) -> Sewing:
-    """What sewing a skin takes, and why it cannot be sewn, if so."""
+    """Compute the sewing work of a skin, with the reasons if it cannot be sewn."""
     cutting = cut_skin(mesh)
     skins = tuple(patch_skin(patch, options) for patch in cutting.patches)
     seams = find_seams(cutting.mesh, cutting.patches, np.eye(3)[2])

@@ -44,7 +44,7 @@ class SkinHole:
 
     @property
     def in_seam(self) -> bool:
-        """Tell whether the cable passes between two stitches of a seam, without a hole."""
+        """True if the cable passes between two stitches of a seam, without a hole."""
         return len(self.places) > 1
 
     def on(self, patch: int) -> Place | None:
@@ -118,7 +118,7 @@ def find_holes(
 
 
 def _sewn(cable: Cable, near: list[int], side: Side) -> Iterator[tuple[int, bool, Side]]:
-    """Tell of each point near the skin whether the cable passes there, and the side after it."""
+    """Yield each point near the skin, True if the cable passes there, and the side after it."""
     passes = dict.fromkeys(near, False)
     now = side
     for bare, points in runs_of(cable):
@@ -151,7 +151,7 @@ def _into_seam(
 
 
 def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple[str, ...]:
-    """Tell which cables have holes that overlap others, a line each."""
+    """Return a line for each cable with holes that overlap others."""
     close: dict[int, tuple[float, SkinHole, SkinHole]] = {}
     cut = [hole for hole in holes if hole.passes and not hole.in_seam]
     for one, other in combinations(cut, 2):
@@ -161,13 +161,13 @@ def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple
             close[one.cable] = (apart, one, other)
     return tuple(
         f"the holes of cable {one.cable} at point {one.point} and of cable {other.cable} at point {other.point} are "
-        f"{apart:.2f} mm apart on the cloth: pinholes of {options.pinhole:g} mm overlap; move one point away"
+        f"{apart:.2f} mm apart on the cloth: pinholes of {options.pinhole:g} mm overlap. Move one point away"
         for apart, one, other in close.values()
     )
 
 
 def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
-    """Tell which cables would run outside where they were simulated deep in the body, a line each."""
+    """Return a line for each cable that would run outside where it was simulated deep in the body."""
     nearest, problems = NearestOnSkin(patches).nearest, {}
     for one, other in pairwise([hole for hole in holes if hole.passes]):
         if one.cable != other.cable or one.after is Side.INSIDE:
@@ -178,14 +178,14 @@ def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole
         if depth > DEEPEST:
             problems[one.cable] = (
                 f"cable {one.cable} would run outside from point {one.point} to point {other.point}, but was simulated "
-                f"{depth:.0f} mm under the skin there, through the body: cast this body in a mould, or lay the cable "
+                f"{depth:.0f} mm under the skin there. Cast this body in a mould or lay the cable "
                 "along the skin"
             )
     return tuple(problems.values())
 
 
 def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
-    """Tell what cables that are sewn to the skin do otherwise than the simulated ones, a line each."""
+    """Return the differences between cables sewn to the skin and the simulated ones, one line each."""
     warnings, shallow, free = [], {}, {}
     for number, cable in enumerate(robot.cables, start=1):
         near = {hole.point for hole in holes if hole.cable == number}
@@ -195,23 +195,23 @@ def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
             free[number] = len(bare - near)
         if not own:
             warnings.append(
-                f"cable {number} is nowhere within {DEEPEST:g} mm of the skin: it gets no hole; move it to the skin, "
+                f"cable {number} is nowhere within {DEEPEST:g} mm of the skin and gets no hole. Move it to the skin "
                 "or make the robot of foam"
             )
             continue
         if max(hole.depth for hole in own) > _SHALLOW:
             shallow[number] = max(hole.depth for hole in own)
         if own[-1].after is Side.INSIDE or own[-1].point != len(cable.points):
-            warnings.append(f"the stopper of cable {number} sits inside: adjust it through the opening")
+            warnings.append(f"the stopper of cable {number} is inside the body. Adjust it through the opening")
     if shallow:
         warnings.append(
-            f"{_cables(shallow)} simulated up to {max(shallow.values()):.0f} mm from the skin to which they are sewn: "
-            "they will act on other levers; move their points onto the skin to simulate what is built"
+            f"{_cables(shallow)} simulated up to {max(shallow.values()):.0f} mm from the skin to which they are sewn. "
+            "Their lever arms will differ. Move their points onto the skin to simulate the robot as built"
         )
     if free:
         warnings.append(
             f"{_cables(free)} simulated through {plural(sum(free.values()), 'point')} deeper than {DEEPEST:g} mm "
-            "under the skin: nothing holds them there, they run straight through the stuffing to the next hole"
+            "under the skin. Nothing holds them there: they run straight through the stuffing to the next hole"
         )
     return tuple(warnings)
 

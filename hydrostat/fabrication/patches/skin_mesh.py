@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.solids.printed import TriangleMesh, connected
+from hydrostat.fabrication.solids.printed import TriangleMesh, number_groups
 from hydrostat.geometry import Surface
 from hydrostat.robot import Body
 
@@ -42,13 +42,13 @@ class SkinMesh(TriangleMesh):
         """Number the connected groups of triangles with one label, in the order of their first triangles."""
         sides = self.neighbours
         same = sides[label[sides[:, 0]] == label[sides[:, 1]]]
-        return connected(same, len(self.triangles))
+        return number_groups(same, len(self.triangles))
 
-    def labelled(self, patch: Int[np.ndarray, " triangles"]) -> "SkinMesh":
-        """The same triangles in other patches."""
+    def relabel_patches(self, patch: Int[np.ndarray, " triangles"]) -> "SkinMesh":
+        """Return the same triangles with other patch numbers."""
         return SkinMesh(vertices=self.vertices, triangles=self.triangles, patch=patch)
 
-    def divided(
+    def divide_edges(
         self, marked: Bool[np.ndarray, " edges"], share: Float[np.ndarray, " edges"]
     ) -> tuple["SkinMesh", Int[np.ndarray, " parts"]]:
         """Put a vertex on each marked edge, at a share of it, and divide triangles there.
@@ -108,10 +108,10 @@ def skin_of_surface(surface: Surface) -> SkinMesh:
     )
     edges = mesh.edges[0]
     if mesh.pieces(mesh.patch).max() > 0:
-        raise InputError("the body is hollow or in several pieces: a sewn skin needs one closed surface")
+        raise InputError("the body is hollow or in several pieces. A sewn skin needs one closed surface")
     if len(mesh.vertices) - len(edges) + len(mesh.triangles) != 2:
         raise InputError(
-            "a hole goes through the body: it cannot be cut into patches that lie flat; cast it in a mould"
+            "a hole goes through the body, so its skin cannot be cut into flat patches. Cast it in a mould"
         )
     return _fine(_coarse(mesh), _SHARE * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))))
 
@@ -142,7 +142,7 @@ def _fine(mesh: SkinMesh, longest: float) -> SkinMesh:
         long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > longest
         if not long.any():
             return mesh
-        mesh, _ = mesh.divided(long, np.full(len(long), 0.5))
+        mesh, _ = mesh.divide_edges(long, np.full(len(long), 0.5))
 
 
 _NEAR = 0.05  # a line that passes a corner nearer than this share of an edge goes through the corner: no slivers
@@ -160,7 +160,7 @@ def cut_at_zero(
     marked = touched & (ends[:, 0] * ends[:, 1] < 0)
     share = np.zeros(len(edges))
     share[marked] = ends[marked, 0] / (ends[marked, 0] - ends[marked, 1])
-    divided, parent = mesh.divided(marked, share)
+    divided, parent = mesh.divide_edges(marked, share)
     heights = np.concatenate([field, np.zeros(int(marked.sum()))])[divided.triangles]
     side = np.sign(heights[np.arange(len(heights)), np.abs(heights).argmax(axis=1)]).astype(np.int64)
     return divided, parent, np.where(inside[parent], side, 0)

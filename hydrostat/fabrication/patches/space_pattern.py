@@ -28,7 +28,7 @@ from hydrostat.fabrication.patches.skin_holes import (
 )
 from hydrostat.fabrication.patches.skin_mesh import skin_mesh
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.marks import dashed
+from hydrostat.fabrication.patterns.marks import dash_lines
 from hydrostat.fabrication.patterns.opening import Opening, opening_at
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.pinholes import Pinhole
@@ -114,7 +114,7 @@ def _cable_lines(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options
         drawn = LineString([place, there]).intersection(seam).difference(ends)
         drawn = shapely.MultiLineString([part for part in shapely.get_parts(drawn).tolist() if part.length])
         if hole.after is Side.INSIDE:
-            drawn = dashed(drawn)
+            drawn = dash_lines(drawn)
         shapes += trace(drawn, Layer.MARK, PatternPart.CABLE)
     return tuple(shapes)
 
@@ -127,7 +127,7 @@ class FrontView:
     up: Float[np.ndarray, " 3"]  # unit direction that points up in it
 
     def on_paper(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
-        """Where points are in it."""
+        """Project points to the view."""
         return points @ np.stack([self.right, self.up], axis=1)
 
 
@@ -294,7 +294,7 @@ def _level(places: Float[np.ndarray, "places 2"]) -> Float[np.ndarray, "places 3
 
 
 def skin_stitches(robot: Robot, holes: tuple[SkinHole, ...], view: FrontView) -> tuple[CableStitches, ...]:
-    """Tell how each cable is sewn; points deep inside stay on the side of the one before."""
+    """Return the stitches of each cable; points deep inside stay on the side of the one before."""
     sewn = []
     for number, cable in enumerate(robot.cables, start=1):
         begins = Side.OUTSIDE if robot.winch(cable.winch).mount is Mount.WORLD else Side.INSIDE

@@ -22,7 +22,7 @@ def stuffed_thickness(seam: Polygon) -> float:
 
 
 def wants_gusset(seam: Polygon, thickness: float, options: PatternOptions) -> bool:
-    """Tell whether a body so thick [mm] gets a gusset: as the options say, else where panels alone stay thinner."""
+    """Return True if a body so thick [mm] gets a gusset: by the options, else if panels alone stay thinner."""
     return thickness > stuffed_thickness(seam) if options.gusset is None else options.gusset
 
 

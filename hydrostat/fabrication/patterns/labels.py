@@ -77,7 +77,7 @@ class FreeSpace:
         self._taken.append(line.geometry)
 
     def _crossings(self, centres: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-        """How many things each box lies on, another label counting as many; very many for a box outside."""
+        """Weighted number of objects that each box overlaps; another label weighs more, and a box outside most."""
         outside = ~shapely.contains_xy(self._inside, centres)
         return _hits(self._taken, boxes) + _OVER_TEXT * _hits(self._texts, boxes) + 1000 * outside
 
@@ -100,7 +100,7 @@ def _round(at: Place, width: float, height: float, gaps: np.ndarray) -> np.ndarr
 
 
 def _hits(taken: list[BaseGeometry], geometries: np.ndarray) -> np.ndarray:
-    """How many of the things each geometry meets."""
+    """Number of taken geometries that each geometry intersects."""
     found = shapely.STRtree(taken).query(geometries, predicate="intersects")[0]
     return np.bincount(found, minlength=len(geometries))
 
@@ -205,12 +205,12 @@ class PanelLabels:
             self._beside(marker.name, place(marker.at), gap=3.5)
 
     def opening(self, opening: Opening) -> None:
-        """Which zipper goes there."""
+        """Label the opening with its zipper."""
         middle = opening.slit.interpolate(0.5, normalized=True)
         self._beside(opening.label, (middle.x, middle.y), gap=6.5)
 
     def has_room(self, text: str) -> bool:
-        """Tell whether a title fits somewhere on the panel."""
+        """Return True if a title fits somewhere on the panel."""
         letters = Lettering(text, _TITLES[-1])
         return self._space.anywhere(letters.width, letters.height) is not None
 

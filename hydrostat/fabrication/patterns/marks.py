@@ -1,4 +1,4 @@
-"""What is engraved on a panel, before its labels: seam, notches, cables, sheaths, winches, markers."""
+"""Engravings of a panel, without its labels: seam, notches, cables, sheaths, winches, markers."""
 
 from collections.abc import Iterable
 
@@ -49,7 +49,7 @@ def cable_marks(
             run = LineString([place(point) for point in cable.points[index : index + 2]])
             drawn = run.intersection(seam).difference(holes)
             if sewn.stitches[index].after is Side.INSIDE:
-                drawn = dashed(drawn)
+                drawn = dash_lines(drawn)
             marks.extend(trace(drawn, Layer.MARK, PatternPart.CABLE))
         marks.append(
             Circle(layer=Layer.MARK, part=PatternPart.STOPPER, centre=place(cable.points[-1]), radius=_STOPPER)
@@ -81,15 +81,15 @@ def marker_marks(robot: Robot) -> tuple[Shape, ...]:
 
 
 def decoration_marks(robot: Robot, seam: Polygon, pinholes: Iterable[Pinhole]) -> tuple[Shape, ...]:
-    """What is drawn on the body, such as eyes, but for where a hole is."""
+    """Return the decorations of the body, such as eyes, with gaps at the holes."""
     holes = shapely.union_all([shapely.Point(hole.centre).buffer(hole.radius + _CLEAR) for hole in pinholes])
     lines = [LineString([place(point) for point in line]) for line in robot.body.marks]
     drawn = [line.intersection(seam).difference(holes) for line in lines]
     return tuple(mark for line in drawn for mark in trace(line, Layer.MARK, PatternPart.DECORATION))
 
 
-def dashed(geometry: BaseGeometry) -> BaseGeometry:
-    """Each line of a geometry as dashes, with one at both of its ends."""
+def dash_lines(geometry: BaseGeometry) -> BaseGeometry:
+    """Split each line of a geometry into dashes, with one at both of its ends."""
     dashes = []
     for line in shapely.get_parts(geometry).tolist():
         count = max(1, round((line.length - _DASH) / (2 * _DASH)))

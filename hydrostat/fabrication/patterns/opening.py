@@ -22,7 +22,7 @@ _TURNS = (0, 90, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75)
 """Directions that are tried, from the row of winches [degrees], the best first."""
 
 _SHIFTS = (0, 6, -6, 12, -12, 18, -18)
-"""How far beside the winches a slit may be, to stay off pinholes [mm], the best first."""
+"""Offsets of a slit from the winches that keep it off pinholes [mm], the best first."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ class Opening:
         if self.slit.length > ZIPPERS[0] - 1e-6:
             return ()
         return (
-            f"the opening has room for {self.slit.length:.0f} mm only: cut a zipper of {self.zipper} mm down to that, "
-            "and mind that the winch goes through",
+            f"the opening has room for {self.slit.length:.0f} mm only. Cut a zipper of {self.zipper} mm down to that, "
+            "and check that the winch fits through",
         )
 
 

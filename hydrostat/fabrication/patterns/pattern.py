@@ -50,7 +50,7 @@ class Pattern:
 
 @dataclass(frozen=True, kw_only=True)
 class _PatternDraft:
-    """What the panels are drawn from."""
+    """Inputs from which the panels are drawn."""
 
     robot: Robot
     options: PatternOptions
@@ -59,13 +59,13 @@ class _PatternDraft:
     stitches: tuple[CableStitches, ...]
     opening: Opening | None
 
-    def sewn(self, panel: str) -> tuple[CableStitches, ...]:
+    def stitches_on(self, panel: str) -> tuple[CableStitches, ...]:
         """Stitches on one panel, of each cable of the robot or of none."""
         return tuple(stitches for stitches in self.stitches if stitches.panel == panel)
 
     def label_cables(self, labels: PanelLabels, panel: str) -> None:
         """Numbers of the cables that are sewn on a panel."""
-        sewn = self.sewn(panel)
+        sewn = self.stitches_on(panel)
         if sewn:
             labels.cable_numbers(self.robot, first=sewn[0].cable)
 
@@ -100,7 +100,7 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
     cloth = (*edges, *seam_marks(skin, draft.notches), *winch_marks(robot, skin.seam))
     pinholes = tuple(hole.circle for hole in holes)
     markers = marker_marks(robot) if options.marker_names else ()
-    marks = {side: cable_marks(robot, draft.sewn(side), skin.seam, holes) for side in sides}
+    marks = {side: cable_marks(robot, draft.stitches_on(side), skin.seam, holes) for side in sides}
     drawn = decoration_marks(robot, skin.seam, holes)
     front = (*cloth, *(pinholes if "front" in sides else ()), *marks.get("front", ()), *markers, *drawn)
     back = (*cloth, *(pinholes if behind else ()), *marks.get("back", ()))
@@ -138,7 +138,7 @@ def _front(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
     draft.label_cables(labels, "front")
     labels.winch_names(draft.robot)
     labels.marker_names(draft.robot, draft.options)
-    labels.hole_numbers(draft.sewn("front"))
+    labels.hole_numbers(draft.stitches_on("front"))
     labels.title(f"{draft.robot.name} - front")
     labels.grain()
     return Panel(name="front", origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
@@ -147,14 +147,14 @@ def _front(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
 def _back(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
     """The back panel about the robot's origin, seen from behind, with its labels."""
     zipper = (draft.opening.mark, *draft.opening.placket) if draft.opening else ()
-    mirror = tuple(shape.mirrored() for shape in (*shapes, *zipper))
+    mirror = tuple(shape.mirror() for shape in (*shapes, *zipper))
     labels = PanelLabels(draft.skin.seam, mirror, mirrored=True)
     labels.notch_names([(notch.name, notch.stroke) for notch in draft.notches], draft.skin.cut)
     if draft.opening:
         labels.opening(draft.opening)
     draft.label_cables(labels, "back")
     labels.winch_names(draft.robot)
-    labels.hole_numbers(draft.sewn("back"))
+    labels.hole_numbers(draft.stitches_on("back"))
     labels.title(f"{draft.robot.name} - back")
     labels.grain()
     return Panel(name="back", origin=(0.0, 0.0), mirrored=True, shapes=(*mirror, *labels.shapes()))
@@ -167,17 +167,17 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
     if not gusset and thickness > stuffed:
         warnings.append(
             f"without a gusset the stuffed body is about {stuffed:.0f} mm thick, but it was simulated with "
-            f"{thickness:g} mm: it will be softer; sew it with the gusset, or simulate it thinner"
+            f"{thickness:g} mm. It will be softer. Sew it with the gusset or simulate it thinner"
         )
     if draft.robot.cables and len(sewn_sides(draft.robot)) == 1:
         (panel,) = sewn_sides(draft.robot)
         warnings.append(
-            f"the cables are sewn on the {panel} alone, so they also curl the body towards it (`hydrostat check` tells "
-            'how far): with face = "pairs" before [body] in its file each is drawn and sewn on both panels'
+            f"the cables are sewn on the {panel} only, so they also curl the body toward it (`hydrostat check` prints "
+            'by how much). Set face = "pairs" before [body] in the robot file to sew each on both panels'
         )
     warnings += _over_zipper(draft)
     warnings += [
-        f"the stopper of cable {sewn.cable} sits inside: adjust it through the opening"
+        f"the stopper of cable {sewn.cable} is inside the body. Adjust it through the opening"
         for sewn in draft.stitches
         if sewn.stopper is Side.INSIDE
     ]
@@ -189,7 +189,7 @@ def _unheld(robot: Robot) -> tuple[str, ...]:
     if robot.face is not Face.MIDDLE or not robot.cables:
         return ()
     return (
-        'cables in the middle are held by nothing in loose filling: set face = "pairs", which is as flat, or cast it '
+        'cables in the middle are held by nothing in loose filling. Set face = "pairs", which is as flat, or cast it '
         "(--method foam)",
     )
 
@@ -200,12 +200,12 @@ def _over_zipper(draft: _PatternDraft) -> list[str]:
         return []
     crossed = [
         f"C{sewn.cable}"
-        for sewn in draft.sewn("back")
+        for sewn in draft.stitches_on("back")
         if LineString([stitch.place for stitch in sewn.stitches]).intersects(draft.opening.slit)
     ]
     if not crossed:
         return []
-    return [f"the zipper crosses {', '.join(crossed)} on the back: lead them inside there, under its tape"]
+    return [f"the zipper crosses {', '.join(crossed)} on the back. Route them inside there, under its tape"]
 
 
 _GAP = 10.0  # round the plate [mm]

@@ -69,14 +69,14 @@ def pinhole_problems(pinholes: Iterable[Pinhole], seam: Polygon, options: Patter
         if not inside or distance < needed:
             where = f"{distance:.2f} mm {'from' if inside else 'beyond'} the seam"
             problems.append(
-                f"{hole.name} = {_text(hole.centre)} is {where}, but its pinhole needs {needed:.4g} mm; move it inwards"
+                f"{hole.name} = {_text(hole.centre)} is {where}, but its pinhole needs {needed:.4g} mm. Move it inwards"
             )
     for one, other in combinations(pinholes, 2):
         if one.gap(other) < 0:
             apart = np.hypot(*np.subtract(one.centre, other.centre))
             problems.append(
                 f"{one.name} = {_text(one.centre)} and {other.name} are {apart:.2f} mm apart: their pinholes of "
-                f"{2 * one.radius:.4g} mm overlap; move one away, or both onto one point"
+                f"{2 * one.radius:.4g} mm overlap. Move one away, or both onto one point"
             )
     return tuple(problems)
 

@@ -52,12 +52,12 @@ class LaserLine:
     points: tuple[Place, ...]  # [mm]; the first is not repeated at the end of a closed line
     closed: bool = False  # whether it ends where it begins
 
-    def moved(self, dx: float, dy: float) -> Self:
-        """The same line elsewhere, by a shift [mm]."""
+    def move(self, dx: float, dy: float) -> Self:
+        """Return the line shifted by an offset [mm]."""
         return replace(self, points=tuple((x + dx, y + dy) for x, y in self.points))
 
-    def mirrored(self) -> Self:
-        """The same line with left and right exchanged about x = 0."""
+    def mirror(self) -> Self:
+        """Return the line mirrored about x = 0."""
         return replace(self, points=tuple((-x, y) for x, y in self.points))
 
     @property
@@ -75,12 +75,12 @@ class Circle:
     centre: Place  # [mm]
     radius: float  # [mm]
 
-    def moved(self, dx: float, dy: float) -> Self:
-        """The same circle elsewhere, by a shift [mm]."""
+    def move(self, dx: float, dy: float) -> Self:
+        """Return the circle shifted by an offset [mm]."""
         return replace(self, centre=(self.centre[0] + dx, self.centre[1] + dy))
 
-    def mirrored(self) -> Self:
-        """The same circle with left and right exchanged about x = 0."""
+    def mirror(self) -> Self:
+        """Return the circle mirrored about x = 0."""
         return replace(self, centre=(-self.centre[0], self.centre[1]))
 
     @property
@@ -125,7 +125,7 @@ class Panel:
         x, y = 1e3 * point[0], 1e3 * point[1]
         return self.origin[0] + (-x if self.mirrored else x), self.origin[1] + y
 
-    def moved(self, dx: float, dy: float) -> Self:
-        """The same panel elsewhere on the sheet, by a shift [mm]."""
+    def move(self, dx: float, dy: float) -> Self:
+        """Return the panel shifted on the sheet [mm]."""
         origin = (self.origin[0] + dx, self.origin[1] + dy)
-        return replace(self, origin=origin, shapes=tuple(shape.moved(dx, dy) for shape in self.shapes))
+        return replace(self, origin=origin, shapes=tuple(shape.move(dx, dy) for shape in self.shapes))

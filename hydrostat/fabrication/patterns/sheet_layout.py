@@ -42,12 +42,12 @@ def lay_out(panels: tuple[Panel, ...], strips: tuple[Panel, ...], gap: float) ->
     for shelf in (*reversed(_shelves(others, width - gap, gap)), row):
         left = gap
         for box in shelf:
-            laid[box.panel.name] = box.panel.moved(left - float(box.low[0]), floor - float(box.low[1]))
+            laid[box.panel.name] = box.panel.move(left - float(box.low[0]), floor - float(box.low[1]))
             left += float(box.size[0]) + gap
         floor += float(max(box.size[1] for box in shelf)) + gap
     return Sheet(
         panels=tuple(laid[panel.name] for panel in (*panels, *strips)),
-        ruler=tuple(line.moved(gap, gap) for line in (*_ruler(), *_key(float(width) - 2 * gap))),
+        ruler=tuple(line.move(gap, gap) for line in (*_ruler(), *_key(float(width) - 2 * gap))),
         width=float(width),
         height=floor,
     )
@@ -81,7 +81,7 @@ def _ruler() -> tuple[LaserLine, ...]:
 
 
 def _key(width: float) -> tuple[LaserLine, ...]:
-    """What the lines of cables are, right of the bar, as far as the sheet is wide enough."""
+    """Return the legend of the cable lines, right of the bar, as far as it fits the sheet's width [mm]."""
     dashes = tuple(((start, 0.0), (start + 2.0, 0.0)) for start in (0.0, 3.3, 6.7, 10.0))
     samples: tuple[tuple[str, PatternPart, tuple[tuple[Place, ...], ...]], ...] = (
         ("cable outside", PatternPart.CABLE, (((0.0, 0.0), (12.0, 0.0)),)),
@@ -94,7 +94,7 @@ def _key(width: float) -> tuple[LaserLine, ...]:
         letters = Lettering(text, 3.0)
         if left + 15 + letters.width > width:
             break
-        lines += [LaserLine(layer=Layer.MARK, part=part, points=stroke).moved(left, 2.0) for stroke in strokes]
+        lines += [LaserLine(layer=Layer.MARK, part=part, points=stroke).move(left, 2.0) for stroke in strokes]
         lines += letters.lines((left + 15 + letters.width / 2, 2.0))
         left += 25 + letters.width
     return tuple(lines)

@@ -43,7 +43,7 @@ def skin_of(seam: Polygon, options: PatternOptions) -> Skin:
         if hole.is_empty:
             problems.append(
                 f"hole {index + 1} of the outline, at {_at(Polygon(ring))}, is too narrow for a seam allowance "
-                f"of {options.seam_allowance:g} mm: choose a smaller allowance or a wider hole"
+                f"of {options.seam_allowance:g} mm. Choose a smaller allowance or a wider hole"
             )
         else:
             holes.append(hole.exterior)
@@ -84,8 +84,8 @@ def _slits(seam: Polygon, outside: Polygon, options: PatternOptions) -> tuple[Mu
         if room < options.cloth:
             problems.append(
                 f"the seam allowance of {options.seam_allowance:g} mm closes the bay at {_at(Polygon(bay))}, "
-                f"and a slit into it would leave {room:.2f} mm of cloth at the seam, not {options.cloth:g} mm: "
-                "choose a smaller allowance or widen the bay"
+                f"and a slit into it would leave {room:.2f} mm of cloth at the seam, not {options.cloth:g} mm. "
+                "Choose a smaller allowance or widen the bay"
             )
     return MultiLineString(slits), problems
 
@@ -100,7 +100,7 @@ def _tight_bays(seam: Polygon, cut: Polygon, slits: MultiLineString, options: Pa
     bays = shapely.union_all([corner.buffer(options.seam_allowance) for corner in far])
     ends = [max(far, key=lambda corner: edges.distance(corner) * bay.covers(corner)) for bay in _polygons(bays)]
     return tuple(
-        f"the seam allowance fills the narrow bay at {_at(end)}: snip the cloth open there, down to the seam"
+        f"the seam allowance fills the narrow bay at {_at(end)}. Snip the cloth open there, down to the seam"
         for end in ends
     )
 
@@ -147,7 +147,7 @@ def find_notches(skin: Skin) -> tuple[Notch, ...]:
 
 
 def seam_top(seam: LinearRing) -> float:
-    """How far along a seam its highest corner is [mm]: the double notch, and the join of the side strip."""
+    """Distance of a seam's highest corner along it [mm]: the double notch, and the join of the side strip."""
     return seam.project(shapely.Point(max(seam.coords, key=lambda corner: corner[1])))
 
 

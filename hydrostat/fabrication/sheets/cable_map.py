@@ -39,7 +39,7 @@ _MARGIN = 7.0  # room round the body for labels [mm]
 _DRAWN = 0.45  # grey of what is drawn on the body
 _HOLE = 0.65  # radius of a drawn hole [mm]
 _NEAR = 3.2  # a number further than this from its hole is led to it by a line [mm]
-_SOFT = 0.008  # over what share of the picture the light on a body is blurred
+_SOFT = 0.008  # share of the picture over which the light on a body is blurred
 
 
 _MANY = 6  # more winches than this have smaller marks
@@ -50,10 +50,10 @@ class CableRun:
     """One cable on paper."""
 
     cable: int  # number, from 1
-    spots: list[Spot]  # of its points, from the winch [mm]
-    solid: Sequence[bool]  # which of its segments run on the outside, or in front
-    sheathed: Sequence[bool]  # which of them run in a tube
-    holes: Sequence[bool]  # at which points it goes through the skin or is held by it
+    spots: list[Spot]  # paper positions of its points, from the winch [mm]
+    solid: Sequence[bool]  # True for each segment that runs on the outside, or in front
+    sheathed: Sequence[bool]  # True for each segment that runs in a tube
+    holes: Sequence[bool]  # True for each point that goes through the skin or is held by it
     twin: int | None = None  # number of the cable behind it, on the other panel
 
     @property
@@ -139,7 +139,7 @@ def _put_pane(canvas: Canvas, robot: Robot, pane: SightedBody, room: Box) -> Non
     labels = LabelPlaces((left + 0.2, top + 0.2, right - 0.2, bottom - 0.2))
     for way in pane.drawing.outlines:
         labels.take_line(frame.way(way), weight=3)
-    runs = [sighted(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
+    runs = [project_cable(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
     stands = {mark: frame.on(stand) for mark, stand in zip(_stands(robot), pane.winches, strict=True)}
     _put_runs(canvas, labels, runs, stands)
 
@@ -161,10 +161,10 @@ def _within(robot: Robot, index: int, frame: CanvasFrame) -> CableRun:
     return CableRun(index + 1, way, [True] * (count - 1), (~cable.bare).tolist(), holes)
 
 
-def sighted(
+def project_cable(
     robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Visibility, frame: CanvasFrame
 ) -> CableRun:
-    """A cable in space, its way as a camera sees it [mm]."""
+    """Project a cable in space to the page, along its path as seen by a camera [mm]."""
     cable = robot.cables[index]
     solid = sight.in_front((way[:-1] + way[1:]) / 2).tolist()
     holes = [robot.winch(cable.winch).mount is Mount.BODY, *[True] * (len(cable.points) - 1)]
@@ -297,14 +297,14 @@ class _Scene:
 def single_maps(
     robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float, view: Camera | None = None
 ) -> list[Canvas]:
-    """Pages of at most twelve small maps, each of such a size [mm]; none of fewer than three cables.
+    """Return pages of at most twelve small maps; none for fewer than three cables.
 
     Args:
-        robot: whose cables they show.
-        stitches: of a flat body that is sewn.
-        width: of a page.
-        height: of a page, at most.
-        view: of a body in space; None for a flat one.
+        robot: robot with the cables.
+        stitches: stitches of a flat body that is sewn.
+        width: page width [mm].
+        height: maximum page height [mm].
+        view: camera for a body in space; None for a flat one.
     """
     if len(robot.cables) < FEWEST:
         return []
@@ -340,7 +340,7 @@ def _space_scene(robot: Robot, view: Camera) -> _Scene:
     pane: SightedBody = pane_of(robot, view, 500)
 
     def runs(frame: CanvasFrame) -> list[CableRun]:
-        return [sighted(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
+        return [project_cable(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
 
     def draw(canvas: Canvas, frame: CanvasFrame) -> None:
         canvas.line([frame.way(way) for way in pane.drawing.outlines], width=THIN, grey=0.35, closed=True)

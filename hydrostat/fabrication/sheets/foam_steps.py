@@ -35,9 +35,7 @@ _MODEL_FIRST = (
 
 _STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: it rises at once."
 _STIR_SILICONE = "Stir slowly, scrape sides and bottom, and let the bubbles rise, in a vacuum if you have one."
-_POUR_FOAM = (
-    "At once, in a thin stream down the sprue. Close a vent with tape when foam looks out of it; the sprue last."
-)
+_POUR_FOAM = "At once, in a thin stream down the sprue. Tape each vent as foam appears, then the sprue."
 _POUR_SILICONE = (
     "In a thin stream down the sprue, until it stands in all vents. Tap the mould; fill up what sinks as bubbles rise."
 )
@@ -49,7 +47,7 @@ _OPEN_FOAM = " Squeeze the body all over to open its cells."
 
 
 def foam_expansion(mould: Mould) -> bool:
-    """Tell whether what is poured is a foam; what else is cast is silicone."""
+    """Return True if the casting material is a foam; the others are silicones."""
     return mould.casting.expansion > 1
 
 
@@ -101,7 +99,7 @@ def mould_steps(plan: KitPlan, lists: Lists, mould: Mould) -> tuple[AssemblyStep
 
 
 def _in_pieces(plan: KitPlan) -> bool:
-    """Tell whether a half of the mould is printed in pieces that are joined."""
+    """Return True if a half of the mold is printed in pieces that are joined."""
     return any(part.kind for part in plan.work.printed)
 
 

@@ -24,10 +24,10 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class PrintableText:
-    """Makes words of the user legible.
+    """Text of the user with every letter printable.
 
     Args:
-        robot: whose winches are called by their marks if their names cannot be printed.
+        robot: robot with the winches; their marks replace names that cannot be printed.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -85,7 +85,7 @@ def _power(found: re.Match[str]) -> str:
 
 @cache
 def _drawn(letter: str) -> bool:
-    """Tell whether a letter can be printed: a page for archives (PDF/A) is refused where no font has it."""
+    """Return True if a letter can be printed: typst rejects a PDF/A page if no font has the letter."""
     if letter.isascii():
         return letter.isprintable()
     import typst  # Imported here: few names need it.
@@ -108,8 +108,9 @@ _MOTOR = re.compile(r"\b(motor|torque|N mm)\b")
 
 def note_lines(problems: tuple[str, ...], warnings: tuple[str, ...], robot: Robot | None = None) -> list[str]:
     """Problems first, then what motors bear, then what else must fit, then cloth; how many more there are."""
-    ordered = [_marked(in_words(words), robot) for words in (*merged(problems), *sorted(merged(warnings), key=_rank))]
-    shown = [shortened(sentence(words), _SENTENCE) for words in ordered[:_MOST]]
+    ranked = (*merge_sentences(problems), *sorted(merge_sentences(warnings), key=_rank))
+    ordered = [_marked(in_words(words), robot) for words in ranked]
+    shown = [shorten_text(sentence(words), _SENTENCE) for words in ordered[:_MOST]]
     if len(ordered) > _MOST:
         shown.append(f"… and {len(ordered) - _MOST} more in manifest.json")
     return shown
@@ -127,8 +128,8 @@ def _rank(words: str) -> int:
     return 0 if _MOTOR.search(words) else 2 if _CLOTH.search(words) else 1
 
 
-def merged(sentences: tuple[str, ...]) -> list[str]:
-    """Sentences that differ only in one place in brackets are told as one, with all places."""
+def merge_sentences(sentences: tuple[str, ...]) -> list[str]:
+    """Merge sentences that differ only in one place in brackets into one with all places."""
     kinds: dict[str, list[str]] = {}
     for words in dict.fromkeys(sentences):
         key = _PLACE.sub("[]", words) if len(_PLACE.findall(words)) == 1 else words
@@ -146,7 +147,7 @@ def sentence(words: str) -> str:
     return line and line[0].upper() + line[1:] + ("" if line.endswith((".", "!", "?")) else ".")
 
 
-def shortened(text: str, most: int) -> str:
-    """Text on one line, and of at most so many letters: the end of longer ones is an ellipsis."""
+def shorten_text(text: str, most: int) -> str:
+    """Shorten a text to one line of at most so many letters; a longer one ends with an ellipsis."""
     line = " ".join(text.split())
     return line if len(line) <= most else line[: most - 1].rstrip() + "…"

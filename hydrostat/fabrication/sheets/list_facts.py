@@ -8,7 +8,7 @@ from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.parts.board import BOARDS
 from hydrostat.fabrication.sheets.facts import PieceFacts, PowerFacts, TableFacts
-from hydrostat.fabrication.sheets.legible import shortened
+from hydrostat.fabrication.sheets.legible import shorten_text
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.winch_marks import winch_marks_of
@@ -20,7 +20,7 @@ _UNITS = {"piece": "", "m^2": "m²"}
 def bill_facts(lists: Lists) -> TableFacts:
     """Names, amounts and costs of what is bought, and the totals."""
     items = [row for row in lists.bill.rows if not row.is_total]
-    rows = [[shortened(row.short_name, 40), _amount(row), _dollars(row.cost_used)] for row in items]
+    rows = [[shorten_text(row.short_name, 40), _amount(row), _dollars(row.cost_used)] for row in items]
     return {
         "file": f"lists/{lists.bill.name}.csv",
         "heads": ["what", "amount", "USD"],
@@ -120,7 +120,7 @@ def winch_files(plan: KitPlan, winch: str) -> list[str]:
 def _count_and_files(parts: list[Printed]) -> tuple[int, str]:
     """Number of parts of a kind, and their files."""
     files = [part.name + (f" × {part.count}" if len(parts) > 1 and part.count > 1 else "") for part in parts]
-    return sum(part.count for part in parts), shortened(", ".join(files), 90)
+    return sum(part.count for part in parts), shorten_text(", ".join(files), 90)
 
 
 def _kind_of(part: Printed, plan: KitPlan) -> str:
@@ -130,7 +130,7 @@ def _kind_of(part: Printed, plan: KitPlan) -> str:
     if mould and part.name in {piece.name for piece in mould.printed} and "positive" not in kind:
         kind = f"Mould, {kind[:1].lower()}{kind[1:]}"
     optional = ", optional" if part.name.startswith("grommet") else ""
-    return shortened(kind[:1].upper() + kind[1:], 44) + optional
+    return shorten_text(kind[:1].upper() + kind[1:], 44) + optional
 
 
 def _called(placed: Placed) -> str:
@@ -143,7 +143,7 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
     if plan is None:
         return None
     marks = winch_marks_of(robot)
-    named = [f"{marks[name]} {shortened(name, 24)}" for name in plan.winches]
+    named = [f"{marks[name]} {shorten_text(name, 24)}" for name in plan.winches]
     mind = [
         "The fuse sits in the plus lead, at the supply. The switch for the motors stays in reach while they turn.",
         "Minus of the supply and GND of the board are joined. Plus never goes to a pin of the board that is no supply.",

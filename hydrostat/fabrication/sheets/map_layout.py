@@ -33,7 +33,7 @@ class Visibility:
         return cls(*(DepthBuffer.of(corners, nothing, pixels=_COARSE) for corners in (seen, turned)))
 
     def in_front(self, seen: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, " points"]:
-        """Tell whether points, as seen, lie in the near half of the body or before it; so do those beside it."""
+        """Return True for each point in the near half of the body, in front of it, or next to it."""
         before = -self.front.behind(seen)
         after = -self.back.behind(seen * np.array([1.0, 1.0, -1.0]))
         return ~((before > 0) & (before > after))

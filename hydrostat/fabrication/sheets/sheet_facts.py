@@ -19,7 +19,7 @@ from hydrostat.fabrication.sheets.foam_steps import (
     other_way,
     skin_steps,
 )
-from hydrostat.fabrication.sheets.legible import note_lines, sentence, shortened
+from hydrostat.fabrication.sheets.legible import note_lines, sentence, shorten_text
 from hydrostat.fabrication.sheets.list_facts import bill_facts, cost_text, piece_facts, power_facts, winch_files
 from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text, plush_steps
 from hydrostat.fabrication.winch_marks import winch_marks_of
@@ -45,7 +45,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
     return {
         "paper": plan.options.paper.value,
         "method": plan.method.value,
-        "title": shortened(plan.robot.name, _NAME),
+        "title": shorten_text(plan.robot.name, _NAME),
         "pairs": plan.pairs,
         "flat": plan.robot.body.mesh.dim == 2,
         "kind": "Plush robot" if plush else "Foam robot",
@@ -59,7 +59,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         "winches": _winches(plan),
         "pieces": piece_facts(plan),
         "shown": f"C{stitches.cable}" if stitches else "",
-        "motor": shortened(plan.rigid.motor.title, 80),
+        "motor": shorten_text(plan.rigid.motor.title, 80),
         "steps": [[_step(step) for step in page] for page in steps],
         "checks": [
             {"what": check.what, "measured": check.measured, "allowed": check.allowed, "passed": check.passed}
@@ -119,7 +119,7 @@ def _table(table: Table, headings: Mapping[str, str]) -> TableFacts | None:
 
 def _short_place(text: str) -> str:
     """A text of a list in short; what stands in brackets after the number of a point is seen on the map."""
-    return shortened(_PLACES.get(text, text).partition(" (")[0], 20)
+    return shorten_text(_PLACES.get(text, text).partition(" (")[0], 20)
 
 
 def _winches(plan: KitPlan) -> list[WinchFacts]:
@@ -129,7 +129,7 @@ def _winches(plan: KitPlan) -> list[WinchFacts]:
         {
             "mark": marks[winch.name],
             "files": ", ".join(winch_files(plan, winch.name)),
-            "name": shortened(winch.name, _SHORT),
+            "name": shorten_text(winch.name, _SHORT),
             "cables": ", ".join(
                 _runs([i for i, cable in enumerate(robot.cables, start=1) if cable.winch == winch.name])
             ),

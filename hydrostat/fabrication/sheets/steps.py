@@ -36,7 +36,7 @@ def minutes_text(minutes: float) -> str:
 
 
 def held_text(robot: Robot) -> str:
-    """Tell where to clamp or strap a robot, in a sentence; empty if it is held nowhere."""
+    """Return a sentence on where to clamp or strap a robot; empty if it has no pins."""
     if not robot.pins:
         return ""
     places = "; ".join(_pin_text(pin) for pin in robot.pins)
@@ -145,7 +145,7 @@ def _base_step(outside: tuple[str, ...]) -> AssemblyStep:
         "Build the base",
         5 + 10 * len(outside),
         f"Screw {marks_text(outside)} to the base plate (print it, or cut parts/base.svg from acrylic), legs below. "
-        "Push each tube into its holder and lead it to where its cable begins, in wide bends, none tighter than a cup. "
+        "Push each tube into its holder and lead it to where its cable begins, bend radius at least 40 mm. "
         "Hold both ends: only so does the tube keep the cable's length. The base stands anywhere the tubes reach.",
     )
 
@@ -215,7 +215,7 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
 
 
 def _matched(plan: KitPlan) -> str:
-    """Tell how the two of a pair are set."""
+    """Return a sentence on how to set the two cables of a pair; empty without pairs."""
     if not plan.pairs:
         return ""
     return (
@@ -262,7 +262,7 @@ def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
 
 
 def _laid(plan: KitPlan) -> str:
-    """Tell what is laid flat, and which cables are sewn on it in which order."""
+    """Return a sentence on the panel to lay flat and the order in which its cables are sewn."""
     cables = len(plan.robot.cables)
     if plan.pairs:
         return (
@@ -280,7 +280,7 @@ def _row(first: int, last: int) -> str:
 
 
 def _flat(plan: KitPlan) -> bool:
-    """Tell whether it is a front and a back; else a skin of patches."""
+    """Return True if the body is a front and a back; else it is a skin of patches."""
     return plan.robot.body.mesh.dim == 2
 
 

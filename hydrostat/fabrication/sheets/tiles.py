@@ -216,7 +216,7 @@ def _overview(pattern: Pattern, grid: TileGrid, paper: Paper) -> str:
 
 
 def _left_out(empty: list[str]) -> str:
-    """Tell which tiles have no page."""
+    """Return a sentence on the tiles without a page."""
     if not empty:
         return ""
     if len(empty) > _NAMED:

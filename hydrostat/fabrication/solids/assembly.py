@@ -57,6 +57,6 @@ def interferences(assembly: PartAssembly, *, least: float = LEAST) -> tuple[Inte
 
 
 def _near(one: Manifold, other: Manifold) -> bool:
-    """Tell whether the boxes of two solids meet."""
+    """Return True if the bounding boxes of two solids intersect."""
     mine, theirs = one.bounding_box(), other.bounding_box()
     return all(mine[axis] <= theirs[axis + 3] and theirs[axis] <= mine[axis + 3] for axis in range(3))

@@ -1,6 +1,6 @@
 """Parts described by how they are made of simple shapes, so that one description gives both triangles and true STEP.
 
-    plate = Box((40, 30, 3)) - Cylinder(3, 1.7).moved(20, 15, 0)
+    plate = Box((40, 30, 3)) - Cylinder(3, 1.7).move(20, 15, 0)
 
 `solid_of` makes triangles of a construction; `step.py` makes a model of true cylinders and planes. All in millimetres.
 """
@@ -44,12 +44,12 @@ class Construction:
     def __and__(self, other: "Construction") -> "Intersection":
         return Intersection(self, other)
 
-    def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> "Moved":
-        """The same elsewhere [mm]."""
+    def move(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> "Moved":
+        """Return the shape moved by an offset [mm]."""
         return Moved(self, (x, y, z))
 
-    def turned(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> "Turned":
-        """The same turned about the x axis, then y, then z of space [degrees]."""
+    def rotate(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> "Turned":
+        """Return the shape rotated about the fixed x axis, then y, then z [degrees]."""
         return Turned(self, (x, y, z))
 
 

@@ -79,7 +79,7 @@ def _piece(number: int, part: Printed, bed: tuple[float, float]) -> _BedPiece:
 
 
 _STRAIGHT, _TURNED = "1 0 0 0 1 0 0 0 1", "0 1 0 -1 0 0 0 0 1"
-"""What happens to a part's axes: each row is where one of them goes."""
+"""Rotation of a part in a 3MF file: each row is the image of one axis."""
 
 _TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'

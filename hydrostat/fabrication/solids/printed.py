@@ -35,7 +35,7 @@ def file_mesh(solid: Manifold) -> FileMesh:
 
 
 def loose_edges(triangles: Int[np.ndarray, "triangles 3"]) -> int:
-    """How many edges are not used exactly twice, once in each direction."""
+    """Return the number of edges that are not used exactly twice, once in each direction."""
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     forward = edges[:, 0] < edges[:, 1]
     different, which = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
@@ -61,7 +61,7 @@ def _merged(corners: Float[np.ndarray, "corners 3"], triangles: Int[np.ndarray, 
 
 
 def _flaps(triangles: Int[np.ndarray, "triangles 3"]) -> Bool[np.ndarray, " triangles"]:
-    """Which triangles lie back to back with another on the same corners: the two enclose nothing."""
+    """Return True for each triangle back to back with another on the same corners: the two enclose nothing."""
     _, which, used = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)
     which = which.reshape(-1)
     first, second, third = triangles.T
@@ -130,7 +130,7 @@ class Printed:
         return high_x - low_x, high_y - low_y, high_z - low_z
 
     def fits(self, bed: tuple[float, float, float]) -> bool:
-        """Tell whether it fits on a bed [mm]; it may be turned there, not tilted."""
+        """Return True if it fits on a bed [mm]; it may be rotated there, not tilted."""
         (*sides, tall), (*room, high) = self.size, bed
         return tall <= high + 1e-6 and all(a <= b + 1e-6 for a, b in zip(sorted(sides), sorted(room), strict=True))
 
@@ -177,7 +177,7 @@ class TriangleMesh:
         return facing
 
 
-def connected(links: Int[np.ndarray, "links 2"], count: int) -> Int[np.ndarray, " count"]:
+def number_groups(links: Int[np.ndarray, "links 2"], count: int) -> Int[np.ndarray, " count"]:
     """Number the groups of so many things that links join, in the order of their first members."""
     graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
     return connected_components(graph, directed=False)[1].astype(np.int64)

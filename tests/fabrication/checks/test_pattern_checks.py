@@ -27,7 +27,7 @@ def shifted(by: float) -> Pattern:
     """The pattern with the holes of its front moved [mm]."""
     pattern = plush_pattern(crossed())
     front, *others = pattern.panels
-    shapes = tuple(shape.moved(by, 0.0) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes)
+    shapes = tuple(shape.move(by, 0.0) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes)
     return replace(pattern, panels=(replace(front, shapes=shapes), *others))
 
 

@@ -48,7 +48,7 @@ def test_pieces_in_one_place_are_seen_with_what_they_share():
 def test_a_part_may_be_turned_on_the_bed_but_not_tilted():
     assert too_large([part()], (20.0, 10.0, 30.0)) == ()
     (reason,) = too_large([part()], (30.0, 30.0, 20.0))
-    assert reason.startswith("cube of 10 x 20 x 30 mm is more than the printer takes (30 x 30 x 20 mm)")
+    assert reason.startswith("cube of 10 x 20 x 30 mm does not fit the printer (30 x 30 x 20 mm)")
     assert too_large([part()], (19.0, 19.0, 30.0)) != ()
 
 

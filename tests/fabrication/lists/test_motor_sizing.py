@@ -60,9 +60,9 @@ def test_a_motor_that_stalls_never_gets_there() -> None:
     ("tension", "words"),
     [
         (6.6, []),
-        (6.7, ["bears for long"]),
-        (16.6, ["bears for long"]),
-        (16.7, ["may stand still"]),
+        (6.7, ["continuous rating"]),
+        (16.6, ["continuous rating"]),
+        (16.7, ["may stall before"]),
         (34.0, ["cannot reach"]),
     ],
 )
@@ -73,7 +73,7 @@ def test_what_is_warned_of(tension: float, words: list[str]) -> None:
 
 
 def test_a_slow_winch_is_called_slow() -> None:
-    assert "takes" in motor_warnings((sizing(1.0, speed=1.0),))[0]
+    assert " s for its travel of" in motor_warnings((sizing(1.0, speed=1.0),))[0]
 
 
 def test_a_winch_without_cables_asks_for_nothing() -> None:
@@ -96,4 +96,4 @@ def test_a_demand_of_another_robot_is_refused() -> None:
 def test_winches_alike_share_a_sentence() -> None:
     one, other = (sizing(tension, stall_torque=200.0, rated_torque=80.0) for tension in (10.0, 12.0))
     (warning,) = motor_warnings((replace(one, winch="left"), replace(other, winch="right")))
-    assert warning.startswith('winches "left", "right" ask for up to 72 N mm, 144 N mm with the margin of 2')
+    assert warning.startswith('winches "left", "right" need up to 72 N mm, 144 N mm with the margin of 2')

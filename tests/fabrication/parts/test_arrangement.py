@@ -13,7 +13,7 @@ from shapely import Polygon, box, transform
 from winch_robots import with_winches
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.arrangement import LaidUnit, arranged
+from hydrostat.fabrication.parts.arrangement import LaidUnit, arrange_units
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
@@ -84,10 +84,10 @@ def test_a_body_thinner_than_stuffing_gives_is_refused_and_a_little_thinner_is_t
 
     thinnest = min(of(40.0)[0].room.size)
     for unit in (*of(4.0), *of(thinnest / (1 + GIVES) - 0.1)):
-        assert any(f'winch "{unit.winch}"' in text and "take a smaller motor" in text for text in unit.problems)
+        assert any(f'winch "{unit.winch}"' in text and "hoose a smaller motor" in text for text in unit.problems)
     for unit in of(thinnest / (1 + GIVES) + 0.1):
         assert unit.problems == ()
-        assert any("it will bulge by" in text for text in unit.warnings)
+        assert any("which will bulge by" in text for text in unit.warnings)
     assert not any("bulge" in text for unit in of(thinnest + 0.1) for text in unit.warnings)
 
 
@@ -97,7 +97,7 @@ def test_a_motor_longer_than_the_body_is_refused():
         small = plush_robot(drawn_body(f"M0 0H{side}V{side}H0Z"), [(0, 0), (10, 12)], marker=(5, 5))
         (unit,) = units_of(small, POLOLU_25D)
         assert max(unit.room.size) > 59 * math.sqrt(2)
-        assert any("does not lie within the seam" in text or "mm of a body" in text for text in unit.problems)
+        assert any("does not fit within the seam" in text or "mm in a body" in text for text in unit.problems)
         assert units_of(small, N20)[0].problems == ()
     large = plush_robot(drawn_body("M0 0H200V200H0Z"), [(0, 0), (10, 12)])
     assert units_of(large, POLOLU_25D)[0].problems == ()
@@ -114,49 +114,49 @@ def test_a_mesh_has_its_boundary_for_a_seam():
 def test_one_unit_is_turned_and_slid_until_it_is_inside():
     """Oracle: a strip 22 mm wide takes a unit of 20 x 20 x 40 mm in a thin body along it only."""
     strip = box(-60, -11, 60, 11)
-    (laid,) = arranged([brick("a", 0, 0, deep=30.0, along=0.0)], strip, 21.0)
+    (laid,) = arrange_units([brick("a", 0, 0, deep=30.0, along=0.0)], strip, 21.0)
     assert laid.problems == ()
     assert not laid.place.across
     assert laid.place.footprint.bounds[2] - laid.place.footprint.bounds[0] == pytest.approx(40)
-    (slid,) = arranged([brick("a", 0, 5.0, deep=30.0)], strip, 21.0)
+    (slid,) = arrange_units([brick("a", 0, 5.0, deep=30.0)], strip, 21.0)
     assert slid.problems == ()
     assert math.hypot(*slid.place.slid) == pytest.approx(6)
-    assert any("slid 6 mm to 6 o'clock" in text for text in slid.warnings)
-    assert "does not lie within the seam" in problems(arranged([brick("a", 0, 9.0, deep=30.0)], strip, 21.0))[0]
+    assert any("shifted 6 mm toward 6 o'clock" in text for text in slid.warnings)
+    assert "does not fit within the seam" in problems(arrange_units([brick("a", 0, 9.0, deep=30.0)], strip, 21.0))[0]
 
 
 def test_neighbours_turn_away_from_each_other():
     """Oracle: across they would meet, slid too; face to face, with 5 mm of housing each, not."""
     wide = box(-200, -200, 200, 200)
-    near = arranged([brick("a", -3, 0), brick("b", 3, 0)], wide, 31.0)
+    near = arrange_units([brick("a", -3, 0), brick("b", 3, 0)], wide, 31.0)
     assert problems(near) == []
     assert near[0].place.footprint.intersection(near[1].place.footprint).area <= TOUCHES
     (told,) = warnings(near)
-    assert '"a" lying' in told
-    assert '"b" lying' in told
-    assert warnings(arranged([brick("a", -40, 0), brick("b", 40, 0)], wide, 31.0)) == []
+    assert '"a" flat' in told
+    assert '"b" flat' in told
+    assert warnings(arrange_units([brick("a", -40, 0), brick("b", 40, 0)], wide, 31.0)) == []
 
 
 def test_two_in_one_place_lie_above_each_other_or_are_refused():
     """Oracle: 2 x 20 mm in bodies of 40, 33 and 31 mm that give a quarter; three are one too many."""
     narrow = box(-15, -15, 15, 15)
     pair = [brick("a", 0, 0, deep=10.0), brick("b", 0, 0, deep=10.0)]
-    assert problems(arranged(pair, narrow, 40.0)) == []
-    (enough,) = (text for text in warnings(arranged(pair, narrow, 40.0)) if "one above the other" in text)
+    assert problems(arrange_units(pair, narrow, 40.0)) == []
+    (enough,) = (text for text in warnings(arrange_units(pair, narrow, 40.0)) if "one above the other" in text)
     assert "40 mm in a body of 40 mm" in enough
     assert "bulge" not in enough
-    assert any("bulges by 7 mm" in text for text in warnings(arranged(pair, narrow, 33.0)))
-    (refused,) = problems(arranged(pair, narrow, 31.0))
+    assert any("bulges by 7 mm" in text for text in warnings(arrange_units(pair, narrow, 33.0)))
+    (refused,) = problems(arrange_units(pair, narrow, 31.0))
     assert '"a" and "b"' in refused
-    assert "40 mm of a body of 31 mm" in refused
+    assert "40 mm in a body of 31 mm" in refused
     assert "20 x 20 x " in refused, "how large they are"
     assert " mm each, 0 mm apart)" in refused, "how far apart the robot has them"
-    (refused,) = problems(arranged([pair[0], brick("b", 3, 4, deep=12.0)], narrow, 31.0))
+    (refused,) = problems(arrange_units([pair[0], brick("b", 3, 4, deep=12.0)], narrow, 31.0))
     assert refused.count("20 x 20 x ") == 2, "of two sizes both"
     assert " mm, 5 mm apart)" in refused
-    (three,) = problems(arranged([*pair, brick("c", 0, 0, deep=10.0)], narrow, 40.0))
+    (three,) = problems(arrange_units([*pair, brick("c", 0, 0, deep=10.0)], narrow, 40.0))
     assert '"a" and "b" and "c"' in three
-    assert "60 mm of a body of 40 mm" in three
+    assert "60 mm in a body of 40 mm" in three
 
 
 def test_two_winches_in_one_place_of_a_robot():

@@ -53,7 +53,7 @@ def test_everything_fits_on_the_base(name: str, motor: Motor, unchecked: None):
     assert len(base.seats) == len(units)
     assert interferences(base.assembly) == ()
     boxes = [
-        seat.placed(Manifold.cube(units[seat.unit].room.size).translate(units[seat.unit].room.low))
+        seat.place_solid(Manifold.cube(units[seat.unit].room.size).translate(units[seat.unit].room.low))
         for seat in base.seats
     ]
     assert all(one.min_gap(other, 5.0) >= 2.9 for one, other in combinations(boxes, 2))
@@ -122,10 +122,10 @@ def test_a_straight_tube_runs_from_its_seat_through_its_holder(motor: Motor):
         length = FREE + HOLDER_DEPTH
         assert dict(base.tubes)[leaves.cable] > length
         tube = Manifold.cylinder(length, 0.97, -1, 24).rotate((-90, 0, 0)).translate(leaves.point)
-        placed = seat.placed(tube.translate((0, 0.01, 0)))
+        placed = seat.place_solid(tube.translate((0, 0.01, 0)))
         assert all((placed ^ solid).volume() < 1e-9 for solid in others)
         assert (placed ^ holder).volume() < 1e-9
-        assert (seat.placed(tube.translate((0.6, 0, 0))) ^ holder).volume() > 1.0
+        assert (seat.place_solid(tube.translate((0.6, 0, 0))) ^ holder).volume() > 1.0
 
 
 def test_a_holder_prints_and_closes_on_its_tubes():

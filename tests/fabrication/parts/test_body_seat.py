@@ -79,8 +79,8 @@ def test_nothing_is_in_the_way_of_anything(name: str) -> None:
 @pytest.mark.parametrize(
     ("pins", "why"),
     [
-        ((Pin(at=(0.0, 0.0, 0.0), radius=0.01), Pin(at=(0.1, 0.0, 0.0), radius=0.01)), "held in 2 places"),
-        ((Pin(at=(0.15, 0.0, 0.0), radius=0.02),), "not held at the end where its cables begin"),
+        ((Pin(at=(0.0, 0.0, 0.0), radius=0.01), Pin(at=(0.1, 0.0, 0.0), radius=0.01)), "it has 2 pins"),
+        ((Pin(at=(0.15, 0.0, 0.0), radius=0.02),), "not pinned at the end where its cables begin"),
     ],
 )
 def test_where_none_can_be_made_it_says_why(tail: Robot, pins: tuple[Pin, ...], why: str) -> None:

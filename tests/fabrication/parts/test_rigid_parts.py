@@ -104,5 +104,5 @@ def test_what_to_mind_of_the_base_is_told():
         rigid_parts(each, given_demand(each), motor="n20", options=PartOptions(), bed=BED).warnings
         for each in (robot, bare)
     ]
-    assert not any("clamp the end of its tube" in text for text in told[0])
-    assert [text for text in told[1] if "clamp the end of its tube" in text and "C2" in text]
+    assert not any("Clamp the end of its tube" in text for text in told[0])
+    assert [text for text in told[1] if "Clamp the end of its tube" in text and "C2" in text]

@@ -103,7 +103,7 @@ def test_volume_agrees_with_trimesh():
 @pytest.mark.parametrize("spool", spools(play=0.2))
 def test_the_shaft_goes_in_with_its_play_and_turns_the_spool(spool: Spool):
     """Oracle: least gap between solids; turned by 30 degrees the shaft cuts into the flat."""
-    shaft = solid_of(spool.shaft.shape(spool.inside + 5).moved(0, 0, -5))
+    shaft = solid_of(spool.shaft.shape(spool.inside + 5).move(0, 0, -5))
     solid = printed(spool).solid
     assert solid.min_gap(shaft, 1.0) == pytest.approx(0.2, abs=0.03)
     assert (solid ^ shaft.rotate((0, 0, 30))).volume() > 0.05

@@ -13,7 +13,7 @@ from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.spool import capacity
-from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, find_crowded_units, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly, interferences
 from hydrostat.robot import Mount, Robot, list_gallery
 
@@ -101,7 +101,7 @@ def test_a_radius_too_small_is_refused_with_the_least_there_is():
     for motor, least in ((N20, 3.45), (XL330, 4.95), (POLOLU_25D, 3.95)):
         (unit,) = units_of(with_winches(robot, spool_radius=1e-3 * (least - 0.01)), motor)
         assert len(unit.problems) == len(unit.cables)
-        assert f"at least {least:.2f} mm" in unit.problems[0]
+        assert f"has {least:.2f} mm, the minimum" in unit.problems[0]
         assert interferences(unit.assembly) == ()
         (unit,) = units_of(with_winches(robot, spool_radius=1e-3 * least), motor)
         assert unit.problems == ()
@@ -140,7 +140,7 @@ def test_more_than_a_spool_takes_is_refused():
 def test_a_shaft_too_short_for_thick_walls_is_refused():
     robot = thick(gallery_robot("letter_s"))
     (unit,) = units_of(with_winches(robot, spool_radius=0.012), wall=5.0)
-    assert any("of the shaft" in text and "3.6 mm are needed" in text for text in unit.problems)
+    assert any("of the shaft" in text and "minimum 3.6 mm" in text for text in unit.problems)
     assert units_of(with_winches(robot, spool_radius=0.012), POLOLU_25D, wall=2.0)[0].problems == ()
 
 
@@ -166,10 +166,10 @@ def test_cables_leave_an_upright_unit_as_they_go_on():
 
 def test_winches_too_close_are_named():
     units = units_of(gallery_robot("bear"))
-    (text,) = crowded(gallery_robot("bear"), units)
+    (text,) = find_crowded_units(gallery_robot("bear"), units)
     assert '"hug" and "nod" are 20.1 mm apart' in text
-    assert crowded(gallery_robot("starfish"), units_of(gallery_robot("starfish"))) == ()
-    assert crowded(gallery_robot("trunk"), units_of(gallery_robot("trunk"))) == ()
+    assert find_crowded_units(gallery_robot("starfish"), units_of(gallery_robot("starfish"))) == ()
+    assert find_crowded_units(gallery_robot("trunk"), units_of(gallery_robot("trunk"))) == ()
 
 
 def test_screws_are_counted():

@@ -27,7 +27,7 @@ def euler(triangles: np.ndarray) -> int:
 def test_dividing_keeps_the_surface():
     ball = skin_of_ball()
     marked = np.arange(len(ball.edges[0])) % 3 == 0
-    divided, parent = ball.divided(marked, np.full(len(marked), 0.3))
+    divided, parent = ball.divide_edges(marked, np.full(len(marked), 0.3))
     assert divided.areas.sum() == pytest.approx(ball.areas.sum(), rel=1e-12)
     assert np.bincount(parent, divided.areas) == pytest.approx(ball.areas, rel=1e-9)
     assert euler(divided.triangles) == 2
@@ -125,7 +125,7 @@ def test_a_patch_that_touches_itself_in_a_corner_is_still_a_disc():
         index for index in fan[1:] if len(np.intersect1d(ball.triangles[index], ball.triangles[fan[0]])) == 1
     )
     patch[opposite] = 2
-    disc = disc_of(ball.labelled(np.where(patch == 1, 1, 0)), 1)
+    disc = disc_of(ball.relabel_patches(np.where(patch == 1, 1, 0)), 1)
     assert (disc.of == touching).sum() == 2
 
 
@@ -167,7 +167,7 @@ def test_very_fine_surfaces_are_cut_as_coarser_ones() -> None:
     """A ball of 32768 triangles: far fewer are as good to a thousandth, closed, and the same each time."""
     fine = skin_of_ball()
     for _ in range(2):
-        fine, _ = fine.divided(np.ones(len(fine.edges[0]), dtype=bool), np.full(len(fine.edges[0]), 0.5))
+        fine, _ = fine.divide_edges(np.ones(len(fine.edges[0]), dtype=bool), np.full(len(fine.edges[0]), 0.5))
     surface = Surface(1e-3 * fine.vertices, fine.triangles)
     first, again = skin_of_surface(surface), skin_of_surface(surface)
     assert len(first.triangles) < len(fine.triangles) / 3

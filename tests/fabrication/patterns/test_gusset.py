@@ -98,7 +98,7 @@ def test_the_check_of_notches_can_fail():
     """Oracle: a strip laid the other way round."""
     pattern = plush_pattern(crossed(), options=GUSSET)
     (strip,) = pattern.gusset
-    wrong = replace(strip, shapes=tuple(shape.mirrored() for shape in strip.shapes))
+    wrong = replace(strip, shapes=tuple(shape.mirror() for shape in strip.shapes))
     assert mismatch(replace(pattern, panels=(*pattern.panels[:2], wrong))) > 1
 
 

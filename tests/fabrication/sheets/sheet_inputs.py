@@ -44,15 +44,15 @@ class Given(NamedTuple):
 
 def winch() -> PartAssembly:
     """A motor, a spool and a housing on one axis."""
-    spool = Cylinder(2, 9) + Cylinder(12, 6) + Cylinder(2, 9).moved(0, 0, 10) - Cylinder(12, 1.5)
-    housing = Box((24, 24, 17)).moved(-12, -12, 0) - Cylinder(14, 10).moved(0, 0, 3) - Cylinder(30, 2.2)
-    motor = Box((12, 10, 25)).moved(-6, -5, -25) + Cylinder(12, 1.5)
+    spool = Cylinder(2, 9) + Cylinder(12, 6) + Cylinder(2, 9).move(0, 0, 10) - Cylinder(12, 1.5)
+    housing = Box((24, 24, 17)).move(-12, -12, 0) - Cylinder(14, 10).move(0, 0, 3) - Cylinder(30, 2.2)
+    motor = Box((12, 10, 25)).move(-6, -5, -25) + Cylinder(12, 1.5)
     return PartAssembly(
         name="winch",
         pieces=(
             Placed(name="motor", title="Geared motor", solid=solid_of(motor), pulled=(0, 0, -22), printed=False),
             Placed(name="housing", title="Housing", solid=solid_of(housing)),
-            Placed(name="spool", title="Spool", solid=solid_of(spool.moved(0, 0, 4)), pulled=(0, 0, 26)),
+            Placed(name="spool", title="Spool", solid=solid_of(spool.move(0, 0, 4)), pulled=(0, 0, 26)),
         ),
     )
 
@@ -155,11 +155,11 @@ def mould(robot: Robot, *, silicone: bool = False) -> Mould:
     piece = body_solid(robot)
     one, two, three = (piece.vertices[corner] for corner in piece.triangles.T)
     held = np.cross(two - one, three - one)[:, 1] < 0
-    half = Box((120, 100, 40)) - Box((100, 80, 30)).moved(10, 10, 10)
+    half = Box((120, 100, 40)) - Box((100, 80, 30)).move(10, 10, 10)
     casting, _ = make_casting(robot.body.material, 480e3, pours=(400e3, 300e3) if silicone else ())
     pieces = (
         Placed(name="mould_lower", title="lower half", solid=solid_of(half), pulled=(0, 0, -40)),
-        Placed(name="mould_upper", title="upper half", solid=solid_of(half.turned(x=180).moved(0, 100, 80))),
+        Placed(name="mould_upper", title="upper half", solid=solid_of(half.rotate(x=180).move(0, 100, 80))),
     )
     return Mould(
         kind=MouldKind.SILICONE if silicone else MouldKind.PRINTED,

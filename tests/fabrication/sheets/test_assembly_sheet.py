@@ -16,7 +16,7 @@ from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
-from hydrostat.fabrication.sheets.legible import legible, note_lines, shortened, typeset
+from hydrostat.fabrication.sheets.legible import legible, note_lines, shorten_text, typeset
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import MATERIALS, Mount
 
@@ -154,9 +154,9 @@ def test_names_in_other_alphabets():
 def test_long_names_are_shortened(name):
     content = assembly_sheet(*plush(name=name))
     assert len(read(content).pages) == 2
-    assert shortened(name, 60)[:20] in words(content)
-    assert shortened(name, 60).endswith("…")
-    assert len(shortened(name, 60)) <= 60
+    assert shorten_text(name, 60)[:20] in words(content)
+    assert shorten_text(name, 60).endswith("…")
+    assert len(shorten_text(name, 60)) <= 60
 
 
 @pytest.mark.parametrize(

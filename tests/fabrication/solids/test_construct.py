@@ -17,9 +17,9 @@ RING = ((5.0, 0.0), (8.0, 0.0), (8.0, 2.0), (5.0, 2.0))
 FLAT = [
     (Box((2, 3, 4)), 24.0),
     (Prism(LETTER, 2), 12.0),
-    (Box((4, 4, 4)) - Box((2, 2, 9)).moved(1, 1, -1), 48.0),
-    (Box((4, 4, 4)) + Box((4, 4, 4)).moved(2, 0, 0), 96.0),
-    (Box((4, 4, 4)) & Box((4, 4, 4)).moved(3, 3, 3), 1.0),
+    (Box((4, 4, 4)) - Box((2, 2, 9)).move(1, 1, -1), 48.0),
+    (Box((4, 4, 4)) + Box((4, 4, 4)).move(2, 0, 0), 96.0),
+    (Box((4, 4, 4)) & Box((4, 4, 4)).move(3, 3, 3), 1.0),
 ]
 
 ROUND = [
@@ -27,7 +27,7 @@ ROUND = [
     (Cylinder(6, 3, 1), math.pi * 6 * (9 + 3 + 1) / 3, 3.0),
     (Cylinder(6, 3, 0), math.pi * 6 * 9 / 3, 3.0),
     (Revolve(RING), 2 * math.pi * 6.5 * 6.0, 5.0),
-    (Box((20, 20, 3)) - Cylinder(9, 4).moved(10, 10, -1), 1200 - math.pi * 16 * 3, 4.0),
+    (Box((20, 20, 3)) - Cylinder(9, 4).move(10, 10, -1), 1200 - math.pi * 16 * 3, 4.0),
 ]
 
 
@@ -63,10 +63,10 @@ def box_of(construction: Construction) -> np.ndarray:
 def test_turning_and_moving_are_about_the_axes_of_space():
     """Oracle: a quarter turn about x takes y to z, then one about z takes x to y; both on paper."""
     shape = Box((1, 2, 3))
-    np.testing.assert_allclose(box_of(shape.turned(x=90)), [[0, -3, 0], [1, 0, 2]], atol=1e-12)
-    np.testing.assert_allclose(box_of(shape.turned(x=90, z=90)), [[0, 0, 0], [3, 1, 2]], atol=1e-12)
-    np.testing.assert_allclose(box_of(shape.moved(5, 0, -1).turned(z=90)), [[-2, 5, -1], [0, 6, 2]], atol=1e-12)
-    np.testing.assert_allclose(box_of(shape.turned(z=90).moved(5, 0, -1)), [[3, 0, -1], [5, 1, 2]], atol=1e-12)
+    np.testing.assert_allclose(box_of(shape.rotate(x=90)), [[0, -3, 0], [1, 0, 2]], atol=1e-12)
+    np.testing.assert_allclose(box_of(shape.rotate(x=90, z=90)), [[0, 0, 0], [3, 1, 2]], atol=1e-12)
+    np.testing.assert_allclose(box_of(shape.move(5, 0, -1).rotate(z=90)), [[-2, 5, -1], [0, 6, 2]], atol=1e-12)
+    np.testing.assert_allclose(box_of(shape.rotate(z=90).move(5, 0, -1)), [[3, 0, -1], [5, 1, 2]], atol=1e-12)
 
 
 @pytest.mark.parametrize("make", [lambda profile: Prism(profile, 1.0), Revolve])

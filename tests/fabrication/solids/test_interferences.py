@@ -33,9 +33,9 @@ def test_faces_that_touch_are_no_overlap():
 def test_a_shaft_needs_a_bore_as_wide():
     """Oracle: a ring of closed-form area; a bore of the shaft's very radius has none."""
     shaft = solid_of(Cylinder(10, 3))
-    loose = solid_of(Box((20, 20, 10)).moved(-10, -10, 0) - Cylinder(10, 3))
+    loose = solid_of(Box((20, 20, 10)).move(-10, -10, 0) - Cylinder(10, 3))
     assert interferences(put_together(shaft, loose)) == ()
-    tight = solid_of(Box((20, 20, 10)).moved(-10, -10, 0) - Cylinder(10, 2.8))
+    tight = solid_of(Box((20, 20, 10)).move(-10, -10, 0) - Cylinder(10, 2.8))
     (found,) = interferences(put_together(shaft, tight))
     assert found.volume == pytest.approx(10 * math.pi * (3**2 - 2.8**2), rel=0.05)
 

@@ -21,7 +21,7 @@ def three_mf_bytes(parts: tuple[Printed, ...], title: str) -> bytes:
 
 
 def plate(**others) -> Printed:
-    model = Box((40, 30, 3)) - Cylinder(9, 3).moved(20, 15, -1)
+    model = Box((40, 30, 3)) - Cylinder(9, 3).move(20, 15, -1)
     return Printed(**{"name": "plate", "title": "Plate <A> & 'B'", "solid": solid_of(model), "model": model} | others)
 
 
@@ -176,7 +176,7 @@ def test_parts_lie_apart_on_beds_that_hold_them():
 
 def test_a_part_is_turned_where_only_so_it_fits():
     """Oracle: lib3mf, and trimesh, which sees the corner that was cut off a quarter turn further counter-clockwise."""
-    corner = plate(solid=solid_of(Box((40, 30, 3)) - Box((10, 5, 9)).moved(-1, -1, -1)))
+    corner = plate(solid=solid_of(Box((40, 30, 3)) - Box((10, 5, 9)).move(-1, -1, -1)))
     (content,) = three_mf_plates((corner,), "kit", bed=(35.0, 50.0))
     np.testing.assert_allclose(boxes_on_bed(content)[0, :, :2], [[0, 0], [30, 40]], atol=1e-4)
     seen = trimesh.load_scene(io.BytesIO(content), file_type="3mf").to_mesh()

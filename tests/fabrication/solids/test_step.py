@@ -29,8 +29,8 @@ BODIES: dict[str, tuple[Construction, float]] = {
     "prism": (Prism(LETTER, 2), 12.0),
     "ring": (Revolve(((5.0, 0.0), (8.0, 0.0), (8.0, 2.0), (5.0, 2.0))), 78 * math.pi),
     "spool": (Revolve(SPOOL), math.pi * (81 + 2 * (81 + 45 + 25) / 3 + 3 * 25)),
-    "plate": (Box((20, 20, 3)) - Cylinder(9, 4).moved(10, 10, -1), 1200 - 48 * math.pi),
-    "joined": (Box((4, 4, 4)) + Box((4, 4, 4)).moved(2, 0, 0).turned(z=90), 4.0 * (16 + 16)),
+    "plate": (Box((20, 20, 3)) - Cylinder(9, 4).move(10, 10, -1), 1200 - 48 * math.pi),
+    "joined": (Box((4, 4, 4)) + Box((4, 4, 4)).move(2, 0, 0).rotate(z=90), 4.0 * (16 + 16)),
     "common": (Cylinder(4, 3) & Box((9, 9, 9)), 9 * math.pi),
 }
 
@@ -70,8 +70,8 @@ def test_cylinders_stay_cylinders(tmp_path):
     """Oracle: the faces that Open CASCADE reads back: a plate with two bores and a sunk head."""
     model = Box((30, 10, 4))
     for x in (8, 22):
-        model = model - Cylinder(9, 2).moved(x, 5, -1)
-    model = model - Cylinder(1.5, 2, 3.5).moved(22, 5, 2.5)
+        model = model - Cylinder(9, 2).move(x, 5, -1)
+    model = model - Cylinder(1.5, 2, 3.5).move(22, 5, 2.5)
     seen = read_back(step_bytes(part(model)), tmp_path)
     kinds = [str(face.geom_type).split(".")[-1] for face in seen.faces()]
     assert sorted(kinds) == ["CONE", "CYLINDER", "CYLINDER", *["PLANE"] * 6]
@@ -81,12 +81,12 @@ def test_cylinders_stay_cylinders(tmp_path):
 @pytest.mark.parametrize(
     "placed",
     [
-        lambda shape: shape.moved(5, -3, 2),
-        lambda shape: shape.turned(x=90),
-        lambda shape: shape.turned(x=90, z=90),
-        lambda shape: shape.turned(x=30, y=-50, z=110),
-        lambda shape: shape.moved(1, 2, 3).turned(y=40, x=20),
-        lambda shape: shape.turned(y=40, x=20).moved(1, 2, 3),
+        lambda shape: shape.move(5, -3, 2),
+        lambda shape: shape.rotate(x=90),
+        lambda shape: shape.rotate(x=90, z=90),
+        lambda shape: shape.rotate(x=30, y=-50, z=110),
+        lambda shape: shape.move(1, 2, 3).rotate(y=40, x=20),
+        lambda shape: shape.rotate(y=40, x=20).move(1, 2, 3),
     ],
 )
 def test_both_backends_turn_and_move_alike(placed):
