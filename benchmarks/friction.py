@@ -14,10 +14,11 @@ import numpy as np  # isort: skip
 from robustness import EXAMPLES, example_folders
 
 from hydrostat.robot import Robot, load_robot
-from hydrostat.simulation import Equilibrium, Simulation, loading_path
+from hydrostat.simulation import Equilibrium, Simulation
 
 REPEATS = 5
 COMMANDS = 4
+USUAL = 0.05  # increment of a loading path, as a share of the shortest cable of a winch
 INCREMENTS = (0.01, 0.05, 0.2, 1.0)
 
 
@@ -64,8 +65,8 @@ def way(name: str, friction: float) -> str:
     goals = np.random.default_rng(1).uniform(0, 0.3, (COMMANDS, len(shortest))) * shortest
     runs = []
     for share in INCREMENTS:
-        loading_path._INCREMENT = share
         simulation, pose, run = Simulation(robot), None, []
+        simulation.path._increment = simulation.path._increment * (share / USUAL)
         for goal in goals:
             pose = simulation.solve(goal, start=pose, strict=False)
             run.append(pose)

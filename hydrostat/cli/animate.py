@@ -53,7 +53,7 @@ def animate(
     Writes animation.gif, and animation.glb for Blender, browsers and 3D viewers; with --format mp4, animation.mp4.
     A robot without poses contracts its winches one by one.
 
-    Example: hydrostat animate examples/starfish --pose wave --out build/wave
+    Example: hydrostat animate gallery:starfish --pose wave --out build/wave
     """
     from hydrostat.plot import film, find_ffmpeg
 

@@ -27,7 +27,7 @@ def branches(
     Multistability test: solves many loading paths, groups the poses found, and follows the equilibrium branches past
     folds, where the robot snaps through. Writes branches.json and branches.png.
 
-    Example: hydrostat branches examples/robot --contract left=60mm --contract right=60mm --out build/branches
+    Example: hydrostat branches gallery:robot --contract left=60mm --contract right=60mm --out build/branches
     """
     from hydrostat.simulation import find_equilibria
 

@@ -28,7 +28,7 @@ def check(
 ) -> None:
     """Check a robot: report errors and warnings.
 
-    Example: hydrostat check examples/starfish --thorough
+    Example: hydrostat check gallery:starfish --thorough
     """
     from hydrostat.robot import describe_cable_side
 

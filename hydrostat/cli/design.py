@@ -148,7 +148,7 @@ def design(
     clearance = "4 mm", tension = "15 N", locked_cables = ["left 1"], and tables [[keep_out]], [[still]] and
     [[winch_zone]] with at and radius, box, or outline.
 
-    Example: hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --out build/starfish
+    Example: hydrostat design gallery:starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """
     require_folder(out)
     typed = DesignArguments(

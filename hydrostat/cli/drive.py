@@ -65,7 +65,7 @@ def drive(
 
     With --tips you move markers, and inverse kinematics computes the contractions while you drive.
 
-    Example: hydrostat drive examples/starfish --source keys
+    Example: hydrostat drive gallery:starfish --source keys
     """
     from hydrostat import control, teleop
 

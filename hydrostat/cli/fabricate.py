@@ -69,7 +69,7 @@ def fabricate(
     Start with assembly_sheet.pdf. pattern/ is for a laser cutter, or a printer and scissors. parts/ and mould/ are for
     a 3D printer. lists/ holds the bill of materials and the cable lengths. manifest.json records the inputs.
 
-    Example: hydrostat fabricate examples/starfish --out build/kit
+    Example: hydrostat fabricate gallery:starfish --out build/kit
     """
     from hydrostat import fabrication as kits
     from hydrostat.units import FORCE

@@ -58,7 +58,7 @@ def grasp(
     straight line. Self-contact and contact with the object are on, with friction on the object. Writes pull.csv,
     pull.png and pull.gif; with --bands also bands.csv.
 
-    Example: hydrostat grasp examples/caging_gripper --pose close --object sphere:65mm --pull +z --out build/grasp
+    Example: hydrostat grasp gallery:caging_gripper --pose close --object sphere:65mm --pull +z --out build/grasp
     """
     from hydrostat.grasp import PullOptions, pull_bands, pull_out, read_thing
     from hydrostat.plot import draw_pull, pull_frames, save_gif, save_png

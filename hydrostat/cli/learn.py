@@ -44,7 +44,7 @@ def learn(
     PyTorch: hydrostat pose ROBOT --model MODEL, or in Python hydrostat.learning.load_model(MODEL).solve(targets).
     Ctrl-C stops early and saves the best model so far.
 
-    With --from, training continues from an existing model. Train on many samples of a coarse mesh first, then fine-tune
+    With --fine-tune, training continues from an existing model. Train on many samples of a coarse mesh first, then fine-tune
     with a few samples of a finer mesh of the same robot.
 
     Example: hydrostat learn build/samples --out build/starfish.model

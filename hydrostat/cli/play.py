@@ -48,7 +48,7 @@ def play(
     studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM and on any error. With --motors they also
     stop if a cable tension is far above the simulated one, or missing.
 
-    Example: hydrostat play examples/starfish build/dance/trajectory.csv --repeat 3
+    Example: hydrostat play gallery:starfish build/dance/trajectory.csv --repeat 3
     """
     import numpy as np
 

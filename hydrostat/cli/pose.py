@@ -52,7 +52,7 @@ def pose(
     A pose sets marker targets; --drawing sets a whole target shape. Give both to combine them. With --model, the
     command prints the error that the model predicts and the simulated error, then starts the search from there.
 
-    Example: hydrostat pose examples/starfish --pose wave --out build/wave
+    Example: hydrostat pose gallery:starfish --pose wave --out build/wave
     """
     from hydrostat.ik import IKOptions, IKStatus, ShapeTarget, load_target_outline, solve_ik
     from hydrostat.simulation import Simulation
@@ -116,7 +116,7 @@ def _write(
     from hydrostat.version import __version__
 
     load_matplotlib()
-    from hydrostat.plot import draw_reached, save_png, shorten
+    from hydrostat.plot import draw_reached, reached_title, save_png
     from hydrostat.robot import replace_file
     from hydrostat.simulation import write_pose
 
@@ -134,8 +134,8 @@ def _write(
     write_pose(simulation, reached.pose, folder, extra=extra, jacobian=jacobian)
     taken = _contraction_facts(simulation.robot, reached)
     replace_file(folder / "contractions.json", (json.dumps(taken, indent=2) + "\n").encode())
-    head = None if reached.target is not None else f"Reached: {shorten(title)}"
-    save_png(draw_reached(simulation.robot, reached, title=head, outline=outline), folder / "pose.png")
+    figure = draw_reached(simulation.robot, reached, title=reached_title(reached, title), outline=outline)
+    save_png(figure, folder / "pose.png")
 
 
 def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: float) -> None:

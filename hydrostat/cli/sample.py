@@ -55,7 +55,7 @@ def sample(
     samples to .npy files. Run the same command again to resume, or with a larger --count to add samples. Results do not
     depend on the number of processes. Read them in Python with hydrostat.learning.read_samples.
 
-    Example: hydrostat sample examples/starfish --count 200 --contact --out build/samples
+    Example: hydrostat sample gallery:starfish --count 200 --contact --out build/samples
     """
     from hydrostat.closed_set import parse_choice
     from hydrostat.learning import (

@@ -53,7 +53,7 @@ def simulate(
     Writes pose.json, pose.vtu (for ParaView) and pose.png. With --dynamic these show the final state, and the command
     also writes motion.csv, motion.pvd (for ParaView) and motion.png.
 
-    Example: hydrostat simulate examples/starfish --contract left=12mm --out build/pose
+    Example: hydrostat simulate gallery:starfish --contract left=12mm --out build/pose
     """
     from hydrostat.cli.pictures import load_matplotlib
     from hydrostat.simulation import write_pose

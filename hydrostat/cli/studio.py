@@ -30,11 +30,11 @@ def studio(
 ) -> None:
     """Open the studio: pose, design, drive and export a robot.
 
-    Example: hydrostat studio examples/starfish
+    Example: hydrostat studio gallery:starfish
 
-    Example: hydrostat studio examples/cupping_hand --model build/hand.model
+    Example: hydrostat studio gallery:cupping_hand --model build/hand.model
 
-    Example: hydrostat studio examples/starfish --rooms --host 192.168.1.20
+    Example: hydrostat studio gallery:starfish --rooms --host 192.168.1.20
     """
     try:
         from hydrostat.studio import Rooms, serve

@@ -107,15 +107,15 @@ def train(
     walks in a dynamic simulation. One action is 0.5 s of a gait, or contractions for 0.1 s. Tasks push and twist:
     keyframes move an object with mass in a dynamic simulation, either an [[obstacle]] of the robot or the --object.
 
-    Example: hydrostat train examples/cupping_hand --contact --steps 2000 --out build/policy
+    Example: hydrostat train gallery:cupping_hand --contact --steps 2000 --out build/policy
 
-    Example: hydrostat train examples/starfish --horizon 5 --incremental --marker top --pair left,right --out build/top
+    Example: hydrostat train gallery:starfish --horizon 5 --incremental --marker top --pair left,right --out build/top
 
-    Example: hydrostat train examples/letter_s --task reach-with-hysteresis --friction 0.3 --steps 400 --out build/rubs
+    Example: hydrostat train gallery:letter_s --task reach-with-hysteresis --friction 0.3 --steps 400 --out build/rubs
 
-    Example: hydrostat train examples/puppy --task walk --steps 400 --goals 4 --out build/walk
+    Example: hydrostat train gallery:puppy --task walk --steps 400 --goals 4 --out build/walk
 
-    Example: hydrostat train examples/puppy --task push --object sphere:30mm --at -90,60 --steps 400 --out build/push
+    Example: hydrostat train gallery:puppy --task push --object sphere:30mm --at -90,60 --steps 400 --out build/push
     """
     try:
         from hydrostat import training

@@ -70,7 +70,7 @@ def trajectory(
     trajectory.json, trajectory.png and trajectory.gif. Each pose is solved from the previous one, and the path between
     them is simulated. The report lists snap-throughs, and poses that a search from rest reaches better.
 
-    Example: hydrostat trajectory examples/starfish --poses wave,star_jump --return --out build/dance
+    Example: hydrostat trajectory gallery:starfish --poses wave,star_jump --return --out build/dance
     """
     from hydrostat.ik import IKStatus, PathKind, solve_ik_trajectory
     from hydrostat.units import ACCELERATION, SPEED, TIME

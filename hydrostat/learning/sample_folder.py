@@ -116,7 +116,7 @@ def _check_known(path: Path, known: dict[str, Any], facts: dict[str, Any]) -> No
     if type(there) is not int or there > asked:
         raise InputError(
             f"{path}: is for {there} samples already, more than the {asked} asked for, and none are taken away; "
-            f"ask for {there} or more, or learn from the first by hydrostat learn --count {asked}"
+            f"ask for {there} or more, or learn from the first by hydrostat learn --max-samples {asked}"
         )
 
 

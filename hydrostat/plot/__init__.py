@@ -35,6 +35,7 @@ if TYPE_CHECKING:
         draw_reached,
         draw_rest,
         draw_target,
+        reached_title,
     )
     from hydrostat.plot.scene import save_glb
     from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
@@ -92,6 +93,7 @@ __all__ = [
     "pull_frames",
     "reach",
     "reached_part",
+    "reached_title",
     "report_text",
     "save_gif",
     "save_glb",

@@ -9,7 +9,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing import ERROR, LIGHT, winch_colours
 from hydrostat.geometry import Outline, Ring
 from hydrostat.given import check_type
-from hydrostat.ik import IKResult
+from hydrostat.ik import IKResult, IKStatus
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, name_winches
@@ -171,6 +171,14 @@ def draw_pose(
     return sheet.figure
 
 
+def reached_title(reached: IKResult, name: str | None = None) -> str:
+    """Title of an answer: "Reached: wave", or "Closest to wave" where a target is missed."""
+    named = shorten(name or ("" if reached.target is None else reached.target.name))
+    if reached.status is IKStatus.REACHED:
+        return f"Reached: {named}" if named else "Reached"
+    return f"Closest to {named}" if named else "Closest"
+
+
 def draw_reached(
     robot: Robot,
     reached: IKResult,
@@ -187,8 +195,7 @@ def draw_reached(
     _check(robot, width)
     check_type(reached, IKResult, "what is reached must be what solve_ik gives")
     check_pose(reached.pose, robot.body.mesh.nodes.shape, len(robot.winches), what="the pose")
-    named = "Reached" if reached.target is None else f"Reached: {shorten(reached.target.name)}"
-    head = named if title is None else title
+    head = reached_title(reached) if title is None else title
     goals = {} if reached.target is None else target_places(reached.target)
     rings = [] if outline is None else list(outline.rings)
     note = _reached_note(reached, list(goals))

@@ -145,7 +145,7 @@ def test_a_few_samples_of_a_finer_mesh_correct_a_model(
     monkeypatch.setattr("hydrostat.learning.train.sobolev_loss", _interrupted)
     with pytest.raises(KeyboardInterrupt):  # nothing is there to keep, and no rate is to blame
         correct_model(model, known)
-    other = replace(known, card=replace(known.card, markers=("elsewhere",)))
+    other = replace(known, facts={**known.facts, "markers": ["elsewhere"]})
     with pytest.raises(InputError, match="other markers"):
         correct_model(model, other)
 

@@ -1,5 +1,6 @@
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -13,8 +14,10 @@ from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_robot, hostil
 from hydrostat import plot
 from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, triangulate
+from hydrostat.ik import IKStatus
+from hydrostat.plot import reached_title
 from hydrostat.plot.skin import FlatSkin
-from hydrostat.robot import Mount
+from hydrostat.robot import Mount, PoseTarget
 
 FIGURES = (
     "draw_rest", "draw_target", "draw_network", "draw_pose", "draw_reached", "draw_activation", "draw_candidates",
@@ -156,3 +159,17 @@ def test_motion_begins_and_ends_at_rest() -> None:
     root = ElementTree.fromstring(plot.motion_svg(robot, frames, label=SCRIPT))
     values = [len(element.get("values", "").split(";")) for element in root.iter() if element.get("values")]
     assert set(values) == {len(frames)}
+
+
+@pytest.mark.parametrize(
+    ("status", "name", "title"),
+    [
+        (IKStatus.REACHED, None, "Reached: wave"),
+        (IKStatus.LOCAL_OPTIMUM, None, "Closest to wave"),
+        (IKStatus.LOCAL_OPTIMUM, "drawing", "Closest to drawing"),
+    ],
+)
+def test_a_title_says_reached_where_the_target_is(status: IKStatus, name: str | None, title: str) -> None:
+    found = hostile_network().reached[0]
+    wave = PoseTarget(name="wave", targets={"tip": (0.1, 0.0)})
+    assert reached_title(replace(found, status=status, target=wave), name) == title

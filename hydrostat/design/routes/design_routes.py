@@ -66,7 +66,7 @@ class RouteSearch:
     Attributes:
         bench: solves the poses of layouts.
         stages: networks on the way, as they are shown.
-        passed: the same networks, as the search knows them.
+        passed: cost and layout of each of them.
         sizes: the best network of each size, by its numbers of winches and cables.
     """
 
@@ -94,7 +94,7 @@ class RouteSearch:
             self.options.reach,
         )
         self.stages: list[DesignStage] = []
-        self.passed: list[Trial] = []
+        self.passed: list[tuple[float, Layout]] = []
         self.found: list[Trial] = []
         self.best: Trial | None = None
         self.sizes: dict[tuple[int, int], Trial] = {}
@@ -271,7 +271,7 @@ class RouteSearch:
             self.sizes[size] = trial
         stage = DesignStage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.built)
         self.stages.append(stage)
-        self.passed.append(trial)
+        self.passed.append((trial.cost, trial.layout))
         if self.best is None or trial.cost < self.best.cost:
             self.best = trial
             self.watch(stage)
@@ -291,12 +291,14 @@ class RouteSearch:
         return judged[first], [*judged[:first], *judged[first + 1 :]]
 
     def _all_judged(self, trials: Iterable[Trial | None]) -> list[Alternative]:
-        return [judged for trial in trials if trial is not None and (judged := self.judged(trial)) is not None]
+        return [judged for trial in trials if trial is not None and (judged := self.judged(trial.layout)) is not None]
 
     def _first_to_fit(self) -> list[Alternative]:
         """The best of the networks on the way that a kit can be made of, for when none of the refined ones can."""
-        for trial in sorted(self.passed, key=lambda trial: trial.cost)[:_LOOKED_AT]:
-            judged = self.judged(trial)
+        known = [trial.layout for trial in self.found]
+        others = [(cost, layout) for cost, layout in self.passed if not any(layout is other for other in known)]
+        for _, layout in sorted(others, key=lambda passed: passed[0])[:_LOOKED_AT]:
+            judged = self.judged(layout)
             if judged is not None and kit_fits(judged):
                 return [judged]
         return []
@@ -317,9 +319,9 @@ class RouteSearch:
                 kept.append(trial)
         return kept
 
-    def judged(self, trial: Trial) -> Alternative | None:
+    def judged(self, layout: Layout) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
-        robot = self._numbered(trial.layout).robot(digits=_DIGITS)
+        robot = self._numbered(layout).robot(digits=_DIGITS)
         if violations(robot, self.constraints, self.region):
             return None
         simulation = Simulation(robot, body=self.bench.body)

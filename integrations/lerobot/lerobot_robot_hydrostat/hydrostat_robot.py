@@ -97,7 +97,7 @@ class HydrostatRobot(Robot):
 
     def calibrate(self) -> None:
         """Say how: motors turn while their cables are felt, so this is a command of its own."""
-        raise HydrostatError("calibrate by: hydrostat calibrate ROBOT --port KIND:PORT")
+        raise HydrostatError("calibrate by: hydrostat calibrate ROBOT --motors KIND:PORT")
 
     def configure(self) -> None:
         """Nothing is set: limits and currents are those of robot.toml and motors.toml."""
@@ -153,7 +153,7 @@ class HydrostatRobot(Robot):
             while not self._over.wait(1 / 60):
                 with self._lock:
                     if time.monotonic() - self._asked > PATIENCE:
-                        motors.ask(motors.places if motors.moving else motors.command)
+                        motors.ask(motors.places if motors.is_moving else motors.command)
                     motors.drive(time.monotonic())
                 self._way.observe(motors.places)
         except Exception as error:  # noqa: BLE001 - of whatever kind, it is told to who asks next
