@@ -12,13 +12,14 @@ from hydrostat.design.faced import assign_cable_sides
 from hydrostat.design.filled_judge import evaluate_stuffed
 from hydrostat.design.filled_reach import check_filled
 from hydrostat.design.network import Network
-from hydrostat.design.progress import Progress, Watch, silent, unseen
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.trees.design_trees import design_trees
+from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.given import check_type
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
@@ -85,7 +86,7 @@ def find_network(
     """
     if not isinstance(robot, Robot):
         raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
-    stated, told = assign_cable_sides(robot), progress or silent
+    stated, told = assign_cable_sides(robot), progress or no_progress
     fitted = request.fitted(stated)
     if fitted.filled:
         check_filled(stated)  # told before the search
@@ -109,7 +110,7 @@ def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robo
     usual = Constraints(clearance=request.constraints.clearance, tension=request.constraints.tension)
     asked = replace(request, method=DesignMethod.TREES, constraints=usual, options=TreeOptions(trials=_TREES))
     try:
-        return [design_trees(robot, asked, progress=silent, body=body).robot]
+        return [design_trees(robot, asked, progress=no_progress, body=body).robot]
     except HydrostatError:  # none can be built
         return []
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import replace_file
 from hydrostat.simulation import ContractionProfile
 from hydrostat.training.goal_env import GoalEnv
@@ -90,12 +91,8 @@ class CurvePoint:
     success: float
 
 
-Progress = Callable[[str, int, int], None]
-"""Is told what is done, how much of it, and of how much."""
-
-
-def untold(*_: object) -> None:
-    """Progress that nobody looks at."""
+def _no_point(point: CurvePoint) -> None:
+    """Drop the point."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,11 +104,11 @@ class Listener:
         progress: told how many actions are done, and how many goals judged.
     """
 
-    point: Callable[[CurvePoint], None] = untold
-    progress: Progress = untold
+    point: Callable[[CurvePoint], None] = _no_point
+    progress: Progress = no_progress
 
 
-def held_out_goals(env: GoalEnv, count: int, seed: int, *, progress: Progress = untold) -> list[dict[str, Any]]:
+def held_out_goals(env: GoalEnv, count: int, seed: int, *, progress: Progress = no_progress) -> list[dict[str, Any]]:
     """Goals that training does not see, from a generator of their own: `options` for `reset`; counted nowhere."""
     before, goals = env.equilibria, []
     random = np.random.default_rng([seed, 77])
@@ -129,7 +126,7 @@ def judge(
     act: Callable[[dict[str, Vector]], np.ndarray],
     goals: Sequence[Mapping[str, Any]],
     *,
-    progress: Progress = untold,
+    progress: Progress = no_progress,
 ) -> Vector:
     """Distance at the end of an episode for each goal, in the unit of the task; equilibria are counted nowhere."""
     before, left = env.equilibria, []

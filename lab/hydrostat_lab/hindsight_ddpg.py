@@ -233,12 +233,12 @@ class HindsightDdpg:
         self._goals[:, room], self._acts[:, room, 0] = reached, acts
         self._filled += many
 
-    def learn(self, *, tests: int = 100, tell: Callable[[int, int], Any] = lambda *_: None) -> Epochs:
+    def learn(self, *, tests: int = 100, progress: Callable[[int, int], Any] = lambda *_: None) -> Epochs:
         """Learn for all epochs, and test after each without exploration.
 
         Args:
             tests: episodes of a test, the same each time.
-            tell: is told how many epochs are done, and of how many.
+            progress: called with the number of epochs that are done, and of all.
         """
         rows: list[tuple[int, np.ndarray, np.ndarray, np.ndarray]] = []
         for epoch in range(self._epochs):
@@ -252,7 +252,7 @@ class HindsightDdpg:
             rows.append((self._taken, success, distance.mean(axis=1), self.tolerance[:, 0].numpy().copy()))
             self._keep_best(distance.mean(axis=1))
             self._go_on(success, distance.mean(axis=1))
-            tell(epoch + 1, self._epochs)
+            progress(epoch + 1, self._epochs)
         actions, success, distance, tolerance = (np.array(column) for column in zip(*rows, strict=True))
         return Epochs(actions=actions, success=success, distance=distance, tolerance=tolerance)
 

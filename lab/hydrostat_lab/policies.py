@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from hydrostat.errors import HydrostatError
+from hydrostat.progress import Progress, no_progress
 from hydrostat_lab.experiments import SMALL
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
 from hydrostat_lab.trials import Begun, NetworkReach, Trials
@@ -45,13 +46,13 @@ class Budget:
         steps: of gradients.
         epochs: of trial and error.
         batch: pairs or goals of a step.
-        tell: is told what is learned by, how much of it is done, and of how much.
+        progress: callback for progress.
     """
 
     steps: int = 6000
     epochs: int = 30
     batch: int = 128
-    tell: Callable[[str, int, int], None] = lambda *_: None
+    progress: Progress = no_progress
 
 
 def drawn_pairs(trials: NetworkReach, seeds: int, many: int) -> TriedPairs:
@@ -171,7 +172,7 @@ def _learned(
     adam = torch.optim.Adam(network.numbers, lr=_RATE, fused=True)
     seeds, many, _ = pairs.acts.shape
     for step in range(effort.steps):
-        effort.tell("steps of gradients", step, effort.steps)
+        effort.progress("steps of gradients", step, effort.steps)
         for group in adam.param_groups:
             group["lr"] = 0.5 * _RATE * (1.0 + math.cos(math.pi * step / effort.steps))
         rows = torch.randint(many, (seeds, effort.batch), generator=draw)
@@ -190,7 +191,7 @@ def _tried(trials: Trials, pairs: TriedPairs, effort: Budget, *, fill: bool) -> 
     learner = HindsightDdpg(trials, SMALL, seeds=len(pairs.acts), epochs=effort.epochs, room=pairs.acts.shape[1])
     if fill:
         learner.fill(pairs.acts, pairs.reached)
-    learner.learn(tell=lambda done, of: effort.tell("epochs", done, of))
+    learner.learn(progress=lambda done, of: effort.progress("epochs", done, of))
     return learner.best
 
 

@@ -39,7 +39,7 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
         print(f"\n{name}: {reference.experiment.title}")
         print(f"{reference.task}, {count} seeds: interquartile means and their 95 % intervals\n{_WORDS}", flush=True)
         done: dict[str, Ran] = {}
-        for way, ran in run_reference(reference, seeds=count, epochs=epochs, tell=report_progress()):
+        for way, ran in run_reference(reference, seeds=count, epochs=epochs, progress=report_progress()):
             print(_line(way, ran), flush=True)
             done[way] = ran
         kept = judged_claims(reference.experiment, done)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hydrostat.errors import HydrostatError
+from hydrostat.progress import Progress, no_progress
 from hydrostat.simulation import Simulation
 from hydrostat_lab.experiments import SMALL
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
@@ -52,7 +53,7 @@ def compare_on_shared_data(
     seeds: int,
     goals: int,
     budget: Budget,
-    tell: Callable[[str, int, int], None] = lambda *_: None,
+    progress: Progress = no_progress,
 ) -> Iterator[OfPairs]:
     """Learn by trial and error, which sees the goal alone, and in other ways, of the same pairs and of drawn ones.
 
@@ -62,7 +63,7 @@ def compare_on_shared_data(
         seeds: how often each begins at random.
         goals: that are asked for in the simulator.
         budget: epochs of trial and error, and steps of the network.
-        tell: is told how many epochs are done, and of how many.
+        progress: callback for progress.
     """
     options = replace(SMALL, goal_only=True)
     learner, marks = HindsightDdpg(trials, options, seeds=seeds, epochs=budget.epochs), looked_at(budget.epochs)
@@ -71,9 +72,9 @@ def compare_on_shared_data(
     def done(at: int, of: int) -> None:
         if at in marks:
             then[at] = learner.policy.kept(), learner.best.kept()
-        tell(TRIED, at, of)
+        progress(TRIED, at, of)
 
-    learner.learn(tell=done)
+    learner.learn(progress=done)
     acts, reached = (torch.tensor(part) for part in learner.tried)
     each = acts.shape[1] // budget.epochs
     tried, drawn = TriedPairs(acts=acts, reached=reached), drawn_pairs(trials, seeds, acts.shape[1])

@@ -15,12 +15,12 @@ from hydrostat.learning import (
     SamplePlan,
     Samples,
     SamplingScheme,
-    Tell,
     plan_samples,
     read_samples,
     sample_robot,
     sample_shard,
 )
+from hydrostat.progress import Progress
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat_lab.compare import METHODS, Compared, compare, way_of
@@ -107,7 +107,7 @@ class StudyRow:
 
 
 def run_study(
-    study: Study, robot: Robot, folder: Path, *, jobs: int = 1, tell: Tell | None = None
+    study: Study, robot: Robot, folder: Path, *, jobs: int = 1, progress: Progress | None = None
 ) -> Iterator[StudyRow]:
     """Sample a robot, learn and roll out; what an earlier run has found in the folder is not found again.
 
@@ -116,7 +116,7 @@ def run_study(
         robot: which; with contact if its samples shall know it.
         folder: where samples and rows are kept; it may be that of other robots too.
         jobs: processes that sample; -1 for one on each core.
-        tell: as for `sample_robot`.
+        progress: as for `sample_robot`.
 
     Raises:
         InputError: as for `plan_samples` and `compare`, or a file of rows that is damaged.
@@ -125,7 +125,7 @@ def run_study(
     known = read_rows_of(file) if file.exists() else []
     simulation = Simulation(robot)
     for draw in study.draws:
-        train, test, each = _samples(study, robot, draw, folder, jobs, tell)
+        train, test, each = _samples(study, robot, draw, folder, jobs, progress)
         for count in study.counts:
             some = train.first(min(count, len(train)))
             for seed in range(study.seeds):
@@ -216,7 +216,7 @@ def _errors(errors: np.ndarray) -> dict[str, float]:
 
 
 def _samples(
-    study: Study, robot: Robot, draw: SamplingScheme, folder: Path, jobs: int, tell: Tell | None
+    study: Study, robot: Robot, draw: SamplingScheme, folder: Path, jobs: int, progress: Progress | None
 ) -> tuple[Samples, Samples, float]:
     """Samples to learn from, and others to be asked for; CPU time of one [s]."""
     found: list[Samples] = []
@@ -224,7 +224,7 @@ def _samples(
     for name, count, seed in (("train", max(study.counts), 0), ("test", study.targets, 1)):
         plan = plan_samples(robot, count, seed=seed, draws=(draw,))
         place = folder / f"{robot.name}-{draw}-{name}-{count}"
-        sample_robot(plan, place, jobs=jobs, tell=tell)
+        sample_robot(plan, place, jobs=jobs, progress=progress)
         found.append(read_samples(place))
     trial = replace(plan, count=min(_TIMED, study.targets), shard=_TIMED)
     sample_shard(replace(trial, count=1), 0)  # compiles

@@ -213,7 +213,7 @@ def test_ctrl_c_keeps_the_best_so_far_or_nothing(samples: Samples, stage: str, a
             raise KeyboardInterrupt
 
     options = replace(OPTIONS, steps=300 if after else 1)
-    stopped = learn_model(samples, options=options, tell=tell)
+    stopped = learn_model(samples, options=options, progress=tell)
     assert stopped.card.stopped
     assert (stopped.inverse is None) == (stage == "forward")
     found = stopped.solve(targets_of(samples)[0])

@@ -9,7 +9,6 @@ from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.built_error import expected_error
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
-from hydrostat.design.progress import Progress, Watch, unseen
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
@@ -23,10 +22,12 @@ from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
+from hydrostat.design.watch import Watch, unseen
 from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import IKOptions, Limits
+from hydrostat.progress import Progress
 from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import BodyPhysics, Simulation, cable_sensitivities
 
