@@ -48,7 +48,7 @@ def design_cables(
 
     Args:
         robot: body, pins and markers; its own winches and cables are left aside but for those that are locked.
-        poses: what the network should reach, all of them with the same cables.
+        poses: poses that the network should reach, all with the same cables.
         progress: called as the work goes on.
         watch: called with each better network that is found on the way, not yet judged as those are that are returned.
         asked: `winches`, `cables`, `method`, `constraints`, `options`, `improve` and `filled` of a `DesignRequest`.
@@ -104,7 +104,7 @@ def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -
 
 
 def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robot]:
-    """What the thesis's way finds for a flat body: another beginning for routes, in a second or two."""
+    """Return the network of the thesis's method for a flat body: another start for routes, in a second or two."""
     if robot.body.mesh.dim != 2 or request.improve:
         return []
     usual = Constraints(clearance=request.constraints.clearance, tension=request.constraints.tension)

@@ -57,7 +57,7 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
 
 
 def _reach(found: Network, one: Alternative) -> FilledReach | None:
-    """What a network reaches on the filled body; None where a pose has no equilibrium there."""
+    """Return the results of a network on the filled body; None where a pose has no equilibrium there."""
     try:
         return filled_reach(one.robot, one.reached, tension=found.constraints.tension_limit)
     except HydrostatError:

@@ -31,7 +31,7 @@ class FilledReach:
 
 
 def out_of_plane(pose: Equilibrium) -> float:
-    """How far the farthest marker of a filled body is out of the plane z = 0 [m]."""
+    """Largest distance of a marker of a filled body from the plane z = 0 [m]."""
     return max((abs(float(place[2])) for place in pose.markers.values()), default=0.0)
 
 

@@ -23,10 +23,10 @@ def correct_model(
     is, as a place for the search to begin; so answers are found by the search. Needs PyTorch.
 
     Args:
-        model: of the first body.
-        samples: of the other, with the same winches, markers, cables and travel.
-        options: how; its members, width and depth are the model's.
-        progress: as for `learn_model`.
+        model: model of the first body.
+        samples: samples of the other, with the same winches, markers, cables and travel.
+        options: options of training; its members, width and depth are the model's.
+        progress: same as for `learn_model`.
 
     Raises:
         InputError: too few samples, of a robot with other winches, markers, cables or travel, or no PyTorch.
@@ -59,4 +59,4 @@ def correct_model(
 
 
 _STEPS, _RATE = 6000, 6e-3
-"""How long and how fast networks learn on, unless told."""
+"""Default number of steps and learning rate of a correction."""

@@ -27,8 +27,8 @@ def learn_model(
     so in `card.stopped`.
 
     Args:
-        samples: of one robot.
-        options: how.
+        samples: samples of one robot.
+        options: options of training.
         progress: callback for progress in training steps, stages "forward" and "inverse".
 
     Raises:
@@ -87,7 +87,7 @@ def kept_facts(samples: Samples) -> dict[str, Any]:
 
 
 def _moved(markers: np.ndarray) -> np.ndarray:
-    """How far markers are from their mean."""
+    """Return the distances of markers from their mean."""
     return np.linalg.norm(markers - markers.mean(axis=0), axis=-1)
 
 

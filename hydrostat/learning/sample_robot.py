@@ -33,8 +33,8 @@ def sample_robot(
     that dies is made good for as long as others get something done.
 
     Args:
-        plan: what to sample.
-        folder: where the samples shall lie.
+        plan: plan of the samples.
+        folder: folder for the samples.
         part: work on part i of n, counted from 0, of the files.
         jobs: processes; -1 for one on each core.
         backend: one of `BACKENDS`.

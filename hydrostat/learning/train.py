@@ -29,9 +29,9 @@ class Trained:
     """Networks as they were when they did best on what they had not learned from.
 
     Attributes:
-        networks: of one shape.
+        networks: networks of one shape.
         error: mean distance of markers on held-out samples, in the unit of the training set; infinite without one.
-        stopped: whether Ctrl-C ended it.
+        stopped: True if Ctrl-C ended it.
     """
 
     networks: Perceptrons
@@ -129,7 +129,7 @@ def train_inverse(
 
 
 def _holding(training_set: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) -> Callable[[Tensor], Tensor]:
-    """What makes of scaled contractions such that of each pair only one takes in, as `LearnedModel` does."""
+    """Return a function on scaled contractions after which one winch of each pair takes in, as in `LearnedModel`."""
     one, other = (torch.tensor(places) for places in pairs)
     if not len(one):
         return lambda scaled: scaled
@@ -150,7 +150,7 @@ def _holding(training_set: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) ->
 
 
 def loss_weights(coordinates: int, outputs: int, options: LearnOptions) -> tuple[Tensor, Tensor]:
-    """How much the value of each output counts, and its slope: markers first, then tensions."""
+    """Weights of the value of each output, and of its slope: markers first, then tensions."""
     tensions = outputs - coordinates
     values, slopes = (1.0, options.tensions), (options.slopes, options.tension_slopes)
     return tuple(torch.tensor([marker] * coordinates + [tension] * tensions) for marker, tension in (values, slopes))  # type: ignore
@@ -178,7 +178,7 @@ def sobolev_loss(
 
 
 def answer(numbers: Numbers, points: Tensor, ways: Tensor | None) -> tuple[Tensor, Tensor | None]:
-    """What networks answer at points (members, batch, inputs), and how it moves along ways (members, batch, ways, ...).
+    """Compute outputs at points (members, batch, inputs) and their changes along ways (members, batch, ways, ...).
 
     Slopes go forward with the values, as by `torch.func.jvp`, along several ways at once.
     """

@@ -118,7 +118,7 @@ class _Shot:
             goal = begin.contractions + share * (end.contractions - begin.contractions)
             self._take(goal, end, words)
         self.frames += [replace(self.frames[-1], words=end.words)] * still
-        self._progress_progress()
+        self._report()
 
     def _take(self, goal: Vector, end: Stop, words: str) -> None:
         pose = self._simulation.solve(goal, start=self._last, strict=False)
@@ -127,9 +127,9 @@ class _Shot:
         else:
             self.missing.append(len(self.frames))
         self.frames.append(Frame.of(self._last, target=end.target, words=words))
-        self._progress_progress()
+        self._report()
 
-    def _tell_progress(self) -> None:
+    def _report(self) -> None:
         if self._progress is not None:
             self._progress("solving", len(self.frames), self._count)
 

@@ -28,7 +28,7 @@ class Copies:
         self._answer = [getattr(self, f"_{name}")(env, *row) for env, row in zip(self._envs, rows, strict=True)]
 
     def answer(self) -> list[Any]:
-        """What came of it."""
+        """Return the outcome of the step."""
         return self._answer
 
     def close(self) -> None:

@@ -43,9 +43,10 @@ class HysteresisEnv(ReachEnv):
         Args:
             robot: itself, its folder, or a name such as gallery:cupping_hand.
             friction: coefficient mu of every cable; as in robot.toml if None.
-            world: that is asked where markers go; the exact simulator, from pose to pose, if left out.
-            options: of the task.
-            contact: whether the body feels itself, where robot.toml says nothing of it.
+            world: simulator or networks that compute marker positions; if left out the exact simulator, from pose to
+                pose.
+            options: options of the task.
+            contact: True for self-contact if robot.toml does not set contact.
             render_mode: "rgb_array", "human" or None.
 
         Raises:

@@ -34,7 +34,7 @@ class SideBySide(VecEnv):
         return sum(kept["equilibria"] - kept["uncounted"] for kept in self.kept())
 
     def kept(self) -> list[dict[str, Any]]:
-        """What the next episodes depend on, of each copy."""
+        """State that the next episodes depend on, of each copy."""
         return self._all("kept", [()] * len(self._parts))
 
     def go_on(self, kept: Sequence[Mapping[str, Any]]) -> None:
@@ -71,7 +71,7 @@ class SideBySide(VecEnv):
         return [getattr(self._env, method_name)(*args, **more)] * len(list(self._get_indices(indices)))
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """What is the same in all copies."""
+        """Facts that are the same in all copies."""
         return [getattr(self._env, attr_name)] * len(list(self._get_indices(indices)))
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:

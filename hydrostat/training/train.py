@@ -23,7 +23,7 @@ from hydrostat.training.goal_env import GoalEnv
 
 
 class TrainMethod(StrEnum):
-    """How a policy is learned; all with hindsight experience replay (HER)."""
+    """Learning algorithm; all use hindsight experience replay (HER)."""
 
     DDPG = "ddpg-her"  # the thesis's
     TD3 = "td3-her"
@@ -33,16 +33,16 @@ class TrainMethod(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class TrainOptions:
-    """How a policy is learned.
+    """Options of training a policy.
 
     Attributes:
-        method: which.
+        method: learning algorithm.
         steps: actions, each an equilibrium of the world; each goal that is drawn is one more.
-        seed: of all that is drawn.
+        seed: random seed.
         layers: hidden layers of actor and critic.
         batch: transitions of an update.
-        updates: after each action.
-        rate: of learning.
+        updates: gradient steps after each action.
+        rate: learning rate.
         noise: standard deviation of what is added to actions (DDPG, TD3).
         every: actions from one evaluation to the next; or a few more, as no episode is cut short.
         together: episodes side by side; their actions are learned from together.
@@ -72,14 +72,14 @@ class TrainOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class CurvePoint:
-    """How good a policy was; distances are in the unit of the task, [m], or [rad] to twist.
+    """Evaluation of a policy; distances are in the unit of the task, [m], or [rad] to twist.
 
     Attributes:
         steps: actions by then.
-        equilibria: of the exact simulator by then, drawn goals included; time steps in tasks that count these.
+        equilibria: solves of the exact simulator by then, drawn goals included; time steps in tasks that count these.
         mean: distance left from goals that were not learned from.
-        median: of these distances.
-        worst: the largest.
+        median: median of these distances.
+        worst: largest of these distances.
         success: share of the goals within the tolerance.
     """
 
@@ -144,7 +144,7 @@ def judge(
 def moves_of(
     env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goal: Mapping[str, Any]
 ) -> ContractionProfile:
-    """What motors would be told in an episode, contractions in time; its equilibria are counted nowhere."""
+    """Return the commands of an episode, contractions in time; its equilibria are counted nowhere."""
     judge(env, act, [goal])
     times, values = zip(*env.moves, strict=True)
     return ContractionProfile(times=np.array(times), values=np.array(values))
@@ -166,14 +166,14 @@ def train(
     Where tensorboard is installed, `out`/tensorboard gets files for it.
 
     Args:
-        env: what is learned in.
-        goals: that a policy is judged by, as `held_out_goals` gives them.
-        options: how.
+        env: environment for training.
+        goals: goals that a policy is judged by, from `held_out_goals`.
+        options: options of training.
         out: folder, made if need be.
-        judge_in: where policies are judged, such as the exact simulator; in `env` if left out.
+        judge_in: environment for judging policies, such as the exact simulator; `env` if left out.
         resume: go on from the checkpoint in `out`: the same curve as without a break.
-        processes: that share the episodes side by side; the curve does not depend on it.
-        listener: is told how it goes.
+        processes: number of processes that share the episodes; the curve does not depend on it.
+        listener: callbacks for progress.
 
     Returns:
         The model of stable-baselines3 and the curve.
@@ -263,7 +263,7 @@ def _stretch(model: Any, options: TrainOptions, whole: int, progress: Progress) 
 
 
 def _learner(env: GoalEnv, copies: Any, options: TrainOptions) -> Any:
-    """What learns, before its first step."""
+    """Return the model before its first step."""
     made = _algorithm(options.method)
     import torch
     from stable_baselines3 import HerReplayBuffer

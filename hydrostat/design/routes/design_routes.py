@@ -222,7 +222,7 @@ class RouteSearch:
 
     @cached_property
     def region(self) -> Region:
-        """Where cables may be."""
+        """Region that cables may use."""
         return cable_region(self.robot.body, self.constraints)
 
     @property
@@ -230,7 +230,7 @@ class RouteSearch:
         return (2 * self.options.starts + 1) * self.cables
 
     def _beginning(self) -> Layout:
-        """What the search begins with: nothing, what is locked, or all that there is."""
+        """Return the layout at the start of the search: empty, the locked parts, or the whole network."""
         whole = layout_of(self.robot, self.constraints)
         if self.request.improve and not whole.routes:
             raise InputError("the robot has no cables to improve; design without improving it")
@@ -304,7 +304,7 @@ class RouteSearch:
 
     @property
     def _kept(self) -> Constraints:
-        """What was asked, with the torque of the motors that fit."""
+        """Return the request with the torque of the motors that fit."""
         own = self.constraints
         return replace(self.request.constraints, torque=own.torque, cables_per_winch=own.cables_per_winch)
 
@@ -362,7 +362,7 @@ class RouteSearch:
 
 
 def kit_fits(network: Alternative | Network) -> bool:
-    """Whether the kit of a network would not be refused."""
+    """True if the kit of a network would not be refused."""
     return not find_refusals(network.robot, demand_of(network.robot, network.reached))
 
 
