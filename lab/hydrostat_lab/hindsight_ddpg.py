@@ -30,23 +30,23 @@ class DdpgOptions:
 
     Attributes:
         layers: hidden layers of actor and critic, with ReLU.
-        actor_rate: of Adam.
-        critic_rate: of Adam.
+        actor_rate: learning rate of Adam for the actor.
+        critic_rate: learning rate of Adam for the critic.
         polyak: share of the targets' numbers that stays at each cycle.
         penalty: on the mean square of actions, beside the critic's value.
-        cut: whether targets are cut to [-1 / (1 - gamma), 0].
+        cut: True if targets are cut to [-1 / (1 - gamma), 0].
         random: probability of an action drawn evenly.
         noise: standard deviation of what is added to other actions, of a range from -1 to 1.
         relabelled: goals taken from what came later, for each that was wanted ("future").
-        cycles: of an epoch.
-        actions: of a cycle; roll-outs are as many as fill it.
-        updates: of a cycle.
+        cycles: cycles of an epoch.
+        actions: actions of a cycle; roll-outs are as many as fill it.
+        updates: updates of a cycle.
         batch: transitions of an update.
         shaped: reward is minus the distance in the unit of the trials; else 0 for success and -1.
         tolerance: distance that is a success at the beginning, in the unit of the trials.
-        curriculum: how the tolerance goes on.
-        late_critic_rate: of Adam, from the first change of the tolerance on; None: as before.
-        goal_only: whether networks see the goal alone, and not the state.
+        curriculum: schedule of the tolerance.
+        late_critic_rate: learning rate of the critic from the first change of the tolerance on; None: as before.
+        goal_only: True if networks see the goal alone, and not the state.
 
     Raises:
         InputError: a number that cannot be.
@@ -82,7 +82,7 @@ class DdpgOptions:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Epochs:
-    """How seeds went; an array each, (epochs, seeds).
+    """Learning curves of all seeds; an array each, (epochs, seeds).
 
     Attributes:
         actions: taken by the end of each epoch, (epochs,).
@@ -111,8 +111,8 @@ def hindsight(later: Tensor, share: float, draw: torch.Generator) -> Tensor:
     """Steps whose outcome becomes the goal, of steps that came; -1 where the goal stays.
 
     Args:
-        later: how many steps of the episode are left from each on, that one included; 1 or more.
-        share: of transitions that get another goal.
+        later: number of steps of the episode that are left from each on, that one included; 1 or more.
+        share: share of transitions that get another goal.
         draw: source of chance.
 
     Returns:
@@ -164,7 +164,7 @@ class Policy:
         return torch.tanh(_layers(self.numbers, self.see(states, goals)))
 
     def see(self, states: Tensor, goals: Tensor) -> Tensor:
-        """What networks see."""
+        """Return the input of the networks."""
         seen = self.goals(goals)
         return seen if self.goal_only else torch.cat([self.states(states), seen], -1)
 
@@ -178,11 +178,11 @@ class HindsightDdpg:
     """Actors and critics of several seeds, the replay buffer, and how they learn.
 
     Attributes:
-        trials: what is learned in.
-        options: how.
-        policy: as it is now.
-        best: as it was when the tests' mean distance was least, for each seed.
-        tolerance: of each seed now.
+        trials: episodes to learn in.
+        options: options of the method.
+        policy: present policy.
+        best: policy when the tests' mean distance was least, for each seed.
+        tolerance: present tolerance of each seed.
     """
 
     def __init__(

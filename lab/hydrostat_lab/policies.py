@@ -40,11 +40,11 @@ class TriedPairs:
 
 @dataclass(frozen=True, kw_only=True)
 class Budget:
-    """How long policies learn.
+    """Budget for learning policies.
 
     Attributes:
-        steps: of gradients.
-        epochs: of trial and error.
+        steps: gradient steps.
+        epochs: epochs of trial and error.
         batch: pairs or goals of a step.
         progress: callback for progress.
     """

@@ -19,7 +19,7 @@ class Reference:
 
     Attributes:
         task: its name, as gymnasium knows it.
-        experiment: what is compared there.
+        experiment: experiment that is repeated there.
     """
 
     task: str
@@ -32,9 +32,9 @@ def run_reference(
     """Learn in the environment of a reference; what went by in centimetres.
 
     Args:
-        reference: what is compared, and where.
-        seeds: how often each run begins at random.
-        epochs: of each run.
+        reference: experiment, with its task.
+        seeds: number of random starts of each run.
+        epochs: epochs of each run.
         progress: callback for progress.
 
     Raises:

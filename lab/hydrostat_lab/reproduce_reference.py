@@ -19,10 +19,10 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
     """Learn in FetchReach or HandReach, and say whether the published curves are met.
 
     Args:
-        names: of `REFERENCE_TABLES`.
+        names: names out of `REFERENCE_TABLES`.
         out: folder for numbers and pictures.
         size: minutes, hour or full.
-        seeds: how often each run begins at random.
+        seeds: number of random starts of each run.
 
     Raises:
         HydrostatError: torch, gymnasium-robotics or a fitting MuJoCo is missing.

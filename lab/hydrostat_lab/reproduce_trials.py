@@ -43,9 +43,9 @@ class HowMuch(NamedTuple):
 
     Attributes:
         size: minutes, hour or full.
-        seeds: how often each run begins at random; as many as the size has if left out, and so below.
-        goals: that each policy is judged by in the simulator.
-        epochs: of 500 actions that runs learn for.
+        seeds: number of random starts of each run; as many as the size has if left out, and so below.
+        goals: number of goals that each policy is judged by in the simulator.
+        epochs: number of epochs of 500 actions in a run.
     """
 
     size: str
@@ -60,11 +60,11 @@ def reproduce_trials(
     """Learn in networks of a robot, judge in the simulator, and say which claims of the thesis hold.
 
     Args:
-        names: of `TRIALS`, `SHARED`, `POLICIES` or `GRADIENT`.
-        robot: which, with contact if its model knows it.
+        names: names out of `TRIALS`, `SHARED`, `POLICIES` or `GRADIENT`.
+        robot: robot, with contact if its model knows it.
         out: folder for tables and pictures; the model too, if none is given.
-        much: how long they take.
-        model: that `hydrostat learn` wrote.
+        much: size of the runs.
+        model: file that `hydrostat learn` wrote.
         jobs: processes that sample where there is no model.
     """
     with trials_missing():

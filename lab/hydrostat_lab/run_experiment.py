@@ -20,7 +20,7 @@ Asked = tuple[torch.Tensor, torch.Tensor]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Judged:
-    """How the best policies of a run did in the simulator: distances [cm] after the last action, (seeds, goals).
+    """Distances of the best policies of a run in the simulator [cm], after the last action, (seeds, goals).
 
     NaN where an episode met no equilibrium.
     """
@@ -49,11 +49,11 @@ def run_experiment(
     """Learn in the networks of a model, and judge the best policies of each run in the simulator.
 
     Args:
-        experiment: what is compared.
+        experiment: experiment to run.
         model: networks of a robot.
-        simulation: of the same robot.
-        seeds: how often each run begins at random.
-        epochs: of a run, by the width of its widest layer.
+        simulation: simulation of the same robot.
+        seeds: number of random starts of each run.
+        epochs: epochs of a run, by the width of its widest layer.
         goals: drawn evenly among actions, simulated, and asked for; nothing is learned from them.
         progress: callback for progress.
     """
@@ -70,7 +70,7 @@ def run_experiment(
 
 
 def exact_goals(simulation: Simulation, trials: NetworkReach, goals: int, *, progress: Progress = no_progress) -> Asked:
-    """Where episodes begin and what they shall reach in the simulator [cm], (1, goals, size) each; NaN where none."""
+    """Compute starts and goals of episodes in the simulator [cm], (1, goals, size) each; NaN without an equilibrium."""
     draw = torch.Generator().manual_seed(_GOALS)
     begun, _, _ = trials.begin(draw, (1, goals))
     wanted = trials.contractions(2.0 * torch.rand(1, goals, trials.actions, generator=draw) - 1.0)

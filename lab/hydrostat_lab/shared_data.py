@@ -31,11 +31,11 @@ class Order(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OfPairs:
-    """What a way leaves after so many pairs of actions and outcomes.
+    """Errors of a method after a number of pairs of actions and outcomes.
 
     Attributes:
         way: its name.
-        pairs: how many.
+        pairs: number of pairs.
         expected: distances in the networks that it was learned in [cm], (seeds, goals).
         exact: distances in the simulator [cm], (seeds, goals); after all pairs alone, as it takes long, else None.
     """
@@ -58,10 +58,10 @@ def compare_on_shared_data(
     """Learn by trial and error, which sees the goal alone, and in other ways, of the same pairs and of drawn ones.
 
     Args:
-        trials: of one action.
-        simulation: of the same robot, which judges at the end.
-        seeds: how often each begins at random.
-        goals: that are asked for in the simulator.
+        trials: episodes of one action.
+        simulation: simulation of the same robot, which judges at the end.
+        seeds: number of random starts of each.
+        goals: number of goals in the simulator.
         budget: epochs of trial and error, and steps of the network.
         progress: callback for progress.
     """
@@ -116,7 +116,7 @@ ORDERS = (
     Order("a network ends nearer than ridge regression (N16)", "network, shared", "ridge, shared"),
     Order("trial and error ends nearer than a network of pairs drawn evenly (R90, E61)", BEST, "network, independent"),
 )
-"""What the thesis says of the end of its figure, and its conclusion when others have pairs of their own."""
+"""Claims of the thesis about the end of its figure, and its conclusion when others have pairs of their own."""
 
 _GOALS, _MANY = 27_182, 1000
 """Seed and number of the goals in the networks."""

@@ -31,15 +31,15 @@ SEEDED = ("thesis", "values", "inverse", "search")
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """What is compared.
+    """Comparison of learning methods.
 
     Attributes:
         draws: ways in which contractions are drawn, each for itself.
         counts: numbers of samples to learn from.
-        seeds: how often networks begin at random.
-        targets: how many.
+        seeds: number of random starts of the networks.
+        targets: number of targets.
         methods: ways to learn, of `METHODS`.
-        options: of our networks.
+        options: options of our networks.
 
     Raises:
         InputError: counts, seeds or targets below 1, nothing to compare, or a way that there is not.
@@ -63,18 +63,18 @@ class Study:
 
 @dataclass(frozen=True, kw_only=True)
 class StudyRow:
-    """How one way did; errors are over all markers of all targets that have an equilibrium [m].
+    """Result of one method; errors are over all markers of all targets that have an equilibrium [m].
 
     Attributes:
         robot: its name.
         physics: hash of its physics.
-        size: of its body [m].
-        draw: how contractions were drawn.
-        samples: how many it learned from.
-        seed: of what begins at random.
-        targets: how many were asked for.
+        size: size of its body [m].
+        draw: distribution of the contractions.
+        samples: number of samples that it learned from.
+        seed: random seed.
+        targets: number of requested targets.
         method: its name.
-        options: of the networks, as text.
+        options: options of the networks, as text.
         moved: mean distance of the targets from the mean place of their markers [m].
         markers: mean error of each marker by its name [m].
         errors: mean, deviation, median, p90, p99 and max [m].
@@ -82,7 +82,7 @@ class StudyRow:
         sampling: CPU time of the samples that it learned from [s], by that of a few of them.
         learning: CPU time of learning [s].
         facts: more that is known.
-        curve: of learning, as in `ThesisNetwork`; empty for other ways.
+        curve: learning curve, as in `ThesisNetwork`; empty for other methods.
         shown: contractions for the first targets [m].
     """
 
@@ -112,11 +112,11 @@ def run_study(
     """Sample a robot, learn and roll out; what an earlier run has found in the folder is not found again.
 
     Args:
-        study: what to compare.
-        robot: which; with contact if its samples shall know it.
-        folder: where samples and rows are kept; it may be that of other robots too.
+        study: comparison to run.
+        robot: robot; with contact if its samples shall know it.
+        folder: folder for samples and rows; it may be that of other robots too.
         jobs: processes that sample; -1 for one on each core.
-        progress: as for `sample_robot`.
+        progress: same as for `sample_robot`.
 
     Raises:
         InputError: as for `plan_samples` and `compare`, or a file of rows that is damaged.
@@ -184,7 +184,7 @@ class _Wanted:
         }
 
     def has(self, row: StudyRow) -> bool:
-        """Whether a row is one of these."""
+        """True if a row is one of these."""
         return all(getattr(row, name) == value for name, value in self.key.items()) and row.method in self.methods
 
     def row(self, found: Compared, sampling: float) -> StudyRow:
