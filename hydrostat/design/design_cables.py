@@ -87,7 +87,7 @@ def find_network(
     if not isinstance(robot, Robot):
         raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
     stated, told = assign_cable_sides(robot), progress or no_progress
-    fitted = request.fitted(stated)
+    fitted = request.fit_robot(stated)
     if fitted.filled:
         check_filled(stated)  # told before the search
     found = _search(stated, fitted, told, watch or unseen)

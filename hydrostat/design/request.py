@@ -238,7 +238,7 @@ class DesignRequest:
         """Options of the growth of winch trees."""
         return self.options if isinstance(self.options, TreeOptions) else TreeOptions()
 
-    def fitted(self, robot: Robot) -> "DesignRequest":
+    def fit_robot(self, robot: Robot) -> "DesignRequest":
         """The request as one robot can be designed for: where its network is improved, that is within the constraints.
 
         Raises InputError: a pose of a marker that it does not have, or constraints that do not fit it.

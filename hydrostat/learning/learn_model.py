@@ -11,7 +11,7 @@ from hydrostat.errors import InputError
 from hydrostat.learning.draw import SamplingScheme
 from hydrostat.learning.known_contact import contact_in_model
 from hydrostat.learning.learn_options import LearnOptions
-from hydrostat.learning.learned_model import LearnedModel, paired
+from hydrostat.learning.learned_model import LearnedModel, index_pairs
 from hydrostat.learning.model_card import ModelCard
 from hydrostat.learning.samples import Samples
 from hydrostat.learning.training_set import make_training_set
@@ -40,7 +40,7 @@ def learn_model(
     options, told = options or LearnOptions(), progress or no_progress
     began, training_set, dim = time.process_time(), make_training_set(samples), samples.facts["dim"]
     kept = kept_facts(samples)
-    pairs = paired(kept["pairs"], samples.facts["winches"])
+    pairs = index_pairs(kept["pairs"], samples.facts["winches"])
     length = float(training_set.unit[0])
     forward = train_forward(training_set, dim, options, told)
     if not np.isfinite(forward.error):

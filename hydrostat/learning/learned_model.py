@@ -129,11 +129,11 @@ class LearnedModel:
         if self.inverse is None:
             raise InputError("the model has no inverse network: its learning was stopped before")
         count = self.card.coordinates
-        raw, _ = self.inverse.agreed((markers - self.middle[:count]) / self.unit[:count])
+        raw, _ = self.inverse.average_members((markers - self.middle[:count]) / self.unit[:count])
         return self._held(self._contractions(_BEYOND * np.tanh(raw)))
 
     def _expected(self, contractions: Vector) -> tuple[Vector, Vector]:
-        mean, spread = self.forward.agreed(self._scaled(contractions))
+        mean, spread = self.forward.average_members(self._scaled(contractions))
         return self.middle + self.unit * mean, self.unit * spread
 
     def _search(self, goal: Vector, asked: np.ndarray) -> Vector:
@@ -222,7 +222,7 @@ class LearnedModel:
     @cached_property
     def _pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """Winches of which samples had only one take in, as two rows of places."""
-        return paired(self.card.pairs, self.card.winches)
+        return index_pairs(self.card.pairs, self.card.winches)
 
     @cached_property
     def _half(self) -> Vector:
@@ -234,7 +234,7 @@ class LearnedModel:
         return self.low + self._half
 
 
-def paired(pairs: Sequence[Sequence[str]], winches: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+def index_pairs(pairs: Sequence[Sequence[str]], winches: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     """Places of the first and of the second winch of each pair by name; groups of one are left out."""
     places = [(winches.index(group[0]), winches.index(group[1])) for group in pairs if len(group) == 2]
     one, other = np.array(places, dtype=int).reshape(-1, 2).T

@@ -57,7 +57,7 @@ class Perceptrons:
         native.network_values(self.sizes, self.numbers, np.ascontiguousarray(point, dtype=float), found)
         return found
 
-    def agreed(self, point: Vector) -> tuple[Vector, Vector]:
+    def average_members(self, point: Vector) -> tuple[Vector, Vector]:
         """The mean answer at a point, and how far the networks are from it: root of the mean square, of each output.
 
         In single precision, which is what networks are trained and kept in, and takes half as long.

@@ -48,8 +48,8 @@ class Copies:
         return seen, float(reward), over, told
 
     @staticmethod
-    def _kept(env: GoalEnv) -> dict[str, Any]:
-        return env.kept()
+    def _get_state(env: GoalEnv) -> dict[str, Any]:
+        return env.get_state()
 
     @staticmethod
     def _go_on(env: GoalEnv, kept: Mapping[str, Any]) -> None:

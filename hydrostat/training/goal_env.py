@@ -47,7 +47,7 @@ class TaskOptions:
     tied: Sequence[str] = ()
     thing: Obstacle | None = None
 
-    def given(self, *names: str) -> dict[str, Any]:
+    def select_given(self, *names: str) -> dict[str, Any]:
         """Those of these attributes that are not None, by name."""
         return {name: value for name in names if (value := getattr(self, name)) is not None}
 
@@ -150,7 +150,7 @@ class GoalEnv(gymnasium.Env, ABC):
         if self._page is not None:
             self._page.close()
 
-    def kept(self) -> dict[str, Any]:
+    def get_state(self) -> dict[str, Any]:
         """State that the next episode depends on, and its cost until now."""
         return {
             "random": self.np_random.bit_generator.state,
@@ -164,7 +164,7 @@ class GoalEnv(gymnasium.Env, ABC):
         self.uncounted = kept["uncounted"]
 
 
-def loaded(robot: Robot | str, contact: bool = False) -> Robot:
+def prepare_robot(robot: Robot | str, contact: bool = False) -> Robot:
     """A robot, itself or from its folder; one that feels itself if asked for and robot.toml says nothing of it."""
     made = robot if isinstance(robot, Robot) else load_robot(robot)
     return replace(made, contact=Contact()) if contact and made.contact is None else made

@@ -10,7 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Robot
-from hydrostat.training.goal_env import TaskOptions, loaded
+from hydrostat.training.goal_env import TaskOptions, prepare_robot
 from hydrostat.training.reach_env import ReachEnv, ReachOptions, reach_options
 from hydrostat.training.worlds import ExactWorld, World
 
@@ -52,7 +52,7 @@ class HysteresisEnv(ReachEnv):
         Raises:
             InputError: as for `ReachEnv`, no cable that rubs, or friction below 0.
         """
-        self.given = loaded(robot, contact)
+        self.given = prepare_robot(robot, contact)
         rubs = rubbing(self.given, friction)
         super().__init__(
             rubs, world=world or ExactWorld(rubs, from_rest=False), options=options, render_mode=render_mode
@@ -67,7 +67,7 @@ class HysteresisEnv(ReachEnv):
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Reach as the command line asks for it."""
         given.refuse("actions", "tied", "thing")
-        more = given.given("friction", "contact")
+        more = given.select_given("friction", "contact")
         return cls(robot, options=reach_options(given), **more)
 
     def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:

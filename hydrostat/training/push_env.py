@@ -56,14 +56,14 @@ class PushEnv(ThingEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Push as the command line asks for it."""
-        return cls._for_thing(robot, given, PushOptions(**given.given("steps", "tolerance", "shaped", "tied")))
+        return cls._for_thing(robot, given, PushOptions(**given.select_given("steps", "tolerance", "shaped", "tied")))
 
     @property
     def goal_size(self) -> int:
         """Coordinates of a place."""
         return self.robot.body.mesh.dim
 
-    def achieved(self) -> Vector:
+    def get_achieved(self) -> Vector:
         """Position of the object from its usual place, in sizes of the body."""
         return (self.world.place - self._usual) / self._size
 

@@ -11,7 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
 BEYOND = 1.02
@@ -86,7 +86,7 @@ class ReachEnv(GoalEnv):
         Raises:
             InputError: a robot without winches or markers, or names that it does not have.
         """
-        self.robot = loaded(robot, contact)
+        self.robot = prepare_robot(robot, contact)
         self.world = world or ExactWorld(self.robot)
         self.options, self.render_mode = options or ReachOptions(), render_mode
         robot_ = self.robot
@@ -209,9 +209,9 @@ class ReachEnv(GoalEnv):
         networks = LearnedWorld(model)
         self.world = MixedWorld(networks, self.world, every=exact) if exact else networks
 
-    def kept(self) -> dict[str, Any]:
+    def get_state(self) -> dict[str, Any]:
         """State that the next episode depends on, and its cost until now."""
-        return {**super().kept(), "world": self.world.kept()}
+        return {**super().get_state(), "world": self.world.get_state()}
 
     def go_on(self, kept: Mapping[str, Any]) -> None:
         """Go on, from the next episode, where an environment was that has been kept."""
@@ -265,7 +265,7 @@ class ReachEnv(GoalEnv):
 
 def reach_options(given: TaskOptions) -> ReachOptions:
     """Options of the task of reaching, for the command line."""
-    own = given.given("steps", "tolerance", "markers", "pairs", "incremental", "shaped")
+    own = given.select_given("steps", "tolerance", "markers", "pairs", "incremental", "shaped")
     return ReachOptions(**own)
 
 

@@ -31,11 +31,11 @@ class SideBySide(VecEnv):
     @property
     def equilibria(self) -> int:
         """Equilibria of the exact simulator that learning has cost in all copies."""
-        return sum(kept["equilibria"] - kept["uncounted"] for kept in self.kept())
+        return sum(kept["equilibria"] - kept["uncounted"] for kept in self.get_state())
 
-    def kept(self) -> list[dict[str, Any]]:
+    def get_state(self) -> list[dict[str, Any]]:
         """State that the next episodes depend on, of each copy."""
-        return self._all("kept", [()] * len(self._parts))
+        return self._all("get_state", [()] * len(self._parts))
 
     def go_on(self, kept: Sequence[Mapping[str, Any]]) -> None:
         """Go on where copies were when they were kept."""

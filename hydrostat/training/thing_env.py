@@ -11,7 +11,7 @@ from gymnasium import spaces
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
 from hydrostat.training.thing_pictures import ThingPictures
 from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld, as_drawn, is_clear
 
@@ -100,7 +100,7 @@ class ThingEnv(GoalEnv):
         Raises:
             InputError: a robot without winches, no thing, one that is in the body or has no mass.
         """
-        self.robot = loaded(robot, contact)
+        self.robot = prepare_robot(robot, contact)
         if not self.robot.winches:
             raise InputError(f"robot {self.robot.name!r} needs a winch to move a thing by")
         self.options, self.render_mode = options, render_mode
@@ -128,7 +128,7 @@ class ThingEnv(GoalEnv):
         """Number of coordinates of a goal."""
 
     @abstractmethod
-    def achieved(self) -> Vector:
+    def get_achieved(self) -> Vector:
         """Achieved state, as a goal."""
 
     @abstractmethod
@@ -177,7 +177,7 @@ class ThingEnv(GoalEnv):
         self._goal, self.taken_steps = goal, 0
         self.world.begin(ThingState(float(given.get("friction", 1.0)), float(given.get("radius", 1.0)), start))
         self.moves = [(0.0, self.world.motion.contractions)]
-        self._stuck, self._begun = False, self.achieved()
+        self._stuck, self._begun = False, self.get_achieved()
         self.show()
         return self._observation(), self._info()
 
@@ -226,7 +226,7 @@ class ThingEnv(GoalEnv):
 
     def _counted(self) -> Vector:
         """Achieved goal; the one at the beginning of the episode if a time step did not converge."""
-        return self._begun.copy() if self._stuck else self.achieved()
+        return self._begun.copy() if self._stuck else self.get_achieved()
 
     def _observation(self) -> dict[str, Vector]:
         span = np.where(self._high > self._low, self._high - self._low, 1.0)
@@ -250,7 +250,7 @@ class ThingEnv(GoalEnv):
     def _for_thing(cls, robot: Robot | str, given: TaskOptions, options: ThingOptions, **more: Any) -> Self:
         """One with a thing as the command line asks for it."""
         given.refuse("markers", "pairs", "incremental", "actions")
-        made, thing = loaded(robot), given.thing
+        made, thing = prepare_robot(robot), given.thing
         thing = thing if thing is not None or given.friction is None else _thing(made, None)
         return cls(made, thing=_rubbing(thing, given.friction), options=options, contact=given.contact, **more)
 

@@ -332,7 +332,7 @@ def _keep(model: Any, options: TrainOptions, curve: list[CurvePoint], out: Path)
         "numpy": np.random.get_state(legacy=False),  # noqa: NPY002
         "torch": torch.get_rng_state(),
         "actions": model.action_space.np_random.bit_generator.state,
-        "copies": model.env.kept(),
+        "copies": model.env.get_state(),
     }
     replace_file(folder / "state.pkl", pickle.dumps(state))
     told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}

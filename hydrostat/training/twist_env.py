@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
-from hydrostat.training.goal_env import TaskOptions, loaded
+from hydrostat.training.goal_env import TaskOptions, prepare_robot
 from hydrostat.training.thing_env import ThingEnv, ThingOptions
 from hydrostat.training.thing_world import ThingPhysics
 
@@ -59,7 +59,7 @@ class TwistEnv(ThingEnv):
         render_mode: str | None = None,
     ) -> None:
         """A robot that turns a thing; arguments and errors as for `ThingEnv`."""
-        made = loaded(robot, contact)
+        made = prepare_robot(robot, contact)
         options = options or TwistOptions(physics=_physics(made))
         super().__init__(made, thing=thing, options=options, axis=axis, render_mode=render_mode)
         self.unit = np.pi
@@ -67,8 +67,8 @@ class TwistEnv(ThingEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Twist as the command line asks for it."""
-        made = loaded(robot)
-        options = TwistOptions(**given.given("steps", "shaped", "tied"), physics=_physics(made))
+        made = prepare_robot(robot)
+        options = TwistOptions(**given.select_given("steps", "shaped", "tied"), physics=_physics(made))
         given.refuse("tolerance")
         return cls._for_thing(made, given, options)
 
@@ -77,7 +77,7 @@ class TwistEnv(ThingEnv):
         """An angle."""
         return 1
 
-    def achieved(self) -> Vector:
+    def get_achieved(self) -> Vector:
         """Rotation of the object, in half turns."""
         return np.array([self.world.turned / np.pi])
 

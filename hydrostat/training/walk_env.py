@@ -14,7 +14,7 @@ from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.robot import ObstacleShape, Robot
 from hydrostat.simulation import Motion, Simulation, StepOptions
 from hydrostat.training.gait import Gait, GaitClock
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
 from hydrostat.training.ground import standing, tilt, with_friction
 
 STEP = 0.02
@@ -113,7 +113,7 @@ class WalkEnv(GoalEnv):
         Raises:
             InputError: a robot without winches or markers, or what `standing` refuses.
         """
-        self.robot = standing(loaded(robot), friction)
+        self.robot = standing(prepare_robot(robot), friction)
         self.options, self.render_mode = options or WalkOptions(), render_mode
         count, marks = len(self.robot.winches), len(self.robot.markers)
         if not count or not marks:
@@ -181,7 +181,7 @@ class WalkEnv(GoalEnv):
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Walk as the command line asks for it."""
         given.refuse("markers", "pairs", "contact", "tied", "thing")
-        options = WalkOptions(**given.given("actions", "steps", "incremental", "tolerance", "shaped"))
+        options = WalkOptions(**given.select_given("actions", "steps", "incremental", "tolerance", "shaped"))
         return cls(robot, friction=given.friction, options=options)
 
     @property

@@ -35,7 +35,7 @@ class World(ABC):
     def reach(self, contractions: Vector) -> Vector | None:
         """Coordinates of all markers [m] at contractions [m]; None where no equilibrium is found."""
 
-    def kept(self) -> tuple[int, ...]:
+    def get_state(self) -> tuple[int, ...]:
         """State of the progress: equilibria, and the rest that the next episode depends on."""
         return (self.equilibria,)
 
@@ -100,7 +100,7 @@ class MixedWorld(World):
         """Equilibria of the exact world."""
         return self._worlds[1].equilibria
 
-    def kept(self) -> tuple[int, ...]:
+    def get_state(self) -> tuple[int, ...]:
         """Equilibria, and which episode it is."""
         return (self.equilibria, self._episode)
 

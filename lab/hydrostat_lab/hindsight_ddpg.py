@@ -168,7 +168,7 @@ class Policy:
         seen = self.goals(goals)
         return seen if self.goal_only else torch.cat([self.states(states), seen], -1)
 
-    def kept(self) -> "Policy":
+    def copy_policy(self) -> "Policy":
         """A copy that does not change any more."""
         numbers = [part.detach().clone() for part in self.numbers]
         return Policy(numbers, copy.deepcopy(self.states), copy.deepcopy(self.goals), self.goal_only)
@@ -215,7 +215,7 @@ class HindsightDdpg:
         self._goals, self._acts = torch.zeros(*shape, trials.goals), torch.zeros(*shape, t, trials.actions)
         self._filled, self._taken = 0, 0
         self.tolerance = torch.full((seeds, 1), options.tolerance)
-        self.best, self._least = self.policy.kept(), np.full(seeds, np.inf)
+        self.best, self._least = self.policy.copy_policy(), np.full(seeds, np.inf)
 
     @property
     def tried(self) -> tuple[np.ndarray, np.ndarray]:
@@ -342,7 +342,7 @@ class HindsightDdpg:
         self._least = np.where(better, distance, self._least)
         if not better.any():
             return
-        now, which = self.policy.kept(), torch.tensor(better)
+        now, which = self.policy.copy_policy(), torch.tensor(better)
         for old, new in zip(self.best.numbers, now.numbers, strict=True):
             old[which] = new[which]
         for mean, latest in ((self.best.states, now.states), (self.best.goals, now.goals)):

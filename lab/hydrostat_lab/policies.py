@@ -86,7 +86,7 @@ def ridge(_trials: NetworkReach, pairs: TriedPairs, _effort: Budget) -> Act:
     return lambda _states, goals: (goals @ linear[:, :-1] + linear[:, -1:]).clamp(-1.0, 1.0)
 
 
-def cloned(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
+def clone_actions(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """A network that repeats the actions of the pairs: behaviour cloning, by the square of the action's error."""
 
     def loss(network: "_Network", rows: Tensor) -> Tensor:
@@ -115,14 +115,14 @@ def trial_and_error(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> 
     return _tried(trials, pairs, effort, fill=False)
 
 
-def filled(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
+def learn_from_filled_buffer(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """The same, with the pairs in its replay buffer before it begins."""
     return _tried(trials, pairs, effort, fill=True)
 
 
 def residual(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """Trial and error about what cloning does: actions are a tenth of the learned ones, beside those of the clone."""
-    base = cloned(trials, pairs, effort)
+    base = clone_actions(trials, pairs, effort)
     around = _Around(trials, base)
     found = _tried(around, pairs, effort, fill=False)
     return lambda states, goals: around.whole(found(states, goals), goals)
@@ -132,9 +132,9 @@ WAYS: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
     "gradient": gradient,
     "ridge": ridge,
     "1-NN": nearest,
-    "cloned": cloned,
+    "cloned": clone_actions,
     "trial and error": trial_and_error,
-    "the same, filled": filled,
+    "the same, filled": learn_from_filled_buffer,
     "residual on the clone": residual,
     "constant": constant,
 }

@@ -11,7 +11,7 @@ from hydrostat.progress import Progress, no_progress
 from hydrostat.simulation import Simulation
 from hydrostat_lab.experiments import SMALL
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
-from hydrostat_lab.policies import Act, Budget, TriedPairs, cloned, drawn_pairs, nearest, ridge
+from hydrostat_lab.policies import Act, Budget, TriedPairs, clone_actions, drawn_pairs, nearest, ridge
 from hydrostat_lab.run_experiment import exact_distances, exact_goals
 from hydrostat_lab.trials import NetworkReach
 
@@ -71,7 +71,7 @@ def compare_on_shared_data(
 
     def done(at: int, of: int) -> None:
         if at in marks:
-            then[at] = learner.policy.kept(), learner.best.kept()
+            then[at] = learner.policy.copy_policy(), learner.best.copy_policy()
         progress(TRIED, at, of)
 
     learner.learn(progress=done)
@@ -105,7 +105,7 @@ TRIED, BEST = "trial and error", "trial and error, best"
 
 OTHERS: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
     "1-NN": nearest,
-    "network": cloned,
+    "network": clone_actions,
     "ridge": ridge,
 }
 """Ways to learn from pairs, by their names."""

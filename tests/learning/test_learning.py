@@ -283,11 +283,11 @@ def test_the_commands(
 def test_the_way_back_learns_what_a_model_answers() -> None:
     """Of two winches against one another one takes in, in training as in the model. Oracle: the model, by NumPy."""
     torch = pytest.importorskip("torch")
-    from hydrostat.learning.learned_model import paired
+    from hydrostat.learning.learned_model import index_pairs
     from hydrostat.learning.train import _holding
 
     training_set = SimpleNamespace(low=np.array([0.0, -0.01, 0.0]), high=np.array([0.04, 0.05, 0.02]))
-    pairs = paired([["a", "c"], ["b"]], ["a", "b", "c"])
+    pairs = index_pairs([["a", "c"], ["b"]], ["a", "b", "c"])
     model = SimpleNamespace(_pairs=pairs, high=training_set.high)
     half = 0.5 * (training_set.high - training_set.low)
     for scaled in np.random.default_rng(0).uniform(-1, 1, (20, 3)):
