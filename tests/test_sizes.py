@@ -42,8 +42,27 @@ MANY_PARAMETERS = {
 }
 """What may be larger, with the reason."""
 
-PLAIN_ROOMS = {"", "drawing", "fabrication", "geometry", "grasp", "ik", "mechanics", "robot", "shapes", "simulation"}
+PLAIN_ROOMS = {
+    "",
+    "design",
+    "drawing",
+    "fabrication",
+    "geometry",
+    "grasp",
+    "hydrostat_lab",
+    "ik",
+    "learning",
+    "mechanics",
+    "project",
+    "robot",
+    "shapes",
+    "simulation",
+    "testing",
+    "training",
+}
 """Rooms in which no docstring begins with a question word or a fragment; "" for the modules outside rooms."""
+VERB_ROOMS = (PLAIN_ROOMS | {"cli", "control", "plot", "teleop"}) - {"design"}
+"""Rooms in which no public function is named by a bare participle; the routes of design still hold some."""
 HEADLESS = re.compile(r"(What|How|Whether|Where|Which|Of|That|As)\b")
 PARTICIPLE = re.compile(
     r"(?!(feed|need|seed|speed)$)[a-z]+ed|found|held|made|told|seen|felt|given|taken|begun|kept|chosen"
@@ -250,7 +269,7 @@ def test_docstrings_begin_with_a_verb_or_a_noun(texts: dict[str, str]) -> None:
 
 def test_functions_have_a_verb(texts: dict[str, str]) -> None:
     """In the rooms that are done; the others follow."""
-    assert participles(texts, PLAIN_ROOMS) == []
+    assert participles(texts, VERB_ROOMS) == []
 
 
 def test_only_mechanics_asks_what_an_energy_is(texts: dict[str, str]) -> None:

@@ -1,6 +1,5 @@
 """`hydrostat animate`."""
 
-from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,6 +10,7 @@ from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result
 from hydrostat.cli.options import PictureWidth, check_width
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
+from hydrostat.progress import Progress
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
@@ -70,13 +70,13 @@ def animate(
     if not loaded.cables:
         raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
     simulation = prepare_physics(loaded)
-    with progress_bar() as tell:
-        stops = _stops(simulation, name or list(loaded.poses), tell)
+    with progress_bar() as progress:
+        stops = _stops(simulation, name or list(loaded.poses), progress)
         ways = len(stops) + 1
         length = max(min(EACH_WAY * ways, USUAL), LEAST_WAY * ways) if seconds is None else seconds
-        made = film(simulation, stops, seconds=length, tell=tell)
+        made = film(simulation, stops, seconds=length, progress=progress)
         with result_folder(out) as folder:
-            files = [out / _write(simulation, made, folder, kind, width, tell).name for kind in formats]
+            files = [out / _write(simulation, made, folder, kind, width, progress).name for kind in formats]
     print(f"{plural(len(made.frames), 'frame')}, {length:g} s: rest, {', '.join(stop.name for stop in stops)}, rest")
     if made.missing:
         print(
@@ -86,7 +86,7 @@ def animate(
     print("Wrote " + ", ".join(str(file) for file in files))
 
 
-def _stops(simulation: "Simulation", names: list[str], tell: Callable[[str, int, int], None]) -> "list[Stop]":
+def _stops(simulation: "Simulation", names: list[str], progress: Progress) -> "list[Stop]":
     """Find what the winches reach of each pose; without poses one winch after the other."""
     from hydrostat.ik import solve_ik
     from hydrostat.plot import pose_stops, winch_stops
@@ -96,19 +96,17 @@ def _stops(simulation: "Simulation", names: list[str], tell: Callable[[str, int,
     reached = []
     for index, pose in enumerate(names):
         reached.append(solve_ik(simulation, simulation.robot.pose(pose)))
-        tell("solving poses", index + 1, len(names))
+        progress("solving poses", index + 1, len(names))
     for found in reached:
         print(f"{found.pose_target.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.status}")
     return pose_stops(reached)
 
 
-def _write(
-    simulation: "Simulation", made: "Film", out: Path, kind: Format, width: int, tell: Callable[[str, int, int], None]
-) -> Path:
+def _write(simulation: "Simulation", made: "Film", out: Path, kind: Format, width: int, progress: Progress) -> Path:
     from hydrostat.plot import save_gif, save_glb, save_mp4
 
     robot, path = simulation.robot, out / f"animation.{kind}"
     if kind is Format.GLB:
         return save_glb(robot, made.frames, path, step=made.step)
     save = save_gif if kind is Format.GIF else save_mp4
-    return save(robot, made.frames, path, step=made.step, width=width, tell=tell)
+    return save(robot, made.frames, path, step=made.step, width=width, progress=progress)

@@ -39,8 +39,8 @@ def branches(
     if starts < 1:
         raise InputError(f"--starts {starts}: must be at least 1. 16 is enough for most robots.")
     simulation = prepare_physics(loaded)
-    with progress_bar() as tell:
-        found = find_equilibria(simulation, given, count=starts, seed=seed, progress=tell)
+    with progress_bar() as progress:
+        found = find_equilibria(simulation, given, count=starts, seed=seed, progress=progress)
     followed = _follow(simulation, found)
     files = _write(simulation, found, followed, out)
     print(*found.lines(), sep="\n")

@@ -70,15 +70,15 @@ def grasp(
     loaded = _feeling(read_robot(robot))
     held = read_thing(thing, loaded.body.mesh.dim, mass=weight, friction=friction)
     options = PullOptions(direction=_direction(pull, loaded.body.mesh.dim), step=stride)
-    with progress_bar() as tell:
+    with progress_bar() as progress:
         closing, closed = _close_robot(loaded, pose, contractions(loaded, contract))
         placed = _place_object(loaded, held, at, closed)
-        found = pull_out(loaded, placed, closing, options, tell=tell)
-        cases = pull_bands(loaded, placed, closing, options, tell=tell) if bands else ()
+        found = pull_out(loaded, placed, closing, options, progress=progress)
+        cases = pull_bands(loaded, placed, closing, options, progress=progress) if bands else ()
         out.mkdir(parents=True, exist_ok=True)
         files = [replace_file(out / "pull.csv", _table(found).encode())]
         files.append(save_png(draw_pull(loaded, found, cases), out / "pull.png"))
-        files.append(save_gif(loaded, pull_frames(found), out / "pull.gif", step=0.1, tell=tell))
+        files.append(save_gif(loaded, pull_frames(found), out / "pull.gif", step=0.1, progress=progress))
         if cases:
             files.append(replace_file(out / "bands.csv", _bands(cases).encode()))
     _print(found, placed, cases)

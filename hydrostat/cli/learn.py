@@ -44,8 +44,8 @@ def learn(
     PyTorch: hydrostat pose ROBOT --model MODEL, or in Python hydrostat.learning.load_model(MODEL).solve(targets).
     Ctrl-C stops early and saves the best model so far.
 
-    With --fine-tune, training continues from an existing model. Train on many samples of a coarse mesh first, then fine-tune
-    with a few samples of a finer mesh of the same robot.
+    With --fine-tune, training continues from an existing model. Train on many samples of a coarse mesh first, then
+    fine-tune with a few samples of a finer mesh of the same robot.
 
     Example: hydrostat learn build/samples --out build/starfish.model
     """
@@ -67,13 +67,13 @@ def learn(
             raise InputError("--fine-tune: not available with --members or --steps. Remove them.")
         known = load_model(start)
         with one_interrupt("stopping: saving the best model so far ..."):
-            model = correct_model(known, samples, tell=report_progress())
+            model = correct_model(known, samples, progress=report_progress())
             save_model(model, out)
         print(f"expected marker error {1e3 * model.card.error:.3f} mm ({len(samples)} samples)")
         _end(model, out)
         return
     with one_interrupt("stopping: saving the best model so far ..."):
-        model = learn_model(samples, options=options, tell=report_progress())
+        model = learn_model(samples, options=options, progress=report_progress())
         save_model(model, out)
     moved, error = 1e3 * model.card.displacement, 1e3 * model.card.error
     inverse = model.card.inverse_error

@@ -79,7 +79,7 @@ def sample(
         loaded, count, contact=contact, seed=seed, draws=draws, shard=file_size, nodes=nodes, tension=most
     )
     try:
-        sample_robot(plan, out, part=part, jobs=jobs, backend=backend, tell=report_progress())
+        sample_robot(plan, out, part=part, jobs=jobs, backend=backend, progress=report_progress())
     except KeyboardInterrupt:
         line_end = "\n" if sys.stderr.isatty() else ""  # of the line with the progress
         print(f"{line_end}interrupted: run the same command again to resume", file=sys.stderr, flush=True)

@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +13,7 @@ from hydrostat.cli.options import Contract, check_contraction, contractions, par
 from hydrostat.cli.profiling import print_profile
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
+from hydrostat.progress import Progress
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
@@ -140,8 +141,8 @@ def _move(
     dt = positive("--time-step", step, TIME)
     start = simulation.motion_at_rest(simulation.solve(profile.at(0.0)) if rests_at_first(simulation.robot) else None)
     began = time.process_time()
-    with progress_bar() as tell:
-        motions = _with_progress(simulation.play(profile, seconds, dt, start=start), seconds, tell)
+    with progress_bar() as progress:
+        motions = _with_progress(simulation.play(profile, seconds, dt, start=start), seconds, progress)
         files, table, last = write_motion(simulation.robot, motions, out)
     spent = time.process_time() - began
     extra = {"time": last.time, "kinetic": last.kinetic, "seconds": spent, "version": __version__}
@@ -173,10 +174,8 @@ def _profile(
     return profile
 
 
-def _with_progress(
-    motions: "Iterable[Motion]", seconds: float, tell: Callable[[str, int, int], None]
-) -> "Iterator[Motion]":
+def _with_progress(motions: "Iterable[Motion]", seconds: float, progress: Progress) -> "Iterator[Motion]":
     """The same motions, told to the progress bar in milliseconds."""
     for motion in motions:
-        tell("simulating [ms]", round(1e3 * motion.time), round(1e3 * seconds))
+        progress("simulating [ms]", round(1e3 * motion.time), round(1e3 * seconds))
         yield motion

@@ -2,7 +2,6 @@
 
 import json
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,6 +20,7 @@ from hydrostat.cli.options import (
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
+from hydrostat.progress import Progress
 
 if TYPE_CHECKING:
     from hydrostat.ik import Keyframe, Limits, Trajectory
@@ -86,7 +86,7 @@ def trajectory(
     names = _keyframe_names(loaded, poses)
     simulation = prepare_physics(loaded)
     began = time.process_time()
-    with progress_bar() as tell:
+    with progress_bar() as progress:
         made = solve_ik_trajectory(
             simulation,
             _keyframes(simulation, names),
@@ -96,10 +96,10 @@ def trajectory(
             path=kind,
             loop=loop,
             hold=stay,
-            tell=tell,
+            progress=progress,
         )
         facts = _facts(simulation, made, limits, time.process_time() - began)
-        files = _write(simulation, made, facts, out, width, tell)
+        files = _write(simulation, made, facts, out, width, progress)
     print(*made.lines(), sep="\n")
     print("Wrote " + ", ".join(str(file) for file in files))
     stuck = (IKStatus.ITERATION_LIMIT, IKStatus.NO_EQUILIBRIUM)
@@ -135,7 +135,7 @@ def _write(
     facts: dict[str, Any],
     out: Path,
     width: int,
-    tell: Callable[[str, int, int], None],
+    progress: Progress,
 ) -> list[Path]:
     from hydrostat.plot import draw_trajectory, save_gif, save_png, trajectory_frames
     from hydrostat.robot import replace_file
@@ -148,7 +148,7 @@ def _write(
         write_profile(out / "trajectory.csv", robot, made.profile()),
         replace_file(out / "trajectory.json", (json.dumps(facts, indent=1) + "\n").encode()),
         save_png(draw_trajectory(robot, made), out / "trajectory.png"),
-        save_gif(robot, frames, out / "trajectory.gif", step=step, width=width, tell=tell),
+        save_gif(robot, frames, out / "trajectory.gif", step=step, width=width, progress=progress),
     ]
 
 

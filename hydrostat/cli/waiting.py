@@ -10,6 +10,8 @@ from threading import Timer, current_thread, main_thread
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from hydrostat.progress import Progress
+
 if TYPE_CHECKING:
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
@@ -50,16 +52,17 @@ def prepare_physics(robot: "Robot") -> "Simulation":
 
 
 @contextmanager
-def progress_bar() -> Iterator[Callable[[str, int, int], None]]:
+def progress_bar() -> Iterator[Progress]:
     """A function to call with the stage, how much of it is done, and how much there is."""
     if not sys.stderr.isatty():
         yield _lines()
         return
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
 
     columns = (TextColumn("{task.description:<22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True)) as bar:
+    with Bars(*columns, console=Console(stderr=True)) as bar:
         tasks: dict[str, int] = {}
 
         def tell(stage: str, done: int, total: int) -> None:
@@ -70,7 +73,7 @@ def progress_bar() -> Iterator[Callable[[str, int, int], None]]:
         yield tell
 
 
-def report_progress() -> Callable[[str, int, int], None]:
+def report_progress() -> Progress:
     """Return a function that prints progress, speed and the remaining time."""
     begin: dict[str, tuple[float, int]] = {}
     seen: dict[str, int] = {}
@@ -124,7 +127,7 @@ def search_told(title: str) -> Iterator[Callable[[int, float], None]]:
         print(f"\r{'':<60}\r", end="", file=sys.stderr, flush=True)
 
 
-def _lines() -> Callable[[str, int, int], None]:
+def _lines() -> Progress:
     seen: set[str] = set()
 
     def tell(stage: str, done: int, total: int) -> None:

@@ -1,4 +1,4 @@
-"""Which winches and cables reach given poses."""
+"""Automatic cable routing: winches and cables that reach given poses."""
 
 from typing import TYPE_CHECKING
 

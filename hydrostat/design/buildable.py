@@ -14,7 +14,7 @@ from hydrostat.robot import Robot
 
 
 def violations(robot: Robot, constraints: Constraints, region: Region) -> list[str]:
-    """What about a network cannot be built: a sentence with part, value and limit for each broken constraint.
+    """Find violated limits of a network: a sentence with part, value and limit for each broken constraint.
 
     Lengths may miss a limit by 0.02 mm and angles by 0.1 degrees, for coordinates are rounded to 0.01 mm. What is
     locked is not looked at, but what is new must keep its distances from it. The region is `cable_region(robot.body,
@@ -46,7 +46,7 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
 
 
 def pulls(robot: Robot, reached: Sequence[IKResult], constraints: Constraints) -> list[str]:
-    """What poses ask of winches and cables beyond what they can do: sentences on tension, contraction and torque.
+    """Find loads of poses beyond the limits of winches and cables: sentences on tension, contraction and torque.
 
     Tensions and torques may exceed their limit by 0.1 %, contractions by 0.02 mm. Travel and release are each winch's
     own. Each sentence names the pose, the part, its value and the limit.

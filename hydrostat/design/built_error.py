@@ -19,8 +19,8 @@ class BuiltErrors:
     """Rms errors over markers and poses of robots as they may be built [m].
 
     Attributes:
-        drawn: of each draw, (draws,); infinite where a pose has no equilibrium.
-        model: of the design itself, by the commands it was given.
+        drawn: error of each draw [m], (draws,); infinite where a pose has no equilibrium.
+        model: error of the design itself, by the commands it was given [m].
     """
 
     drawn: Vector
@@ -53,12 +53,12 @@ def built_errors(
     seed.
 
     Args:
-        robot: as it was designed.
+        robot: the robot of the design.
         poses: the targets.
         commands: contractions of each pose [m].
-        uncertainty: what differs.
-        draws: how many robots.
-        seed: of the draws.
+        uncertainty: build tolerances.
+        draws: number of robots.
+        seed: random seed.
         progress: told how many robots are done, and of how many.
     """
     found = []

@@ -30,7 +30,7 @@ class Range:
     unit: str = ""  # in which the least and the most are
 
     def holds(self, value: object) -> bool:
-        """Whether a value is one of them."""
+        """True if a value is one of them."""
         if value is None:
             return self.optional
         if isinstance(value, bool) or not isinstance(value, Integral if self.whole else Real) or not isfinite(value):
@@ -80,7 +80,7 @@ class Constraints:
         still: cables run in sheaths here, so that they move nothing.
         mount: winches in the body, or beside it; None: as the robot's own winches are, in the body if it has none.
             Winches in the world stand at places of the robot's own winches.
-        built_in: whether new winches in a flat body stand only where motor, spool and housing fit, if they fit
+        built_in: restriction of new winches in a flat body to places where motor, spool and housing fit, if they fit
             anywhere; those of a network to be improved stay about where they are.
         cables_per_winch: most cables of one winch.
         clearance: least distance of a cable from the edge of the body.
@@ -99,10 +99,10 @@ class Constraints:
         torque: the most that the motor of a winch gives [N m]; None: as much as the tensions ask.
         travel: the most that a winch takes in.
         release: the most that a winch lets out.
-        spool_radius: of the winches.
+        spool_radius: radius of the spools [m].
         slack: the most that a stopper may leave loose.
         spool_ratio: most times by which a cable's own spool may be larger or smaller than its winch's; 1: none may.
-        leads: whether a cable may run in a sheath from its winch to where bending should begin.
+        leads: True if a cable may run in a sheath from its winch to where bending should begin.
         mirror: axis whose sign a left-right symmetric network does not feel: "x", "y" or "z"; None: no symmetry. The
             mirror is the plane where that coordinate is 0, the middle of what was drawn.
         locked_winches: names of the robot's own winches that stay.

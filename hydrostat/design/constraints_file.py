@@ -118,7 +118,7 @@ def read_constraints(path: str | Path, robot: Robot) -> Constraints:
 
 
 def read_uncertainty(path: str | Path, robot: Robot) -> BuildTolerances:
-    """What a robot as it is built may differ by, from the table [built] of a file of constraints.
+    """Read the build tolerances of a robot, from the table [built] of a file of constraints.
 
     Keys are the fields of `BuildTolerances`: lengths as text with their unit, friction as the least and the largest
     coefficient, all else as plain numbers. What is left out is as is usual for the body (`BuildTolerances.of`). Raises

@@ -12,13 +12,14 @@ from hydrostat.design.faced import assign_cable_sides
 from hydrostat.design.filled_judge import evaluate_stuffed
 from hydrostat.design.filled_reach import check_filled
 from hydrostat.design.network import Network
-from hydrostat.design.progress import Progress, Watch, silent, unseen
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.trees.design_trees import design_trees
+from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.given import check_type
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
@@ -47,7 +48,7 @@ def design_cables(
 
     Args:
         robot: body, pins and markers; its own winches and cables are left aside but for those that are locked.
-        poses: what the network should reach, all of them with the same cables.
+        poses: poses that the network should reach, all with the same cables.
         progress: called as the work goes on.
         watch: called with each better network that is found on the way, not yet judged as those are that are returned.
         asked: `winches`, `cables`, `method`, `constraints`, `options`, `improve` and `filled` of a `DesignRequest`.
@@ -85,8 +86,8 @@ def find_network(
     """
     if not isinstance(robot, Robot):
         raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
-    stated, told = assign_cable_sides(robot), progress or silent
-    fitted = request.fitted(stated)
+    stated, told = assign_cable_sides(robot), progress or no_progress
+    fitted = request.fit_robot(stated)
     if fitted.filled:
         check_filled(stated)  # told before the search
     found = _search(stated, fitted, told, watch or unseen)
@@ -103,13 +104,13 @@ def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -
 
 
 def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robot]:
-    """What the thesis's way finds for a flat body: another beginning for routes, in a second or two."""
+    """Return the network of the thesis's method for a flat body: another start for routes, in a second or two."""
     if robot.body.mesh.dim != 2 or request.improve:
         return []
     usual = Constraints(clearance=request.constraints.clearance, tension=request.constraints.tension)
     asked = replace(request, method=DesignMethod.TREES, constraints=usual, options=TreeOptions(trials=_TREES))
     try:
-        return [design_trees(robot, asked, progress=silent, body=body).robot]
+        return [design_trees(robot, asked, progress=no_progress, body=body).robot]
     except HydrostatError:  # none can be built
         return []
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from hydrostat.design.filled_reach import FilledReach, filled_reach
 from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
-from hydrostat.design.progress import Progress
 from hydrostat.errors import HydrostatError
 from hydrostat.fabrication import demand_of, find_refusals
+from hydrostat.progress import Progress
 
 FINALISTS = 4  # so many networks are compared: the one that was found, and the first of its alternatives
 GAIN = 0.95  # another network takes its place if its error on the filled body is less than this share of its own
@@ -57,7 +57,7 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
 
 
 def _reach(found: Network, one: Alternative) -> FilledReach | None:
-    """What a network reaches on the filled body; None where a pose has no equilibrium there."""
+    """Return the results of a network on the filled body; None where a pose has no equilibrium there."""
     try:
         return filled_reach(one.robot, one.reached, tension=found.constraints.tension_limit)
     except HydrostatError:

@@ -31,7 +31,7 @@ class FilledReach:
 
 
 def out_of_plane(pose: Equilibrium) -> float:
-    """How far the farthest marker of a filled body is out of the plane z = 0 [m]."""
+    """Largest distance of a marker of a filled body from the plane z = 0 [m]."""
     return max((abs(float(place[2])) for place in pose.markers.values()), default=0.0)
 
 
@@ -52,7 +52,7 @@ def filled_reach(robot: Robot, reached: Sequence[IKResult], *, tension: float, f
     limits, once = Limits(tension=tension), IKOptions(restarts=0)
     found, squares = [], []
     for flat in reached:
-        pose = raised(flat.pose_target)
+        pose = lift_target(flat.pose_target)
         start = simulation.solve(flat.pose.contractions)
         squares += [float(np.sum((start.markers[name] - place) ** 2)) for name, place in pose.targets.items()]
         found.append(solve_ik(simulation, pose, limits=limits, options=once).without_factors())
@@ -61,7 +61,7 @@ def filled_reach(robot: Robot, reached: Sequence[IKResult], *, tension: float, f
     return FilledReach(face=face, reached=tuple(found), played=played, finalists=finalists)
 
 
-def raised(pose: PoseTarget) -> PoseTarget:
+def lift_target(pose: PoseTarget) -> PoseTarget:
     """A pose of a flat robot as one in space, within the plane z = 0."""
     return replace(pose, targets={name: (*place, 0.0) for name, place in pose.targets.items()})
 

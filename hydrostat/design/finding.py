@@ -12,7 +12,7 @@ from hydrostat.robot import Point, Robot
 
 
 class Severity(StrEnum):
-    """How much a finding weighs."""
+    """Severity of a finding."""
 
     REFUSED = "refused"  # a kit is refused
     LIMIT = "limit"  # a limit that designs keep is not kept
@@ -113,7 +113,7 @@ def _is_run(robot: Robot, cable: int, first: int) -> bool:
 
 
 def _nearest(robot: Robot, one: tuple[int, ...], other: tuple[int, ...]) -> Place:
-    """Where two runs, each a cable and its first point, come nearest: the middle between them."""
+    """Point where two runs, each a cable and its first point, come nearest: the middle between them."""
     ends = [np.array(robot.cables[cable].points[first : first + 2]) for cable, first in (one, other)]
     shares = nearest_shares(ends[0][None], ends[1][None])
     places = [run[0] + share[0] * (run[1] - run[0]) for run, share in zip(ends, shares, strict=True)]

@@ -19,7 +19,7 @@ def review_robot(
     constraints: Constraints | None = None,
     options: KitOptions | None = None,
 ) -> tuple[Diagnostic, ...]:
-    """What is to be said of a robot before it is built, the gravest first, each sentence with its places.
+    """Collect the diagnostics of a robot before it is built, the gravest first, each sentence with its places.
 
     - What a kit is refused for (`find_refusals`): with the demand of its poses all that is known before it is made.
     - Limits of designs that its network does not keep, where constraints are given; one sentence for each kind, with

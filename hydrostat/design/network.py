@@ -25,7 +25,7 @@ def rms_error(reached: Sequence[IKResult]) -> float:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TreeTrace:
-    """How winch trees led to a network."""
+    """Trace of a search by winch trees."""
 
     activations: tuple[Activation, ...]  # one for each pose (Fig 3.9a)
     # for each pose, the fibres that passed the threshold, strongest first (Fig 3.9b)
@@ -49,7 +49,7 @@ class DesignStage:
 
 @dataclass(frozen=True, kw_only=True)
 class Certificate:
-    """What first-order optimality says of the network: what no small change, and no further cable, would gain."""
+    """First-order optimality of a network: bounds on the gain of a small change, and of one more cable."""
 
     further: float  # rms error [m] that one more cable, with a winch of its own along the best path of all, promises
     paths: int  # states of the dynamic program that found it: each the best few paths of so many edges that end so
@@ -60,7 +60,7 @@ class Certificate:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RouteTrace:
-    """How priced routes led to a network."""
+    """Trace of a search by priced routes."""
 
     stages: tuple[DesignStage, ...]  # networks on the way, in order
     # of the one that was returned; None where the work was interrupted, or another did better on the filled body
@@ -88,16 +88,16 @@ class Network:
     Attributes:
         robot: the robot with the new network.
         source: the robot that it was designed for.
-        request: what was asked, with the constraints that it keeps.
-        reached: what the new network reaches of each pose by its own winches; the true score.
+        request: request, with the constraints that the network keeps.
+        reached: inverse-kinematics result of the new network for each pose, by its own winches; the true score.
         built: rms error over markers and poses expected of a robot as it is built, its commands played open loop [m]:
             `hydrostat.design.expected_error` with the uncertainty of the request.
         alternatives: other networks, the best first; by counts where the number of winches was found.
-        trace: what led to it.
+        trace: trace of the search.
         tried: networks whose poses were solved.
         seconds: CPU time of the design [s].
-        complete: whether the search came to its end; False where it was interrupted.
-        filled: what it reaches on the filled body; None where that was not asked for.
+        complete: True if the search came to its end; False if it was interrupted.
+        filled: results on the filled body; None if not requested.
     """
 
     robot: Robot
@@ -113,13 +113,13 @@ class Network:
     filled: FilledReach | None = None
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a description of one line."""
         built = f"{1e3 * self.rms_error:.3g} mm in the model, {1e3 * self.built:.3g} mm expected once built"
         return f"<Network for {plural(len(self.reached), 'pose')}, rms error {built}: {self.robot!r}>"
 
     @property
     def constraints(self) -> Constraints:
-        """What it keeps."""
+        """Constraints of the network."""
         return self.request.constraints
 
     @property
@@ -146,7 +146,7 @@ def best_errors(alternatives: Iterable[Alternative], chosen: Network) -> dict[Si
 
 
 def on_front(size: Size, errors: Mapping[Size, float]) -> bool:
-    """Whether no network of as few winches and as few cables has an error as small."""
+    """True if no network of as few winches and as few cables has an error as small."""
     winches, cables = size
     others = [error for other, error in errors.items() if other != size and other[0] <= winches and other[1] <= cables]
     return all(error > errors[size] for error in others)

@@ -78,7 +78,7 @@ def least_along(
 def nearest_shares(
     first: Float[np.ndarray, "pairs 2 dim"], second: Float[np.ndarray, "pairs 2 dim"]
 ) -> tuple[Float[np.ndarray, " pairs"], Float[np.ndarray, " pairs"]]:
-    """Where two segments come nearest to each other, as shares of the way along each (Ericson 2005, 5.1.9).
+    """Nearest points of two segments, as shares of the way along each (Ericson 2005, 5.1.9).
 
     In the plane segments that cross meet: their shares are of the same place.
     """

@@ -48,7 +48,7 @@ class Region(ABC):
         return 0.5 * self.clearance, np.inf
 
     def fits(self, places: Points) -> Bool[np.ndarray, " points"]:
-        """Whether a cable may have a point at each place."""
+        """True for each position where a cable may have a point."""
         least, most = self.hole_band
         depths = self.depths(places)
         return (depths >= least) & (depths <= most)
@@ -69,12 +69,12 @@ class Region(ABC):
     def sees(
         self, start: Float[np.ndarray, "segments dim"], end: Float[np.ndarray, "segments dim"]
     ) -> Bool[np.ndarray, " segments"]:
-        """Whether each straight segment keeps at least half the clearance all along."""
+        """True for each straight segment that keeps at least half the clearance all along."""
         least, _ = self.run_band
         return least_along(self.depths, start, end, least) >= least
 
     def holds(self, route: Route) -> bool:
-        """Whether a whole route keeps at least half the clearance."""
+        """True if a whole route keeps at least half the clearance."""
         return bool(self.sees(route[:-1], route[1:]).all())
 
     @abstractmethod
@@ -104,7 +104,7 @@ class FlatRegion(Region):
     def sees(
         self, start: Float[np.ndarray, "segments dim"], end: Float[np.ndarray, "segments dim"]
     ) -> Bool[np.ndarray, " segments"]:
-        """Whether each straight segment keeps at least half the clearance all along."""
+        """True for each straight segment that keeps at least half the clearance all along."""
         return np.asarray(contains(self._half, linestrings(np.stack([start, end], axis=1))))
 
     @cached_property

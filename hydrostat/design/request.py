@@ -18,11 +18,11 @@ from hydrostat.units import plural
 AUTO = "auto"  # as many winches as are needed
 
 COUNTS = {"winches": Range(whole=True, least=1, most=20), "cables": Range(whole=True, least=1, most=60)}
-"""How many winches and cables may be asked for."""
+"""Allowed numbers of winches and of cables."""
 
 
 class DesignMethod(StrEnum):
-    """How networks are found: by priced routes, ours, or by winch trees, the thesis's."""
+    """Search method: priced routes (adjoint-based) or winch trees (of the thesis)."""
 
     ROUTES = "routes"
     TREES = "trees"
@@ -30,7 +30,7 @@ class DesignMethod(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class RouteOptions:
-    """How the search for routes works.
+    """Options of the search for routes.
 
     Raises InputError for a number out of its range.
 
@@ -45,11 +45,11 @@ class RouteOptions:
         starts: networks that are grown side by side along priced paths; one more is grown from sketches.
         exchanges: most cables that are taken out, one at a time, for the best to be put in their place; the last round
             of all cables is followed by another where it gained a fifth.
-        steps: of refinement after each cable.
+        steps: steps of refinement after each cable.
         polish: steps of refinement of a whole network.
-        simplicity: how much a simple network is worth: at 1 a cable must lower the error as built by 2 %, a winch by
+        simplicity: weight of a simple network: at 1 a cable must lower the error as built by 2 %, a winch by
             4 %, a hole by 0.3 %; 0 keeps all that help at all.
-        reach: how much it is worth that markers can be brought elsewhere too, in every direction within
+        reach: weight of the workspace: displacements of the markers in every direction within
             travel and tension: a network that reaches twice as far may miss the poses by 2^reach times as much.
     """
 
@@ -86,7 +86,7 @@ ROUTE_RANGES = {
     "simplicity": Range(most=20.0),
     "reach": Range(most=5.0),
 }
-"""What each number of `RouteOptions` may be."""
+"""Allowed range of each number of `RouteOptions`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +101,7 @@ class TreeKnobs:
 
 @dataclass(frozen=True, kw_only=True)
 class TreeOptions:
-    """How winch trees are grown; lengths in units of the mean mesh edge unless said otherwise.
+    """Options of the growth of winch trees; lengths in units of the mean mesh edge unless said otherwise.
 
     Raises InputError for muscles of no kind that there is.
 
@@ -117,8 +117,8 @@ class TreeOptions:
         phis: weights of the mean against the spread in the score to try.
         shares: most ways to share the cables among the winches to try, the evenest first.
         trials: most networks whose poses are solved.
-        loss: how much of the pose error leaving out cables may add, as a fraction.
-        lead_penalty: how much the score loses for a lead as long as the body.
+        loss: largest increase of the pose error by leaving out cables, as a fraction.
+        lead_penalty: loss of score for a lead as long as the body.
     """
 
     fibres: FibreKind = FibreKind.EDGES
@@ -172,7 +172,7 @@ TREE_RANGES = {
     "shares": Range(whole=True, least=1),
     "trials": Range(whole=True, least=1),
 }
-"""What each number of `TreeOptions` may be."""
+"""Allowed range of each number of `TreeOptions`."""
 
 KNOB_RANGES = {
     "threshold": TREE_RANGES["thresholds"],
@@ -185,7 +185,7 @@ KNOB_RANGES = {
 
 @dataclass(frozen=True, kw_only=True)
 class DesignRequest:
-    """What a design is asked: the poses to reach, with how many winches and cables, within which constraints, and how.
+    """Request for a design: poses to reach, numbers of winches and cables, constraints, and method.
 
     Raises InputError: no pose, a count out of its range, a method that there is not, options of another one, or what
     the method does not do.
@@ -230,15 +230,15 @@ class DesignRequest:
 
     @property
     def route_options(self) -> RouteOptions:
-        """How the search for routes works."""
+        """Options of the search for routes."""
         return self.options if isinstance(self.options, RouteOptions) else RouteOptions()
 
     @property
     def tree_options(self) -> TreeOptions:
-        """How winch trees are grown."""
+        """Options of the growth of winch trees."""
         return self.options if isinstance(self.options, TreeOptions) else TreeOptions()
 
-    def fitted(self, robot: Robot) -> "DesignRequest":
+    def fit_robot(self, robot: Robot) -> "DesignRequest":
         """The request as one robot can be designed for: where its network is improved, that is within the constraints.
 
         Raises InputError: a pose of a marker that it does not have, or constraints that do not fit it.

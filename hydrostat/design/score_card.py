@@ -78,7 +78,7 @@ def _cables(robot: Robot) -> list[dict[str, Any]]:
 
 
 def _trace(trace: TreeTrace | RouteTrace) -> dict[str, Any]:
-    """What the method says of itself."""
+    """Return the facts that the method reports."""
     if isinstance(trace, TreeTrace):
         fibres = float(np.sqrt(np.mean([activation.rms_error**2 for activation in trace.activations])))
         return {"tree_score": trace.score, "rms_error_with_all_fibres": fibres}
@@ -97,7 +97,7 @@ def _trace(trace: TreeTrace | RouteTrace) -> dict[str, Any]:
 
 
 def _filled(network: Network) -> dict[str, Any]:
-    """What is reached on the filled body; nothing where that was not asked for."""
+    """Return the results on the filled body; empty if not requested."""
     filled = network.filled
     if filled is None:
         return {}

@@ -53,7 +53,7 @@ class SkinRegion(SpaceRegion):
     def sees(
         self, start: Float[np.ndarray, "segments dim"], end: Float[np.ndarray, "segments dim"]
     ) -> Bool[np.ndarray, " segments"]:
-        """Whether each straight segment keeps to the layer all along."""
+        """True for each straight segment that keeps to the layer all along."""
         least, most = self.run_band
         seen = least_along(self.depths, start, end, least) >= least
         seen[seen] = least_along(lambda places: -self.depths(places), start[seen], end[seen], -most) >= -most
@@ -61,7 +61,7 @@ class SkinRegion(SpaceRegion):
 
 
 def cable_region(body: Body, constraints: Constraints) -> Region:
-    """Where cables of a body may be: a clearance from its edge or surface, or in a layer under its skin.
+    """Region that cables of a body may use: a clearance from its edge or surface, or a layer under its skin.
 
     Raises InputError: the body is too thin for that everywhere.
     """

@@ -19,14 +19,14 @@ class BuildTolerances:
     bag, and fishing line in grommets rubs more or less. These are estimates by us, not measurements: measure yours.
 
     Attributes:
-        sewing: of each coordinate of each hole, winches included [m].
+        sewing: deviation of each coordinate of each hole, winches included [m].
         friction: least and largest coefficient at via points; each robot has one, all between as likely.
-        young: of the logarithm of Young's modulus.
-        thickness: of the logarithm of a flat body's thickness.
-        stiffness: of the logarithm of each cable's stiffness.
-        pins: of the logarithm of each pin's stiffness.
-        slack: of where the knot of each cable sits [m]; a winch counts from where its first cable is taut.
-        spool: of the logarithm of each winch's radius: line on line, and the print.
+        young: deviation of the logarithm of Young's modulus.
+        thickness: deviation of the logarithm of a flat body's thickness.
+        stiffness: deviation of the logarithm of each cable's stiffness.
+        pins: deviation of the logarithm of each pin's stiffness.
+        slack: deviation of the position of each cable's knot [m]; a winch counts from where its first cable is taut.
+        spool: deviation of the logarithm of each winch's radius: line on line, and the print.
 
     Raises:
         InputError: a number out of its range.
@@ -53,7 +53,7 @@ class BuildTolerances:
 
     @classmethod
     def of(cls, body: Body) -> Self:
-        """What is usual for a body: sewn where it is flat, cast with tubes in the mould where it is in space."""
+        """Return the usual tolerances of a body: sewn where it is flat, cast with tubes in the mould in space."""
         return cls() if body.mesh.dim == 2 else cls(sewing=1e-3, friction=(0.0, 0.15), thickness=0.0)
 
     @classmethod
@@ -123,7 +123,7 @@ class BuildTolerances:
         return np.array([self.young, self.thickness])
 
     def _knots(self, robot: Robot, chance: np.random.Generator) -> Vector:
-        """How much later each cable is taut than the first of its winch [m]."""
+        """Delay of each cable behind the first taut one of its winch, as a contraction [m]."""
         knots = self.slack * chance.standard_normal(len(robot.cables))
         for winch in robot.winches:
             own = [index for index, cable in enumerate(robot.cables) if cable.winch == winch.name]
@@ -144,7 +144,7 @@ UNCERTAINTY_RANGES = {
     "slack": _LENGTH,
     "spool": Range(most=0.3),
 }
-"""What each number of `BuildTolerances` may be."""
+"""Allowed range of each number of `BuildTolerances`."""
 
 
 def _band(given: object) -> tuple[float, float]:

@@ -80,7 +80,7 @@ def _room(body: Body, box: Cuboid) -> BaseGeometry:
 
 
 def _eroded(seam: BaseGeometry, low: tuple[float, ...], high: tuple[float, ...], turn: float) -> BaseGeometry:
-    """Where the middle of a turned rectangle may be so that all of its rim is within the seam (Minkowski) [mm]."""
+    """Region of the middle of a turned rectangle with all of its rim within the seam (Minkowski) [mm]."""
     corners = np.array([low[:2], (high[0], low[1]), high[:2], (low[0], high[1])], dtype=float)
     right, up = np.array([math.sin(turn), -math.cos(turn)]), np.array([math.cos(turn), math.sin(turn)])
     corners = corners[:, :1] * right + corners[:, 1:] * up

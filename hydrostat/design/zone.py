@@ -21,7 +21,7 @@ class Zone:
 
     Attributes:
         at: middle of the disc or ball.
-        radius: of it.
+        radius: radius of the zone [m].
         box: its lowest and its highest corner.
         outline: corners of the polygon, either way round.
 

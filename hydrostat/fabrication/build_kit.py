@@ -1,6 +1,5 @@
 """`build_kit`: from a robot to everything that it is built from."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 from hydrostat.fabrication.body_work import foam_work, plush_work
@@ -21,10 +20,9 @@ from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
+from hydrostat.progress import Progress
 from hydrostat.robot import Face, Robot, describe_cable_side, sewn_robot
 from hydrostat.units import plural
-
-Progress = Callable[[str, int, int], None]  # told the stage, how much of it is done, and how much there is
 
 
 def write_kit(

@@ -1,6 +1,5 @@
 """`pull_out`: a robot closes on an object, which is then pulled away; the required force."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +8,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.grasp.thing import moved_thing
 from hydrostat.mechanics import GuideEnergy
+from hydrostat.progress import Progress
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import (
     BodyPhysics,
@@ -19,8 +19,6 @@ from hydrostat.simulation import (
     obstacle_forces,
     with_replaced,
 )
-
-Tell = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +104,7 @@ def pull_out(
     contractions: Contractions,
     options: PullOptions,
     *,
-    tell: Tell | None = None,
+    progress: Progress | None = None,
 ) -> PullOut:
     """Close a robot on a held object, let the object find its equilibrium, then pull it away in small steps.
 
@@ -118,7 +116,7 @@ def pull_out(
         thing: object with a mass, at its rest position, clear of the body.
         contractions: contractions that close the robot [m].
         options: options of the pull.
-        tell: is told "pulling", how far it has come, and how far at most [mm].
+        progress: callback for progress.
 
     Raises:
         InputError: a thing that stands in the body, has no mass, or is never touched.
@@ -155,15 +153,15 @@ def pull_out(
         pose = found
         push = obstacle_forces(pulling, pose)[-1]
         rows.append((pulled, pose.without_factors(), guide.pull(pose.unknowns), push))
-        if tell is not None:
-            tell("pulling [mm]", round(1e3 * pulled), round(1e3 * travel))
+        if progress is not None:
+            progress("pulling [mm]", round(1e3 * pulled), round(1e3 * travel))
         if number and not push.any():
             reason = "object is free"
             break
     if not rows:
         raise InputError(f'no equilibrium of "{thing.name}" in the grasp before the pull: {reason}')
-    if tell is not None:
-        tell("pulling [mm]", round(1e3 * travel), round(1e3 * travel))
+    if progress is not None:
+        progress("pulling [mm]", round(1e3 * travel), round(1e3 * travel))
     distances, poses, pulls, pushes = zip(*rows, strict=True)
     return PullOut(
         robot=full,

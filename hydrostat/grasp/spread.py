@@ -1,6 +1,6 @@
 """`pull_bands`: sensitivity of the pull-out force to uncertain parameters."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy as np
 from hydrostat.errors import HydrostatError
 from hydrostat.grasp.pull_out import PullOptions, PullOut, pull_out
 from hydrostat.grasp.thing import moved_thing
+from hydrostat.progress import Progress
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import Contractions
 
@@ -36,7 +37,7 @@ def pull_bands(
     contractions: Contractions,
     options: PullOptions,
     *,
-    tell: Callable[[str, int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> tuple[PullCase, ...]:
     """Pull with friction, stiffness and position varied one at a time, and without friction, for the cage alone.
 
@@ -45,7 +46,7 @@ def pull_bands(
         thing: object with its nominal friction and position.
         contractions: contractions that close the robot [m].
         options: options of the pull.
-        tell: is told "cases", how many are done, and how many there are.
+        progress: callback for progress.
     """
     cases = list(_cases(robot, thing))
     found = []
@@ -54,8 +55,8 @@ def pull_bands(
             found.append(PullCase(name=name, pull=pull_out(other, moved, contractions, options)))
         except HydrostatError as error:
             found.append(PullCase(name=name, pull=None, trouble=str(error)))
-        if tell is not None:
-            tell("cases", number + 1, len(cases))
+        if progress is not None:
+            progress("cases", number + 1, len(cases))
     return tuple(found)
 
 

@@ -20,7 +20,7 @@ from hydrostat.ik.search.anchor_untargeted import anchor_untargeted_markers
 from hydrostat.ik.search.descend import descend, least_effort
 from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_pose
 from hydrostat.ik.search.problem import IKOptions, InverseProblem, InverseState
-from hydrostat.ik.search.search_budget import SearchBudget, Tell
+from hydrostat.ik.search.search_budget import SearchBudget, SearchProgress
 from hydrostat.mechanics import Reason
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import (
@@ -44,7 +44,7 @@ def solve_ik(
     start: Equilibrium | None = None,
     options: IKOptions | None = None,
     seconds: float | None = None,
-    progress: Tell | None = None,
+    progress: SearchProgress | None = None,
 ) -> IKResult:
     """Bounded Gauss-Newton through the sensitivities of the equilibrium.
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hydrostat.learning.portable_policy import PortablePolicy, load_policy
     from hydrostat.learning.sample_folder import SampleFolder
     from hydrostat.learning.sample_plan import SamplePlan, physics_hash, plan_samples
-    from hydrostat.learning.sample_robot import BACKENDS, Tell, sample_robot
+    from hydrostat.learning.sample_robot import BACKENDS, sample_robot
     from hydrostat.learning.sample_shard import sample_shard
     from hydrostat.learning.samples import Samples, read_samples
     from hydrostat.learning.train import answer, tensors_of, train_forward
@@ -39,7 +39,6 @@ __all__ = [
     "SamplePlan",
     "Samples",
     "SamplingScheme",
-    "Tell",
     "Tier",
     "TrainingSet",
     "answer",

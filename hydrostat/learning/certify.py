@@ -27,9 +27,9 @@ def verify(
     to another. What they leave from rest says `verify(simulation, model, replace(found, pose=None))`.
 
     Args:
-        simulation: of the robot that the model was learned of.
-        model: whose answer it is.
-        answer: what `LearnedModel.solve` or this gave.
+        simulation: simulation of the robot of the model.
+        model: model that gave the answer.
+        answer: answer of `LearnedModel.solve` or of this function.
         steps: exact steps to take at most.
         enough: mean error below which none is taken [m]: a certificate that says so saves what a step costs.
 
@@ -60,9 +60,9 @@ def exact_steps(
     equilibrium, it stays.
 
     Args:
-        simulation: of the robot.
+        simulation: simulation of the robot.
         pose: to begin from.
-        target: where markers should go [m].
+        target: target positions of the markers [m].
         steps: to take at most.
         enough: mean error below which none is taken [m].
 
@@ -98,11 +98,11 @@ def solve_exactly(
     """The answer of `solve_ik` that begins where a learned answer leads, from rest where that is no equilibrium.
 
     Args:
-        simulation: of the robot that the model was learned of.
-        model: whose answer it is.
-        answer: what `LearnedModel.solve` gave.
-        limits: as for `solve_ik`.
-        options: as for `solve_ik`.
+        simulation: simulation of the robot of the model.
+        model: model that gave the answer.
+        answer: answer of `LearnedModel.solve`.
+        limits: same as for `solve_ik`.
+        options: same as for `solve_ik`.
 
     Raises:
         InputError: a model of another robot, or as for `solve_ik`.
@@ -116,7 +116,7 @@ def solve_exactly(
 
 
 def _same(one: Robot, other: Robot) -> bool:
-    """Whether the poses of one robot are those of the other."""
+    """True if the poses of one robot are those of the other."""
     return one is other or (physics_hash(one), contact_facts(one)) == (physics_hash(other), contact_facts(other))
 
 

@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.learning.learn_model import kept_facts, silent
+from hydrostat.learning.learn_model import kept_facts
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import LearnedModel
-from hydrostat.learning.sample_robot import Tell
 from hydrostat.learning.samples import Samples
 from hydrostat.learning.training_set import make_training_set
+from hydrostat.progress import Progress, no_progress
 
 
 def correct_model(
-    model: LearnedModel, samples: Samples, *, options: LearnOptions | None = None, tell: Tell | None = None
+    model: LearnedModel, samples: Samples, *, options: LearnOptions | None = None, progress: Progress | None = None
 ) -> LearnedModel:
     """A model whose forward networks have learned on from a few samples of another body: a finer mesh, or the robot.
 
@@ -23,10 +23,10 @@ def correct_model(
     is, as a place for the search to begin; so answers are found by the search. Needs PyTorch.
 
     Args:
-        model: of the first body.
-        samples: of the other, with the same winches, markers, cables and travel.
-        options: how; its members, width and depth are the model's.
-        tell: as for `learn_model`.
+        model: model of the first body.
+        samples: samples of the other, with the same winches, markers, cables and travel.
+        options: options of training; its members, width and depth are the model's.
+        progress: same as for `learn_model`.
 
     Raises:
         InputError: too few samples, of a robot with other winches, markers, cables or travel, or no PyTorch.
@@ -42,7 +42,7 @@ def correct_model(
         raise InputError("the samples are of a robot whose winches have another travel than the model's")
     options = replace(options or LearnOptions(steps=_STEPS, rate=_RATE), members=len(model.forward))
     began, training_set = time.process_time(), make_training_set(samples, model)
-    trained = train_forward(training_set, model.card.dim, options, tell or silent, start=model.forward)
+    trained = train_forward(training_set, model.card.dim, options, progress or no_progress, start=model.forward)
     if not np.isfinite(trained.error):
         if trained.stopped:
             raise KeyboardInterrupt
@@ -59,4 +59,4 @@ def correct_model(
 
 
 _STEPS, _RATE = 6000, 6e-3
-"""How long and how fast networks learn on, unless told."""
+"""Default number of steps and learning rate of a correction."""

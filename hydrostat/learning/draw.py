@@ -14,7 +14,7 @@ Winches = Sequence[Sequence[int]]
 
 
 class SamplingScheme(StrEnum):
-    """How contractions are drawn."""
+    """Distribution of the contractions."""
 
     BOX = "box"  # each winch between its release and its travel
     ANTAGONIST = "antagonist"  # of two winches that work against one another only one takes in (thesis 5.3.2)
@@ -23,7 +23,7 @@ class SamplingScheme(StrEnum):
 
 
 def dimensions(draw: SamplingScheme, pairs: Winches, winches: int) -> int:
-    """How many numbers a sample is drawn by."""
+    """Number of random numbers of a sample."""
     return {SamplingScheme.ANTAGONIST: len(pairs), SamplingScheme.FACES: 2 * winches}.get(draw, winches)
 
 
@@ -31,7 +31,7 @@ def contractions(draw: SamplingScheme, points: Points, low: Vector, high: Vector
     """Contractions [m] of points in the unit cube.
 
     Args:
-        draw: how.
+        draw: distribution of the contractions.
         points: (samples, dimensions).
         low: least contraction of each winch [m].
         high: largest [m].
@@ -56,7 +56,7 @@ def antagonists(moves: Float[np.ndarray, "winches coordinates"]) -> tuple[tuple[
     """Winches two by two whose markers go opposite ways, and the others alone: each is the best partner of its partner.
 
     Args:
-        moves: how the markers go when each winch takes in cable [m].
+        moves: displacements of the markers for the contraction of each winch [m].
     """
     lengths = np.linalg.norm(moves, axis=1, keepdims=True)
     ways = moves / np.where(lengths > 0, lengths, 1.0)

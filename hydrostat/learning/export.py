@@ -16,7 +16,7 @@ def export_samples(folder: Path, out: Path) -> Path:
     """Write all samples of a folder, those without an equilibrium too, as one file for others.
 
     Args:
-        folder: of samples.
+        folder: folder of samples.
         out: ends in one of `EXPORTS`: .parquet (a column for each number), or .zarr (an array for each quantity).
 
     Raises:
@@ -86,7 +86,7 @@ def _zarr(path: Path, facts: Mapping[str, Any], rows: np.ndarray) -> None:
 
 
 EXPORTS: Mapping[str, Callable[[Path, Mapping[str, Any], np.ndarray], None]] = {".parquet": _parquet, ".zarr": _zarr}
-"""How samples are written, by the ending of the file."""
+"""Functions that write samples, by the ending of the file."""
 
 _NEEDS: Mapping[str, str] = {".parquet": "pyarrow", ".zarr": "zarr"}
 """Libraries that write them."""

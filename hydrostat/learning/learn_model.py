@@ -11,23 +11,25 @@ from hydrostat.errors import InputError
 from hydrostat.learning.draw import SamplingScheme
 from hydrostat.learning.known_contact import contact_in_model
 from hydrostat.learning.learn_options import LearnOptions
-from hydrostat.learning.learned_model import LearnedModel, paired
+from hydrostat.learning.learned_model import LearnedModel, index_pairs
 from hydrostat.learning.model_card import ModelCard
-from hydrostat.learning.sample_robot import Tell
 from hydrostat.learning.samples import Samples
 from hydrostat.learning.training_set import make_training_set
+from hydrostat.progress import Progress, no_progress
 
 
-def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: Tell | None = None) -> LearnedModel:
+def learn_model(
+    samples: Samples, *, options: LearnOptions | None = None, progress: Progress | None = None
+) -> LearnedModel:
     """Train forward networks on values and slopes of samples, then an inverse network through them. Needs PyTorch.
 
     Ctrl-C ends it early: the model is then the best so far, without an inverse network if that was not begun, and says
     so in `card.stopped`.
 
     Args:
-        samples: of one robot.
-        options: how.
-        tell: is told "forward" or "inverse", steps done, and steps in all.
+        samples: samples of one robot.
+        options: options of training.
+        progress: callback for progress in training steps, stages "forward" and "inverse".
 
     Raises:
         InputError: too few samples, or no PyTorch.
@@ -35,10 +37,10 @@ def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: 
     """
     from hydrostat.learning.train import train_forward, train_inverse
 
-    options, told = options or LearnOptions(), tell or silent
+    options, told = options or LearnOptions(), progress or no_progress
     began, training_set, dim = time.process_time(), make_training_set(samples), samples.facts["dim"]
     kept = kept_facts(samples)
-    pairs = paired(kept["pairs"], samples.facts["winches"])
+    pairs = index_pairs(kept["pairs"], samples.facts["winches"])
     length = float(training_set.unit[0])
     forward = train_forward(training_set, dim, options, told)
     if not np.isfinite(forward.error):
@@ -84,13 +86,8 @@ def kept_facts(samples: Samples) -> dict[str, Any]:
     }
 
 
-def silent(stage: str, done: int, total: int) -> None:
-    """Tell nothing."""
-    del stage, done, total
-
-
 def _moved(markers: np.ndarray) -> np.ndarray:
-    """How far markers are from their mean."""
+    """Return the distances of markers from their mean."""
     return np.linalg.norm(markers - markers.mean(axis=0), axis=-1)
 
 

@@ -8,23 +8,23 @@ from hydrostat.errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class LearnOptions:
-    """How networks are trained. What the defaults reach: docs/decisions/0035-learning.md.
+    """Options for training networks. are trained. What the defaults reach: docs/decisions/0035-learning.md.
 
     Attributes:
         members: forward networks, each of which holds out other samples; their disagreement is the model's doubt.
         width: units in each hidden layer.
         depth: hidden layers.
-        steps: of training the forward networks; if left out 6,000, and 3 for each sample.
-        inverse_steps: of training the inverse network.
+        steps: steps of training the forward networks; if left out 6,000, and 3 for each sample.
+        inverse_steps: steps of training the inverse network.
         batch: samples in a step.
         rate: largest learning rate; it rises, then falls as a cosine.
-        slopes: how much errors of slopes count beside those of values; 0 learns from values alone.
+        slopes: weight of errors of slopes beside those of values; 0 learns from values alone.
         directions: along which slopes are compared, drawn anew in each step.
-        tensions: how much errors of tensions count beside those of markers.
-        tension_slopes: how much errors of their slopes count, where samples hold them.
-        effort: how much the inverse network minds tension and contraction, so that its answer is one.
+        tensions: weight of errors of tensions beside those of markers.
+        tension_slopes: weight of errors of their slopes, where samples hold them.
+        effort: weight of tension and contraction in the inverse network, so that its answer is unique.
         held_out: share of the samples that a network does not learn from, but is chosen by.
-        seed: of all that is drawn at random.
+        seed: random seed.
         threads: cores that PyTorch may use.
     """
 
@@ -58,5 +58,5 @@ class LearnOptions:
             raise InputError(f"seed must be 0 or more, not {self.seed}")
 
     def steps_for(self, samples: int) -> int:
-        """How long the forward networks learn from so many samples."""
+        """Return the training steps of the forward networks for a number of samples."""
         return self.steps or 6000 + 3 * samples

@@ -31,11 +31,11 @@ class LearnedModel:
         low: least contraction of each winch [m].
         high: largest [m].
         middle: mean of what is expected: of the coordinates of the markers [m], then of the tensions [N].
-        unit: of each of them.
+        unit: unit of each of them.
         forward: from contractions to what is expected; several, learned apart, so that they can disagree.
         inverse: from markers to contractions; None where learning was stopped before.
         known: contractions of samples to begin a search from [m].
-        reached: where the markers were then [m], a row each.
+        reached: positions of the markers then [m], a row each.
     """
 
     card: ModelCard
@@ -49,7 +49,7 @@ class LearnedModel:
     reached: Float[np.ndarray, "samples coordinates"]
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a description of one line."""
         known = f"{len(self.card.winches)} winches, {len(self.card.markers)} markers"
         return f"<LearnedModel of {self.card.robot!r}: {known}, {1e3 * self.card.error:.3g} mm on average>"
 
@@ -67,11 +67,11 @@ class LearnedModel:
         check_contact(self.card.known_contact, robot)
 
     def predict(self, contractions: Vector) -> tuple[Vector, Vector]:
-        """What is expected at contractions [m]: coordinates of the markers [m], then tensions [N]; and their spread."""
+        """Predict coordinates of the markers [m], then tensions [N], at contractions [m]; and their spread."""
         return self._expected(self._winches(contractions))
 
     def slopes(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
-        """How the networks expect the markers to go when winches take in cable."""
+        """Predict the displacements of the markers for contractions of the winches."""
         _, slopes = self.forward.slopes(self._scaled(self._winches(contractions)))
         return (self.unit[:, None] * slopes / self._half)[: self.card.coordinates]
 
@@ -90,8 +90,8 @@ class LearnedModel:
         """Contractions that bring markers to targets, as the networks know it.
 
         Args:
-            targets: where markers should go [m]; markers that are not named may go anywhere.
-            search: whether to search on the networks from the inverse network's answer, and, where that leaves more
+            targets: target positions [m]; markers that are not named may go anywhere.
+            search: True to search on the networks from the inverse network's answer, and, where that leaves more
                 than usual, from the nearest samples. The inverse network alone is faster.
 
         Raises:
@@ -129,11 +129,11 @@ class LearnedModel:
         if self.inverse is None:
             raise InputError("the model has no inverse network: its learning was stopped before")
         count = self.card.coordinates
-        raw, _ = self.inverse.agreed((markers - self.middle[:count]) / self.unit[:count])
+        raw, _ = self.inverse.average_members((markers - self.middle[:count]) / self.unit[:count])
         return self._held(self._contractions(_BEYOND * np.tanh(raw)))
 
     def _expected(self, contractions: Vector) -> tuple[Vector, Vector]:
-        mean, spread = self.forward.agreed(self._scaled(contractions))
+        mean, spread = self.forward.average_members(self._scaled(contractions))
         return self.middle + self.unit * mean, self.unit * spread
 
     def _search(self, goal: Vector, asked: np.ndarray) -> Vector:
@@ -155,7 +155,7 @@ class LearnedModel:
         return self._contractions(best)
 
     def _held(self, contractions: Vector) -> Vector:
-        """As samples were drawn: of two winches against one another only that which takes in more does, by as much."""
+        """Apply the pairs of the samples: of two winches only one takes in, by the difference of both."""
         one, other = self._pairs
         if not len(one):
             return contractions
@@ -165,7 +165,7 @@ class LearnedModel:
         return held
 
     def _box(self, start: Vector) -> tuple[Vector, Vector] | None:
-        """Where a search from a start that is held so stays held; None where nothing is."""
+        """Bounds of a search from a start that obeys the pairs, so that it keeps obeying them; None without pairs."""
         one, other = self._pairs
         if not len(one):
             return None
@@ -216,13 +216,13 @@ class LearnedModel:
 
     @cached_property
     def _rows(self) -> Mapping[str, int]:
-        """Which of the markers is called so."""
+        """Return the index of the marker of this name."""
         return {name: row for row, name in enumerate(self.card.markers)}
 
     @cached_property
     def _pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """Winches of which samples had only one take in, as two rows of places."""
-        return paired(self.card.pairs, self.card.winches)
+        return index_pairs(self.card.pairs, self.card.winches)
 
     @cached_property
     def _half(self) -> Vector:
@@ -234,7 +234,7 @@ class LearnedModel:
         return self.low + self._half
 
 
-def paired(pairs: Sequence[Sequence[str]], winches: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+def index_pairs(pairs: Sequence[Sequence[str]], winches: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     """Places of the first and of the second winch of each pair by name; groups of one are left out."""
     places = [(winches.index(group[0]), winches.index(group[1])) for group in pairs if len(group) == 2]
     one, other = np.array(places, dtype=int).reshape(-1, 2).T
@@ -253,4 +253,4 @@ _STARTS = 3
 """Samples that a search begins from where the inverse network's answer is not near enough."""
 
 _USUAL = 3.0
-"""What is left of a target is unusual above so many times the mean error of the networks."""
+"""Ratio of a target's error to the mean error of the networks, above which it is unusual."""

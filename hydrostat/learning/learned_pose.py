@@ -14,7 +14,7 @@ from hydrostat.simulation import Equilibrium
 
 
 class Tier(StrEnum):
-    """How an answer was found; each is better, and takes longer, than the one before."""
+    """Source of an answer; each is better, and takes longer, than the one before."""
 
     NETWORK = "the inverse network"
     SEARCH = "search on the networks"
@@ -27,15 +27,15 @@ class LearnedPose:
     """Contractions that bring markers near targets: what networks say of them, and what the simulator says.
 
     Attributes:
-        target: what was asked for.
-        tier: how it was found.
+        target: requested target.
+        tier: source of the answer.
         contractions: cable taken in [m], in the order of the model's winches.
         commands: the same by winch.
-        markers: where the networks expect each marker [m].
-        tensions: what they expect each cable to pull [N].
-        errors: how far they expect each marker that was asked for from its target [m].
-        spread: how far they disagree about it, root of the mean square [m]: their doubt.
-        certified: how far the simulator finds each from its target [m]; None where it was not asked.
+        markers: predicted position of each marker [m].
+        tensions: predicted tension of each cable [N].
+        errors: predicted distance of each requested marker from its target [m].
+        spread: disagreement of the networks, root of the mean square [m]: their uncertainty.
+        certified: distance of each from its target in the simulator [m]; None without a check.
         reason: why the simulator ended: of an equilibrium, or, for `Tier.EXACT`, of inverse kinematics.
         pose: the equilibrium; None where there is none.
     """
@@ -53,7 +53,7 @@ class LearnedPose:
     pose: Equilibrium | None = None
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a description of one line."""
         sort = "expected" if self.certified is None else "certified"
         return f"<LearnedPose for {self.target.name!r} by {self.tier}: {1e3 * self.error:.3g} mm {sort} on average>"
 

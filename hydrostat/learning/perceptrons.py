@@ -18,7 +18,7 @@ class Perceptrons:
     """Networks of one shape, y = layers(x) + x S: layers with SiLU between them, and a linear map beside them.
 
     Attributes:
-        sizes: of input, hidden layers and output.
+        sizes: sizes of input, hidden layers and output.
         numbers: all of a network in a row: of each layer weights (inputs, outputs) and biases, then S.
     """
 
@@ -30,7 +30,7 @@ class Perceptrons:
 
     @staticmethod
     def count(sizes: Int[np.ndarray, " layers"]) -> int:
-        """How many numbers a network has."""
+        """Number of weights of a network."""
         wide = [int(size) for size in sizes]
         return sum((one + 1) * two for one, two in pairwise(wide)) + wide[0] * wide[-1]
 
@@ -52,12 +52,12 @@ class Perceptrons:
         return cls(sizes=sizes, numbers=np.concatenate([*numbers, np.zeros(int(sizes[0] * sizes[-1]))])[None])
 
     def values(self, point: Vector) -> Float[np.ndarray, "members outputs"]:
-        """What each network answers at a point."""
+        """Compute the output of each network at a point."""
         found = np.empty((len(self), self.sizes[-1]))
         native.network_values(self.sizes, self.numbers, np.ascontiguousarray(point, dtype=float), found)
         return found
 
-    def agreed(self, point: Vector) -> tuple[Vector, Vector]:
+    def average_members(self, point: Vector) -> tuple[Vector, Vector]:
         """The mean answer at a point, and how far the networks are from it: root of the mean square, of each output.
 
         In single precision, which is what networks are trained and kept in, and takes half as long.
@@ -86,7 +86,7 @@ class Perceptrons:
 
         Args:
             start: in the box.
-            goal: as many numbers as the networks answer.
+            goal: goal with one number for each output of the networks.
             weights: 0 where the goal does not matter.
             box: least and most of each input; -1 and 1 if left out.
         """

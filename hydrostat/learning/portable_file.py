@@ -26,11 +26,11 @@ Made = TypeVar("Made")
 
 @dataclass(frozen=True, kw_only=True)
 class PortableFile:
-    """What a kind of file is.
+    """Kind of portable file.
 
     Attributes:
         magic: its first eight bytes.
-        word: what it holds, in a word.
+        word: content, in a word.
         writer: the command that writes it.
         kinds: type and number of axes of each array that it may hold.
     """
@@ -52,10 +52,10 @@ class PortableFile:
         return replace_file(Path(path), content + hashlib.sha256(content).digest())
 
     def read(self, path: str | Path, made: Callable[[dict[str, Any], dict[str, np.ndarray]], Made]) -> Made:
-        """What is made of the facts and the arrays of a file; numbers are float64 or int64.
+        """Make an object of the facts and the arrays of a file; numbers are float64 or int64.
 
         Args:
-            path: of the file.
+            path: path of the file.
             made: gives what they are (ValueError: they do not fit one another).
 
         Raises:

@@ -31,8 +31,8 @@ class SampleFolder:
     """A folder into which samples are written whole, file by file; what is there is not made again.
 
     Attributes:
-        path: of the folder.
-        plan: of the samples.
+        path: path of the folder.
+        plan: plan of the samples.
     """
 
     path: Path
@@ -62,7 +62,7 @@ class SampleFolder:
         return folder
 
     def file(self, shard: int) -> Path:
-        """Where the samples of a shard are."""
+        """Return the path of the samples of a shard."""
         return self.path / f"samples-{shard:06d}.npy"
 
     def missing(self, part: tuple[int, int]) -> list[int]:
@@ -121,7 +121,7 @@ def _check_known(path: Path, known: dict[str, Any], facts: dict[str, Any]) -> No
 
 
 def read_manifest(path: str | Path) -> dict[str, Any]:
-    """What was sampled, from the manifest of a folder.
+    """Read the plan from the manifest of a folder.
 
     Raises:
         InputError: there is none, or it is not one of ours.

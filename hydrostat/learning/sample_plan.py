@@ -18,15 +18,15 @@ from hydrostat.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SamplePlan:
-    """What is sampled of a robot. Equal plans give equal bytes, whoever works on them.
+    """Plan of samples of a robot. Equal plans give equal bytes, whoever works on them.
 
     Attributes:
         robot: with contact if the samples shall know it.
-        count: how many samples.
-        seed: of the draws.
+        count: number of samples.
+        seed: random seed.
         draws: ways in which contractions are drawn, one sample each in turn.
         shard: samples in one file.
-        nodes: whether the positions of all nodes are kept.
+        nodes: True if the positions of all nodes are kept.
         tension: the most that a cable shall pull [N]; for `SamplingScheme.TENSION`.
         pairs: antagonistic pairs of winches, those without a partner alone; for `SamplingScheme.ANTAGONIST`.
 
@@ -59,7 +59,7 @@ class SamplePlan:
 
     @property
     def shards(self) -> int:
-        """How many files there are."""
+        """Number of files."""
         return ceil(self.count / self.shard)
 
     def numbers(self, shard: int) -> range:
@@ -67,7 +67,7 @@ class SamplePlan:
         return range(shard * self.shard, min((shard + 1) * self.shard, self.count))
 
     def draw_of(self, number: int) -> SamplingScheme:
-        """How the contractions of a sample are drawn."""
+        """Distribution of the contractions of a sample."""
         return self.draws[number % len(self.draws)]
 
     def contractions(self, numbers: range) -> Rows:
@@ -92,7 +92,7 @@ class SamplePlan:
         return points.random(1 << (count - 1).bit_length())[:count]  # powers of 2, as Sobol points are balanced then
 
     def facts(self) -> dict[str, object]:
-        """What decides about every byte, for the manifest."""
+        """Facts that determine every byte, for the manifest."""
         robot = self.robot
         return {
             "robot": robot.name,
@@ -131,13 +131,13 @@ def plan_samples(
     """Plan samples of a robot; winches that work against one another are found by one pose of each.
 
     Args:
-        robot: which.
-        count: how many samples.
-        contact: whether its body feels itself even if the robot does not say so.
-        seed: of the draws.
+        robot: robot to sample.
+        count: number of samples.
+        contact: True for self-contact, also if the robot does not set it.
+        seed: random seed.
         draws: ways in which contractions are drawn, one sample each in turn.
         shard: samples in one file.
-        nodes: whether all nodes are kept.
+        nodes: True if all nodes are kept.
         tension: the most that a cable shall pull [N]; for `SamplingScheme.TENSION`.
 
     Raises:

@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from threading import Thread
 from typing import Any, cast
@@ -13,9 +13,9 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning.sample_folder import SampleFolder
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import sample_shard
+from hydrostat.progress import Progress
 
 Sampled = tuple[int, np.ndarray]
-Tell = Callable[[str, int, int], None]
 
 
 def sample_robot(
@@ -25,7 +25,7 @@ def sample_robot(
     part: tuple[int, int] = (0, 1),
     jobs: int = 1,
     backend: str = "loky",
-    tell: Tell | None = None,
+    progress: Progress | None = None,
 ) -> SampleFolder:
     """Sample a robot into a folder, or go on where an earlier run ended, perhaps one that was asked for fewer.
 
@@ -33,12 +33,12 @@ def sample_robot(
     that dies is made good for as long as others get something done.
 
     Args:
-        plan: what to sample.
-        folder: where the samples shall lie.
+        plan: plan of the samples.
+        folder: folder for the samples.
         part: work on part i of n, counted from 0, of the files.
         jobs: processes; -1 for one on each core.
         backend: one of `BACKENDS`.
-        tell: is told "samples", how many there are, and how many there shall be.
+        progress: callback for progress.
 
     Raises:
         InputError: a folder of another plan or of more samples, or one that cannot be written; a wrong part or backend.
@@ -62,8 +62,8 @@ def sample_robot(
             for shard, rows in run(plan, missing, jobs):
                 samples.write(shard, rows)
                 done += len(rows)
-                if tell is not None:
-                    tell("samples", done, mine)
+                if progress is not None:
+                    progress("samples", done, mine)
         except HydrostatError:
             raise
         except Exception as error:

@@ -10,7 +10,7 @@ from hydrostat.mechanics import Reason
 from hydrostat.simulation import Equilibrium, Simulation
 
 REASONS = (*Reason, "error")
-"""What the column `reason` counts."""
+"""Meaning of the numbers in column `reason`."""
 
 
 def sample_type(plan: SamplePlan) -> np.dtype:
@@ -85,7 +85,7 @@ def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: f
 
 
 def _tension_slopes(simulation: Simulation, pose: Equilibrium, moves: np.ndarray) -> np.ndarray:
-    """How tensions rise with contractions [N/m], (cables, winches): T' (dl/dx dx/da + ratio); 0 for slack cables."""
+    """Compute slopes of tensions with contractions [N/m], (cables, winches): T' (dl/dx dx/da + ratio); 0 if slack."""
     cables, count = simulation.cables, len(simulation.robot.cables)
     if simulation.friction is not None:
         return simulation.friction_sensitivities(pose, (np.zeros((count, pose.nodes.size)), np.eye(count))).contractions
@@ -109,7 +109,7 @@ def _within(simulation: Simulation, contractions: Vector, tension: float | None)
 
 
 def _touches(simulation: Simulation, pose: Equilibrium) -> bool:
-    """Whether parts of the body push one another off."""
+    """True if parts of the body push one another off."""
     slot = simulation.body.own_contact
     if slot is None:
         return False

@@ -22,18 +22,18 @@ class Samples:
     """Equilibria of a robot at contractions drawn at random; only those that were found.
 
     Attributes:
-        facts: what was sampled, as in the manifest.
-        numbers: of the samples.
+        facts: facts of the samples, as in the manifest.
+        numbers: numbers of the samples.
         contractions: [m], (samples, winches).
         markers: positions [m], (samples, markers, dim).
         jacobians: slopes of the markers with the contractions, (samples, markers, dim, winches).
-        tensions: of each cable [N], (samples, cables).
-        tension_slopes: of the tensions with the contractions [N/m], (samples, cables, winches); None in folders of an
+        tensions: tension of each cable [N], (samples, cables).
+        tension_slopes: slopes of tensions with contractions [N/m], (samples, cables, winches); None in folders of an
             earlier version, which did not sample them.
-        touches: whether parts of the body push one another off.
-        crosses: whether the body passes through itself, as it may without contact.
+        touches: True if parts of the body push one another off.
+        crosses: True if the body passes through itself, as it may without contact.
         nodes: positions of all nodes [m], float32; None if they were not kept.
-        lost: how many samples have no stable equilibrium, or no slopes.
+        lost: number of samples without a stable equilibrium, or without slopes.
     """
 
     facts: Mapping[str, Any]
@@ -52,7 +52,7 @@ class Samples:
         return len(self.contractions)
 
     def __repr__(self) -> str:
-        """What it is, in one line."""
+        """Return a description of one line."""
         return f"<Samples of {self.facts['robot']!r}: {len(self)} found, {self.lost} lost>"
 
     @property

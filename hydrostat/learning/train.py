@@ -13,6 +13,7 @@ from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import span_of
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.learning.training_set import TrainingSet, linear_map
+from hydrostat.progress import Progress
 
 try:
     import torch  # pyright: ignore[reportMissingImports]
@@ -20,7 +21,6 @@ try:
 except ImportError:
     raise InputError("learning needs PyTorch. Install it: pip install 'hydrostat[learn]'") from None
 
-Tell = Callable[[str, int, int], None]
 Numbers = Sequence[Tensor]  # weights and biases of each layer, then S, each (members, ...)
 
 
@@ -29,9 +29,9 @@ class Trained:
     """Networks as they were when they did best on what they had not learned from.
 
     Attributes:
-        networks: of one shape.
+        networks: networks of one shape.
         error: mean distance of markers on held-out samples, in the unit of the training set; infinite without one.
-        stopped: whether Ctrl-C ended it.
+        stopped: True if Ctrl-C ended it.
     """
 
     networks: Perceptrons
@@ -40,7 +40,7 @@ class Trained:
 
 
 def train_forward(
-    training_set: TrainingSet, dim: int, options: LearnOptions, tell: Tell, *, start: Perceptrons | None = None
+    training_set: TrainingSet, dim: int, options: LearnOptions, progress: Progress, *, start: Perceptrons | None = None
 ) -> Trained:
     """Networks from contractions to markers and tensions; each holds out other samples.
 
@@ -72,7 +72,7 @@ def train_forward(
         return missed.norm(dim=-1).mean((1, 2))
 
     steps = options.steps_for(len(inputs))
-    best, errors, stopped = _train(numbers, loss, error, steps, options.rate, lambda n: tell("forward", *n))
+    best, errors, stopped = _train(numbers, loss, error, steps, options.rate, lambda n: progress("forward", *n))
     return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
 
 
@@ -81,7 +81,7 @@ def train_inverse(
     dim: int,
     forward: Perceptrons,
     options: LearnOptions,
-    tell: Tell,
+    progress: Progress,
     pairs: tuple[np.ndarray, np.ndarray],
 ) -> Trained:
     """A network from markers to contractions, taught by what the forward networks make of its answers.
@@ -123,13 +123,13 @@ def train_inverse(
         return (found - markers[aside]).unflatten(-1, (-1, dim)).norm(dim=-1).mean()[None]
 
     best, errors, stopped = _train(
-        numbers, loss, error, options.inverse_steps, options.rate, lambda n: tell("inverse", *n)
+        numbers, loss, error, options.inverse_steps, options.rate, lambda n: progress("inverse", *n)
     )
     return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
 
 
 def _holding(training_set: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) -> Callable[[Tensor], Tensor]:
-    """What makes of scaled contractions such that of each pair only one takes in, as `LearnedModel` does."""
+    """Return a function on scaled contractions after which one winch of each pair takes in, as in `LearnedModel`."""
     one, other = (torch.tensor(places) for places in pairs)
     if not len(one):
         return lambda scaled: scaled
@@ -150,7 +150,7 @@ def _holding(training_set: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) ->
 
 
 def loss_weights(coordinates: int, outputs: int, options: LearnOptions) -> tuple[Tensor, Tensor]:
-    """How much the value of each output counts, and its slope: markers first, then tensions."""
+    """Weights of the value of each output, and of its slope: markers first, then tensions."""
     tensions = outputs - coordinates
     values, slopes = (1.0, options.tensions), (options.slopes, options.tension_slopes)
     return tuple(torch.tensor([marker] * coordinates + [tension] * tensions) for marker, tension in (values, slopes))  # type: ignore
@@ -178,7 +178,7 @@ def sobolev_loss(
 
 
 def answer(numbers: Numbers, points: Tensor, ways: Tensor | None) -> tuple[Tensor, Tensor | None]:
-    """What networks answer at points (members, batch, inputs), and how it moves along ways (members, batch, ways, ...).
+    """Compute outputs at points (members, batch, inputs) and their changes along ways (members, batch, ways, ...).
 
     Slopes go forward with the values, as by `torch.func.jvp`, along several ways at once.
     """
@@ -213,7 +213,7 @@ def _train(
     error: Callable[[], Tensor],
     steps: int,
     rate: float,
-    tell: Callable[[tuple[int, int]], None],
+    progress: Callable[[tuple[int, int]], None],
 ) -> tuple[list[Tensor], Tensor, bool]:
     """Adam; the numbers of each network when its error was least. Ctrl-C ends it with those."""
     for part in numbers:
@@ -234,7 +234,7 @@ def _train(
                     better = (now < least)[:, None, None]
                     kept = [torch.where(better, one, other) for one, other in zip(numbers, best, strict=True)]
                 best, least = kept, torch.minimum(now, least)
-                tell((step + 1, steps))
+                progress((step + 1, steps))
     except KeyboardInterrupt:
         return best, least, True
     return best, least, False

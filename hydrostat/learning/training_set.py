@@ -19,11 +19,11 @@ class TrainingSet:
         low: least contraction of each winch [m].
         high: largest [m].
         middle: mean of what is expected.
-        unit: of each of it: one length for all coordinates of markers, one force for all tensions.
-        inputs: of the networks.
+        unit: unit of each of it: one length for all coordinates of markers, one force for all tensions.
+        inputs: inputs of the networks.
         outputs: markers, then tensions.
-        slopes: of the markers; then of the tensions, if they were sampled.
-        coordinates: how many of the outputs are of markers.
+        slopes: slopes of the markers; then of the tensions, if they were sampled.
+        coordinates: number of outputs that are coordinates of markers.
         linear: the best linear map from inputs to outputs, with its constant as the last row.
     """
 

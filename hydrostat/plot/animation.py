@@ -2,7 +2,7 @@
 
 import subprocess
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from io import BytesIO
 from itertools import chain, pairwise
 from pathlib import Path
@@ -15,6 +15,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.frame_pictures import FramePictures, Picture
 from hydrostat.plot.tension_scale import TensionScale
+from hydrostat.progress import Progress
 from hydrostat.robot import Robot, replace_file
 
 STAYS = 3.0
@@ -107,7 +108,6 @@ def _after_blocks(whole: bytes, start: int) -> int:
     return start + 1
 
 
-Tell = Callable[[str, int, int], None]  # is told the stage, how much of it is done, and how much there is
 COLOURS = 72  # colours of a GIF, all frames together: what lies between two of felt is not to be told
 SAMPLES = 10  # so many frames, evenly chosen, tell which colours are needed
 WIDTHS = (160, 1920)  # least and largest width of a picture [pixels]
@@ -115,7 +115,13 @@ SHORTEST = 0.02  # shortest time of a frame [s]: browsers play shorter ones of a
 
 
 def save_gif(
-    robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float, width: int = 640, tell: Tell | None = None
+    robot: Robot,
+    frames: Sequence[Frame],
+    path: str | Path,
+    *,
+    step: float,
+    width: int = 640,
+    progress: Progress | None = None,
 ) -> Path:
     """Write frames at equal times as a GIF that plays for ever, whole or not at all; returns its path.
 
@@ -127,7 +133,7 @@ def save_gif(
         InputError: frames that do not fit the robot, a time or width out of range, a file that cannot be written.
     """
     _check(robot, frames, step, width)
-    pictures = list(_draw_frames(robot, frames, width, tell))
+    pictures = list(_draw_frames(robot, frames, width, progress))
     some = sorted({int(index) for index in np.linspace(0, len(frames) - 1, SAMPLES).round()})
     palette = _palette(robot, [_unpack_frame(pictures[index]) for index in some])
     runs = _runs(pictures)
@@ -138,7 +144,13 @@ def save_gif(
 
 
 def save_mp4(
-    robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float, width: int = 640, tell: Tell | None = None
+    robot: Robot,
+    frames: Sequence[Frame],
+    path: str | Path,
+    *,
+    step: float,
+    width: int = 640,
+    progress: Progress | None = None,
 ) -> Path:
     """Write frames as an MP4 (H.264), whole or not at all; returns its path. It needs the program ffmpeg.
 
@@ -152,7 +164,7 @@ def save_mp4(
 
     program = find_ffmpeg()
     _check(robot, frames, step, width)
-    drawn = (_even(_unpack_frame(packed)) for packed in _draw_frames(robot, frames, width, tell))
+    drawn = (_even(_unpack_frame(packed)) for packed in _draw_frames(robot, frames, width, progress))
     first = next(drawn)
     height, wide, _ = first.shape
     with TemporaryDirectory() as folder:
@@ -186,7 +198,9 @@ def _check(robot: Robot, frames: Sequence[Frame], step: float, width: int) -> No
         raise InputError(f"the width of a picture must be {WIDTHS[0]} to {WIDTHS[1]} pixels, not {width}")
 
 
-def _draw_frames(robot: Robot, frames: Sequence[Frame], width: int, tell: Tell | None) -> Iterator[tuple[bytes, tuple]]:
+def _draw_frames(
+    robot: Robot, frames: Sequence[Frame], width: int, progress: Progress | None
+) -> Iterator[tuple[bytes, tuple]]:
     """Every picture, packed: a long film would not fit into memory otherwise."""
     sheet = FramePictures(robot, frames, width=width)
     last, packed = None, (b"", ())
@@ -195,8 +209,8 @@ def _draw_frames(robot: Robot, frames: Sequence[Frame], width: int, tell: Tell |
         if picture is not last:
             last, packed = picture, (zlib.compress(picture.tobytes(), 1), picture.shape)
         yield packed
-        if tell is not None:
-            tell("drawing", index + 1, len(frames))
+        if progress is not None:
+            progress("drawing", index + 1, len(frames))
 
 
 def _unpack_frame(packed: tuple[bytes, tuple]) -> Picture:

@@ -9,10 +9,10 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik import IKResult, KeyPose, Trajectory
-from hydrostat.plot.animation import Tell
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.progress import Progress
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
@@ -67,7 +67,12 @@ def winch_stops(robot: Robot) -> list[Stop]:
 
 
 def film(
-    simulation: Simulation, stops: Sequence[Stop], *, seconds: float, step: float = 0.08, tell: Tell | None = None
+    simulation: Simulation,
+    stops: Sequence[Stop],
+    *,
+    seconds: float,
+    step: float = 0.08,
+    progress: Progress | None = None,
 ) -> Film:
     """The equilibria from rest through all stops and back to rest; it starts and stops gently.
 
@@ -88,7 +93,7 @@ def film(
     ends = 1 + np.round((count - 1) * np.arange(ways + 1) / ways).astype(int)
     rest = simulation.solve({})
     home = Stop(name="rest", contractions=rest.contractions, words="at rest")
-    shot = _Shot(simulation, rest, count, tell)
+    shot = _Shot(simulation, rest, count, progress)
     begin = home
     for stop, frames in zip([*stops, home], np.diff(ends), strict=True):
         shot.go(begin, stop, int(frames))
@@ -99,10 +104,10 @@ def film(
 class _Shot:
     """Frames as they are made."""
 
-    def __init__(self, simulation: Simulation, rest: Equilibrium, count: int, tell: Tell | None) -> None:
+    def __init__(self, simulation: Simulation, rest: Equilibrium, count: int, progress: Progress | None) -> None:
         self.frames = [Frame.of(rest, words="at rest")]
         self.missing: list[int] = []
-        self._simulation, self._last, self._count, self._tell = simulation, rest, count, tell
+        self._simulation, self._last, self._count, self._progress = simulation, rest, count, progress
 
     def go(self, begin: Stop, end: Stop, count: int) -> None:
         """Go from one stop to the next in so many frames, the last of them still."""
@@ -113,7 +118,7 @@ class _Shot:
             goal = begin.contractions + share * (end.contractions - begin.contractions)
             self._take(goal, end, words)
         self.frames += [replace(self.frames[-1], words=end.words)] * still
-        self._tell_progress()
+        self._report()
 
     def _take(self, goal: Vector, end: Stop, words: str) -> None:
         pose = self._simulation.solve(goal, start=self._last, strict=False)
@@ -122,11 +127,11 @@ class _Shot:
         else:
             self.missing.append(len(self.frames))
         self.frames.append(Frame.of(self._last, target=end.target, words=words))
-        self._tell_progress()
+        self._report()
 
-    def _tell_progress(self) -> None:
-        if self._tell is not None:
-            self._tell("solving", len(self.frames), self._count)
+    def _report(self) -> None:
+        if self._progress is not None:
+            self._progress("solving", len(self.frames), self._count)
 
 
 def upright(robot: Robot, pose: Equilibrium) -> bool:

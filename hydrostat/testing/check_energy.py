@@ -26,12 +26,12 @@ def check_energy(
     Hessian is compared, the blocks of all terms and G D G^T, with the derivative of the whole gradient.
 
     Args:
-        energy: what to check.
+        energy: energy to check.
         nodes: a state where its value is finite [m].
         controls: all controls of the robot.
         tolerance: largest relative error of a derivative.
-        coordinates: how many nodal coordinates to vary, drawn at random from a larger body.
-        seed: of the draws.
+        coordinates: number of nodal coordinates to vary, drawn at random from a larger body.
+        seed: random seed.
 
     Raises:
         ConformanceError: the first check that failed, how far it is off and where.

@@ -33,13 +33,13 @@ def check_objective(
     straight from rest, so that the slopes are those of going on.
 
     Args:
-        objective: what to check.
-        simulation: of a robot; its cables may have friction.
+        objective: objective to check.
+        simulation: simulation of a robot; its cables may have friction.
         contractions: the pose [m].
         tolerance: largest relative error of the slopes.
-        solver: what the sharp solves leave over, as a fraction of the largest applied force.
-        postures: how many others, solved for contractions drawn at random between 0 and twice those given.
-        seed: of the draws.
+        solver: residual of the sharp solves, as a fraction of the largest applied force.
+        postures: number of other equilibria, for contractions drawn at random between 0 and twice those given.
+        seed: random seed.
 
     Raises:
         ConformanceError: the first check that failed, how far it is off and where.

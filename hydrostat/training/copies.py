@@ -28,7 +28,7 @@ class Copies:
         self._answer = [getattr(self, f"_{name}")(env, *row) for env, row in zip(self._envs, rows, strict=True)]
 
     def answer(self) -> list[Any]:
-        """What came of it."""
+        """Return the outcome of the step."""
         return self._answer
 
     def close(self) -> None:
@@ -48,8 +48,8 @@ class Copies:
         return seen, float(reward), over, told
 
     @staticmethod
-    def _kept(env: GoalEnv) -> dict[str, Any]:
-        return env.kept()
+    def _get_state(env: GoalEnv) -> dict[str, Any]:
+        return env.get_state()
 
     @staticmethod
     def _go_on(env: GoalEnv, kept: Mapping[str, Any]) -> None:

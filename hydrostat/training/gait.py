@@ -16,8 +16,8 @@ class Gait:
 
     Attributes:
         amplitude: the most that each winch takes in [m].
-        lag: of each winch behind the one before, in cycles.
-        period: of a cycle [s].
+        lag: lag of each winch behind the one before, in cycles.
+        period: period of a cycle [s].
     """
 
     amplitude: float
@@ -36,12 +36,12 @@ class Gait:
 
 
 class GaitClock:
-    """Where winches are within a gait.
+    """Phase of winches within a gait.
 
     Attributes:
         phase: cycles since the beginning.
-        amplitude: as it is now [m].
-        lag: as it is now, in cycles.
+        amplitude: present amplitude [m].
+        lag: present lag, in cycles.
     """
 
     def __init__(self, winches: int, most: float) -> None:

@@ -19,20 +19,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class TaskOptions:
-    """What is asked of a task by name; what is None is as the task has it.
+    """Options of a task by name; None leaves the default of the task.
 
     Attributes:
-        markers: that shall reach; all if empty.
+        markers: markers that reach; all if empty.
         pairs: winches that work against one another, moved by one number of the action.
         steps: actions in an episode (T).
-        incremental: whether an action adds to the contractions.
+        incremental: True if an action adds to the contractions.
         tolerance: largest distance that is a success [m].
         shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
-        contact: whether the body feels itself, where robot.toml says nothing of it.
+        contact: True for self-contact if robot.toml does not set contact.
         friction: coefficient, of what the task is about.
-        actions: what an action is: a name that the task knows.
+        actions: meaning of an action: a name that the task knows.
         tied: parts of names: winches whose names have one are moved by one number.
-        thing: that is moved; the robot's own if None.
+        thing: object that is moved; the robot's own if None.
     """
 
     markers: Sequence[str] = ()
@@ -47,7 +47,7 @@ class TaskOptions:
     tied: Sequence[str] = ()
     thing: Obstacle | None = None
 
-    def given(self, *names: str) -> dict[str, Any]:
+    def select_given(self, *names: str) -> dict[str, Any]:
         """Those of these attributes that are not None, by name."""
         return {name: value for name in names if (value := getattr(self, name)) is not None}
 
@@ -62,15 +62,15 @@ class GoalEnv(gymnasium.Env, ABC):
     """Goal-based environment with episodes of a fixed number of actions, as `train` and `judge` use it.
 
     Attributes:
-        cost: what `equilibria` counts, in a word or two.
+        cost: unit of `equilibria`, in a word or two.
         measure: the word for what distances are told in, and how many of it are in their unit.
-        robot: that does it.
-        unit: of what observations count in: a size of the body [m], half a turn [rad].
+        robot: robot of the task.
+        unit: unit of what observations count in: a size of the body [m], half a turn [rad].
         steps: actions in an episode (T).
         tolerance: largest distance that is a success, in the unit of the task, [m] or [rad].
         taken_steps: actions of this episode until now.
-        uncounted: of `equilibria`, those that judged a policy: no cost of learning it.
-        moves: of this episode until now: times [s] with contractions [m], as motors would be told them.
+        uncounted: part of `equilibria` that judged a policy: no cost of learning it.
+        moves: commands of this episode until now: times [s] with contractions [m], as motors would get them.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["human", "rgb_array"], "render_fps": 4}  # type: ignore[misc]
@@ -93,11 +93,11 @@ class GoalEnv(gymnasium.Env, ABC):
     @property
     @abstractmethod
     def equilibria(self) -> int:
-        """How many solves of the exact simulator have been asked for, those that judged included (see `cost`)."""
+        """Number of solves of the exact simulator, those of judgements included (see `cost`)."""
 
     @property
     def portable(self) -> bool:
-        """Whether a policy needs to see nothing but the goal."""
+        """True if a policy needs to see nothing but the goal."""
         return False
 
     @abstractmethod
@@ -114,15 +114,15 @@ class GoalEnv(gymnasium.Env, ABC):
         raise InputError("this task is not one of equilibria that networks know: learn it in the simulator")
 
     def compute_terminated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
-        """Whether an episode has come to its end: never before its steps."""
+        """True if an episode has come to its end: never before its steps."""
         return np.zeros(np.shape(achieved)[:-1], dtype=bool)
 
     def compute_truncated(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> np.ndarray:
-        """Whether an episode is cut off here."""
+        """True if an episode is cut off here."""
         return np.full(np.shape(achieved)[:-1], self.taken_steps >= self.steps)
 
     def picture(self) -> np.ndarray | None:
-        """What is to be seen now, (height, width, 3), bytes, always of one size; None where nothing is."""
+        """Picture of the present state, (height, width, 3), bytes, always of one size; None if there is none."""
         return None
 
     def render(self) -> np.ndarray | None:
@@ -150,8 +150,8 @@ class GoalEnv(gymnasium.Env, ABC):
         if self._page is not None:
             self._page.close()
 
-    def kept(self) -> dict[str, Any]:
-        """What the next episode depends on, and what it has cost until now."""
+    def get_state(self) -> dict[str, Any]:
+        """State that the next episode depends on, and its cost until now."""
         return {
             "random": self.np_random.bit_generator.state,
             "equilibria": self.equilibria,
@@ -164,7 +164,7 @@ class GoalEnv(gymnasium.Env, ABC):
         self.uncounted = kept["uncounted"]
 
 
-def loaded(robot: Robot | str, contact: bool = False) -> Robot:
+def prepare_robot(robot: Robot | str, contact: bool = False) -> Robot:
     """A robot, itself or from its folder; one that feels itself if asked for and robot.toml says nothing of it."""
     made = robot if isinstance(robot, Robot) else load_robot(robot)
     return replace(made, contact=Contact()) if contact and made.contact is None else made
@@ -182,4 +182,4 @@ def finite_numbers(given: object, count: int, what: str, which: str) -> Vector:
 
 
 AN_ACTION = ("an action", "numbers from -1 to 1")
-"""What `finite_numbers` says of an action."""
+"""Words of `finite_numbers` for an action."""

@@ -59,7 +59,7 @@ def with_friction(robot: Robot, friction: float) -> Robot:
 
 
 def tilt(masses: Vector, rest: Nodes, nodes: Nodes) -> float:
-    """How far what was up has turned with the body as a whole [rad], from its nodes at rest and now [m].
+    """Return the rotation of the upright direction with the body as a whole [rad], from nodes at rest and now [m].
 
     The turn is the rotation that fits best, by masses (Kabsch).
     """

@@ -10,7 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Robot
-from hydrostat.training.goal_env import TaskOptions, loaded
+from hydrostat.training.goal_env import TaskOptions, prepare_robot
 from hydrostat.training.reach_env import ReachEnv, ReachOptions, reach_options
 from hydrostat.training.worlds import ExactWorld, World
 
@@ -43,15 +43,16 @@ class HysteresisEnv(ReachEnv):
         Args:
             robot: itself, its folder, or a name such as gallery:cupping_hand.
             friction: coefficient mu of every cable; as in robot.toml if None.
-            world: that is asked where markers go; the exact simulator, from pose to pose, if left out.
-            options: of the task.
-            contact: whether the body feels itself, where robot.toml says nothing of it.
+            world: simulator or networks that compute marker positions; if left out the exact simulator, from pose to
+                pose.
+            options: options of the task.
+            contact: True for self-contact if robot.toml does not set contact.
             render_mode: "rgb_array", "human" or None.
 
         Raises:
             InputError: as for `ReachEnv`, no cable that rubs, or friction below 0.
         """
-        self.given = loaded(robot, contact)
+        self.given = prepare_robot(robot, contact)
         rubs = rubbing(self.given, friction)
         super().__init__(
             rubs, world=world or ExactWorld(rubs, from_rest=False), options=options, render_mode=render_mode
@@ -66,7 +67,7 @@ class HysteresisEnv(ReachEnv):
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Reach as the command line asks for it."""
         given.refuse("actions", "tied", "thing")
-        more = given.given("friction", "contact")
+        more = given.select_given("friction", "contact")
         return cls(robot, options=reach_options(given), **more)
 
     def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:

@@ -16,7 +16,7 @@ def policy_of(trained: Any, env: GoalEnv, *, task: str, error: float) -> Portabl
     """The policy of a model of stable-baselines3, in any task.
 
     Args:
-        trained: what was learned.
+        trained: trained policy.
         env: in which it was.
         task: name of the task.
         error: mean distance that it leaves on unseen goals, in the unit of the task.
@@ -71,4 +71,4 @@ def _layers(actor: Any) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 _GOAL = "desired_goal"
-"""What an observation calls the goal."""
+"""Key of the goal in an observation."""

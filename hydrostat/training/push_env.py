@@ -14,7 +14,7 @@ from hydrostat.training.thing_env import ThingEnv, ThingOptions
 
 @dataclass(frozen=True, kw_only=True)
 class PushOptions(ThingOptions):
-    """How a thing is pushed.
+    """Options of the task of pushing an object.
 
     Attributes:
         far: goals are drawn within this of the usual place of the thing [m].
@@ -56,15 +56,15 @@ class PushEnv(ThingEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Push as the command line asks for it."""
-        return cls._for_thing(robot, given, PushOptions(**given.given("steps", "tolerance", "shaped", "tied")))
+        return cls._for_thing(robot, given, PushOptions(**given.select_given("steps", "tolerance", "shaped", "tied")))
 
     @property
     def goal_size(self) -> int:
         """Coordinates of a place."""
         return self.robot.body.mesh.dim
 
-    def achieved(self) -> Vector:
-        """Where the thing is."""
+    def get_achieved(self) -> Vector:
+        """Position of the object from its usual place, in sizes of the body."""
         return (self.world.place - self._usual) / self._size
 
     def draw_goal(self, random: np.random.Generator) -> Vector:
@@ -78,5 +78,5 @@ class PushEnv(ThingEnv):
         return self._size * np.linalg.norm(np.asarray(achieved) - np.asarray(desired), axis=-1)
 
     def words(self) -> str:
-        """How far it still is."""
+        """Return the remaining distance, in words."""
         return f"{1e3 * self._info()['distance']:.1f} mm from the goal"

@@ -11,7 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
 from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
 BEYOND = 1.02
@@ -23,13 +23,13 @@ PACE = 1.0
 
 @dataclass(frozen=True, kw_only=True)
 class ReachOptions:
-    """How a robot reaches.
+    """Options of the task of reaching.
 
     Attributes:
-        markers: that shall reach; all if empty.
+        markers: markers that reach; all if empty.
         pairs: winches that work against one another, moved by one number of the action; others are moved alone.
         steps: actions in an episode (T).
-        incremental: whether an action adds to the contractions, a tenth of their range at most.
+        incremental: True if an action adds to the contractions, a tenth of their range at most.
         tolerance: largest mean distance of the markers that is a success [m].
         shaped: reward is minus the mean distance in units of the tolerance; else 0 for success and -1.
 
@@ -58,10 +58,10 @@ class ReachEnv(GoalEnv):
     in units of the body's size. Goals are reached by an equilibrium each; they are counted with the others.
 
     Attributes:
-        robot: that reaches.
-        world: that is asked where markers go.
-        options: of the task.
-        seen: which coordinates of all markers are looked at.
+        robot: robot that reaches.
+        world: simulator or networks that compute marker positions.
+        options: options of the task.
+        seen: observed coordinates of all markers.
         rest: coordinates of all markers at rest [m].
     """
 
@@ -78,15 +78,15 @@ class ReachEnv(GoalEnv):
 
         Args:
             robot: itself, its folder, or a name such as gallery:cupping_hand.
-            world: that is asked where markers go; the exact simulator if left out.
-            options: of the task.
-            contact: whether the body feels itself, where robot.toml says nothing of it.
+            world: simulator or networks that compute marker positions; the exact simulator if left out.
+            options: options of the task.
+            contact: True for self-contact if robot.toml does not set contact.
             render_mode: "rgb_array", "human" or None.
 
         Raises:
             InputError: a robot without winches or markers, or names that it does not have.
         """
-        self.robot = loaded(robot, contact)
+        self.robot = prepare_robot(robot, contact)
         self.world = world or ExactWorld(self.robot)
         self.options, self.render_mode = options or ReachOptions(), render_mode
         robot_ = self.robot
@@ -183,7 +183,7 @@ class ReachEnv(GoalEnv):
 
     @property
     def portable(self) -> bool:
-        """Whether a policy sees nothing but the goal: one action, all markers, each winch alone."""
+        """True if a policy sees nothing but the goal: one action, all markers, each winch alone."""
         options, names = self.options, [marker.name for marker in self.robot.markers]
         moved_alone = not (options.incremental or options.pairs)
         return options.steps == 1 and moved_alone and list(options.markers or names) == names
@@ -209,9 +209,9 @@ class ReachEnv(GoalEnv):
         networks = LearnedWorld(model)
         self.world = MixedWorld(networks, self.world, every=exact) if exact else networks
 
-    def kept(self) -> dict[str, Any]:
-        """What the next episode depends on, and what it has cost until now."""
-        return {**super().kept(), "world": self.world.kept()}
+    def get_state(self) -> dict[str, Any]:
+        """State that the next episode depends on, and its cost until now."""
+        return {**super().get_state(), "world": self.world.get_state()}
 
     def go_on(self, kept: Mapping[str, Any]) -> None:
         """Go on, from the next episode, where an environment was that has been kept."""
@@ -219,7 +219,7 @@ class ReachEnv(GoalEnv):
         self.world.go_on(kept["world"])
 
     def picture(self) -> np.ndarray:
-        """What is to be seen: where the robot is and should be.
+        """Picture of the robot and of its goal.
 
         Networks know no shape: where they are asked, the pose is that of the simulator, from rest.
         """
@@ -264,8 +264,8 @@ class ReachEnv(GoalEnv):
 
 
 def reach_options(given: TaskOptions) -> ReachOptions:
-    """How a robot reaches, as the command line asks for it."""
-    own = given.given("steps", "tolerance", "markers", "pairs", "incremental", "shaped")
+    """Options of the task of reaching, for the command line."""
+    own = given.select_given("steps", "tolerance", "markers", "pairs", "incremental", "shaped")
     return ReachOptions(**own)
 
 

@@ -34,4 +34,4 @@ class ReachPictures:
 
 
 _ROOM, _WIDTH = 1.25, 640
-"""How much larger than the body at rest the frame is, and width of a picture [pixels]."""
+"""Width of the frame in widths of the body at rest, and width of a picture [pixels]."""

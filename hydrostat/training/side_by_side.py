@@ -31,11 +31,11 @@ class SideBySide(VecEnv):
     @property
     def equilibria(self) -> int:
         """Equilibria of the exact simulator that learning has cost in all copies."""
-        return sum(kept["equilibria"] - kept["uncounted"] for kept in self.kept())
+        return sum(kept["equilibria"] - kept["uncounted"] for kept in self.get_state())
 
-    def kept(self) -> list[dict[str, Any]]:
-        """What the next episodes depend on, of each copy."""
-        return self._all("kept", [()] * len(self._parts))
+    def get_state(self) -> list[dict[str, Any]]:
+        """State that the next episodes depend on, of each copy."""
+        return self._all("get_state", [()] * len(self._parts))
 
     def go_on(self, kept: Sequence[Mapping[str, Any]]) -> None:
         """Go on where copies were when they were kept."""
@@ -71,7 +71,7 @@ class SideBySide(VecEnv):
         return [getattr(self._env, method_name)(*args, **more)] * len(list(self._get_indices(indices)))
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """What is the same in all copies."""
+        """Facts that are the same in all copies."""
         return [getattr(self._env, attr_name)] * len(list(self._get_indices(indices)))
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:

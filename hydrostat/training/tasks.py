@@ -19,7 +19,7 @@ class Task:
     Attributes:
         id: by which gymnasium makes its environment.
         env: its environment.
-        words: what it is, in a line.
+        words: description of one line.
     """
 
     id: str

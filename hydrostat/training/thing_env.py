@@ -11,14 +11,14 @@ from gymnasium import spaces
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
 from hydrostat.training.thing_pictures import ThingPictures
 from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld, as_drawn, is_clear
 
 
 @dataclass(frozen=True, kw_only=True)
 class ThingOptions:
-    """How a thing is moved.
+    """Options of the tasks of moving an object.
 
     Attributes:
         steps: keyframes of an episode (T).
@@ -29,7 +29,7 @@ class ThingOptions:
         friction: the thing's is drawn within this share of its own, up and down.
         radius: its radius, likewise.
         start: along each axis it begins within this of its place [m].
-        physics: how it moves in time.
+        physics: options of the motion in time.
 
     Raises:
         InputError: a number out of its range.
@@ -70,8 +70,8 @@ class ThingEnv(GoalEnv):
     the hand.
 
     Attributes:
-        options: of the task.
-        thing: as it usually is.
+        options: options of the task.
+        thing: object with its usual properties.
         world: robot and thing, now.
     """
 
@@ -91,16 +91,16 @@ class ThingEnv(GoalEnv):
 
         Args:
             robot: itself, its folder, or a name such as gallery:caging_gripper.
-            thing: that is moved, with a mass; the first obstacle of the robot that has one if left out.
-            options: of the task.
+            thing: object that is moved, with a mass; the first obstacle of the robot that has one if left out.
+            options: options of the task.
             axis: about which turns count, of any length but 0; of no matter in the plane.
-            contact: whether the body feels itself, where robot.toml says nothing of it.
+            contact: True for self-contact if robot.toml does not set contact.
             render_mode: "rgb_array", "human" or None.
 
         Raises:
             InputError: a robot without winches, no thing, one that is in the body or has no mass.
         """
-        self.robot = loaded(robot, contact)
+        self.robot = prepare_robot(robot, contact)
         if not self.robot.winches:
             raise InputError(f"robot {self.robot.name!r} needs a winch to move a thing by")
         self.options, self.render_mode = options, render_mode
@@ -125,11 +125,11 @@ class ThingEnv(GoalEnv):
     @property
     @abstractmethod
     def goal_size(self) -> int:
-        """How many numbers a goal has."""
+        """Number of coordinates of a goal."""
 
     @abstractmethod
-    def achieved(self) -> Vector:
-        """What is achieved now, as a goal."""
+    def get_achieved(self) -> Vector:
+        """Achieved state, as a goal."""
 
     @abstractmethod
     def draw_goal(self, random: np.random.Generator) -> Vector:
@@ -137,11 +137,11 @@ class ThingEnv(GoalEnv):
 
     @abstractmethod
     def distances(self, achieved: np.ndarray, desired: np.ndarray) -> np.ndarray:
-        """What is left from what is achieved to what is desired, one or a row each, in the unit of the tolerance."""
+        """Difference between achieved and desired goals, one or a row each, in the unit of the tolerance."""
 
     @abstractmethod
     def words(self) -> str:
-        """What has been done, in a line."""
+        """Description of the episode, in a line."""
 
     @property
     def equilibria(self) -> int:
@@ -177,7 +177,7 @@ class ThingEnv(GoalEnv):
         self._goal, self.taken_steps = goal, 0
         self.world.begin(ThingState(float(given.get("friction", 1.0)), float(given.get("radius", 1.0)), start))
         self.moves = [(0.0, self.world.motion.contractions)]
-        self._stuck, self._begun = False, self.achieved()
+        self._stuck, self._begun = False, self.get_achieved()
         self.show()
         return self._observation(), self._info()
 
@@ -214,7 +214,7 @@ class ThingEnv(GoalEnv):
         self.world.time_steps = kept["equilibria"]
 
     def picture(self) -> np.ndarray:
-        """What is to be seen: robot and thing, with dots on it, which show how it turns."""
+        """Picture of the robot and the object, with dots on it that show its rotation."""
         if self._pictures is None:
             self._pictures = ThingPictures(self.robot, self.thing)
         return self._pictures.draw(self.world, f"{self.words()}, after keyframe {self.taken_steps} of {self.steps}")
@@ -225,8 +225,8 @@ class ThingEnv(GoalEnv):
         self.moves += [(motion.time, motion.contractions) for motion in motions]
 
     def _counted(self) -> Vector:
-        """What is achieved; where a time step was not found in this episode, no more than at its beginning."""
-        return self._begun.copy() if self._stuck else self.achieved()
+        """Achieved goal; the one at the beginning of the episode if a time step did not converge."""
+        return self._begun.copy() if self._stuck else self.get_achieved()
 
     def _observation(self) -> dict[str, Vector]:
         span = np.where(self._high > self._low, self._high - self._low, 1.0)
@@ -250,7 +250,7 @@ class ThingEnv(GoalEnv):
     def _for_thing(cls, robot: Robot | str, given: TaskOptions, options: ThingOptions, **more: Any) -> Self:
         """One with a thing as the command line asks for it."""
         given.refuse("markers", "pairs", "incremental", "actions")
-        made, thing = loaded(robot), given.thing
+        made, thing = prepare_robot(robot), given.thing
         thing = thing if thing is not None or given.friction is None else _thing(made, None)
         return cls(made, thing=_rubbing(thing, given.friction), options=options, contact=given.contact, **more)
 
@@ -260,7 +260,7 @@ def _rubbing(thing: Obstacle | None, friction: float | None) -> Obstacle | None:
 
 
 def _thing(robot: Robot, given: Obstacle | None) -> Obstacle:
-    """What is moved, with a friction of its own (InputError: nothing, or something that cannot be moved)."""
+    """Object that is moved, with a friction of its own (InputError: none, or one that cannot be moved)."""
     free = [each for each in robot.obstacles if each.mass is not None]
     if given is None and not free:
         raise InputError(

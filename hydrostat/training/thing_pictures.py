@@ -34,4 +34,4 @@ class ThingPictures:
 
 
 _ROOM, _TAKEN, _WIDTH = 1.25, 0.3, 640
-"""How much larger than the body at rest the frame is, contractions of the colours, width of a picture [pixels]."""
+"""Width of the frame in widths of the body at rest, contractions of the colours, width of a picture [pixels]."""

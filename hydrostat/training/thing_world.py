@@ -15,14 +15,14 @@ from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
 
 @dataclass(frozen=True, kw_only=True)
 class ThingPhysics:
-    """How a thing is moved in time.
+    """Options of the motion of an object in time.
 
     Attributes:
         seconds: from one action to the next [s].
         beats: time steps of an action; winches speed up and slow down in between.
         drag: against all motion, per mass and velocity [1/s].
         hold: spring that keeps the thing about where it begins, in place of a palm under it [N/m]; 0: none.
-        viscosity: of the body, where its material has none [Pa s].
+        viscosity: viscosity of the body, if its material has none [Pa s].
 
     Raises:
         InputError: a number out of its range.
@@ -45,12 +45,12 @@ class ThingPhysics:
 
 
 class ThingState(NamedTuple):
-    """What is not known of a thing before it is tried.
+    """Properties of an object that are unknown before it is tried.
 
     Attributes:
         friction: times its own.
         radius: times its own; of a thing without a radius, its sides; of a mesh, nothing.
-        start: how far from its place it lies [m].
+        start: distance from its usual place [m].
     """
 
     friction: float = 1.0
@@ -62,12 +62,12 @@ class ThingWorld:
     """A robot and a free thing in dynamics, from keyframe to keyframe.
 
     Attributes:
-        robot: that moves it, with the thing among its obstacles.
-        thing: as it is in this episode.
-        simulation: of the robot with it.
-        motion: of both, now.
-        start: where the thing begins [m].
-        time_steps: how many of the exact simulator have been asked for.
+        robot: robot that moves the object, which is among its obstacles.
+        thing: object of this episode.
+        simulation: simulation of the robot with it.
+        motion: present motion of both.
+        start: start of the object [m].
+        time_steps: number of time steps of the exact simulator.
         turned: by which angle the thing has turned about the axis [rad]; more than a turn is counted on.
     """
 
@@ -120,7 +120,7 @@ class ThingWorld:
 
     @property
     def place(self) -> Vector:
-        """Where the middle of the thing is [m]."""
+        """Center of the object [m]."""
         return self._carried[0]
 
     @property
@@ -158,7 +158,7 @@ def as_drawn(thing: Obstacle, state: ThingState) -> Obstacle:
 
 
 def is_clear(robot: Robot, thing: Obstacle) -> bool:
-    """Whether a body at rest leaves half of the contact distance or more to a thing, and has none of it inside."""
+    """True if a body at rest leaves half of the contact distance or more to an object, and has none of it inside."""
     from hydrostat.geometry import locate
 
     mesh = robot.body.mesh

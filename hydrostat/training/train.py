@@ -16,13 +16,14 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import replace_file
 from hydrostat.simulation import ContractionProfile
 from hydrostat.training.goal_env import GoalEnv
 
 
 class TrainMethod(StrEnum):
-    """How a policy is learned; all with hindsight experience replay (HER)."""
+    """Learning algorithm; all use hindsight experience replay (HER)."""
 
     DDPG = "ddpg-her"  # the thesis's
     TD3 = "td3-her"
@@ -32,16 +33,16 @@ class TrainMethod(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class TrainOptions:
-    """How a policy is learned.
+    """Options of training a policy.
 
     Attributes:
-        method: which.
+        method: learning algorithm.
         steps: actions, each an equilibrium of the world; each goal that is drawn is one more.
-        seed: of all that is drawn.
+        seed: random seed.
         layers: hidden layers of actor and critic.
         batch: transitions of an update.
-        updates: after each action.
-        rate: of learning.
+        updates: gradient steps after each action.
+        rate: learning rate.
         noise: standard deviation of what is added to actions (DDPG, TD3).
         every: actions from one evaluation to the next; or a few more, as no episode is cut short.
         together: episodes side by side; their actions are learned from together.
@@ -71,14 +72,14 @@ class TrainOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class CurvePoint:
-    """How good a policy was; distances are in the unit of the task, [m], or [rad] to twist.
+    """Evaluation of a policy; distances are in the unit of the task, [m], or [rad] to twist.
 
     Attributes:
         steps: actions by then.
-        equilibria: of the exact simulator by then, drawn goals included; time steps in tasks that count these.
+        equilibria: solves of the exact simulator by then, drawn goals included; time steps in tasks that count these.
         mean: distance left from goals that were not learned from.
-        median: of these distances.
-        worst: the largest.
+        median: median of these distances.
+        worst: largest of these distances.
         success: share of the goals within the tolerance.
     """
 
@@ -90,12 +91,8 @@ class CurvePoint:
     success: float
 
 
-Progress = Callable[[str, int, int], None]
-"""Is told what is done, how much of it, and of how much."""
-
-
-def untold(*_: object) -> None:
-    """Progress that nobody looks at."""
+def _no_point(point: CurvePoint) -> None:
+    """Drop the point."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,11 +104,11 @@ class Listener:
         progress: told how many actions are done, and how many goals judged.
     """
 
-    point: Callable[[CurvePoint], None] = untold
-    progress: Progress = untold
+    point: Callable[[CurvePoint], None] = _no_point
+    progress: Progress = no_progress
 
 
-def held_out_goals(env: GoalEnv, count: int, seed: int, *, progress: Progress = untold) -> list[dict[str, Any]]:
+def held_out_goals(env: GoalEnv, count: int, seed: int, *, progress: Progress = no_progress) -> list[dict[str, Any]]:
     """Goals that training does not see, from a generator of their own: `options` for `reset`; counted nowhere."""
     before, goals = env.equilibria, []
     random = np.random.default_rng([seed, 77])
@@ -129,7 +126,7 @@ def judge(
     act: Callable[[dict[str, Vector]], np.ndarray],
     goals: Sequence[Mapping[str, Any]],
     *,
-    progress: Progress = untold,
+    progress: Progress = no_progress,
 ) -> Vector:
     """Distance at the end of an episode for each goal, in the unit of the task; equilibria are counted nowhere."""
     before, left = env.equilibria, []
@@ -147,7 +144,7 @@ def judge(
 def moves_of(
     env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goal: Mapping[str, Any]
 ) -> ContractionProfile:
-    """What motors would be told in an episode, contractions in time; its equilibria are counted nowhere."""
+    """Return the commands of an episode, contractions in time; its equilibria are counted nowhere."""
     judge(env, act, [goal])
     times, values = zip(*env.moves, strict=True)
     return ContractionProfile(times=np.array(times), values=np.array(values))
@@ -169,14 +166,14 @@ def train(
     Where tensorboard is installed, `out`/tensorboard gets files for it.
 
     Args:
-        env: what is learned in.
-        goals: that a policy is judged by, as `held_out_goals` gives them.
-        options: how.
+        env: environment for training.
+        goals: goals that a policy is judged by, from `held_out_goals`.
+        options: options of training.
         out: folder, made if need be.
-        judge_in: where policies are judged, such as the exact simulator; in `env` if left out.
+        judge_in: environment for judging policies, such as the exact simulator; `env` if left out.
         resume: go on from the checkpoint in `out`: the same curve as without a break.
-        processes: that share the episodes side by side; the curve does not depend on it.
-        listener: is told how it goes.
+        processes: number of processes that share the episodes; the curve does not depend on it.
+        listener: callbacks for progress.
 
     Returns:
         The model of stable-baselines3 and the curve.
@@ -266,7 +263,7 @@ def _stretch(model: Any, options: TrainOptions, whole: int, progress: Progress) 
 
 
 def _learner(env: GoalEnv, copies: Any, options: TrainOptions) -> Any:
-    """What learns, before its first step."""
+    """Return the model before its first step."""
     made = _algorithm(options.method)
     import torch
     from stable_baselines3 import HerReplayBuffer
@@ -335,7 +332,7 @@ def _keep(model: Any, options: TrainOptions, curve: list[CurvePoint], out: Path)
         "numpy": np.random.get_state(legacy=False),  # noqa: NPY002
         "torch": torch.get_rng_state(),
         "actions": model.action_space.np_random.bit_generator.state,
-        "copies": model.env.kept(),
+        "copies": model.env.get_state(),
     }
     replace_file(folder / "state.pkl", pickle.dumps(state))
     told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}

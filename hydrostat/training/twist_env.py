@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
-from hydrostat.training.goal_env import TaskOptions, loaded
+from hydrostat.training.goal_env import TaskOptions, prepare_robot
 from hydrostat.training.thing_env import ThingEnv, ThingOptions
 from hydrostat.training.thing_world import ThingPhysics
 
@@ -19,11 +19,11 @@ HOLD = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class TwistOptions(ThingOptions):
-    """How a thing is turned.
+    """Options of the task of turning an object.
 
     Attributes:
         turn: least and largest angle that is asked for; negative the other way round [rad].
-        tolerance: what may be left of it where a turn is a success [rad].
+        tolerance: largest remaining turn of a success [rad].
 
     Raises:
         InputError: as for `ThingOptions`, or angles of two signs.
@@ -59,7 +59,7 @@ class TwistEnv(ThingEnv):
         render_mode: str | None = None,
     ) -> None:
         """A robot that turns a thing; arguments and errors as for `ThingEnv`."""
-        made = loaded(robot, contact)
+        made = prepare_robot(robot, contact)
         options = options or TwistOptions(physics=_physics(made))
         super().__init__(made, thing=thing, options=options, axis=axis, render_mode=render_mode)
         self.unit = np.pi
@@ -67,8 +67,8 @@ class TwistEnv(ThingEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Twist as the command line asks for it."""
-        made = loaded(robot)
-        options = TwistOptions(**given.given("steps", "shaped", "tied"), physics=_physics(made))
+        made = prepare_robot(robot)
+        options = TwistOptions(**given.select_given("steps", "shaped", "tied"), physics=_physics(made))
         given.refuse("tolerance")
         return cls._for_thing(made, given, options)
 
@@ -77,8 +77,8 @@ class TwistEnv(ThingEnv):
         """An angle."""
         return 1
 
-    def achieved(self) -> Vector:
-        """How far the thing has turned."""
+    def get_achieved(self) -> Vector:
+        """Rotation of the object, in half turns."""
         return np.array([self.world.turned / np.pi])
 
     def draw_goal(self, random: np.random.Generator) -> Vector:
@@ -86,12 +86,12 @@ class TwistEnv(ThingEnv):
         return np.array([random.uniform(min(self.options.turn), max(self.options.turn)) / np.pi])
 
     def distances(self, achieved: np.ndarray, desired: np.ndarray) -> np.ndarray:
-        """What is left of turns [rad]; nothing of those that went further."""
+        """Return the remainders of turns [rad]; 0 for those that went further."""
         wanted = np.asarray(desired)[..., 0]
         return np.pi * np.maximum(np.sign(wanted) * (wanted - np.asarray(achieved)[..., 0]), 0.0)
 
     def words(self) -> str:
-        """How far it has turned."""
+        """Return the rotation of the object, in words."""
         return f"turned by {np.rad2deg(self.world.turned):.0f} of {180 * self._goal[0]:.0f} degrees"
 
 

@@ -14,7 +14,7 @@ from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.robot import ObstacleShape, Robot
 from hydrostat.simulation import Motion, Simulation, StepOptions
 from hydrostat.training.gait import Gait, GaitClock
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, loaded
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
 from hydrostat.training.ground import standing, tilt, with_friction
 
 STEP = 0.02
@@ -25,7 +25,7 @@ MOST_TILT = np.deg2rad(20.0)
 
 
 class WalkActions(StrEnum):
-    """What an action is."""
+    """Meaning of an action."""
 
     GAIT = "gait"
     CONTRACTIONS = "contractions"
@@ -37,15 +37,15 @@ BEATS: Mapping[WalkActions, int] = {WalkActions.GAIT: 25, WalkActions.CONTRACTIO
 
 @dataclass(frozen=True, kw_only=True)
 class WalkOptions:
-    """How a robot walks.
+    """Options of the task of walking.
 
     Attributes:
         actions: a member of `WalkActions`, or its text.
         steps: actions in an episode (T); as many as make five seconds if None.
-        incremental: whether contractions are added, a third of what may be taken in at most; no gait is.
+        incremental: True if contractions are added, a third of what may be taken in at most; no gait is.
         speed: at which the longest way that is wanted is gone in an episode, in sizes of the body a second.
         spread: friction of an episode is drawn within this share of the ground's, up and down.
-        tolerance: of the way wanted, where an episode is a success [m].
+        tolerance: error of the displacement that counts as a success [m].
         shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
 
     Raises:
@@ -85,11 +85,11 @@ class WalkEnv(GoalEnv):
     amplitude and its lag.
 
     Attributes:
-        robot: as it walks, on the ground.
-        options: of the task.
-        friction: of the ground, about which it is drawn.
+        robot: robot on the ground.
+        options: options of the task.
+        friction: mean friction coefficient of the ground, about which it is drawn.
         most: the most that each winch takes in: half of the least travel [m].
-        motion: where it is; None before the first episode.
+        motion: present motion; None before the first episode.
     """
 
     cost = "time steps"
@@ -107,13 +107,13 @@ class WalkEnv(GoalEnv):
         Args:
             robot: itself, its folder, or a name such as gallery:puppy; its pins are taken away.
             friction: Coulomb's coefficient of the ground; as in robot.toml if None, or 0.6 if that has no ground.
-            options: of the task.
+            options: options of the task.
             render_mode: "rgb_array", "human" or None.
 
         Raises:
             InputError: a robot without winches or markers, or what `standing` refuses.
         """
-        self.robot = standing(loaded(robot), friction)
+        self.robot = standing(prepare_robot(robot), friction)
         self.options, self.render_mode = options or WalkOptions(), render_mode
         count, marks = len(self.robot.winches), len(self.robot.markers)
         if not count or not marks:
@@ -174,14 +174,14 @@ class WalkEnv(GoalEnv):
         return -far / tolerance if self.options.shaped else -np.asarray(far >= tolerance, dtype=float)
 
     def distances(self, achieved: np.ndarray, desired: np.ndarray) -> float | np.ndarray:
-        """How far ways are from those wanted [m], one or a row each; a fall counts as a size of the body."""
+        """Return the errors of displacements [m], one or a row each; a fall counts as a size of the body."""
         return self.unit * np.abs(np.asarray(achieved) - np.asarray(desired)).sum(axis=-1)
 
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Walk as the command line asks for it."""
         given.refuse("markers", "pairs", "contact", "tied", "thing")
-        options = WalkOptions(**given.given("actions", "steps", "incremental", "tolerance", "shaped"))
+        options = WalkOptions(**given.select_given("actions", "steps", "incremental", "tolerance", "shaped"))
         return cls(robot, friction=given.friction, options=options)
 
     @property
@@ -201,7 +201,7 @@ class WalkEnv(GoalEnv):
         self._made = kept["equilibria"]
 
     def picture(self) -> np.ndarray | None:
-        """What is to be seen: the robot, and the ground that goes by below it; None before the first episode."""
+        """Picture of the robot, and the ground that goes by below it; None before the first episode."""
         if self.motion is None:
             return None
         from hydrostat.training.walk_pictures import WalkPictures
@@ -214,7 +214,7 @@ class WalkEnv(GoalEnv):
 
     @property
     def way(self) -> float:
-        """How far the middle of mass has gone in x since the beginning of the episode [m]."""
+        """Displacement of the center of mass in x since the beginning of the episode [m]."""
         return float((self._masses @ (self._now.nodes - self.robot.body.mesh.nodes))[0])
 
     @property
@@ -271,7 +271,7 @@ class WalkEnv(GoalEnv):
 
 
 _SECONDS = 5.0
-"""How long an episode is where nothing else is said [s]."""
+"""Default duration of an episode [s]."""
 
 _FAR = 100.0
 """Bound of what is observed."""

@@ -54,4 +54,4 @@ class WalkPictures:
 
 
 _ROOM, _WIDTH, _SHARE = 1.25, 640, 0.2
-"""How much larger than the body at rest the frame is, width of a picture [pixels], and share of `most` for colours."""
+"""Width of the frame in bodies at rest, width of a picture [pixels], and share of `most` for colours."""

@@ -12,16 +12,16 @@ from hydrostat.simulation import Equilibrium, Simulation
 
 
 class World(ABC):
-    """Where the markers of a robot go when its winches take in cable.
+    """Simulator or networks that compute marker positions for contractions.
 
     Attributes:
-        equilibria: how many equilibria of the exact simulator have been asked for: what learning costs.
+        equilibria: number of equilibria of the exact simulator that were computed: the cost of learning.
     """
 
     equilibria: int = 0
 
     pose: Equilibrium | None = None
-    """Where the robot is, where that is known; None at rest, and in networks, which know no shape."""
+    """Present shape, if known; None at rest, and in networks, which know no shape."""
 
     def begin(self) -> None:
         """Begin an episode, at rest."""
@@ -35,8 +35,8 @@ class World(ABC):
     def reach(self, contractions: Vector) -> Vector | None:
         """Coordinates of all markers [m] at contractions [m]; None where no equilibrium is found."""
 
-    def kept(self) -> tuple[int, ...]:
-        """How far it has come: equilibria, and what else the next episode depends on."""
+    def get_state(self) -> tuple[int, ...]:
+        """State of the progress: equilibria, and the rest that the next episode depends on."""
         return (self.equilibria,)
 
     def go_on(self, kept: tuple[int, ...]) -> None:
@@ -67,7 +67,7 @@ class ExactWorld(World):
 
 
 class LearnedWorld(World):
-    """What the networks of a learned model expect; it costs no equilibrium beyond its samples."""
+    """Predictions of the networks of a learned model; they cost no equilibrium beyond its samples."""
 
     def __init__(self, model: LearnedModel) -> None:
         """Networks of a robot."""
@@ -92,7 +92,7 @@ class MixedWorld(World):
 
     @property
     def pose(self) -> Equilibrium | None:  # type: ignore[override]
-        """Where the exact robot is, in its episodes."""
+        """Shape of the exact robot in its episodes."""
         return self._now.pose
 
     @property
@@ -100,7 +100,7 @@ class MixedWorld(World):
         """Equilibria of the exact world."""
         return self._worlds[1].equilibria
 
-    def kept(self) -> tuple[int, ...]:
+    def get_state(self) -> tuple[int, ...]:
         """Equilibria, and which episode it is."""
         return (self.equilibria, self._episode)
 

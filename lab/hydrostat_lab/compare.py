@@ -19,17 +19,17 @@ Distances = Float[np.ndarray, "targets markers"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Compared:
-    """How far one way to learn leaves the markers from their targets.
+    """Distances between markers and targets for one learning method.
 
     Attributes:
         method: its name, one of `METHODS`.
-        samples: how many it learned from.
-        distances: of each marker from its target in the simulator [m]; NaN where there is no equilibrium.
-        seconds: of learning, CPU time of this process.
-        contractions: what it answered [m]; where a step was taken, what that led to.
+        samples: number of samples that it learned from.
+        distances: distance of each marker from its target in the simulator [m]; NaN where there is no equilibrium.
+        seconds: CPU time of learning in this process [s].
+        contractions: contractions of its answers [m]; of the result of a step, if one was taken.
         facts: more that is known of it.
-        curve: of its learning, as in `ThesisNetwork`; for the thesis's network alone.
-        doubts: what it expects to miss of each marker, and how far its networks disagree, together [m]; of the search.
+        curve: learning curve, as in `ThesisNetwork`; for the thesis's network alone.
+        doubts: expected error of each marker and disagreement of the networks, together [m]; of the search.
     """
 
     method: str
@@ -63,11 +63,11 @@ def compare(
     """Learn from samples in several ways, ask each for the places of the markers in others, and roll its answers out.
 
     Args:
-        simulation: of the robot that was sampled, with contact if the samples know it.
+        simulation: simulation of the sampled robot, with contact if the samples know it.
         train: to learn from.
-        test: whose markers are the targets; nothing is learned from them.
-        methods: which ways, of `METHODS`; "..., step" is the same and one exact step, "..., steps" up to three.
-        options: of our networks; its seed is that of the thesis's network too.
+        test: samples with the markers that are the targets; nothing is learned from them.
+        methods: learning methods, of `METHODS`; "..., step" is the same and one exact step, "..., steps" up to three.
+        options: options of our networks; its seed is that of the thesis's network too.
 
     Raises:
         InputError: a way that there is not.
@@ -92,7 +92,7 @@ def targets_of(samples: Samples) -> list[dict[str, Point]]:
 
 
 def _learned(train: Samples, test: Samples, asked: set[str], options: LearnOptions) -> Iterator[Compared]:
-    """What each way answers; not rolled out."""
+    """Compute the answers of each method; not rolled out."""
     goals, none = test.markers.reshape(len(test), -1), np.full(test.markers.shape[:2], np.nan)
 
     def told(method: str, answers: Answers, seconds: float, **more: object) -> Compared:
@@ -137,7 +137,7 @@ def _searched(model: LearnedModel, test: Samples) -> tuple[Answers, Distances, d
 
 
 def _rolled(simulation: Simulation, test: Samples, found: Compared, methods: set[str]) -> Iterator[Compared]:
-    """What is asked of an answer in the simulator: from rest, and after one exact step for each target."""
+    """Return the answers that the simulator checks: from rest, and after one exact step for each target."""
     poses = list[Equilibrium]()
     for row in found.contractions:
         same = poses and np.array_equal(row, poses[-1].contractions)
@@ -167,7 +167,7 @@ def _rolled(simulation: Simulation, test: Samples, found: Compared, methods: set
 
 
 def _distances(poses: Sequence[Equilibrium], test: Samples) -> Distances:
-    """How far the markers are from where they are in samples [m]; NaN where there is no equilibrium."""
+    """Return the distances of markers from their positions in samples [m]; NaN without an equilibrium."""
     names = test.facts["markers"]
     rows = [
         np.linalg.norm(np.array([pose.markers[name] for name in names]) - places, axis=1)
@@ -179,7 +179,7 @@ def _distances(poses: Sequence[Equilibrium], test: Samples) -> Distances:
 
 
 STEP, STEPS = ", step", ", steps"
-"""What the name of a way ends in after which an exact step is taken, or a few."""
+"""Endings of the names of methods after which one exact step is taken, or a few."""
 
 OURS = ("inverse", "search")
 

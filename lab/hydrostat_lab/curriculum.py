@@ -9,7 +9,7 @@ MASTERED = 0.9
 
 
 class Curriculum(StrEnum):
-    """What becomes of the tolerance when it is mastered (thesis 5.4.2 and 5.4.3)."""
+    """Change of the tolerance once it is mastered (thesis 5.4.2 and 5.4.3)."""
 
     FIXED = "fixed"
     HALVE = "halve"  # a

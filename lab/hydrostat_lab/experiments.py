@@ -14,9 +14,9 @@ class Run:
     """One way to learn within an experiment.
 
     Attributes:
-        options: of the method.
+        options: options of the method.
         horizon: actions of an episode (T).
-        random_start: whether episodes begin in a pose at random.
+        random_start: True if episodes begin in a random pose.
     """
 
     options: DdpgOptions
@@ -26,7 +26,7 @@ class Run:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Ran:
-    """How a run went: epochs, and distances [cm] after each action of the best policies, (horizon, seeds, tests)."""
+    """Result of a run: epochs, and distances [cm] after each action of the best policies, (horizon, seeds, tests)."""
 
     run: Run
     epochs: Epochs
@@ -38,10 +38,10 @@ class Claim:
     """Something that the thesis says: that a number of each seed is above a bound.
 
     Attributes:
-        text: what is said, with its number in the list of what the thesis states.
+        text: statement, with its number in the list of the thesis's statements.
         measure: the number of each seed, of the runs by their names.
         above: the bound.
-        unit: of the number, for people.
+        unit: unit of the number, for people.
     """
 
     text: str
@@ -55,10 +55,10 @@ class Experiment:
     """Runs that are compared, and what is claimed of them.
 
     Attributes:
-        title: what is tried.
+        title: title of the experiment.
         runs: ways to learn, by their names.
-        claims: of the thesis, or of those who read it.
-        shown: what the picture shows over the actions: "success", "distance" or "tolerance".
+        claims: claims of the thesis, or of its readers.
+        shown: quantity that the picture shows over the actions: "success", "distance" or "tolerance".
     """
 
     title: str
@@ -116,7 +116,7 @@ def _first_action(ran: Mapping[str, Ran]) -> np.ndarray:
 
 
 def _lengths(options: DdpgOptions, layers: str) -> Experiment:
-    """What networks learn in episodes of one action, five and ten (R79, R80; Fig 5.8 has one and ten)."""
+    """Experiment on episodes of one action, five and ten (R79, R80; Fig 5.8 has one and ten)."""
     return Experiment(
         title=f"episodes of one action, five and ten, with as many actions in all; {layers}, sparse",
         runs={f"T={horizon}": Run(options=options, horizon=horizon) for horizon in (1, 5, 10)},
@@ -130,7 +130,7 @@ def _lengths(options: DdpgOptions, layers: str) -> Experiment:
 
 
 def _curricula(options: DdpgOptions, layers: str) -> Experiment:
-    """What becomes of networks as the tolerance is made smaller in one way or another (Fig 5.9)."""
+    """Experiment on schedules that make the tolerance smaller (Fig 5.9)."""
     tenth = replace(options, curriculum=Curriculum.TENTH)
     ways = {
         "a: halved": replace(options, curriculum=Curriculum.HALVE),

@@ -30,23 +30,23 @@ class DdpgOptions:
 
     Attributes:
         layers: hidden layers of actor and critic, with ReLU.
-        actor_rate: of Adam.
-        critic_rate: of Adam.
+        actor_rate: learning rate of Adam for the actor.
+        critic_rate: learning rate of Adam for the critic.
         polyak: share of the targets' numbers that stays at each cycle.
         penalty: on the mean square of actions, beside the critic's value.
-        cut: whether targets are cut to [-1 / (1 - gamma), 0].
+        cut: True if targets are cut to [-1 / (1 - gamma), 0].
         random: probability of an action drawn evenly.
         noise: standard deviation of what is added to other actions, of a range from -1 to 1.
         relabelled: goals taken from what came later, for each that was wanted ("future").
-        cycles: of an epoch.
-        actions: of a cycle; roll-outs are as many as fill it.
-        updates: of a cycle.
+        cycles: cycles of an epoch.
+        actions: actions of a cycle; roll-outs are as many as fill it.
+        updates: updates of a cycle.
         batch: transitions of an update.
         shaped: reward is minus the distance in the unit of the trials; else 0 for success and -1.
         tolerance: distance that is a success at the beginning, in the unit of the trials.
-        curriculum: how the tolerance goes on.
-        late_critic_rate: of Adam, from the first change of the tolerance on; None: as before.
-        goal_only: whether networks see the goal alone, and not the state.
+        curriculum: schedule of the tolerance.
+        late_critic_rate: learning rate of the critic from the first change of the tolerance on; None: as before.
+        goal_only: True if networks see the goal alone, and not the state.
 
     Raises:
         InputError: a number that cannot be.
@@ -82,7 +82,7 @@ class DdpgOptions:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Epochs:
-    """How seeds went; an array each, (epochs, seeds).
+    """Learning curves of all seeds; an array each, (epochs, seeds).
 
     Attributes:
         actions: taken by the end of each epoch, (epochs,).
@@ -111,8 +111,8 @@ def hindsight(later: Tensor, share: float, draw: torch.Generator) -> Tensor:
     """Steps whose outcome becomes the goal, of steps that came; -1 where the goal stays.
 
     Args:
-        later: how many steps of the episode are left from each on, that one included; 1 or more.
-        share: of transitions that get another goal.
+        later: number of steps of the episode that are left from each on, that one included; 1 or more.
+        share: share of transitions that get another goal.
         draw: source of chance.
 
     Returns:
@@ -164,11 +164,11 @@ class Policy:
         return torch.tanh(_layers(self.numbers, self.see(states, goals)))
 
     def see(self, states: Tensor, goals: Tensor) -> Tensor:
-        """What networks see."""
+        """Return the input of the networks."""
         seen = self.goals(goals)
         return seen if self.goal_only else torch.cat([self.states(states), seen], -1)
 
-    def kept(self) -> "Policy":
+    def copy_policy(self) -> "Policy":
         """A copy that does not change any more."""
         numbers = [part.detach().clone() for part in self.numbers]
         return Policy(numbers, copy.deepcopy(self.states), copy.deepcopy(self.goals), self.goal_only)
@@ -178,11 +178,11 @@ class HindsightDdpg:
     """Actors and critics of several seeds, the replay buffer, and how they learn.
 
     Attributes:
-        trials: what is learned in.
-        options: how.
-        policy: as it is now.
-        best: as it was when the tests' mean distance was least, for each seed.
-        tolerance: of each seed now.
+        trials: episodes to learn in.
+        options: options of the method.
+        policy: present policy.
+        best: policy when the tests' mean distance was least, for each seed.
+        tolerance: present tolerance of each seed.
     """
 
     def __init__(
@@ -215,7 +215,7 @@ class HindsightDdpg:
         self._goals, self._acts = torch.zeros(*shape, trials.goals), torch.zeros(*shape, t, trials.actions)
         self._filled, self._taken = 0, 0
         self.tolerance = torch.full((seeds, 1), options.tolerance)
-        self.best, self._least = self.policy.kept(), np.full(seeds, np.inf)
+        self.best, self._least = self.policy.copy_policy(), np.full(seeds, np.inf)
 
     @property
     def tried(self) -> tuple[np.ndarray, np.ndarray]:
@@ -233,12 +233,12 @@ class HindsightDdpg:
         self._goals[:, room], self._acts[:, room, 0] = reached, acts
         self._filled += many
 
-    def learn(self, *, tests: int = 100, tell: Callable[[int, int], Any] = lambda *_: None) -> Epochs:
+    def learn(self, *, tests: int = 100, progress: Callable[[int, int], Any] = lambda *_: None) -> Epochs:
         """Learn for all epochs, and test after each without exploration.
 
         Args:
             tests: episodes of a test, the same each time.
-            tell: is told how many epochs are done, and of how many.
+            progress: called with the number of epochs that are done, and of all.
         """
         rows: list[tuple[int, np.ndarray, np.ndarray, np.ndarray]] = []
         for epoch in range(self._epochs):
@@ -252,7 +252,7 @@ class HindsightDdpg:
             rows.append((self._taken, success, distance.mean(axis=1), self.tolerance[:, 0].numpy().copy()))
             self._keep_best(distance.mean(axis=1))
             self._go_on(success, distance.mean(axis=1))
-            tell(epoch + 1, self._epochs)
+            progress(epoch + 1, self._epochs)
         actions, success, distance, tolerance = (np.array(column) for column in zip(*rows, strict=True))
         return Epochs(actions=actions, success=success, distance=distance, tolerance=tolerance)
 
@@ -342,7 +342,7 @@ class HindsightDdpg:
         self._least = np.where(better, distance, self._least)
         if not better.any():
             return
-        now, which = self.policy.kept(), torch.tensor(better)
+        now, which = self.policy.copy_policy(), torch.tensor(better)
         for old, new in zip(self.best.numbers, now.numbers, strict=True):
             old[which] = new[which]
         for mean, latest in ((self.best.states, now.states), (self.best.goals, now.goals)):

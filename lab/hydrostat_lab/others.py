@@ -1,4 +1,4 @@
-"""What others do with the same samples: a constant, nearest neighbours, ridge regression."""
+"""Baselines on the same samples: a constant, nearest neighbours, ridge regression."""
 
 from collections.abc import Callable, Mapping
 
@@ -99,7 +99,7 @@ OTHERS: Mapping[str, Method] = {
 """Ways from samples and goals to contractions, by their names in tables."""
 
 _SHORT = 1e-3
-"""How much a change counts beside what it undoes, as a share of the steepest slope."""
+"""Weight of a change beside its effect, as a share of the steepest slope."""
 
 _ROOM = 1e-12
 """Bounds are moved apart by so much [m], as an empty range is refused."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from hydrostat.errors import HydrostatError
+from hydrostat.progress import Progress, no_progress
 from hydrostat_lab.experiments import SMALL
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
 from hydrostat_lab.trials import Begun, NetworkReach, Trials
@@ -39,19 +40,19 @@ class TriedPairs:
 
 @dataclass(frozen=True, kw_only=True)
 class Budget:
-    """How long policies learn.
+    """Budget for learning policies.
 
     Attributes:
-        steps: of gradients.
-        epochs: of trial and error.
+        steps: gradient steps.
+        epochs: epochs of trial and error.
         batch: pairs or goals of a step.
-        tell: is told what is learned by, how much of it is done, and of how much.
+        progress: callback for progress.
     """
 
     steps: int = 6000
     epochs: int = 30
     batch: int = 128
-    tell: Callable[[str, int, int], None] = lambda *_: None
+    progress: Progress = no_progress
 
 
 def drawn_pairs(trials: NetworkReach, seeds: int, many: int) -> TriedPairs:
@@ -85,7 +86,7 @@ def ridge(_trials: NetworkReach, pairs: TriedPairs, _effort: Budget) -> Act:
     return lambda _states, goals: (goals @ linear[:, :-1] + linear[:, -1:]).clamp(-1.0, 1.0)
 
 
-def cloned(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
+def clone_actions(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """A network that repeats the actions of the pairs: behaviour cloning, by the square of the action's error."""
 
     def loss(network: "_Network", rows: Tensor) -> Tensor:
@@ -114,14 +115,14 @@ def trial_and_error(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> 
     return _tried(trials, pairs, effort, fill=False)
 
 
-def filled(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
+def learn_from_filled_buffer(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """The same, with the pairs in its replay buffer before it begins."""
     return _tried(trials, pairs, effort, fill=True)
 
 
 def residual(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """Trial and error about what cloning does: actions are a tenth of the learned ones, beside those of the clone."""
-    base = cloned(trials, pairs, effort)
+    base = clone_actions(trials, pairs, effort)
     around = _Around(trials, base)
     found = _tried(around, pairs, effort, fill=False)
     return lambda states, goals: around.whole(found(states, goals), goals)
@@ -131,9 +132,9 @@ WAYS: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
     "gradient": gradient,
     "ridge": ridge,
     "1-NN": nearest,
-    "cloned": cloned,
+    "cloned": clone_actions,
     "trial and error": trial_and_error,
-    "the same, filled": filled,
+    "the same, filled": learn_from_filled_buffer,
     "residual on the clone": residual,
     "constant": constant,
 }
@@ -171,7 +172,7 @@ def _learned(
     adam = torch.optim.Adam(network.numbers, lr=_RATE, fused=True)
     seeds, many, _ = pairs.acts.shape
     for step in range(effort.steps):
-        effort.tell("steps of gradients", step, effort.steps)
+        effort.progress("steps of gradients", step, effort.steps)
         for group in adam.param_groups:
             group["lr"] = 0.5 * _RATE * (1.0 + math.cos(math.pi * step / effort.steps))
         rows = torch.randint(many, (seeds, effort.batch), generator=draw)
@@ -190,7 +191,7 @@ def _tried(trials: Trials, pairs: TriedPairs, effort: Budget, *, fill: bool) -> 
     learner = HindsightDdpg(trials, SMALL, seeds=len(pairs.acts), epochs=effort.epochs, room=pairs.acts.shape[1])
     if fill:
         learner.fill(pairs.acts, pairs.reached)
-    learner.learn(tell=lambda done, of: effort.tell("epochs", done, of))
+    learner.learn(progress=lambda done, of: effort.progress("epochs", done, of))
     return learner.best
 
 

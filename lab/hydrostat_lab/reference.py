@@ -1,11 +1,12 @@
 """`REFERENCES`: our method in tasks that others have published curves of (thesis, Fig 5.13)."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
+from hydrostat.progress import Progress, no_progress
 from hydrostat_lab.curriculum import MASTERED
 from hydrostat_lab.experiments import Claim, Experiment, Ran, Run, final, speed
 from hydrostat_lab.hindsight_ddpg import DdpgOptions, HindsightDdpg
@@ -18,7 +19,7 @@ class Reference:
 
     Attributes:
         task: its name, as gymnasium knows it.
-        experiment: what is compared there.
+        experiment: experiment that is repeated there.
     """
 
     task: str
@@ -26,15 +27,15 @@ class Reference:
 
 
 def run_reference(
-    reference: Reference, *, seeds: int, epochs: int, tell: Callable[[str, int, int], None] = lambda *_: None
+    reference: Reference, *, seeds: int, epochs: int, progress: Progress = no_progress
 ) -> Iterator[tuple[str, Ran]]:
     """Learn in the environment of a reference; what went by in centimetres.
 
     Args:
-        reference: what is compared, and where.
-        seeds: how often each run begins at random.
-        epochs: of each run.
-        tell: is told the name of a run, how many of its epochs are done, and of how many.
+        reference: experiment, with its task.
+        seeds: number of random starts of each run.
+        epochs: epochs of each run.
+        progress: callback for progress.
 
     Raises:
         HydrostatError: the environment does not run here.
@@ -42,7 +43,7 @@ def run_reference(
     for name, run in reference.experiment.runs.items():
         trials = GymnasiumTrials(partial(robotics_task, reference.task, run.horizon), horizon=run.horizon)
         learner = HindsightDdpg(trials, run.options, seeds=seeds, epochs=epochs)
-        done = learner.learn(tests=_TESTS, tell=lambda at, of, name=name: tell(name, at, of))
+        done = learner.learn(tests=_TESTS, progress=lambda at, of, name=name: progress(name, at, of))
         done = replace(done, distance=_CM * done.distance, tolerance=_CM * done.tolerance)
         yield name, Ran(run=run, epochs=done, best=_CM * learner.test(learner.best, _TESTS))
 

@@ -122,7 +122,7 @@ def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", ou
 
     loaded, rows = [_robot(name) for name in bodies], list["StudyRow"]()
     for robot in loaded:
-        for row in run_study(study, robot, out, jobs=jobs, tell=report_progress()):
+        for row in run_study(study, robot, out, jobs=jobs, progress=report_progress()):
             if not rows or _group(rows[-1]) != _group(row):
                 print(f"\n{_head(row)}\n{_WORDS}")
             print(_line(row), flush=True)

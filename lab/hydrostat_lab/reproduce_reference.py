@@ -19,10 +19,10 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
     """Learn in FetchReach or HandReach, and say whether the published curves are met.
 
     Args:
-        names: of `REFERENCE_TABLES`.
+        names: names out of `REFERENCE_TABLES`.
         out: folder for numbers and pictures.
         size: minutes, hour or full.
-        seeds: how often each run begins at random.
+        seeds: number of random starts of each run.
 
     Raises:
         HydrostatError: torch, gymnasium-robotics or a fitting MuJoCo is missing.
@@ -39,7 +39,7 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
         print(f"\n{name}: {reference.experiment.title}")
         print(f"{reference.task}, {count} seeds: interquartile means and their 95 % intervals\n{_WORDS}", flush=True)
         done: dict[str, Ran] = {}
-        for way, ran in run_reference(reference, seeds=count, epochs=epochs, tell=report_progress()):
+        for way, ran in run_reference(reference, seeds=count, epochs=epochs, progress=report_progress()):
             print(_line(way, ran), flush=True)
             done[way] = ran
         kept = judged_claims(reference.experiment, done)

@@ -43,9 +43,9 @@ class HowMuch(NamedTuple):
 
     Attributes:
         size: minutes, hour or full.
-        seeds: how often each run begins at random; as many as the size has if left out, and so below.
-        goals: that each policy is judged by in the simulator.
-        epochs: of 500 actions that runs learn for.
+        seeds: number of random starts of each run; as many as the size has if left out, and so below.
+        goals: number of goals that each policy is judged by in the simulator.
+        epochs: number of epochs of 500 actions in a run.
     """
 
     size: str
@@ -60,11 +60,11 @@ def reproduce_trials(
     """Learn in networks of a robot, judge in the simulator, and say which claims of the thesis hold.
 
     Args:
-        names: of `TRIALS`, `SHARED`, `POLICIES` or `GRADIENT`.
-        robot: which, with contact if its model knows it.
+        names: names out of `TRIALS`, `SHARED`, `POLICIES` or `GRADIENT`.
+        robot: robot, with contact if its model knows it.
         out: folder for tables and pictures; the model too, if none is given.
-        much: how long they take.
-        model: that `hydrostat learn` wrote.
+        much: size of the runs.
+        model: file that `hydrostat learn` wrote.
         jobs: processes that sample where there is no model.
     """
     with trials_missing():
@@ -74,7 +74,7 @@ def reproduce_trials(
     from hydrostat.robot import replace_file
     from hydrostat.simulation import Simulation
 
-    usual, tell = _SIZES[much.size], report_progress()
+    usual, progress = _SIZES[much.size], report_progress()
     usual = usual if much.goals is None else usual._replace(goals=much.goals)
     usual = usual if much.epochs is None else usual._replace(small=much.epochs, large=much.epochs)
     networks = _networks(robot, out, model, usual.samples, jobs)
@@ -100,7 +100,7 @@ def reproduce_trials(
             seeds=count,
             epochs=lambda layer: usual.small if layer < _LARGE else usual.large,
             goals=usual.goals,
-            tell=tell,
+            progress=progress,
         ):
             print(_line(judged, width), flush=True)
             done.append(judged)
@@ -123,7 +123,7 @@ def _shared(networks: "LearnedModel", simulation: "Simulation", out: Path, *, se
     budget = Budget(steps=max(2000, usual.steps // 6), epochs=usual.small)
     trials = NetworkReach(networks, groups=finger_pairs(networks))
     compared = compare_on_shared_data(
-        trials, simulation, seeds=seeds, goals=usual.goals, budget=budget, tell=report_progress()
+        trials, simulation, seeds=seeds, goals=usual.goals, budget=budget, progress=report_progress()
     )
     shared_table(SHARED, compared, out, 1e3 * simulation.robot.body.mesh.size)
 
@@ -142,7 +142,7 @@ def _policies(
 
     trials, effort = (
         NetworkReach(networks, groups=finger_pairs(networks)),
-        Budget(steps=usual.steps, epochs=usual.small, tell=report_progress()),
+        Budget(steps=usual.steps, epochs=usual.small, progress=report_progress()),
     )
     every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
     known = networks.card.samples
@@ -150,21 +150,21 @@ def _policies(
     print(f"{'method':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>24}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
     rows: list[dict[str, object]] = []
 
-    def tell(name: str, pairs: int, used: int, exact: np.ndarray) -> None:
+    def report(name: str, pairs: int, used: int, exact: np.ndarray) -> None:
         found, far = interquartile(np.nanmean(exact, axis=1)), float(np.nanquantile(exact, 0.99))
         row = {"way": name, "pairs": pairs, "equilibria": used, "seeds": np.nanmean(exact, axis=1).tolist()}
         rows.append({**row, "p99": far})
         text = f"{name:24}{pairs:8}{used:12}{format_interval(found, 3):>24}{100 * found.mean / width:8.3f}"
         print(f"{text}{far:10.3f}{int(np.isnan(exact).sum()):6}", flush=True)
 
-    asked = exact_goals(simulation, trials, usual.goals, tell=report_progress())
-    sure = certified_distances(simulation, networks, asked, tell=report_progress())
-    tell(CERTIFIED, known, known, 10.0 * sure)
+    asked = exact_goals(simulation, trials, usual.goals, progress=report_progress())
+    sure = certified_distances(simulation, networks, asked, progress=report_progress())
+    report(CERTIFIED, known, known, 10.0 * sure)
     for name, way in list(WAYS.items())[: 1 if table == GRADIENT else None]:
         for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
             act = way(trials, every.first(many), effort)
-            exact = 10.0 * exact_distances(simulation, trials, act, seeds, asked, tell=report_progress())
-            tell(name, many, _used(name, many, known, usual), exact)
+            exact = 10.0 * exact_distances(simulation, trials, act, seeds, asked, progress=report_progress())
+            report(name, many, _used(name, many, known, usual), exact)
     replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}
     for row in rows:
@@ -200,9 +200,12 @@ def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: 
     if not kept.exists():
         folder = out / f"{robot.name}-{SamplingScheme.ANTAGONIST}-train-{samples}"
         sample_robot(
-            plan_samples(robot, samples, draws=(SamplingScheme.ANTAGONIST,)), folder, jobs=jobs, tell=report_progress()
+            plan_samples(robot, samples, draws=(SamplingScheme.ANTAGONIST,)),
+            folder,
+            jobs=jobs,
+            progress=report_progress(),
         )
-        save_model(learn_model(read_samples(folder), tell=report_progress()), kept)
+        save_model(learn_model(read_samples(folder), progress=report_progress()), kept)
     return load_model(kept)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import torch
 
 from hydrostat.learning import LearnedModel, antagonists, verify
+from hydrostat.progress import Progress, no_progress
 from hydrostat.simulation import Simulation
 from hydrostat_lab.experiments import Experiment, Ran
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
@@ -14,13 +15,12 @@ from hydrostat_lab.policies import Act
 from hydrostat_lab.trials import NetworkReach
 
 Groups = tuple[tuple[int, ...], ...]
-Tell = Callable[[str, int, int], None]
 Asked = tuple[torch.Tensor, torch.Tensor]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Judged:
-    """How the best policies of a run did in the simulator: distances [cm] after the last action, (seeds, goals).
+    """Distances of the best policies of a run in the simulator [cm], after the last action, (seeds, goals).
 
     NaN where an episode met no equilibrium.
     """
@@ -44,41 +44,47 @@ def run_experiment(
     seeds: int,
     epochs: Callable[[int], int],
     goals: int,
-    tell: Tell = lambda *_: None,
+    progress: Progress = no_progress,
 ) -> Iterator[Judged]:
     """Learn in the networks of a model, and judge the best policies of each run in the simulator.
 
     Args:
-        experiment: what is compared.
+        experiment: experiment to run.
         model: networks of a robot.
-        simulation: of the same robot.
-        seeds: how often each run begins at random.
-        epochs: of a run, by the width of its widest layer.
+        simulation: simulation of the same robot.
+        seeds: number of random starts of each run.
+        epochs: epochs of a run, by the width of its widest layer.
         goals: drawn evenly among actions, simulated, and asked for; nothing is learned from them.
-        tell: is told the name of a run, how many of its epochs are done, and of how many.
+        progress: callback for progress.
     """
     groups = finger_pairs(model)
     for name, run in experiment.runs.items():
         trials = NetworkReach(model, groups=groups, horizon=run.horizon, random_start=run.random_start)
         many = epochs(max(run.options.layers))
         learner = HindsightDdpg(trials, run.options, seeds=seeds, epochs=many)
-        done = learner.learn(tell=lambda at, of, name=name: tell(name, at, of))
+        done = learner.learn(progress=lambda at, of, name=name: progress(name, at, of))
         ran = Ran(run=run, epochs=done, best=learner.test(learner.best, _TESTS))
-        asked = exact_goals(simulation, trials, goals, tell=tell)
-        exact = exact_distances(simulation, trials, learner.best, seeds, asked, tell=tell)
+        asked = exact_goals(simulation, trials, goals, progress=progress)
+        exact = exact_distances(simulation, trials, learner.best, seeds, asked, progress=progress)
         yield Judged(name=name, ran=ran, exact=exact)
 
 
-def exact_goals(simulation: Simulation, trials: NetworkReach, goals: int, *, tell: Tell = lambda *_: None) -> Asked:
-    """Where episodes begin and what they shall reach in the simulator [cm], (1, goals, size) each; NaN where none."""
+def exact_goals(simulation: Simulation, trials: NetworkReach, goals: int, *, progress: Progress = no_progress) -> Asked:
+    """Compute starts and goals of episodes in the simulator [cm], (1, goals, size) each; NaN without an equilibrium."""
     draw = torch.Generator().manual_seed(_GOALS)
     begun, _, _ = trials.begin(draw, (1, goals))
     wanted = trials.contractions(2.0 * torch.rand(1, goals, trials.actions, generator=draw) - 1.0)
-    return begun, _places(simulation, wanted, "goals in the simulator", tell)
+    return begun, _places(simulation, wanted, "goals in the simulator", progress)
 
 
 def exact_distances(
-    simulation: Simulation, trials: NetworkReach, policy: Act, seeds: int, asked: Asked, *, tell: Tell = lambda *_: None
+    simulation: Simulation,
+    trials: NetworkReach,
+    policy: Act,
+    seeds: int,
+    asked: Asked,
+    *,
+    progress: Progress = no_progress,
 ) -> np.ndarray:
     """Distances [cm] after the last action of episodes in the simulator, (seeds, goals); asked: `exact_goals`."""
     begun, goal = (part.expand(seeds, -1, -1) for part in asked)
@@ -86,12 +92,12 @@ def exact_distances(
     with torch.no_grad():
         for _ in range(trials.horizon):
             acts = policy(torch.nan_to_num(seen), torch.nan_to_num(goal))
-            seen = _places(simulation, trials.contractions(acts), "in the simulator", tell)
+            seen = _places(simulation, trials.contractions(acts), "in the simulator", progress)
     return trials.distances(seen, goal).numpy()
 
 
 def certified_distances(
-    simulation: Simulation, model: LearnedModel, asked: Asked, *, steps: int = 3, tell: Tell = lambda *_: None
+    simulation: Simulation, model: LearnedModel, asked: Asked, *, steps: int = 3, progress: Progress = no_progress
 ) -> np.ndarray:
     """Distances [cm] that the same goals are left with by the networks' search and exact steps from there, (1, goals).
 
@@ -101,7 +107,7 @@ def certified_distances(
     names, dim = model.card.markers, model.card.dim
     rows, found = asked[1][0].double().numpy(), []
     for number, row in enumerate(rows):
-        tell("certified", number, len(rows))
+        progress("certified", number, len(rows))
         if not np.isfinite(row).all():
             found.append(np.nan)
             continue
@@ -111,7 +117,7 @@ def certified_distances(
     return np.array(found)[None]
 
 
-def _places(simulation: Simulation, taken: torch.Tensor, stage: str, tell: Tell) -> torch.Tensor:
+def _places(simulation: Simulation, taken: torch.Tensor, stage: str, progress: Progress) -> torch.Tensor:
     """Coordinates of the markers [cm] at contractions [m], (many, goals, winches), in the simulator; NaN where none.
 
     The first of many begins from rest; the others, which want the same, each from the pose before: eight times faster
@@ -120,7 +126,7 @@ def _places(simulation: Simulation, taken: torch.Tensor, stage: str, tell: Tell)
     rows = taken.double().numpy()
     found = np.full((*rows.shape[:2], len(simulation.robot.markers), simulation.robot.body.mesh.dim), np.nan)
     for goal in range(rows.shape[1]):
-        tell(stage, goal, rows.shape[1])
+        progress(stage, goal, rows.shape[1])
         pose = None
         for one in range(rows.shape[0]):
             pose = simulation.solve(rows[one, goal], start=pose, strict=False)

@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from hydrostat.errors import HydrostatError
+from hydrostat.progress import Progress, no_progress
 from hydrostat.simulation import Simulation
 from hydrostat_lab.experiments import SMALL
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
-from hydrostat_lab.policies import Act, Budget, TriedPairs, cloned, drawn_pairs, nearest, ridge
+from hydrostat_lab.policies import Act, Budget, TriedPairs, clone_actions, drawn_pairs, nearest, ridge
 from hydrostat_lab.run_experiment import exact_distances, exact_goals
 from hydrostat_lab.trials import NetworkReach
 
@@ -30,11 +31,11 @@ class Order(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OfPairs:
-    """What a way leaves after so many pairs of actions and outcomes.
+    """Errors of a method after a number of pairs of actions and outcomes.
 
     Attributes:
         way: its name.
-        pairs: how many.
+        pairs: number of pairs.
         expected: distances in the networks that it was learned in [cm], (seeds, goals).
         exact: distances in the simulator [cm], (seeds, goals); after all pairs alone, as it takes long, else None.
     """
@@ -52,17 +53,17 @@ def compare_on_shared_data(
     seeds: int,
     goals: int,
     budget: Budget,
-    tell: Callable[[str, int, int], None] = lambda *_: None,
+    progress: Progress = no_progress,
 ) -> Iterator[OfPairs]:
     """Learn by trial and error, which sees the goal alone, and in other ways, of the same pairs and of drawn ones.
 
     Args:
-        trials: of one action.
-        simulation: of the same robot, which judges at the end.
-        seeds: how often each begins at random.
-        goals: that are asked for in the simulator.
+        trials: episodes of one action.
+        simulation: simulation of the same robot, which judges at the end.
+        seeds: number of random starts of each.
+        goals: number of goals in the simulator.
         budget: epochs of trial and error, and steps of the network.
-        tell: is told how many epochs are done, and of how many.
+        progress: callback for progress.
     """
     options = replace(SMALL, goal_only=True)
     learner, marks = HindsightDdpg(trials, options, seeds=seeds, epochs=budget.epochs), looked_at(budget.epochs)
@@ -70,10 +71,10 @@ def compare_on_shared_data(
 
     def done(at: int, of: int) -> None:
         if at in marks:
-            then[at] = learner.policy.kept(), learner.best.kept()
-        tell(TRIED, at, of)
+            then[at] = learner.policy.copy_policy(), learner.best.copy_policy()
+        progress(TRIED, at, of)
 
-    learner.learn(tell=done)
+    learner.learn(progress=done)
     acts, reached = (torch.tensor(part) for part in learner.tried)
     each = acts.shape[1] // budget.epochs
     tried, drawn = TriedPairs(acts=acts, reached=reached), drawn_pairs(trials, seeds, acts.shape[1])
@@ -104,7 +105,7 @@ TRIED, BEST = "trial and error", "trial and error, best"
 
 OTHERS: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
     "1-NN": nearest,
-    "network": cloned,
+    "network": clone_actions,
     "ridge": ridge,
 }
 """Ways to learn from pairs, by their names."""
@@ -115,7 +116,7 @@ ORDERS = (
     Order("a network ends nearer than ridge regression (N16)", "network, shared", "ridge, shared"),
     Order("trial and error ends nearer than a network of pairs drawn evenly (R90, E61)", BEST, "network, independent"),
 )
-"""What the thesis says of the end of its figure, and its conclusion when others have pairs of their own."""
+"""Claims of the thesis about the end of its figure, and its conclusion when others have pairs of their own."""
 
 _GOALS, _MANY = 27_182, 1000
 """Seed and number of the goals in the networks."""

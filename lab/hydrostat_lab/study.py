@@ -15,12 +15,12 @@ from hydrostat.learning import (
     SamplePlan,
     Samples,
     SamplingScheme,
-    Tell,
     plan_samples,
     read_samples,
     sample_robot,
     sample_shard,
 )
+from hydrostat.progress import Progress
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat_lab.compare import METHODS, Compared, compare, way_of
@@ -31,15 +31,15 @@ SEEDED = ("thesis", "values", "inverse", "search")
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """What is compared.
+    """Comparison of learning methods.
 
     Attributes:
         draws: ways in which contractions are drawn, each for itself.
         counts: numbers of samples to learn from.
-        seeds: how often networks begin at random.
-        targets: how many.
+        seeds: number of random starts of the networks.
+        targets: number of targets.
         methods: ways to learn, of `METHODS`.
-        options: of our networks.
+        options: options of our networks.
 
     Raises:
         InputError: counts, seeds or targets below 1, nothing to compare, or a way that there is not.
@@ -63,18 +63,18 @@ class Study:
 
 @dataclass(frozen=True, kw_only=True)
 class StudyRow:
-    """How one way did; errors are over all markers of all targets that have an equilibrium [m].
+    """Result of one method; errors are over all markers of all targets that have an equilibrium [m].
 
     Attributes:
         robot: its name.
         physics: hash of its physics.
-        size: of its body [m].
-        draw: how contractions were drawn.
-        samples: how many it learned from.
-        seed: of what begins at random.
-        targets: how many were asked for.
+        size: size of its body [m].
+        draw: distribution of the contractions.
+        samples: number of samples that it learned from.
+        seed: random seed.
+        targets: number of requested targets.
         method: its name.
-        options: of the networks, as text.
+        options: options of the networks, as text.
         moved: mean distance of the targets from the mean place of their markers [m].
         markers: mean error of each marker by its name [m].
         errors: mean, deviation, median, p90, p99 and max [m].
@@ -82,7 +82,7 @@ class StudyRow:
         sampling: CPU time of the samples that it learned from [s], by that of a few of them.
         learning: CPU time of learning [s].
         facts: more that is known.
-        curve: of learning, as in `ThesisNetwork`; empty for other ways.
+        curve: learning curve, as in `ThesisNetwork`; empty for other methods.
         shown: contractions for the first targets [m].
     """
 
@@ -107,16 +107,16 @@ class StudyRow:
 
 
 def run_study(
-    study: Study, robot: Robot, folder: Path, *, jobs: int = 1, tell: Tell | None = None
+    study: Study, robot: Robot, folder: Path, *, jobs: int = 1, progress: Progress | None = None
 ) -> Iterator[StudyRow]:
     """Sample a robot, learn and roll out; what an earlier run has found in the folder is not found again.
 
     Args:
-        study: what to compare.
-        robot: which; with contact if its samples shall know it.
-        folder: where samples and rows are kept; it may be that of other robots too.
+        study: comparison to run.
+        robot: robot; with contact if its samples shall know it.
+        folder: folder for samples and rows; it may be that of other robots too.
         jobs: processes that sample; -1 for one on each core.
-        tell: as for `sample_robot`.
+        progress: same as for `sample_robot`.
 
     Raises:
         InputError: as for `plan_samples` and `compare`, or a file of rows that is damaged.
@@ -125,7 +125,7 @@ def run_study(
     known = read_rows_of(file) if file.exists() else []
     simulation = Simulation(robot)
     for draw in study.draws:
-        train, test, each = _samples(study, robot, draw, folder, jobs, tell)
+        train, test, each = _samples(study, robot, draw, folder, jobs, progress)
         for count in study.counts:
             some = train.first(min(count, len(train)))
             for seed in range(study.seeds):
@@ -184,7 +184,7 @@ class _Wanted:
         }
 
     def has(self, row: StudyRow) -> bool:
-        """Whether a row is one of these."""
+        """True if a row is one of these."""
         return all(getattr(row, name) == value for name, value in self.key.items()) and row.method in self.methods
 
     def row(self, found: Compared, sampling: float) -> StudyRow:
@@ -216,7 +216,7 @@ def _errors(errors: np.ndarray) -> dict[str, float]:
 
 
 def _samples(
-    study: Study, robot: Robot, draw: SamplingScheme, folder: Path, jobs: int, tell: Tell | None
+    study: Study, robot: Robot, draw: SamplingScheme, folder: Path, jobs: int, progress: Progress | None
 ) -> tuple[Samples, Samples, float]:
     """Samples to learn from, and others to be asked for; CPU time of one [s]."""
     found: list[Samples] = []
@@ -224,7 +224,7 @@ def _samples(
     for name, count, seed in (("train", max(study.counts), 0), ("test", study.targets, 1)):
         plan = plan_samples(robot, count, seed=seed, draws=(draw,))
         place = folder / f"{robot.name}-{draw}-{name}-{count}"
-        sample_robot(plan, place, jobs=jobs, tell=tell)
+        sample_robot(plan, place, jobs=jobs, progress=progress)
         found.append(read_samples(place))
     trial = replace(plan, count=min(_TIMED, study.targets), shard=_TIMED)
     sample_shard(replace(trial, count=1), 0)  # compiles

@@ -49,7 +49,7 @@ class Trials(ABC):
 
     @abstractmethod
     def distances(self, reached: Tensor, goals: Tensor) -> Tensor:
-        """How far what is reached is from goals, (seeds, many)."""
+        """Compute the distance between achieved and desired goals, (seeds, many)."""
 
 
 class NetworkReach(Trials):
@@ -70,11 +70,11 @@ class NetworkReach(Trials):
         """A learned model.
 
         Args:
-            model: that says where markers go.
+            model: model that predicts marker positions.
             groups: winches that one number of an action moves, one or two each: above 0 the first takes in cable, below
                 0 the second; each winch alone, from its release to its travel, if left out.
             horizon: actions of an episode.
-            random_start: whether episodes begin in a pose at random.
+            random_start: True if episodes begin in a random pose.
         """
         self.horizon, self._random = horizon, random_start
         self._dim, self._count = model.card.dim, model.card.coordinates
@@ -101,7 +101,7 @@ class NetworkReach(Trials):
         return states, states, goals
 
     def act(self, acts: Tensor) -> tuple[Tensor, Tensor]:
-        """Where contractions lead."""
+        """Return the marker positions for contractions."""
         reached = self.reach(acts)
         return reached, reached
 
@@ -144,7 +144,7 @@ class GymnasiumTrials(Trials):
     """
 
     def __init__(self, make: Callable[[], Any], *, horizon: int) -> None:
-        """What makes a copy of an environment that is cut off after so many actions, such as `robotics_task`."""
+        """Wrap copies of an environment from `make`, such as `robotics_task`; each ends after `horizon` actions."""
         self.horizon, self._make, self._envs = horizon, make, [make()]
         spaces = self._envs[0].observation_space
         self.states, self.goals = spaces["observation"].shape[0], spaces["desired_goal"].shape[0]
@@ -206,4 +206,4 @@ _SEEDS = 2**31
 """Environments are begun with seeds below this."""
 
 _ROBOTICS = 'pip install gymnasium-robotics "mujoco<3.6"'
-"""What was tried: gymnasium-robotics 1.4.2 with MuJoCo 3.3 and 3.5; it does not run with 3.17 and 4.0."""
+"""Versions that were tried: gymnasium-robotics 1.4.2 with MuJoCo 3.3 and 3.5; it does not run with 3.17 and 4.0."""

@@ -13,6 +13,8 @@ from pathlib import Path
 
 from machine import machine
 
+from hydrostat.progress import no_progress
+
 import numpy as np  # isort: skip
 
 from hydrostat.learning import LearnOptions, Samples, make_training_set, read_samples, train_forward
@@ -23,7 +25,7 @@ HELD_OUT = 200
 def errors(known: Samples, new: Samples, options: LearnOptions) -> tuple[float, float, float, float]:
     """Of markers [mm], mean and p99; of tensions [N]; of their slopes [N/m]."""
     training_set = make_training_set(known)
-    networks = train_forward(training_set, known.facts["dim"], options, lambda *_: None).networks
+    networks = train_forward(training_set, known.facts["dim"], options, no_progress).networks
     low, high = known.limits
     answers = [networks.slopes(row) for row in 2 * (new.contractions - low) / (high - low) - 1]
     values = np.array([value for value, _ in answers]) * training_set.unit + training_set.middle

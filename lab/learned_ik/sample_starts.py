@@ -6,6 +6,7 @@
 
 The first samples are solved from rest; their nodes and exact slopes are what is known. A network learns from them the
 principal components of all nodes. The next samples are solved from each start; where Newton's method does not arrive,
+from hydrostat.progress import no_progress
 from rest. Columns: targets of a kind, of which a marker ends more than 0.1 mm from where it ends from rest (with the
 upper bound of this share at 95 %), iterations, CPU time of a pose with slopes, and poses a second. Kinds: whether parts
 of the body touch in the pose found from rest, and whether the expected nodes cross the body itself.
@@ -55,7 +56,7 @@ def learned(samples: Samples, nodes: np.ndarray, slopes: np.ndarray, steps: int)
         coordinates=COMPONENTS,
         linear=linear_map(inputs, outputs),
     )
-    network = train_forward(training_set, COMPONENTS, LearnOptions(members=1, steps=steps), lambda *_: None).networks
+    network = train_forward(training_set, COMPONENTS, LearnOptions(members=1, steps=steps), no_progress).networks
 
     def expected(contractions: Vector) -> Nodes:
         scaled = 2 * (contractions - low) / (high - low) - 1

@@ -18,9 +18,9 @@ from hydrostat.design import (
 from hydrostat.design.filled_judge import evaluate_stuffed
 from hydrostat.design.filled_reach import filled_reach
 from hydrostat.design.network import Alternative
-from hydrostat.design.progress import silent
 from hydrostat.errors import InputError
 from hydrostat.ik import IKResult, solve_ik
+from hydrostat.progress import no_progress
 from hydrostat.robot import Face, Robot, get_material, inflated_robot
 from hydrostat.simulation import Simulation
 
@@ -98,12 +98,12 @@ def test_the_finalist_that_is_best_when_filled_is_chosen(robot: Robot, reached: 
     stunted = robot.with_network(robot.winches, short)
     solved = tuple(solve_ik(Simulation(stunted), pose) for pose in robot.poses.values())
     whole, poor = (Alternative(robot=r, reached=p, built=0.01) for r, p in ((robot, reached), (stunted, solved)))
-    found = evaluate_stuffed(network(stunted, solved, whole), progress=silent)
+    found = evaluate_stuffed(network(stunted, solved, whole), progress=no_progress)
     assert found.robot is robot
     assert found.filled is not None
     assert found.filled.finalists == 2
     assert [one.robot for one in found.alternatives] == [stunted]
-    kept = evaluate_stuffed(network(robot, reached, poor), progress=silent)
+    kept = evaluate_stuffed(network(robot, reached, poor), progress=no_progress)
     assert kept.robot is robot
     assert kept.filled is not None
     assert kept.filled.rms_error == pytest.approx(found.filled.rms_error)

@@ -9,6 +9,7 @@ from builders import strip_robot
 from hydrostat.design.network import rms_error
 from hydrostat.design.trees.design_trees import cost, judge, prune
 from hydrostat.ik import IKResult, solve_ik
+from hydrostat.progress import no_progress
 from hydrostat.robot import Cable, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
@@ -49,7 +50,7 @@ def test_a_robot_that_pulls_too_hard_is_not_chosen() -> None:
     robots = [strip_robot(columns=10, rows=3), shifted(-0.008)]
     reached = [[solve_ik(Simulation(robot), pose) for pose in POSES] for robot in robots]
     for limit in (1e-3, 0.5, 100.0):
-        best, _ = judge(robots, POSES, tension=limit, progress=lambda *_: None)
+        best, _ = judge(robots, POSES, tension=limit, progress=no_progress)
         assert best == int(np.argmin([cost(found, limit) for found in reached]))
 
 

@@ -24,7 +24,7 @@ if __name__ == "__main__":
             cluster.remove_node(other, allow_graceful=False)
             killed.append(done)
 
-    sample_robot(pickle.loads(Path(sys.argv[1]).read_bytes()), Path(sys.argv[2]), backend="ray", tell=tell)
+    sample_robot(pickle.loads(Path(sys.argv[1]).read_bytes()), Path(sys.argv[2]), backend="ray", progress=tell)
     assert killed
     ray.shutdown()
     cluster.shutdown()

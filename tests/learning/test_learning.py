@@ -213,7 +213,7 @@ def test_ctrl_c_keeps_the_best_so_far_or_nothing(samples: Samples, stage: str, a
             raise KeyboardInterrupt
 
     options = replace(OPTIONS, steps=300 if after else 1)
-    stopped = learn_model(samples, options=options, tell=tell)
+    stopped = learn_model(samples, options=options, progress=tell)
     assert stopped.card.stopped
     assert (stopped.inverse is None) == (stage == "forward")
     found = stopped.solve(targets_of(samples)[0])
@@ -283,11 +283,11 @@ def test_the_commands(
 def test_the_way_back_learns_what_a_model_answers() -> None:
     """Of two winches against one another one takes in, in training as in the model. Oracle: the model, by NumPy."""
     torch = pytest.importorskip("torch")
-    from hydrostat.learning.learned_model import paired
+    from hydrostat.learning.learned_model import index_pairs
     from hydrostat.learning.train import _holding
 
     training_set = SimpleNamespace(low=np.array([0.0, -0.01, 0.0]), high=np.array([0.04, 0.05, 0.02]))
-    pairs = paired([["a", "c"], ["b"]], ["a", "b", "c"])
+    pairs = index_pairs([["a", "c"], ["b"]], ["a", "b", "c"])
     model = SimpleNamespace(_pairs=pairs, high=training_set.high)
     half = 0.5 * (training_set.high - training_set.low)
     for scaled in np.random.default_rng(0).uniform(-1, 1, (20, 3)):

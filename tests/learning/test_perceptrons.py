@@ -41,7 +41,7 @@ def test_the_kernel_is_what_was_trained() -> None:
     assert moved is not None
     for place, point in enumerate(points):
         assert some.values(point) == pytest.approx(value[:, place].numpy(), abs=1e-12)
-        agreed, spread = some.agreed(point)
+        agreed, spread = some.average_members(point)
         assert agreed == pytest.approx(value[:, place].mean(0).numpy(), abs=1e-6)
         assert spread == pytest.approx(value[:, place].numpy().std(axis=0), abs=1e-6)
 

@@ -200,7 +200,7 @@ def test_a_killed_run_leaves_whole_files_and_goes_on(plan: SamplePlan, once: Pat
         "from hydrostat.learning import sample_robot\n"
         "plan = pickle.load(open(sys.argv[1], 'rb'))\n"
         "kill = lambda stage, done, total: os.kill(os.getpid(), signal.SIGKILL) if done >= 10 else None\n"
-        "sample_robot(plan, Path(sys.argv[2]), tell=kill)\n"
+        "sample_robot(plan, Path(sys.argv[2]), progress=kill)\n"
     )
     (tmp_path / "plan").write_bytes(pickle.dumps(plan))
     out = tmp_path / "out"
@@ -224,7 +224,7 @@ def test_a_killed_run_leaves_no_workers_behind(plan: SamplePlan, once: Path, tmp
         "    sys.stdout.flush()\n"
         "    os.kill(os.getpid(), signal.SIGKILL)\n"
         "plan = pickle.load(open(sys.argv[1], 'rb'))\n"
-        "sample_robot(plan, Path(sys.argv[2]), jobs=2, tell=kill)\n"
+        "sample_robot(plan, Path(sys.argv[2]), jobs=2, progress=kill)\n"
     )
     (tmp_path / "plan").write_bytes(pickle.dumps(plan))
     with (tmp_path / "told").open("wb") as told:
@@ -259,7 +259,10 @@ def test_a_folder_grows_to_a_larger_count_and_to_no_smaller_one(plan: SamplePlan
     sample_robot(plan, tmp_path)
     assert contents(tmp_path) == contents(once)
     assert (tmp_path / "samples-000000.npy").stat().st_mtime_ns == first
-    with pytest.raises(InputError, match=r"is for 22 samples already, more than the 12 .* hydrostat learn --max-samples 12$"):
+    told = r"is for 22 samples already, more than the 12 .* hydrostat learn --max-samples 12$"
+    with pytest.raises(
+        InputError, match=r"is for 22 samples already, more than the 12 .* hydrostat learn --max-samples 12$"
+    ):
         sample_robot(replace(plan, count=12), tmp_path)
     with pytest.raises(InputError, match="another plan: seed is 3, asked for 4"):
         sample_robot(replace(plan, count=40, seed=4), tmp_path)

@@ -93,7 +93,7 @@ def test_held_out_episodes_are_the_same_each_time(robot: Robot) -> None:
     left = judge(env, lambda _: np.array([0.1]), goals)
     assert judge(env, lambda _: np.array([0.1]), goals) == pytest.approx(left, abs=1e-12)
     assert env.equilibria == env.uncounted == 2 + 4 + 4
-    assert env.kept()["equilibria"] == env.equilibria
+    assert env.get_state()["equilibria"] == env.equilibria
 
 
 @pytest.mark.usefixtures("unchecked")

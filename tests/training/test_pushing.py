@@ -123,7 +123,7 @@ def test_a_hand_that_does_not_open_has_achieved_nothing(robot: Robot, monkeypatc
     env = PushEnv(robot, options=PushOptions(steps=1, physics=QUICK, travel=2e-3))
     begun, _ = env.reset(seed=0)
     monkeypatch.setattr(env.world, "go", lambda contractions: [])
-    monkeypatch.setattr(type(env), "achieved", lambda env: np.ones(2))
+    monkeypatch.setattr(type(env), "get_achieved", lambda env: np.ones(2))
     seen, reward, _, over, info = env.step(np.zeros(2))
     assert over
     assert seen["achieved_goal"] == pytest.approx(begun["achieved_goal"])
@@ -158,8 +158,8 @@ def test_each_episode_has_a_thing_of_its_own(robot: Robot) -> None:
     assert env.world.thing == first
     other = TwistEnv(robot, options=env.options)
     env.step(np.array([0.0, 0.0]))
-    other.go_on(env.kept())
-    assert other.kept() == env.kept()
+    other.go_on(env.get_state())
+    assert other.get_state() == env.get_state()
     assert (other.equilibria, other.uncounted) == (1, 0)
     for each in (env, other):
         each.reset()

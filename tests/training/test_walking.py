@@ -162,7 +162,7 @@ def test_held_out_episodes_are_the_same_each_time_and_cost_nothing() -> None:
     assert env.equilibria == env.uncounted == 2 * 2 * 10
     other = WalkEnv(slab(), friction=0.5, options=CONTRACTIONS)
     other.reset(seed=1)
-    other.go_on(env.kept())
+    other.go_on(env.get_state())
     assert (other.equilibria, other.uncounted) == (40, 40)
 
 

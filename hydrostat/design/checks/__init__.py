@@ -1,1 +1,1 @@
-"""What each constraint says of a network: a plain sentence for each place where it is not kept."""
+"""Checks of a network by its constraints: a plain sentence for each place where one is violated."""

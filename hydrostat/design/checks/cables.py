@@ -58,7 +58,7 @@ def _segments(parts: Parts) -> _Segments:
 
 
 def _given_points(parts: Parts, index: int) -> int:
-    """How many of the first points of a cable are given: in the world and where it enters, or at a locked winch."""
+    """Return the number of first points that are given: in the world and at the entry, or at a locked winch."""
     cable = parts.robot.cables[index]
     if parts.outside(cable):
         return 2
@@ -86,7 +86,7 @@ def _near_the_edge_at_points(parts: Parts) -> Iterator[str]:
 
 
 def _limit(parts: Parts, depth: float) -> str:
-    """What a point keeps, as sentences say it."""
+    """Return the limit that a point keeps, in words."""
     wanted = parts.constraints.depth
     return f"clearance of {mm(depth)}" if wanted is None else f"{mm(depth)} that a depth of {mm(wanted)} allows"
 

@@ -50,7 +50,7 @@ class Parts:
         return self.robot.winches[self.numbers[cable.winch]]
 
     def outside(self, cable: Cable) -> bool:
-        """Whether a cable begins in the world."""
+        """True if a cable begins in the world."""
         return self.winch_of(cable).mount is Mount.WORLD
 
     def winch_name(self, index: int) -> str:
@@ -59,11 +59,11 @@ class Parts:
 
     @cached_property
     def edge(self) -> str:
-        """What a body ends at."""
+        """Return the word for the boundary of a body."""
         return "edge" if self.robot.body.mesh.dim == 2 else "surface"
 
     def within(self, depth: float) -> str:
-        """How deep something is in the body [m], in words; negative is outside."""
+        """Return the depth in the body [m], in words; negative is outside."""
         return f"{mm(abs(depth))} {'inside' if depth >= 0 else 'outside'} the {self.edge}"
 
 

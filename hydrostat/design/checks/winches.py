@@ -117,7 +117,7 @@ def _image_of(parts: Parts, winch: Winch, flip: np.ndarray) -> int | None:
 
 
 def _mirrors(parts: Parts, one: int, other: int, flip: np.ndarray) -> bool:
-    """Whether two cables are images of each other, their winches aside."""
+    """True if two cables are images of each other, their winches aside."""
     cables, ratios = parts.robot.cables, parts.robot.spool_ratios
     first, second = parts.points[one], parts.points[other]
     return (
@@ -130,5 +130,5 @@ def _mirrors(parts: Parts, one: int, other: int, flip: np.ndarray) -> bool:
 
 
 def _make(cable: Cable) -> tuple[object, ...]:
-    """What two images have exactly in common."""
+    """Return the properties in which two images agree exactly."""
     return cable.bare.tolist(), cable.stiffness, cable.smoothing, cable.friction

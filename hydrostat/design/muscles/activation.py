@@ -15,7 +15,7 @@ from hydrostat.simulation import BodyPhysics
 
 
 class FibreKind(StrEnum):
-    """Where the candidate muscles are (E21)."""
+    """Kind of candidate muscles: along mesh edges, or within elements (E21)."""
 
     EDGES = "edges"
     ELEMENTS = "elements"
@@ -125,8 +125,8 @@ def activate(
     over many fibres; a sum of tensions instead would be sparse, but folds a limb at one hinge and misses the pose.
 
     Args:
-        robot: whose body it is.
-        target: where its markers should go.
+        robot: robot with the body.
+        target: target positions of the markers.
         fibres: the muscles.
         effort: weight of squared tensions: the larger, the weaker the muscles and the error left.
         stages: steps in which the target is approached.

@@ -26,11 +26,11 @@ class FreePosing:
     in `solve_ik` (`IKOptions.hold_free_markers`), and never so little that it takes too much effort to keep them.
 
     Attributes:
-        robot: whose body it is.
+        robot: robot with the body.
         fibres: the muscles.
         strength: the most that a fibre pulls [N].
-        nodes: where the body is [m].
-        tensions: of each fibre [N].
+        nodes: positions of the nodes [m].
+        tensions: tension of each fibre [N].
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class FreePosing:
         return self._settle(self._relaxed(self.tensions, _PATIENT), self.tensions)
 
     def _begin(self) -> NewtonResult:
-        """Where the body rests: all of its weight at once, or what Newton makes of that."""
+        """Return the equilibrium at rest, from a start with all of the weight."""
         none = np.zeros(len(self.fibres))
         return minimise(
             self._assembly,
@@ -116,7 +116,7 @@ class FreePosing:
         return moved > _STILL * self._size
 
     def _aims(self, held: Anchors, goals: Points, calm: Anchors | None) -> list["_Aim"]:
-        """What is held, then what should stay; nothing has to stay while nothing is held."""
+        """Pinned nodes, then nodes that should stay; none have to stay while none are pinned."""
         aims = [_Aim(held, goals, 1.0)]
         if calm is not None and len(goals):
             missed = float(np.linalg.norm(held.positions(self.nodes) - goals))
@@ -148,7 +148,7 @@ class FreePosing:
         return wanted, rho
 
     def _most(self) -> Vector:
-        """What each fibre can pull at its present length: all at rest, nothing when it is as short as it gets."""
+        """Return the largest tension of each fibre at its present length [N]: full at rest, 0 when fully shortened."""
         shares = self._energy.lengths(self.nodes) / self._lengths
         return self.strength * np.clip((shares - _SHORTEST) / (1.0 - _SHORTEST), 0.0, 1.0)
 
@@ -159,7 +159,7 @@ class FreePosing:
         return self._effort * max(able, _LEAST_ABLE * self._able)
 
     def _farthest(self, change: Vector) -> float:
-        """How far a change of the tensions moves some node, to first order, in sizes of the body."""
+        """Return the largest displacement of a node by a change of tensions, to first order, in sizes of the body."""
         forces = self._pulls(self.nodes, self.tensions) @ change
         return float(np.abs(self._stiffness.solve(forces)).max()) / self._size
 

@@ -150,7 +150,7 @@ def _are_twins(layout: Layout, first: CableRoute, second: CableRoute, images: di
 
 
 def _lead(cable: Cable) -> int | None:
-    """How many segments from the winch on are sheathed; None if others are."""
+    """Number of segments that are sheathed from the winch on; None if others are."""
     sheathed = ~cable.bare
     count = int(np.argmin(sheathed)) if sheathed.any() else 0
     return None if sheathed[count:].any() else count

@@ -65,7 +65,7 @@ class Bench:
 
     @cached_property
     def goals(self) -> list[np.ndarray]:
-        """Where these markers should be, (markers, dim) [m]."""
+        """Target positions of these markers, (markers, dim) [m]."""
         rests = [marker.at for marker in self.source.markers]
         return [
             np.array([*pose.targets.values(), *(rests[index] for index in markers[len(pose.targets) :])], dtype=float)
@@ -173,7 +173,7 @@ class Bench:
         return float(np.linalg.norm(self.residual(simulation, index, pose.nodes)))
 
     def _short_of(self, hoped: Trial, index: int) -> float:
-        """What a pose may miss to be as good as in another trial, but for a share of the error of all [m]."""
+        """Error that a pose may have to be as good as in another trial, but for a share of the error of all [m]."""
         return self._missed(hoped.simulation, index, hoped.poses[index]) + _SHORT * hoped.error
 
     def _begun(self, simulation: Simulation, before: Trial, index: int) -> Equilibrium | None:

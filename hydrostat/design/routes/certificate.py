@@ -13,7 +13,7 @@ from hydrostat.design.routes.refine import linear_model
 
 
 def certify(proposals: Proposals, trial: Trial) -> Certificate:
-    """What one more cable promises, and how steeply the error falls along a move of the network that is allowed.
+    """Compute the promise of one more cable, and the steepest descent of the error along an allowed move.
 
     Both are exact to first order at the equilibria of the poses; the search for the best path keeps a few paths for
     each edge, so what it finds is a lower bound of what the best of all paths would gain.

@@ -4,10 +4,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from hydrostat.design.network import Alternative, Network, Size, size_of
-from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.design_routes import Hints, RouteSearch, kit_fits
+from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.progress import Progress
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics
 

@@ -9,7 +9,6 @@ from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.built_error import expected_error
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
-from hydrostat.design.progress import Progress, Watch, unseen
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
@@ -23,10 +22,12 @@ from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
+from hydrostat.design.watch import Watch, unseen
 from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import IKOptions, Limits
+from hydrostat.progress import Progress
 from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import BodyPhysics, Simulation, cable_sensitivities
 
@@ -221,7 +222,7 @@ class RouteSearch:
 
     @cached_property
     def region(self) -> Region:
-        """Where cables may be."""
+        """Region that cables may use."""
         return cable_region(self.robot.body, self.constraints)
 
     @property
@@ -229,7 +230,7 @@ class RouteSearch:
         return (2 * self.options.starts + 1) * self.cables
 
     def _beginning(self) -> Layout:
-        """What the search begins with: nothing, what is locked, or all that there is."""
+        """Return the layout at the start of the search: empty, the locked parts, or the whole network."""
         whole = layout_of(self.robot, self.constraints)
         if self.request.improve and not whole.routes:
             raise InputError("the robot has no cables to improve; design without improving it")
@@ -305,7 +306,7 @@ class RouteSearch:
 
     @property
     def _kept(self) -> Constraints:
-        """What was asked, with the torque of the motors that fit."""
+        """Return the request with the torque of the motors that fit."""
         own = self.constraints
         return replace(self.request.constraints, torque=own.torque, cables_per_winch=own.cables_per_winch)
 
@@ -363,7 +364,7 @@ class RouteSearch:
 
 
 def kit_fits(network: Alternative | Network) -> bool:
-    """Whether the kit of a network would not be refused."""
+    """True if the kit of a network would not be refused."""
     return not find_refusals(network.robot, demand_of(network.robot, network.reached))
 
 

@@ -194,7 +194,7 @@ class Growth:
         return found if found is not None and found.cost <= allowed else None
 
     def enough(self, trial: Trial, winches: int) -> bool:
-        """Whether nothing more is needed."""
+        """True if the network is good enough."""
         enough = self.proposals.options.enough * self.proposals.graph.size
         return len(trial.layout.sites) >= winches and trial.cost <= enough
 
@@ -219,7 +219,7 @@ class Growth:
         return trial.cost * self._weighed(trial.layout)
 
     def _weighed(self, layout: Layout) -> float:
-        """What a cost counts: more for winches that are not deep in the body (R12) and cables that turn much (E14)."""
+        """Factor on the cost: above 1 for winches that are not deep in the body (R12) and cables that turn (E14)."""
         inner = [site.winch.at for site in layout.sites if site.winch.mount is Mount.BODY]
         depths = self.proposals.graph.region.depths(np.array(inner)) if inner else np.zeros(0)
         shallow = np.maximum(1.0 - depths / self.proposals.deepest, 0.0).mean() if inner else 0.0

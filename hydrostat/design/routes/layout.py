@@ -44,7 +44,7 @@ class Layout:
 
     Attributes:
         source: the robot that it is for.
-        constraints: that it should keep.
+        constraints: constraints of the network.
         stands: its winches.
         lines: its cables.
     """
@@ -84,13 +84,13 @@ class Layout:
 
     @cached_property
     def starts(self) -> list[int]:
-        """Where the points of each line begin among the numbers; then where slacks begin, and ratios."""
+        """Index of the first number of each line's points; then of slacks, and of ratios."""
         sizes = [self.dim * len(self.sites), *(self.dim * (len(route.points) - 1) for route in self.routes)]
         return [int(end) for end in np.cumsum([*sizes, len(self.routes)])]
 
     @property
     def size(self) -> int:
-        """How many numbers there are."""
+        """Count of the numbers."""
         return self.starts[-1] + len(self.routes)
 
     def place_of(self, route: int, point: int) -> slice:
@@ -129,7 +129,7 @@ class Layout:
 
     @cached_property
     def ties(self) -> Float[np.ndarray, "numbers free"]:
-        """How the numbers follow those that are free: what stays has no column, a mirrored part follows its twin."""
+        """Matrix from free numbers to all numbers: a fixed part has no column, a mirrored part follows its twin."""
         dim, slacks, ratios = self.dim, *self.starts[-2:]
         flip = self.constraints.flip(dim)
         full = np.eye(self.size)

@@ -256,7 +256,7 @@ class _Spots(NamedTuple):
     widths: Vector
 
     def places(self, numbers: Vector, dim: int) -> Float[np.ndarray, "spots dim"]:
-        """Where they are, by the numbers of the layout [m]."""
+        """Positions by the numbers of the layout [m]."""
         starts, ends = (numbers[side[:, None] + np.arange(dim)] for side in (self.starts, self.ends))
         return starts + self.shares[:, None] * (ends - starts)
 

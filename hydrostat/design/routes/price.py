@@ -17,7 +17,7 @@ MarkerJacobian = Float[np.ndarray, "edges rows"]
 
 @dataclass(frozen=True, kw_only=True)
 class PathLimits:
-    """What a path may be."""
+    """Limits of a path."""
 
     hops: int  # most edges of its bare part
     turn: float  # sharpest turn at a via point, lead included, in the rest shape [degrees]
@@ -28,7 +28,7 @@ class PathLimits:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Missed:
-    """What is missed in each row, and what 1 N along each edge of a route graph does to it."""
+    """Residual of each row, and its change by 1 N along each edge of a route graph."""
 
     residual: Float[np.ndarray, " rows"]  # target less marker of each row [m]
     moves: MarkerJacobian  # what 1 N along each edge adds to each row [m/N]
@@ -94,7 +94,7 @@ _LANES = 4  # numbers that a vector register holds
 
 
 class _LeadStarts:
-    """Where bare parts may begin: for each directed edge the shortest lead to its start."""
+    """Starts of bare parts: for each directed edge the shortest lead to its start."""
 
     def __init__(self, graph: RouteGraph, places: Int[np.ndarray, " places"], limits: PathLimits) -> None:
         self.graph, penalty = graph, limits.lead_penalty
@@ -270,7 +270,7 @@ def _edges(graph: RouteGraph, points: Int[np.ndarray, " points"]) -> Int[np.ndar
 
 @lru_cache(maxsize=4)
 def _turns(graph: RouteGraph, turn: float) -> tuple[Int[np.ndarray, " _"], Int[np.ndarray, " turns"]]:
-    """Which directed edges each one may follow, as a compressed list; no path runs through a point in the world."""
+    """Directed edges that may follow each of them, as a compressed list; no path runs through a point in the world."""
     counts = np.empty(len(graph.sources) + 1, dtype=np.int64)
     least = math.cos(math.radians(min(turn, 180.0))) - 1e-9
     given = (graph.points, graph.offsets, graph.sources, graph.targets, graph.reverses, graph.world, least, counts)

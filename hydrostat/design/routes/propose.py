@@ -21,7 +21,7 @@ from hydrostat.robot import Mount, Winch
 
 @dataclass(frozen=True, eq=False)
 class Proposals:
-    """Where cables may be added."""
+    """Region that new cables may use."""
 
     bench: Bench  # solves layouts
     graph: RouteGraph  # of via points
@@ -31,7 +31,7 @@ class Proposals:
 
     @cached_property
     def deepest(self) -> float:
-        """How deep a winch can be in the body [m]."""
+        """Largest depth of a winch in the body [m]."""
         inner = self.graph.points[~self.graph.world]
         return max(float(self.graph.region.depths(inner).max(initial=0.0)), 1e-9)
 
@@ -115,7 +115,7 @@ class Proposals:
         return replace(self.graph, edges=self.graph.edges[free], still=self.graph.still[free])
 
     def _one_side(self, runs: np.ndarray, gap: float) -> np.ndarray:
-        """Which runs do not meet mirror images: they are on one side of the mirror, and none runs along it."""
+        """Runs that do not meet mirror images: they are on one side of the mirror, and none runs along it."""
         mirror = self.bench.constraints.mirror
         if mirror is None:
             return np.ones(len(runs), dtype=bool)
@@ -124,7 +124,7 @@ class Proposals:
 
     @staticmethod
     def _reaches(runs: np.ndarray, start: Vector, end: Vector, gap: float) -> np.ndarray:
-        """Which runs have a box that comes within a gap of a segment's."""
+        """Runs with a box that comes within a gap of a segment's."""
         low, high = np.minimum(start, end) - gap, np.maximum(start, end) + gap
         return ((runs.max(axis=1) >= low) & (runs.min(axis=1) <= high)).all(axis=1)
 
@@ -155,13 +155,13 @@ class Proposals:
         return [added for added in layouts if added is not None and self._counts(added, winches, most)]
 
     def _counts(self, layout: Layout, winches: int, cables: int) -> bool:
-        """Whether there are no more winches and cables than allowed: a mirrored cable brings another."""
+        """True if there are no more winches and cables than allowed: a mirrored cable brings another."""
         pulled = np.bincount([route.winch for route in layout.routes], minlength=len(layout.sites))
         fits = len(layout.sites) <= max(winches, 1) and len(layout.routes) <= cables
         return fits and bool(pulled.max() <= layout.constraints.cables_per_winch)
 
     def _depth(self, place: int) -> float:
-        """How well a winch is embedded at a graph point, up to 1 (R12)."""
+        """Score of a winch's embedding at a graph point, up to 1 (R12)."""
         if self.graph.world[place]:
             return 1.0
         depth = float(self.graph.region.depths(self.graph.points[place : place + 1])[0])

@@ -15,7 +15,7 @@ from hydrostat.ik import least_squares
 
 @dataclass(frozen=True, kw_only=True)
 class RefineOptions:
-    """How far a refinement goes."""
+    """Limits of a refinement."""
 
     iterations: int = 40  # most steps
     effort: float = 0.02  # error, as a share of the present one, that the tension limit of a cable is worth
@@ -221,7 +221,7 @@ def _scattered(bench: Bench, trial: Trial, index: int) -> Iterator[tuple[Vector,
 
 
 def turns(layout: Layout) -> Vector:
-    """How much each cable turns at its points, coordinate by coordinate [rad, roughly].
+    """Turn of each cable at its points, coordinate by coordinate [rad, roughly].
 
     A turn is the difference of the two segments at a point, over their mean length in this layout's cable.
     """
@@ -253,7 +253,7 @@ def _bending(layout: Layout) -> list[tuple[int, float]]:
 
 
 def _scales(layout: Layout, reach: float) -> Vector:
-    """What counts as a large step of each free number."""
+    """Large step of each free number."""
     slacks, ratios = layout.starts[-2:]
     full = np.full(layout.size, reach)
     full[slacks:ratios] = max(0.25 * layout.constraints.slack, 1e-4)

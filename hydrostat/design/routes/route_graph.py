@@ -37,7 +37,7 @@ class RouteGraph:
 
     @property
     def world(self) -> Bool[np.ndarray, " points"]:
-        """Which points are fixed in the world."""
+        """Points that are fixed in the world."""
         return np.arange(len(self.points)) >= len(self.anchors.stencils)
 
     @cached_property
@@ -47,7 +47,7 @@ class RouteGraph:
 
     @cached_property
     def offsets(self) -> Int[np.ndarray, " _"]:
-        """Where the directed edges from each point begin; their number at the end."""
+        """Index of the first directed edge from each point; the number of edges at the end."""
         counts = np.bincount(self.edges.ravel(), minlength=len(self.points))
         return np.concatenate([[0], np.cumsum(counts)])
 
@@ -81,7 +81,7 @@ class RouteGraph:
         return np.lexsort((ends, starts))
 
     def edge_moves(self, posed: Nodes, fields: Float[np.ndarray, "nodes dim rows"]) -> Float[np.ndarray, "edges rows"]:
-        """What a tension of 1 N along each edge adds to each row, at an equilibrium of the nodes [m]: in m/N.
+        """Change of each row by a tension of 1 N along each edge, at an equilibrium of the nodes [m]: in m/N.
 
         The ends of the edge are pulled together, so it is (field at the first - field at the second) . direction, and a
         cable moves the rows by the sum over its edges. Still edges move nothing; a point in the world neither moves nor
@@ -185,7 +185,7 @@ def _joined(points: Points, pairs: Pairs, region: Region, constraints: Constrain
 
 
 def _in_world(robot: Robot, constraints: Constraints) -> bool:
-    """Whether winches stand in the world (InputError: they should, but the robot has none that says where)."""
+    """True if winches stand in the world (InputError: they should, but the robot has none that says where)."""
     if constraints.mount is None:
         return bool(robot.winches) and all(winch.mount is Mount.WORLD for winch in robot.winches)
     if constraints.mount is Mount.WORLD and not robot.winches:
@@ -221,7 +221,7 @@ def _entries(
 
 
 def _outside(points: Points, zones: Sequence[Zone]) -> Bool[np.ndarray, " points"]:
-    """Which points lie in none of the zones."""
+    """Points that lie in none of the zones."""
     outside = np.ones(len(points), dtype=bool)
     for zone in zones:
         outside &= zone.distances(points) > 0
@@ -229,7 +229,7 @@ def _outside(points: Points, zones: Sequence[Zone]) -> Bool[np.ndarray, " points
 
 
 def _meets(points: Points, pairs: Pairs, zones: Sequence[Zone]) -> Bool[np.ndarray, " _"]:
-    """Which segments pass through a zone."""
+    """Segments that pass through a zone."""
     meets = np.zeros(len(pairs), dtype=bool)
     for zone in zones:
         meets |= zone.least(points[pairs[:, 0]], points[pairs[:, 1]]) < 0

@@ -90,7 +90,7 @@ def _lines(proposals: Proposals, bare: Trial) -> Iterator[Line]:
 
 
 def _shallow(proposals: Proposals) -> Vector:
-    """How much longer each edge counts for not being in the middle of a limb, or for moving nothing."""
+    """Length factor of each edge for not being in the middle of a limb, or for moving nothing."""
     graph = proposals.graph
     depths = np.zeros(len(graph.points))
     depths[~graph.world] = graph.region.depths(graph.points[~graph.world])
@@ -130,7 +130,7 @@ def _beside(path: Route, proposals: Proposals, *, world: bool) -> Iterator[Route
 
 
 def _reach(middle: Route, side: Route, ramp: Vector, region: Region) -> Vector:
-    """How far each point of a path can go to a side and keep the clearance, at most as a ramp says, smoothed [m]."""
+    """Distance that each point of a path can go to a side within the clearance, at most a ramp, smoothed [m]."""
     reach = np.zeros(len(middle))
     for share in np.linspace(1.0, 0.1, 10):
         fits = (reach == 0) & (region.depths(middle + (share * ramp)[:, None] * side) >= MARGIN * region.clearance)
@@ -210,7 +210,7 @@ class _Choice:
         return slope.ravel()
 
     def cost(self, chosen: Sequence[int]) -> float:
-        """What a set misses, with its effort [m]."""
+        """Error of a set of lines, with its effort [m]."""
         key = tuple(sorted(chosen))
         if key not in self.known:
             self.known[key] = self._cost(list(key)) * (1.0 + _SIMPLE * len(key))
@@ -222,7 +222,7 @@ class _Choice:
         return float(np.linalg.norm([self._misses(chosen, pose) for pose in range(len(self.moves))]))
 
     def _misses(self, chosen: list[int], pose: int) -> float:
-        """What a pose misses; lines that would have to push are left slack, in a few rounds."""
+        """Error of a pose; lines that would have to push are left slack, in a few rounds."""
         moves, missed, ridge = self.moves[pose], self.missed[pose], self.ridges[pose]
         places = [self.lines[index].place for index in chosen]
         by_winch = np.equal.outer(places, sorted(set(places))).astype(float)
@@ -278,7 +278,7 @@ class _Choice:
         return chosen
 
     def _fits(self, chosen: Sequence[int], index: int) -> bool:
-        """Whether a line can be built beside others."""
+        """True if a line can be built beside others."""
         if index in chosen or self._meets[index][list(chosen)].any():
             return False
         constraints, graph = self.proposals.bench.constraints, self.proposals.graph
@@ -293,7 +293,7 @@ class _Choice:
 
     @cached_property
     def _meets(self) -> Float[np.ndarray, "lines lines"]:
-        """Which lines come too near to one another, but about a winch that both have."""
+        """Lines that come too near to one another, but about a winch that both have."""
         constraints, graph = self.proposals.bench.constraints, self.proposals.graph
         near = _MEETS * constraints.cable_gap
         fine = [resample(line.points[int(graph.world[line.place]) :], max(near, 1e-3)) for line in self.lines]

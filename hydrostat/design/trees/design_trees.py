@@ -22,15 +22,16 @@ from hydrostat.design.muscles.activation import (
 )
 from hydrostat.design.network import DesignStage, Network, TreeTrace, rms_error
 from hydrostat.design.polyline import Route, length, sharpest_turn
-from hydrostat.design.progress import Better, Progress, Watch, silent, unseen
 from hydrostat.design.region import body_region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 from hydrostat.design.trees.lead_ways import lead_ways
 from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
 from hydrostat.design.uncertainty import BuildTolerances
+from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import IKOptions, IKResult, solve_ik
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import Cable, Mount, PoseTarget, Robot, Winch
 from hydrostat.simulation import BodyPhysics, Simulation
 
@@ -61,7 +62,7 @@ def propose_trees(
     No pose is solved, so it takes a fraction of a second; what the network reaches is for others to find out. `body` is
     the physics of the body, if it is made already. Raises InputError as `design_trees` does.
     """
-    found = _TreeDesign(robot, request, silent, unseen, body or BodyPhysics(robot)).proposed(tuple(activations))
+    found = _TreeDesign(robot, request, no_progress, unseen, body or BodyPhysics(robot)).proposed(tuple(activations))
     return None if found is None else found[1]
 
 

@@ -29,7 +29,7 @@ class LeadWays:
     region: Region  # that the runs keep to
 
     def outside(self, place: int) -> bool:
-        """Whether a point is in the world."""
+        """True if a point is in the world."""
         return place >= self.within
 
     def door(self, point: Vector) -> int:

@@ -8,7 +8,7 @@ from typing import Self
 
 from hydrostat.errors import InputError
 
-Tell = Callable[[int, float], None]
+SearchProgress = Callable[[int, float], None]
 """Called with the steps tried so far and the rms error of the best that is known [m]."""
 
 
@@ -17,10 +17,10 @@ class SearchBudget:
     """Deadline of a search, and the callback for its progress; an exception of `tell` ends the search."""
 
     deadline: float = inf  # deadline on the clock of `time.monotonic` [s]
-    tell: Tell | None = None
+    tell: SearchProgress | None = None
 
     @classmethod
-    def of(cls, seconds: float | None, tell: Tell | None) -> Self:
+    def of(cls, seconds: float | None, tell: SearchProgress | None) -> Self:
         """Patience for so many seconds from now, without end if that is None (InputError: not above 0)."""
         if tell is not None and not callable(tell):
             raise InputError(f"progress must be a function that is called with a step and an error, not {tell!r:.60}")

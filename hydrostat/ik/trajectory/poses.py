@@ -1,14 +1,12 @@
 """`follow`: the poses that a robot takes one after another, on one branch as long as there is one."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.ik.trajectory.timed_path import Samples
+from hydrostat.progress import Progress
 from hydrostat.simulation import Equilibrium, Simulation, largest_distance
-
-Tell = Callable[[str, int, int], None]  # is told the stage, how much of it is done, and how much there is
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +24,7 @@ def follow(
     contractions: Samples,
     *,
     jump: float,
-    tell: Tell | None = None,
+    progress: Progress | None = None,
 ) -> tuple[tuple[Equilibrium, ...], tuple[BranchJump, ...]]:
     """Equilibria at contractions [m] in time [s], each continued from the one before, and where they snap (E20).
 
@@ -49,8 +47,8 @@ def follow(
         if distance > jump:
             snaps.append(BranchJump(time=float(time), distance=distance))
         poses.append(pose.without_factors())
-        if tell is not None:
-            tell("following the path", index + 1, len(times))
+        if progress is not None:
+            progress("following the path", index + 1, len(times))
     return (*poses[:-1], pose), tuple(snaps)
 
 

@@ -14,9 +14,10 @@ from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.search.problem import IKOptions
 from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes, check_given
-from hydrostat.ik.trajectory.poses import Tell, follow
+from hydrostat.ik.trajectory.poses import follow
 from hydrostat.ik.trajectory.timed_path import ByWinch, MotionLimits, StraightCourse, TimedPath, earliest, linear
 from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory, legs_of, path_deviation
+from hydrostat.progress import Progress
 from hydrostat.simulation import Equilibrium, Simulation
 
 
@@ -53,7 +54,7 @@ def solve_ik_trajectory(
     loop: bool = False,
     hold: float = 0.0,
     options: TrajectoryOptions | None = None,
-    tell: Tell | None = None,
+    progress: Progress | None = None,
 ) -> Trajectory:
     """From a pose through keyframes, each found from the one before, so that the branch is kept.
 
@@ -75,7 +76,7 @@ def solve_ik_trajectory(
         loop: go back to the start at the end.
         hold: time in each keyframe but the last [s].
         options: samples, and how keyframes are searched for.
-        tell: is told how far the work is.
+        progress: callback for progress.
 
     Raises:
         InputError: keyframes, limits or options that do not fit, a given pose of another robot or out of the limits,
@@ -107,13 +108,13 @@ def solve_ik_trajectory(
         jump=near,
         knots=chosen.knots if kind is PathKind.STRAIGHT else 0,
     )
-    found = _find(search, frames, begin, tell)
+    found = _find(search, frames, begin, progress)
     course, arrivals = _course(kind, begin, found, pace, hold, 1 / chosen.rate)
     fastest, hardest = course.peaks()
     times, samples = _sample_times(course.times, chosen.rate)
     contractions, speeds, accelerations = course.at(times)
     contractions[samples] = _exact(begin, found, hold)  # as they were found, without rounding
-    poses, snaps = follow(simulation, begin, times, contractions, jump=near, tell=tell)
+    poses, snaps = follow(simulation, begin, times, contractions, jump=near, progress=progress)
     poses = (*poses[:-1], poses[-1].without_factors())
     return Trajectory(
         path=kind,
@@ -159,12 +160,12 @@ def _check(
         raise InputError(f"knots must be 1 or more and jump above 0, not {options.knots} and {options.jump:g}")
 
 
-def _find(search: KeySearch, frames: list[Keyframe], begin: Equilibrium, tell: Tell | None) -> list[Found]:
+def _find(search: KeySearch, frames: list[Keyframe], begin: Equilibrium, progress: Progress | None) -> list[Found]:
     found: list[Found] = []
     for frame in frames:
         found.append(search.find(frame, found[-1].pose if found else begin))
-        if tell is not None:
-            tell("solving keyframes", len(found), len(frames))
+        if progress is not None:
+            progress("solving keyframes", len(found), len(frames))
     return found
 
 

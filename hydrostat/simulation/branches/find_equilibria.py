@@ -3,7 +3,6 @@
 # Of the thesis (docs/thesis.md): E20
 
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -12,6 +11,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.given import check_type
+from hydrostat.progress import Progress
 from hydrostat.simulation.branches.loading_paths import Approach, follow_approach, loading_paths_to
 from hydrostat.simulation.equilibrium import Equilibrium, largest_distance
 from hydrostat.simulation.simulation import Contractions, Simulation
@@ -105,7 +105,7 @@ def find_equilibria(
     count: int = 16,
     seed: int = 0,
     tolerance: float = 1e-4,
-    progress: Callable[[str, int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> Multistability:
     """Solve the same contractions from different starts, and return the distinct poses.
 
@@ -117,7 +117,7 @@ def find_equilibria(
         count: number of loading paths.
         seed: random seed of the loading paths.
         tolerance: poses whose nodes are all within this share of the body's size are one.
-        progress: told the stage, how many ways are done, and how many there are.
+        progress: callback for progress.
 
     Raises:
         InputError: contractions that do not fit the robot, or no ways.

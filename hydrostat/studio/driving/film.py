@@ -1,6 +1,5 @@
 """`Recorder`: films of the timeline, each made by `record_film` in a process of its own."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from math import ceil
@@ -10,6 +9,7 @@ from tempfile import TemporaryDirectory
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
 from hydrostat.plot import Frame, find_ffmpeg, save_gif, save_glb, save_mp4, upright
+from hydrostat.progress import Progress
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Topic
@@ -63,13 +63,13 @@ def record_film(report: Report, robot: Robot, timeline: Timeline, kind: FilmKind
         if kind is FilmKind.GLB:
             save_glb(robot, frames, path, step=step)
         elif kind is FilmKind.GIF:
-            save_gif(robot, frames, path, step=step, width=WIDTH, tell=report.progress)
+            save_gif(robot, frames, path, step=step, width=WIDTH, progress=report.progress)
         else:
-            save_mp4(robot, frames, path, step=step, width=WIDTH, tell=report.progress)
+            save_mp4(robot, frames, path, step=step, width=WIDTH, progress=report.progress)
         return path.read_bytes()
 
 
-def film_frames(robot: Robot, timeline: Timeline, step: float, tell: Callable[[str, int, int], None]) -> list[Frame]:
+def film_frames(robot: Robot, timeline: Timeline, step: float, progress: Progress) -> list[Frame]:
     """The robot at equal times [s], each frame an equilibrium; one that has none shows the one before."""
     simulation, profile = Simulation(robot), timeline.profile([winch.name for winch in robot.winches])
     count = max(2, ceil(timeline.seconds / step - 1e-9) + 1)
@@ -81,7 +81,7 @@ def film_frames(robot: Robot, timeline: Timeline, step: float, tell: Callable[[s
         elif last is None:
             raise InputError("no equilibrium found at the start of the timeline. Start it closer to rest")
         frames.append(Frame.of(last))
-        tell("solving", number + 1, count)
+        progress("solving", number + 1, count)
     return frames
 
 

@@ -63,7 +63,7 @@ def asked_of_trees(robot: Robot, wishes: Wishes) -> DesignRequest:
         method=DesignMethod.TREES,
         constraints=wishes.constraints.restrict_to_trees(),
         options=replace(wishes.tree_options, shares=SHARES),
-    ).fitted(robot)
+    ).fit_robot(robot)
 
 
 def propose_network(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal:

@@ -8,8 +8,9 @@ from test_design_routes import DOWN, SMALL, UP, bare
 from test_judge import POSES, shifted
 
 from hydrostat.design import DesignStage, RouteTrace, design_cables
-from hydrostat.design.progress import Better
 from hydrostat.design.trees.design_trees import judge
+from hydrostat.design.watch import Better
+from hydrostat.progress import no_progress
 
 
 def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) -> None:
@@ -46,7 +47,7 @@ def test_the_watched_may_stop_the_search(unchecked: None) -> None:
 def test_judges_tell_what_is_better_and_bears_it(tension: float) -> None:
     robots = [shifted(-0.008), strip_robot(columns=10, rows=3), shifted(0.006)]
     told: list[DesignStage] = []
-    judge(robots, POSES, tension=tension, progress=lambda *_: None, watch=told.append)
+    judge(robots, POSES, tension=tension, progress=no_progress, watch=told.append)
     errors = [stage.error for stage in told]
     assert errors == sorted(set(errors), reverse=True)
     assert bool(told) is (tension == 100.0)

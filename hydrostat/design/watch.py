@@ -1,15 +1,8 @@
-"""`Progress` and `Watch`: callbacks that report the progress of a search, and the networks found on the way."""
+"""`Watch`: callback that reports the networks found in a search."""
 
 from collections.abc import Callable
 
 from hydrostat.design.network import DesignStage
-
-Progress = Callable[[str, int, int], None]  # told the stage, how much of it is done, and how much there is
-
-
-def silent(stage: str, done: int, total: int) -> None:
-    """No progress wanted."""
-
 
 Watch = Callable[[DesignStage], None]  # told a network on the way, each better than the ones told before
 
