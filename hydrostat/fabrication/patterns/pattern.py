@@ -23,16 +23,16 @@ from hydrostat.robot import Face, Robot, sewn_sides
 class Pattern:
     """A sheet of panels at true scale, its lower left corner at (0, 0)."""
 
-    name: str  # of the robot
+    name: str  # name of the robot
     panels: tuple[Panel, ...]  # pieces of cloth: the front, the back, and the pieces of the gusset if there is one
-    shapes: tuple[Shape, ...]  # what lies on the sheet beside the panels: the bar of 100 mm
-    width: float  # of the sheet [mm]
-    height: float  # of the sheet [mm]
-    stitches: tuple[CableStitches, ...] = ()  # how each cable is sewn, in cable order
+    shapes: tuple[Shape, ...]  # shapes on the sheet next to the panels: the bar of 100 mm
+    width: float  # width of the sheet [mm]
+    height: float  # height of the sheet [mm]
+    stitches: tuple[CableStitches, ...] = ()  # stitches of each cable, in cable order
     # the slit in the back, seen from the front, from the robot's origin; None if there is none
     opening: Opening | None = None
-    problems: tuple[str, ...] = ()  # what cannot be cut honestly, a line each; only with `force`
-    warnings: tuple[str, ...] = ()  # what to mind, a line each
+    problems: tuple[str, ...] = ()  # reasons why it cannot be cut well, one line each; only with `force`
+    warnings: tuple[str, ...] = ()  # warnings, one line each
 
     def panel(self, name: str) -> Panel:
         """The panel of this name (InputError: there is none)."""
@@ -185,7 +185,7 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
 
 
 def _unheld(robot: Robot) -> tuple[str, ...]:
-    """A sentence if cables shall run where no cloth holds them."""
+    """Return a problem if cables would run without cloth to hold them."""
     if robot.face is not Face.MIDDLE or not robot.cables:
         return ()
     return (
