@@ -270,7 +270,7 @@ def _sheath_notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
 
 
 def check_sheaths(table: Table[SheathRow], simulation: Simulation, *, outside: Mapping[int, float]) -> Check:
-    """Check that the tubes of the list cover the sheathed parts of the simulated cables, besides tube `outside` [mm]."""
+    """Check that the tubes of the list cover the sheathed parts of simulated cables, besides tube `outside` [mm]."""
     robot = simulation.robot
     listed = np.array([-outside.get(index, 0.0) for index in range(len(robot.cables))])
     for row in table.rows:

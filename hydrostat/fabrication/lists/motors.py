@@ -98,7 +98,7 @@ def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
 
 
 def size_winches(robot: Robot, demand: Demand, motor: Motor) -> tuple[WinchSizing, ...]:
-    """Compute the load of each winch on a motor (InputError: demand of another robot, a motor without torque or speed)."""
+    """Compute each winch's load on a motor (InputError: demand of another robot, a motor without torque or speed)."""
     if len(demand.torques) != len(robot.winches) or len(demand.tensions) != len(robot.cables):
         raise InputError(
             f"the demand is of {len(demand.torques)} winches and {len(demand.tensions)} cables, the robot has "

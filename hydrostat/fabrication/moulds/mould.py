@@ -39,7 +39,7 @@ class Mould:
     # halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across, y upwards as
     # it stands, z along the pull, parted at z = 0.
     assembly: PartAssembly
-    # volumes of the parts of the block [mm^3], each measured on its own solid. Printed: upper + lower + cavity + sprue + vents +
+    # volumes in the block [mm^3], each measured on its own solid. Printed: upper + lower + cavity + sprue + vents +
     # bolts + slots + keys = box; "cutting" is what upper and lower lose to holes for dowels when they are cut to fit
     # the bed. Silicone: cavity + sprue + silicone_lower + silicone_upper = box; "cutting" is what the positive loses.
     # Both: cavity = body - dents - pockets.
