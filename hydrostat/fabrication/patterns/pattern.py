@@ -122,7 +122,7 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
 
 
 def pattern_problems(robot: Robot, options: PatternOptions) -> tuple[str, ...]:
-    """Return the reasons why a flat body cannot be cut and sewn as drawn, one line each (InputError: the body is not flat)."""
+    """Return the reasons why a flat body cannot be cut and sewn, one line each (InputError: it is not flat)."""
     skin = flat_skin(robot.body, options)
     return _problems(robot, skin, find_pinholes(robot, skin.seam, options), options)
 
