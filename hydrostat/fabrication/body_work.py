@@ -67,7 +67,7 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
 
 
 def _inside(robot: Robot) -> tuple[str, ...]:
-    """A sentence if a flat robot says that its cables run on its faces, and is cast."""
+    """Return a warning if a flat robot is cast but has its cables on its faces."""
     if robot.face in (None, Face.MIDDLE) or not robot.cables:
         return ()
     return (
@@ -77,7 +77,7 @@ def _inside(robot: Robot) -> tuple[str, ...]:
 
 
 def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
-    """A sentence if a mould takes more printing than a person has in mind."""
+    """Return a warning if a mold takes much printing."""
     pieces, mass = sum(part.count for part in printed), sum(part.count * part.mass for part in printed)
     if pieces <= MANY_PIECES and mass <= MUCH_PLASTIC:
         return ()
@@ -160,7 +160,7 @@ def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
 
 
 def stuffing_problems(robot: Robot) -> tuple[str, ...]:
-    """Why what is built would be another robot than was simulated; nothing is said of a material given by numbers."""
+    """Return a problem if the body's material is no stuffing; none for a material given by numbers."""
     name = robot.body.material.name
     if not name or name in STUFFINGS:
         return ()

@@ -41,7 +41,7 @@ def write_kit(
 
 
 def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Progress | None = None) -> Kit:
-    """Make the kit of a robot; the same robot and options give the same bytes. `progress` is told the stages.
+    """Make the kit of a robot; the same robot and options give the same bytes. `progress` is called with each stage.
 
     Raises:
         UnbuildableError: the robot cannot be built well (unless `force`).

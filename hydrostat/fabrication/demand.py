@@ -24,12 +24,12 @@ FAR = 0.1
 class Demand:
     """The largest loads in all poses that were solved."""
 
-    poses: tuple[str, ...]  # what was solved, in words
+    poses: tuple[str, ...]  # solved poses, in words
     tensions: Vector  # largest of each cable [N], in cable order
     # largest on the shaft of each winch [N m], in winch order: sum of tension times radius of the spool
     torques: Vector
     taken: Float[np.ndarray, "winches 2"]  # least and most cable that each winch takes in [m], (winches, 2)
-    missed: tuple[str, ...] = ()  # what could not be solved, in words
+    missed: tuple[str, ...] = ()  # poses that could not be solved, in words
     far: tuple[str, ...] = ()  # sentences on poses that are out of reach
 
 

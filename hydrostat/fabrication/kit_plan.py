@@ -20,7 +20,7 @@ from hydrostat.robot import Robot
 class Cloth:
     """Cloth that the pattern of a plush robot takes."""
 
-    felt: float  # of all panels [mm^2]
+    felt: float  # area of all panels [mm^2]
     seam: float  # length of all seams [mm]
     zipper: float = 0.0  # length of the opening [mm]; 0 for none
 
@@ -29,9 +29,9 @@ class Cloth:
 class FoamNeeds:
     """Foam, silicone and hardware that casting the body takes (InputError: a count below 0)."""
 
-    volume: float  # of the cavity [mm^3]
-    part_a: float  # of the foam [g]
-    part_b: float  # of the foam [g]
+    volume: float  # volume of the cavity [mm^3]
+    part_a: float  # mass of part A of the foam [g]
+    part_b: float  # mass of part B of the foam [g]
     silicone: float = 0.0  # for the mould [mm^3]; 0 for a printed one
     silicone_mass: float = 0.0  # [g]
     material: str = ""  # name of the foam; empty: that of the robot's body
@@ -51,17 +51,17 @@ class BodyWork:
     files: Mapping[str, bytes] = field(default_factory=dict)  # content by path in the kit
     printed: tuple[Printed, ...] = ()  # pieces of a mould, or the positive for a silicone one
     spare: tuple[Printed, ...] = ()  # pieces that are printed only if the body is to be cast in another way
-    assemblies: tuple[PartAssembly, ...] = ()  # of the mould
+    assemblies: tuple[PartAssembly, ...] = ()  # assemblies of the mold
     holes: int = 0  # pinholes in the cloth, each for a grommet
-    stitches: tuple[CableStitches, ...] = ()  # of each cable of a plush robot
-    gusset: bool = False  # whether strips between front and back make a plush body thick
-    cloth: Cloth | None = None  # of a plush robot
-    foam: FoamNeeds | None = None  # of a robot of foam
-    mould: Mould | None = None  # of a robot of foam
+    stitches: tuple[CableStitches, ...] = ()  # stitches of each cable of a plush robot
+    gusset: bool = False  # True if strips between front and back make a plush body thick
+    cloth: Cloth | None = None  # cloth of a plush robot
+    foam: FoamNeeds | None = None  # foam of a foam robot
+    mould: Mould | None = None  # mold of a foam robot
     summary: tuple[str, ...] = ()  # a line for each result
     problems: tuple[str, ...] = ()  # why it cannot be built well
     warnings: tuple[str, ...] = ()  # sentences on what may fail later
-    checks: tuple[Check, ...] = ()  # that it is true to the simulation
+    checks: tuple[Check, ...] = ()  # comparisons with the simulation
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -72,12 +72,12 @@ class KitPlan:
         InputError: a length of a cable that the robot does not have, or one below 0.
     """
 
-    drawn: Robot  # as it was given
-    robot: Robot  # as it is built: of pairs both cables
+    drawn: Robot  # robot as it was given
+    robot: Robot  # robot as it is built: both cables of each pair
     options: KitOptions  # choices of the kit
     demand: Demand  # loads of its poses
     rigid: RigidParts  # winches, base, seat, stoppers
-    work: BodyWork  # of its soft body
+    work: BodyWork  # work on its soft body
 
     def __post_init__(self) -> None:
         for name in ("leads", "seats", "outside"):
@@ -125,6 +125,6 @@ class KitPlan:
 class KitFindings:
     """Results of the checks of a kit."""
 
-    checks: tuple[Check, ...] = ()  # of the kit on itself
+    checks: tuple[Check, ...] = ()  # checks of the kit on itself
     problems: tuple[str, ...] = ()  # why the robot cannot be built well, each once
     warnings: tuple[str, ...] = ()  # sentences on what may fail later

@@ -1,4 +1,4 @@
-"""`find_refusals`: why a kit is refused, as far as it is known before anything is made."""
+"""`find_refusals`: problems that reject a kit and are known before anything is made."""
 
 import numpy as np
 
@@ -15,11 +15,11 @@ from hydrostat.robot import Mount, Robot, sewn_robot
 
 
 def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOptions | None = None) -> tuple[str, ...]:
-    """Sentences with which `build_kit` refuses a robot.
+    """Return the problems for which `build_kit` rejects a robot.
 
-    They tell of units that do not fit, holes that cannot be cut, sheaths too near the skin, and lines that break.
-    Without a demand the motor is the weakest of the table and no line breaks: what is said then holds whatever the
-    poses ask. The demand is that of the robot as it is drawn, or as its cables are sewn in pairs. `find_sewing` judges
+    They cover units that do not fit, holes that cannot be cut, sheaths too near the skin, and lines that break.
+    Without a demand the motor is the weakest of the table and no line breaks: these problems then hold for all
+    poses. The demand is that of the robot as it is drawn, or as its cables are sewn in pairs. `find_sewing` judges
     the skin of bodies in space. Moulds, pieces too large for the printer and the checks of finished files are judged
     only as the kit is made. Raises InputError: an unknown motor, a demand of another robot.
     """

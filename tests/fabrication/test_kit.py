@@ -175,7 +175,7 @@ def test_a_stuffed_body_in_space_is_sewn_of_patches():
 def test_a_body_of_foam_is_not_stuffed_unless_forced():
     """Oracle: the fish tail was simulated as a castable foam."""
     robot = hs.load_robot(gallery_folder("fish_tail"))
-    with pytest.raises(UnbuildableError, match='simulated as "flexfoam-it x", which is not stuffed'):
+    with pytest.raises(UnbuildableError, match='simulated as "flexfoam-it x", which is no stuffing for cloth'):
         build_kit(robot, options=KitOptions(method=Method.PLUSH))
 
 

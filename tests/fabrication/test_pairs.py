@@ -226,7 +226,7 @@ def test_the_middle_is_for_bodies_that_are_cast() -> None:
         for face in (Face.MIDDLE, Face.PAIRS)
     }
     assert not any("cast body" in warning for warning in told[Face.MIDDLE])
-    assert sum("a cast body has them in the middle" in warning for warning in told[Face.PAIRS]) == 1
+    assert sum("in a cast body they run in the middle" in warning for warning in told[Face.PAIRS]) == 1
 
 
 def _foam(robot: Robot) -> Robot:

@@ -10,7 +10,7 @@ from hydrostat.robot import Robot
 LEFT_OVER = 1e-6  # share of the block whose whereabouts may be unknown: what booleans round
 _ROUNDING = 1e-9  # less than this share is the rounding of sums
 MESH = 0.05  # share of its volume by which the body that is cast may differ from the mesh that was simulated
-_VOIDS = ("sprue", "vents", "bolts", "slots", "keys")  # what of a printed block is neither plastic nor body
+_VOIDS = ("sprue", "vents", "bolts", "slots", "keys")  # openings in a printed block: neither plastic nor body
 
 _POURS = ("silicone_lower", "silicone_upper")
 

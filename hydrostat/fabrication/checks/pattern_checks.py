@@ -18,11 +18,11 @@ from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart
 from hydrostat.robot import Mount, Robot, sewn_sides
 
-SCALE = 0.1  # how much the bar of 100 mm may be too long or too short [mm]
+SCALE = 0.1  # maximum error of the bar of 100 mm [mm]
 
 _SVG = "{http://www.w3.org/2000/svg}"
 
-_MILLIMETRES = 4  # how a DXF says that it counts millimetres ($INSUNITS)
+_MILLIMETRES = 4  # value of $INSUNITS in a DXF in millimetres
 
 
 class SeenSvg:
@@ -125,7 +125,7 @@ def _bar(svg: SeenSvg, dxf: SeenDxf) -> Check:
     )
 
 
-HOLES = 0.1  # how far a hole may be from where the simulated cable passes [mm]
+HOLES = 0.1  # maximum distance of a hole from the simulated cable [mm]
 
 
 def pattern_checks(

@@ -13,7 +13,7 @@ from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed, loose_edges, number_groups
 from hydrostat.robot import Robot
 
-_ON_BED = 1e-4  # how far from the bed the lowest point may be [mm]
+_ON_BED = 1e-4  # maximum distance of the lowest point from the bed [mm]
 _CRUMB = 1e-3  # volume below which a body of its own is no piece of a part, only a leftover of rounding [mm^3]
 _CHANGE = 1e-4  # by how much of itself a volume may change when a part is written
 
@@ -92,7 +92,7 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly])
 
 
 def too_large(printed: Iterable[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:
-    """Why parts do not fit on the bed of the printer [mm], a line each; they may be turned on it, not tilted."""
+    """Return a line for each part that does not fit on the printer's bed [mm]; it may be rotated, not tilted."""
     return tuple(
         f"{part.name} of {sides_text(part.size)} mm does not fit the printer ({sides_text(bed)} mm). Use a "
         "larger printer"
@@ -101,7 +101,7 @@ def too_large(printed: Iterable[Printed], bed: tuple[float, float, float]) -> tu
     )
 
 
-RADIUS = 0.1  # how far the radius at which a cable is wound may be from that of the robot file [mm]
+RADIUS = 0.1  # maximum error of the radius at which a cable is wound [mm]
 
 
 def spool_checks(robot: Robot, units: Iterable[WinchUnit]) -> tuple[Check, ...]:

@@ -19,10 +19,10 @@ class Price:
     """A rough price (InputError: an amount below 0, or a pack of nothing)."""
 
     amount: float  # in its currency, of one unit
-    unit: str = "piece"  # what it is of, such as "m" or "kg"
+    unit: str = "piece"  # unit of the price, such as "m" or "kg"
     pack: float = 1.0  # in how many units it is sold
     month: str = ""  # when it was asked or noted; empty if the source has no date
-    source: str = NO_SOURCE  # where it is from, in words
+    source: str = NO_SOURCE  # source of the price, in words
     currency: str = "USD"  # its code
 
     def __post_init__(self) -> None:
@@ -47,8 +47,8 @@ class Price:
         return self.packs(quantity) * self.pack * self.amount
 
 
-_SHEET = 0.2286 * 0.3048  # of craft felt, 9 by 12 inches [m^2]
-_BAG = 32 * 0.0283495  # of fibre filling, 32 oz [kg]
+_SHEET = 0.2286 * 0.3048  # area of a sheet of craft felt, 9 by 12 inches [m^2]
+_BAG = 32 * 0.0283495  # mass of a bag of fibre filling, 32 oz [kg]
 _ANGLER = 91.44  # line on a spool, 100 yards [m]
 
 _PUPPETS = "a puppet maker's list of costs (The Tucson Puppet Lady)"
@@ -121,14 +121,14 @@ class BillGroup(StrEnum):
 class Item:
     """Item of the bill."""
 
-    group: BillGroup  # that its costs are added to
+    group: BillGroup  # group that its costs are added to
     what: str  # is bought
-    specification: str  # which kind
+    specification: str  # kind or size
     quantity: float  # in the unit of its price
-    price: Price  # of one unit
-    mass: float | None = None  # of all of it [g]; None where it is not known
-    is_poured: bool = False  # whether it is foam or silicone of the body
-    is_named_by_kind: bool = False  # whether the sheet names it by the beginning of its specification
+    price: Price  # price of one unit
+    mass: float | None = None  # total mass [g]; None if it is unknown
+    is_poured: bool = False  # True for foam or silicone of the body
+    is_named_by_kind: bool = False  # True if the sheet names it by the beginning of its specification
 
     @property
     def cost(self) -> float:
@@ -160,8 +160,8 @@ class BillRow:
     cost_used: Annotated[float, number_column("used up", "USD", decimals=2)]
     cost_packs: Annotated[float, number_column("in whole packs", "USD", decimals=2)]
     source: Annotated[str, text_column("source of the price")] = ""
-    short_name: str  # what the sheet calls it
-    is_total: bool = False  # whether it adds others up
+    short_name: str  # name on the sheet
+    is_total: bool = False  # True for a sum of other rows
 
 
 def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table[BillRow]:

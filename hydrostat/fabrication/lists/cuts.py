@@ -29,7 +29,7 @@ ALLOWED = 0.1  # lengths agree with the simulation within this [mm]
 class CableCut:
     """One cable, all in millimetres."""
 
-    number: int  # of the cable, from 1
+    number: int  # number of the cable, from 1
     winch: str  # its name
     body: float  # rest length from the place of the winch to the stopper, sheaths included
     slack: float  # taken in before it is taut
@@ -167,7 +167,7 @@ class SheathCut:
     start: int | None  # index of the cable point where it begins; None: at the base with the motors
     end: int  # index of the cable point where it ends
     run: float  # length of the cable in it
-    seat: float  # what is pushed into the housing or holder, at all of its ends
+    seat: float  # length that is pushed into the housing or holder, at all of its ends
 
     @property
     def length(self) -> float:
@@ -219,7 +219,7 @@ class SheathRow:
     run: Annotated[float, number_column("run", "mm")]
     seat: Annotated[float, number_column("seat", "mm")]
     length: Annotated[float, number_column("cut to", "mm")]
-    number: int | None = None  # of its cable, from 1; None for the total
+    number: int | None = None  # number of its cable, from 1; None for the total
 
 
 def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube: float) -> Table[SheathRow]:
@@ -270,7 +270,7 @@ def _sheath_notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
 
 
 def check_sheaths(table: Table[SheathRow], simulation: Simulation, *, outside: Mapping[int, float]) -> Check:
-    """Check whether tubes of the list cover what the simulation leaves out of cables, beside tube `outside` [mm]."""
+    """Check that the tubes of the list cover the sheathed parts of simulated cables, besides tube `outside` [mm]."""
     robot = simulation.robot
     listed = np.array([-outside.get(index, 0.0) for index in range(len(robot.cables))])
     for row in table.rows:

@@ -1,4 +1,4 @@
-"""`FishingLine`: braided fishing lines, and whether they bear what the poses ask of the cables."""
+"""`FishingLine`: braided fishing lines, and the check that they withstand the cable tensions."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -46,7 +46,7 @@ class FishingLine:
 
     @property
     def working_load(self) -> float:
-        """Load that it bears for long [N]."""
+        """Continuous working load [N]."""
         return SAFETY * self.at_knot
 
 
@@ -90,16 +90,16 @@ class LineRow:
 
 @dataclass(frozen=True, kw_only=True)
 class LineCheck:
-    """Verdict on whether one line bears all cables."""
+    """Verdict on one line for all cables."""
 
-    line: FishingLine  # what they are made of
+    line: FishingLine  # line of the cables
     table: Table[LineRow]  # strength of each cable's line against its tension
     problems: tuple[str, ...]  # cables that would break
     warnings: tuple[str, ...]  # cables above the working load
 
 
 def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float | None = None) -> LineCheck:
-    """Check whether a line, and its stopper, which slips at `hold` [N], bear the largest tension of each cable [N]."""
+    """Check that a line and its stopper, which slips at `hold` [N], withstand the largest tension of each cable [N]."""
     if len(tensions) != len(robot.cables):
         raise InputError(f"{len(tensions)} tensions given for {len(robot.cables)} cables")
     problems: list[str] = []

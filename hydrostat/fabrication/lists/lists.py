@@ -44,16 +44,16 @@ _MOULD_COST = "For hands of foam the thesis gives about 100 USD for a silicone m
 class Lists:
     """The lists of a robot."""
 
-    bill: Table[BillRow]  # what to buy
+    bill: Table[BillRow]  # bill of materials
     cables: Table[CableRow]  # to cut
     tubes: Table[SheathRow]  # to cut
-    stitching: Stitching | None  # where the cables are sewn; None where it is not known
-    strength: Table[LineRow]  # of the line
+    stitching: Stitching | None  # stitching of the cables; None if it is unknown
+    strength: Table[LineRow]  # strength of the line
     motors: Table[MotorRow]  # and what the winches ask of them
-    power: PowerPlan | None  # what feeds the motors; None without motors
+    power: PowerPlan | None  # power supply of the motors; None without motors
     problems: tuple[str, ...] = ()  # why the robot cannot be built well
-    warnings: tuple[str, ...] = ()  # what a person should mind
-    checks: tuple[Check, ...] = ()  # that the lists are true to the simulation
+    warnings: tuple[str, ...] = ()  # warnings for the builder
+    checks: tuple[Check, ...] = ()  # comparisons of the lists with the simulation
 
     @property
     def tables(self) -> tuple[Table, ...]:

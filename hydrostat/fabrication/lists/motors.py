@@ -20,13 +20,13 @@ class WinchSizing:
     """Demand of one winch on its motor, and what it gets."""
 
     winch: str  # its name
-    cables: int  # how many it takes in
+    cables: int  # number of its cables
     tension: float  # largest of one of its cables [N]
     torque: float  # largest on its shaft [N mm]
-    radius: float  # of its spool, where its travel is measured [mm]
-    turns: float  # of the spool from all let out to all taken in
+    radius: float  # radius of its spool, where its travel is measured [mm]
+    turns: float  # turns of the spool over its full travel
     travel: float  # the most cable it takes in from rest [mm]
-    motor: Motor  # that turns it
+    motor: Motor  # motor that turns it
 
     @property
     def needed(self) -> float:
@@ -98,7 +98,7 @@ def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
 
 
 def size_winches(robot: Robot, demand: Demand, motor: Motor) -> tuple[WinchSizing, ...]:
-    """Find what each winch asks of a motor (InputError: demand of another robot, a motor without torque or speed)."""
+    """Compute each winch's load on a motor (InputError: demand of another robot, a motor without torque or speed)."""
     if len(demand.torques) != len(robot.winches) or len(demand.tensions) != len(robot.cables):
         raise InputError(
             f"the demand is of {len(demand.torques)} winches and {len(demand.tensions)} cables, the robot has "
@@ -189,7 +189,7 @@ SPARE = 1.5
 """A supply gives so many times the current of all motors at their largest torque at once: bodies are stiffer than
 assumed, and supplies sag at their limit."""
 
-SUPPLIES = (2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0)  # what is sold [A]
+SUPPLIES = (2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0)  # currents of available supplies [A]
 FUSES = (1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0)  # blade fuses, ISO 8820-3 [A]
 WIRES = ((3.0, 0.5, 20), (7.5, 0.75, 18), (10.0, 1.0, 17), (15.0, 1.5, 16), (25.0, 2.5, 14), (40.0, 6.0, 10))
 """Fuse [A] at most, copper [mm^2], gauge (AWG) at least: short leads in free air. Our own table, thicker than what
@@ -250,7 +250,7 @@ class PowerPlan:
 
     @property
     def feeds(self) -> int:
-        """In how many places a chain of servos is fed, so that no plug carries more than it bears."""
+        """Number of feeds of a chain of servos that keeps each plug within its rated current."""
         return max(1, math.ceil(min(self.fuse, len(self.winches) * self.motor.stall_current) / PLUG))
 
     @property

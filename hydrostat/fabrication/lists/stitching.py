@@ -202,7 +202,7 @@ class _CablePoint:
     at: tuple[float, ...]
     gap: float | None  # from the point before it
     along: float  # from the winch
-    beside: tuple[bool, ...]  # whether the segments at the point are bare
+    beside: tuple[bool, ...]  # True for each segment at the point that is bare
 
 
 def _cable_points(robot: Robot) -> Iterator[_CablePoint]:
@@ -230,7 +230,7 @@ def _under_skin(body: Body, points: Points) -> tuple[Vector, Points]:
 
 
 def _point_access(bare: tuple[bool, ...], depth: float) -> PointAccess:
-    """Position of a point with such segments beside it, so deep under the skin [mm]."""
+    """Position of a point with such segments next to it, so deep under the skin [mm]."""
     if depth < 0:
         return PointAccess.OUTSIDE
     if not all(bare):

@@ -28,8 +28,8 @@ class Align(StrEnum):
 class Column:
     """Format of one field of a row; it stands in the annotation of the field."""
 
-    title: str  # what it holds
-    unit: str = ""  # of its numbers; empty for none
+    title: str  # title of the column
+    unit: str = ""  # unit of its numbers; empty for none
     decimals: int = 1  # to which its numbers are rounded
     align: Align = Align.RIGHT  # left for text, right for numbers
 
@@ -77,7 +77,7 @@ class Table(Generic[Row]):
     """Rows of one type (InputError: a row of another type, or a number that is not finite)."""
 
     name: str  # stem of its file
-    title: str  # what a person calls it
+    title: str  # title for a person
     row: type[Row]  # dataclass of its rows, with a `Column` in the annotation of each printed field
     rows: tuple[Row, ...]  # in the order in which they are printed
     notes: tuple[str, ...] = ()  # sentences that belong below it

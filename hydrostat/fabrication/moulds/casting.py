@@ -6,9 +6,9 @@ from hydrostat.robot import MATERIALS, Material
 
 SPARE = 0.10  # mixed more than is needed: some stays in the cup and in the sprue
 _LIQUID_FOAM = 1.1e3  # density of mixed polyurethane before it rises [kg/m^3]: assumed
-SILICONE_PRICE = 40.0  # of a kilogram of Mold Max 30 [USD]: measured on none, check yours
+SILICONE_PRICE = 40.0  # price of a kilogram of Mold Max 30 [USD]: not measured, check yours
 _EQUAL = ("flexfoam-it", "ecoflex", "dragon skin")  # beginnings of names of castable materials that come as two parts
-_PLATINUM = ("ecoflex", "dragon skin")  # of these, those that are cured by platinum
+_PLATINUM = ("ecoflex", "dragon skin")  # silicones that are cured by platinum
 
 # R52, N2, N5
 THESIS = "thesis on cable-driven soft robots"
@@ -18,12 +18,12 @@ THESIS = "thesis on cable-driven soft robots"
 class Mix:
     """Two parts that are mixed and poured; masses with what is spare."""
 
-    material: str  # what it is
+    material: str  # name of the material
     volume: float  # to fill [mm^3], without what is spare
     density: float  # once cured [g/mm^3]
     part_a: float  # mass of the first part [g]
     part_b: float  # mass of the second part [g]
-    ratio: str  # of the parts, in words, with its source
+    ratio: str  # mix ratio of the parts, in words, with its source
 
     @property
     def mass(self) -> float:
@@ -35,13 +35,13 @@ class Mix:
 class Casting:
     """All that is poured."""
 
-    body: Mix  # what the body is cast of
+    body: Mix  # casting material of the body
     expansion: float  # volume of the foam over that of the liquid; 1 for what does not rise
-    silicone: tuple[Mix, ...]  # of a mould of silicone, the first pour and the second; none if halves are printed
+    silicone: tuple[Mix, ...]  # silicone of the first and the second pour; empty for printed halves
     silicone_cost: float  # rough price of both pours [USD]
-    times: tuple[tuple[str, str], ...]  # what waits how long, as (what, how long), with sources
-    release: str  # what keeps the cast from sticking
-    notes: tuple[str, ...]  # where facts come from, and what is not known
+    times: tuple[tuple[str, str], ...]  # waiting times, as (process, time), with sources
+    release: str  # release agent
+    notes: tuple[str, ...]  # sources of the figures, and unknowns
 
 
 def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -> tuple[Casting, tuple[str, ...]]:

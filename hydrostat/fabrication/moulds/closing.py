@@ -33,8 +33,8 @@ Spot = tuple[float, float]  # a place in the parting plane [mm]
 class MouldBlock(Cuboid):
     """Outside of a mould [mm]."""
 
-    x_cuts: tuple[float, ...] = ()  # where it is cut across x, to fit the printer
-    y_cuts: tuple[float, ...] = ()  # where it is cut across y
+    x_cuts: tuple[float, ...] = ()  # places of cuts across x that make it fit the printer
+    y_cuts: tuple[float, ...] = ()  # places of cuts across y
 
     @property
     def solid(self) -> Manifold:
@@ -50,7 +50,7 @@ class Closing:
     keys: tuple[tuple[Spot, float], ...]
     bolts: tuple[Spot, ...]  # middles of the bolt holes [mm]
     bumps: Manifold  # on the lower half, reaching a little into it
-    sockets: Manifold  # what is taken from the upper half
+    sockets: Manifold  # solid that is removed from the upper half
     holes: Manifold  # all bolt holes
     slots: Manifold  # for a flat tool, in the upper half
 

@@ -13,7 +13,7 @@ from manifold3d import Manifold
 
 from hydrostat.fabrication.solids.printed import root_of, triangles_of
 
-_IN = 1e-6  # how deep under its surface a loop of a solid runs [mm], so that loops of two that touch do not
+_IN = 1e-6  # depth of a solid's loop under its surface [mm], so that loops of two touching solids do not meet
 
 _VIEW = np.array([[0.8017, 0.1409, 0.5809], [-0.2713, 0.9508, 0.1437], [-0.5321, -0.2728, 0.8014]])
 """Directions from which crossings are counted: along no axis, no wall and no pull."""

@@ -33,26 +33,26 @@ class Mould:
     """A mould in two halves; lengths in millimetres."""
 
     kind: MouldKind  # printed halves, or silicone round a printed positive
-    pull: Pull  # how the halves come off, in the coordinates of the robot
-    stance: MouldOrientation  # how it lies in these, and which way is up while it is poured
-    printed: tuple[Printed, ...]  # as they lie on the bed
+    pull: Pull  # directions in which the halves come off, in the coordinates of the robot
+    stance: MouldOrientation  # orientation in these coordinates, and the upward direction for pouring
+    printed: tuple[Printed, ...]  # printed parts, as they lie on the bed
     # halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across, y upwards as
     # it stands, z along the pull, parted at z = 0.
     assembly: PartAssembly
-    # where the block goes [mm^3], each measured on its own solid. Printed: upper + lower + cavity + sprue + vents +
+    # volumes in the block [mm^3], each measured on its own solid. Printed: upper + lower + cavity + sprue + vents +
     # bolts + slots + keys = box; "cutting" is what upper and lower lose to holes for dowels when they are cut to fit
     # the bed. Silicone: cavity + sprue + silicone_lower + silicone_upper = box; "cutting" is what the positive loses.
     # Both: cavity = body - dents - pockets.
     volumes: dict[str, float]
     poured: Manifold  # all that is filled with foam, in coordinates of the mould
     box: tuple[float, float, float]  # sides of the closed mould: across, upwards as it stands, along the pull [mm]
-    bolts: int  # how many M4 bolts hold it; 0 for silicone
-    dowels: int  # how many of 3 mm join pieces
-    vents: int  # how many
-    stands: str  # how it stands when it is poured, in words
+    bolts: int  # number of M4 bolts that hold it; 0 for silicone
+    dowels: int  # number of 3 mm dowels that join pieces
+    vents: int  # number of vents
+    stands: str  # instruction to set it up for pouring
     casting: Casting  # amounts and times
     problems: tuple[str, ...]  # why it cannot be built well
-    warnings: tuple[str, ...]  # what to mind
+    warnings: tuple[str, ...]  # warnings for the builder
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

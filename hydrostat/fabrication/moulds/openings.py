@@ -19,7 +19,7 @@ VENT = 1.5  # radius of a vent [mm]: a printer does not close it, foam does
 NECKS = (12.0, 10.0, 8.0, 6.0, 5.0)
 """Radii of a sprue [mm]: foam that rises is poured quickly, so 10 mm across at least."""
 
-FUNNEL = 8.0  # how much wider the funnel is than the neck [mm], on each side, where there is room
+FUNNEL = 8.0  # excess of the funnel's radius over the neck's [mm], if there is room
 
 _FUNNEL_DEPTH = 12.0
 _SUNK = 2.0
@@ -32,9 +32,9 @@ _STEP = 1.0
 class Sprue:
     """The hole to pour into, half in each half."""
 
-    x: float  # of its axis [mm]
+    x: float  # x of its axis [mm]
     mouth: float  # height at which it meets the body [mm]
-    radius: float  # of its neck [mm]
+    radius: float  # radius of its neck [mm]
     funnel: float  # radius at the top of the mould [mm]
     solid: Manifold  # all of it, reaching into the body
 

@@ -55,11 +55,11 @@ class Pocket:
     """Room for a winch in the foam."""
 
     winch: str  # its name
-    size: tuple[float, float, float]  # of the room, in the coordinates of the mould [mm]
+    size: tuple[float, float, float]  # size of the room, in the coordinates of the mold [mm]
     upper: bool  # it is a core of the upper half; else of the lower
     unit: Manifold  # the winch itself, a box within the room
     reach: Manifold  # from the deep end of the pocket out of the body, with a groove for wires at the end of the motor
-    core: Manifold  # what of the body it takes
+    core: Manifold  # solid that it removes from the body
     outside: float  # share of the room that is outside the body
     problem: str = ""  # why it cannot be built well, or nothing
 
@@ -126,8 +126,8 @@ def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
 class _Lying:
     """One way to lay a winch, with its sides along those of the mould."""
 
-    sides: Sides  # of the winch along x, y, z of the mould [mm]
-    middle: Sides  # of its box [mm]
+    sides: Sides  # sides of the winch along x, y, z of the mold [mm]
+    middle: Sides  # middle of its box [mm]
     wires: tuple[int, int]  # the side wall at which its wires come out: axis across the pull, and sign
 
 

@@ -27,7 +27,7 @@ class Positive:
 
     upper: Manifold  # above the parting plane
     lower: Manifold  # below it
-    dowels: int  # how many join the two
+    dowels: int  # number of dowels that join the two
     lost: float  # volume of the holes for dowels [mm^3]
     stub: float  # volume of the piece of sprue on it [mm^3]
 

@@ -33,12 +33,12 @@ class Pull:
     """Pull by which the halves come off."""
 
     direction: Float[np.ndarray, "3"]  # unit vector along which the upper half is drawn, in the coordinates of the body
-    height: float  # of the parting plane along it [mm]
-    share: float  # of the surface that holds: neither half comes off it
+    height: float  # height of the parting plane along it [mm]
+    share: float  # share of the surface that is undercut: neither half comes off it
     surface: FineSurface  # the surface that was looked at
-    undercut: Bool[np.ndarray, " triangles"]  # which of its triangles hold
+    undercut: Bool[np.ndarray, " triangles"]  # True for each of its triangles that is undercut
     directions: Float[np.ndarray, "tried 3"]  # all that were tried
-    shares: Vector  # of each of them, at its best height
+    shares: Vector  # share for each of them, at its best height
 
 
 def half_sphere(count: int) -> Float[np.ndarray, "count 3"]:

@@ -15,10 +15,10 @@ from hydrostat.arrays import Vector
 from hydrostat.fabrication.solids.printed import TriangleMesh, triangles_of
 from hydrostat.kernel import native
 
-_OUT = 5e-4  # how far outside its triangle a point is, in sizes of the body: shallower overhangs than that are none
+_OUT = 5e-4  # distance of a test point from its triangle, in sizes of the body: shallower overhangs do not count
 _STEEP = 1e-3  # a wall may lean by this cosine and still count as parallel to the pull: rounding, not an overhang
 _EDGE = 1 / 30  # longest edge of a triangle, in sizes of the body
-_COARSE = 4e-4  # how far the surface that is looked at may be from the true one, in sizes of the body
+_COARSE = 4e-4  # maximum error of the simplified surface, in sizes of the body
 _MOST = 16_000  # triangles that are looked at, about
 
 
@@ -57,9 +57,9 @@ def fine_surface(solid: Manifold) -> FineSurface:
 class Release:
     """Triangles that a pull along a direction sets free."""
 
-    heights: Vector  # of the middle of each triangle along the direction [mm]
-    upward: Bool[np.ndarray, " triangles"]  # which triangles come out of a half that is drawn along the direction
-    downward: Bool[np.ndarray, " triangles"]  # which come out of a half that is drawn against it
+    heights: Vector  # height of the middle of each triangle along the direction [mm]
+    upward: Bool[np.ndarray, " triangles"]  # True for triangles that come out of a half drawn along the direction
+    downward: Bool[np.ndarray, " triangles"]  # True for triangles that come out of a half drawn against it
 
     def undercut(self, height: float) -> Bool[np.ndarray, " triangles"]:
         """Triangles that hold when the halves part at a height [mm]."""

@@ -10,7 +10,7 @@ from manifold3d import CrossSection, JoinType, Manifold
 from hydrostat.fabrication.moulds.solids import join_solids, rod
 
 DOWEL = 1.6  # radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm]
-DOWEL_DEPTH = 8.0  # of the hole in each of two pieces [mm]
+DOWEL_DEPTH = 8.0  # depth of the hole in each of two pieces [mm]
 
 _WALL = 2.0
 _CRUMB = 20.0
@@ -25,7 +25,7 @@ class Pieces:
     """A solid in pieces, where they belong."""
 
     solids: tuple[Manifold, ...]  # watertight, by row and column
-    dowels: int  # how many join them
+    dowels: int  # number of dowels that join them
     lost: float  # volume of the holes for dowels, and of crumbs that a cut leaves [mm^3], measured on these
 
 

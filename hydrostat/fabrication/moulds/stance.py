@@ -18,7 +18,7 @@ _TALL = 0.5  # vents that a mould may have more for being once less as tall as i
 _LARGE = 10.0  # vents that a box may need less for being twice as large
 _ACROSS = 0.7  # sine of the angle between an axis of the robot and the pull, above which it gives the box its sides
 _AT_THE_TOP = 0.85  # from which part of the height on something is at the top
-_TOP = 0.5  # what lies less than that below a high point belongs to it [mm]
+_TOP = 0.5  # maximum depth below a high point of points that belong to it [mm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +27,8 @@ class MouldOrientation:
 
     # unit vectors across, upwards when poured, and along the pull, as rows, in the body's coordinates
     axes: Float[np.ndarray, "3 3"]
-    height: float  # of the parting plane along the pull [mm]
-    held_upwards: bool = False  # where the robot is held is at the top: the foam is poured in there
+    height: float  # height of the parting plane along the pull [mm]
+    held_upwards: bool = False  # True if the pinned end is at the top: the foam is poured in there
 
     def into(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
         """Points of the body [mm] in the mould."""

@@ -19,9 +19,9 @@ _SWEEPS = 8  # rounds of a search
 class LaidUnit:
     """A unit as it is laid in the body."""
 
-    place: UnitPlace  # where and how
+    place: UnitPlace  # place and orientation
     problems: tuple[str, ...] = ()  # why it cannot be built well
-    warnings: tuple[str, ...] = ()  # what to mind
+    warnings: tuple[str, ...] = ()  # warnings for the builder
 
 
 def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
@@ -75,7 +75,7 @@ class _Ways:
         self.alone, _ = self.best([])
 
     def best(self, others: Sequence[UnitPlace]) -> tuple[UnitPlace, tuple[float, float]]:
-        """The best beside some others, and what it shares with them [mm^2]: without room above each other, and with."""
+        """Return the best place next to others, and the areas shared with them [mm^2]: not stackable, and stackable."""
         hard, soft = np.zeros(len(self.places)), np.zeros(len(self.places))
         for other in others:
             _, without, above = self._shared(other)
@@ -106,7 +106,7 @@ class _Ways:
 
 
 def _settled(ways: list[_Ways]) -> tuple[tuple[float, float], list[UnitPlace]]:
-    """Each in turn at its best beside the others, until none changes; the best of all beginnings, what is shared."""
+    """Place each in turn at its best until none changes; return shared areas and places of the best start."""
     found: list[tuple[tuple[float, float], list[UnitPlace]]] = []
     for first in range(len(ways)):
         total, places = _swept(ways, [*range(first, len(ways)), *range(first)])
@@ -183,7 +183,7 @@ def _sizes(pile: Sequence[UnitPlace]) -> str:
 
 
 def _alone(place: UnitPlace, thickness: float) -> list[str]:
-    """Why a unit cannot be built well, whatever stands beside it."""
+    """Return the reasons why a unit cannot be built well, even alone."""
     found = []
     if place.outside > TOUCHES:
         share = 100 * place.outside / place.footprint.area

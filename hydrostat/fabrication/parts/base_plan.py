@@ -14,7 +14,7 @@ from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder, Prism, segments
 
 HOLDER_WIDTH = 10.0
-HOLDER_DEPTH = 8.0  # of a block, across and along the tubes [mm]
+HOLDER_DEPTH = 8.0  # size of a tube holder, across and along the tubes [mm]
 
 HOLDER_PASSAGE = 3.4
 _PILOT = 2.6
@@ -87,7 +87,7 @@ class Seat:
     """Place of a unit on the base."""
 
     unit: int  # index among the units outside
-    x: float  # of its shaft [mm]
+    x: float  # x of its shaft [mm]
 
     def put(self, point: Corner) -> Corner:
         """A point of the unit on the base [mm]."""

@@ -28,13 +28,13 @@ class BasePlate:
     assembly: PartAssembly  # all of it with the units
     # outline of the whole plate, then its holes, to be cut from acrylic in place of the tiles [mm]
     sheet: tuple[Ring, ...]
-    thickness: float  # of the plate [mm]
-    seats: tuple[Seat, ...]  # where the units stand
+    thickness: float  # thickness of the plate [mm]
+    seats: tuple[Seat, ...]  # seats of the units
     # from the outer face of its housing to where its cable begins, by cable index [mm]
     tubes: tuple[tuple[int, float], ...]
-    bought: tuple[tuple[str, int], ...]  # what is bought for it, and how many of each
+    bought: tuple[tuple[str, int], ...]  # parts to buy for it, with the count of each
     problems: tuple[str, ...] = ()  # why it cannot be built well
-    warnings: tuple[str, ...] = ()  # what to mind
+    warnings: tuple[str, ...] = ()  # warnings for the builder
 
 
 def base_plate(

@@ -24,16 +24,16 @@ from hydrostat.fabrication.solids.construct import Construction, Corner, Cylinde
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Pin, Robot
 
-_WALL, _FLOOR, _PLATE = 2.4, 4.0, 8.0  # of the cup, its floor and the plate [mm]
-_LIP = 1.5  # of the plate above the end of a tube [mm]
+_WALL, _FLOOR, _PLATE = 2.4, 4.0, 8.0  # thickness of the cup, its floor and the plate [mm]
+_LIP = 1.5  # height of the plate above the end of a tube [mm]
 _MARGIN, _INSET = 11.0, 5.5  # flange round the cup, and how far its screws are from its corner [mm]
 _BEYOND = 14.0  # plate beyond the flange, for the legs [mm]
 _SCREW = 3.4  # hole for a screw M3 [mm]
 _TIE, _TIES_EVERY = 3.0, 30.0  # hole for a thread or cable tie, and about how far apart [mm]
 _UNDER = 70.0  # room below the plate, where tubes bend away [mm]
 _SHORTEST = 28.0  # post that takes a screw at both ends [mm]
-_LEVEL = 1.0  # how far a cable may begin from the plate [mm]
-_WIDER = 1.3  # how much more than what is held the cup may have to enclose
+_LEVEL = 1.0  # maximum difference in height of the cables' first points [mm]
+_WIDER = 1.3  # maximum ratio of the cup's area to the pinned area
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -42,10 +42,10 @@ class BodySeat:
 
     printed: tuple[Printed, ...] = ()  # cup, plate, posts, legs
     assembly: PartAssembly | None = None  # all of it, with the end of the body
-    bought: tuple[tuple[str, int], ...] = ()  # what is bought for it, and how many of each
+    bought: tuple[tuple[str, int], ...] = ()  # parts to buy for it, with the count of each
     held: tuple[int, ...] = ()  # indices of cables whose tubes are held where they begin
     problems: tuple[str, ...] = ()  # why it cannot be printed
-    warnings: tuple[str, ...] = ()  # what to mind
+    warnings: tuple[str, ...] = ()  # warnings for the builder
 
 
 def body_seat(robot: Robot, options: PartOptions, bed: tuple[float, float, float]) -> BodySeat:
@@ -67,13 +67,13 @@ Line = Float[np.ndarray, "2 3"]  # from where a cable begins to where it comes t
 class _SeatPlan:
     """The seat from above, and how high its parts are [mm]."""
 
-    end: Manifold  # of the body, a little more than the cup holds
-    cavity: Polygon  # of the cup
-    depth: float  # of the cup
+    end: Manifold  # end of the body, a little more than the cup holds
+    cavity: Polygon  # cavity of the cup
+    depth: float  # depth of the cup
     below: float  # from the body's end down to where cables begin
-    lines: tuple[Line, ...]  # of the cables that are held
-    held: tuple[int, ...]  # which these are
-    ends: tuple[bool, ...]  # whether the tube of each ends there
+    lines: tuple[Line, ...]  # lines of the cables that are held
+    held: tuple[int, ...]  # indices of these cables
+    ends: tuple[bool, ...]  # True for each tube that ends there
     flange: Polygon  # round the cup, with the posts at its corners
 
     def seat(self, name: str, options: PartOptions, bed: tuple[float, float, float]) -> BodySeat:

@@ -7,15 +7,15 @@ from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.solids.construct import Construction, Cylinder, Revolve
 from hydrostat.fabrication.solids.printed import Printed
 
-_LINE = 0.4  # what a nozzle lays in one go: the thinnest sleeve [mm]
-_PLAY = 0.4  # how much wider the bore is than the cable, at least [mm]
+_LINE = 0.4  # width of one line of a nozzle: the thinnest sleeve [mm]
+_PLAY = 0.4  # minimum excess of the bore over the cable [mm]
 
 _MOUTH = ((1.0, 0.0), (0.65, 0.3), (0.25, 0.75), (0.0, 1.3))
 """Excess of the mouth's radius over the bore's, and height above the bed [mm]: a rounding in steps of less than 50
 degrees from upright, which prints without support."""
 
 _FLANGE = 1.6
-_SLEEVE = 1.4  # how far the sleeve goes into the felt [mm]: felt of 1.5 mm or more hides its end
+_SLEEVE = 1.4  # length of the sleeve in the felt [mm]: felt of 1.5 mm or more hides its end
 _STITCH = 1.0  # diameter of a hole for needle and thread [mm]
 _RIM = 1.0  # least material on each side of a hole for the needle [mm]
 

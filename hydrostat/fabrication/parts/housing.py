@@ -16,9 +16,9 @@ from hydrostat.fabrication.parts.screws import Screw
 from hydrostat.fabrication.parts.spool import Spool
 from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cuboid, Cylinder
 
-STUB = 8.0  # how far the shaft of a coupling goes into a spool [mm]
+STUB = 8.0  # length of the coupling's shaft in a spool [mm]
 SHEET = 4.0  # thickness of the base that motors outside the body stand on, printed or of acrylic [mm]
-_NUT = 2.0  # what a nut takes of a screw [mm]
+_NUT = 2.0  # length of a screw in its nut [mm]
 
 _LENGTHS = (8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0)
 _SEAT = 5.0
@@ -65,11 +65,11 @@ def roof_of(options: PartOptions) -> float:
 class Housing:
     """A plate and a box round a spool; lengths in millimetres, z above the face of the motor."""
 
-    motor: Motor  # that it is screwed on
-    spool: Spool  # that turns in it
-    # of the cables of each groove: the way in which they leave, counted from +x [degrees], multiples of 90
+    motor: Motor  # motor under it
+    spool: Spool  # spool in it
+    # direction in which the cables of each groove leave, counted from +x [degrees], multiples of 90
     azimuths: tuple[int, ...]
-    outside: bool  # whether its motor stands on a base outside the body: its screws then go on through the base
+    outside: bool  # True if its motor stands on a base outside the body: its screws then go on through the base
     options: PartOptions  # sizes of the parts
 
     @cached_property

@@ -16,11 +16,11 @@ from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cy
 class FaceScrew:
     """A screw with a pan head that holds something on a motor; lengths in millimetres."""
 
-    size: str  # of the thread, such as "M2"
+    size: str  # size of the thread, such as "M2"
     hole: float  # diameter of a printed hole that it passes freely [mm]
     head: float  # diameter of its head [mm], ISO 7045
-    head_height: float  # of its head [mm], ISO 7045
-    depth: float  # how far it may go into the motor [mm]
+    head_height: float  # height of its head [mm], ISO 7045
+    depth: float  # maximum depth in the motor [mm]
 
     def length(self, wall: float) -> float:
         """The shortest standard length [mm] that reaches two thirds of its depth through a wall [mm]."""
@@ -42,11 +42,11 @@ _LENGTHS = (3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 class Shaft:
     """A shaft with one flat, which faces +x; lengths in millimetres."""
 
-    diameter: float  # of the round part [mm]
+    diameter: float  # diameter of the round part [mm]
     across: float  # from the flat to the round side opposite [mm]
     length: float  # above the face of the motor [mm]
     boss: float  # radius of the raised ring round it [mm]
-    boss_height: float  # of that ring above the face [mm]
+    boss_height: float  # height of that ring above the face [mm]
 
     def shape(self, length: float, grown: float = 0.0) -> Construction:
         """Shape of it from z = 0 upwards [mm], thicker by so much on each side [mm]."""
@@ -60,11 +60,11 @@ class Shaft:
 class Horn:
     """A disc on the output of a servo, which a coupling with a shaft is screwed on; lengths in millimetres."""
 
-    radius: float  # of the disc [mm]
-    height: float  # of its top above the face of the motor [mm]
+    radius: float  # radius of the disc [mm]
+    height: float  # height of its top above the face of the motor [mm]
     circle: float  # radius of the circle of its screw holes [mm]
-    count: int  # of its screw holes, the first at +x
-    screw: FaceScrew  # that goes into them
+    count: int  # number of its screw holes, the first at +x
+    screw: FaceScrew  # screws in these holes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,28 +72,27 @@ class Motor:
     """A geared motor; lengths in millimetres."""
 
     key: str  # by which it is chosen
-    title: str  # what it is bought as
+    title: str  # title to buy it by
     body: Construction  # its envelope below the face, without shaft, boss and horn
-    outline: tuple[Corner, ...]  # of all of it below the face, seen along the shaft, counter-clockwise
-    depth: float  # how far it reaches below the face [mm]
-    shaft: Shaft  # that turns the spool; with a horn that of the coupling, its length counted from the top of the horn
-    horn: Horn | None = None  # of a servo; None: the shaft is the motor's own
-    holes: tuple[Corner, ...]  # where screws go into the face
-    # how far the holes in what is screwed on are drawn out to both sides along x, as the place of the holes in the
-    # motor is not sure [mm]
+    outline: tuple[Corner, ...]  # outline of all of it below the face, seen along the shaft, counter-clockwise
+    depth: float  # depth below the face [mm]
+    shaft: Shaft  # shaft that turns the spool; with a horn the coupling's, its length counted from the horn's top
+    horn: Horn | None = None  # horn of a servo; None: the shaft is the motor's own
+    holes: tuple[Corner, ...]  # places of the screws in the face
+    # half length of the slots in the mating part along x [mm], as the place of the motor's holes is uncertain
     slot: float = 0.0
-    screw: FaceScrew  # that goes into the face
+    screw: FaceScrew  # screw in the face
     stall_torque: float  # at which it stands still, at the voltage that its title or source names [N mm]
-    rated_torque: float  # that it should be loaded with at most [N mm]
+    rated_torque: float  # maximum continuous torque [N mm]
     speed: float  # without load [rpm]
-    volts: float  # that all its figures are for [V]
+    volts: float  # voltage of all its figures [V]
     stall_current: float  # [A]
     free_current: float  # without load [A]
-    counts: float = 0.0  # of its encoder in a turn of the shaft, all edges; 0: it has none
+    counts: float = 0.0  # counts of its encoder in a turn of the shaft, all edges; 0: it has none
     mass: float  # [g]
-    price: float  # of one, rough [USD]
-    price_source: str  # where that is from, and when
-    source: str  # which figures are from where, and which are not sure
+    price: float  # price of one, rough [USD]
+    price_source: str  # source of the price, with its date
+    source: str  # sources of its figures, and those that are uncertain
 
     @property
     def envelope(self) -> Construction:

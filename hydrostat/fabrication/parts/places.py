@@ -25,7 +25,7 @@ class UnitBox(Cuboid):
     """Box round a unit before it is laid: the shaft along z, the face of the motor at z = 0, the roof at the top."""
 
     winch: str  # its name
-    at: Corner  # where the robot file has it: its shaft, or the middle of its housing if it lies
+    at: Corner  # place in the robot file: its shaft, or the middle of its housing if it lies
     along: float  # the way in which its first cable goes on, counted from +x [degrees]
 
     @property
@@ -40,11 +40,11 @@ class UnitPlace:
 
     box: UnitBox  # the unit
     across: bool  # its shaft stands across the body, the roof to the front; else it lies in the plane of the body
-    turn: float  # where its +y points, counted from +x [degrees]
+    turn: float  # angle of its +y, counted from +x [degrees]
     flipped: bool  # a unit that lies has its motor to the right of +y; else to the left
     slid: Corner  # from its place, to the right of its +y, and along it [mm]
-    footprint: Polygon  # what of the plane it takes [mm]
-    outside: float  # how much of that is beyond the seam [mm^2]
+    footprint: Polygon  # area of the plane that it covers [mm]
+    outside: float  # area of the footprint beyond the seam [mm^2]
 
     @property
     def depth(self) -> float:

@@ -20,14 +20,14 @@ from hydrostat.robot import Mount, Robot
 class RigidParts:
     """The rigid parts of one robot."""
 
-    motor: Motor  # that turns all winches
+    motor: Motor  # motor of all winches
     units: tuple[WinchUnit, ...]  # a winch each
     base: BasePlate | None  # for winches outside the body; None if all are in it
     seat: BodySeat  # for a body whose winches stand outside; empty if there is none
     stopper: Stopper | None  # one for each cable; None without cables
     grommet: Printed | None  # one for each pinhole, counted; None without pinholes
-    cables: int  # how many there are
-    between: tuple[str, ...] = ()  # what to mind of winches side by side
+    cables: int  # number of cables
+    between: tuple[str, ...] = ()  # warnings about winches side by side
 
     @property
     def printed(self) -> tuple[Printed, ...]:
@@ -125,7 +125,7 @@ class RigidParts:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on what to mind."""
+        """Warnings for the builder, one sentence each."""
         base = self.base.warnings if self.base else ()
         return (*(text for unit in self.units for text in unit.warnings), *self.between, *base, *self.seat.warnings)
 

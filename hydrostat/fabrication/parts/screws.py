@@ -9,13 +9,13 @@ from hydrostat.fabrication.solids.construct import Construction, Cylinder
 class Screw:
     """A screw with a flat countersunk head; lengths in millimetres."""
 
-    title: str  # as it is bought
+    title: str  # title to buy it by
     length: float  # with its head [mm]
     core: float  # diameter within the thread [mm]
     pilot: float  # diameter of the printed hole that it cuts its thread in [mm]
     passage: float  # diameter of the printed hole that it passes freely [mm]
     head: float  # diameter of the head [mm]
-    head_height: float  # of the cone of the head [mm]
+    head_height: float  # height of the cone of the head [mm]
 
     @property
     def envelope(self) -> Construction:

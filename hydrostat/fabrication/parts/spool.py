@@ -37,10 +37,10 @@ def capacity(width: float, radius: float, cable: float, layers: int) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Groove:
-    """Place where a cable is wound, or a pair of cables beside each other; lengths in millimetres."""
+    """Place where a cable is wound, or a pair of cables next to each other; lengths in millimetres."""
 
-    radius: float  # of the middle of the cable in the first layer [mm]
-    width: float  # of its floor [mm]
+    radius: float  # radius of the middle of the cable in the first layer [mm]
+    width: float  # width of its floor [mm]
     layers: int = 1  # in which the cable lies
     lines: int = 1  # cables that are wound on it
 
@@ -55,8 +55,8 @@ class Spool:
 
     grooves: tuple[Groove, ...]  # in the order of the cables
     cable: float  # diameter of the cable [mm]
-    shaft: Shaft  # that turns it
-    inside: float  # how much of the shaft is in it [mm]
+    shaft: Shaft  # shaft that turns it
+    inside: float  # length of the shaft in it [mm]
     play: float  # between shaft and bore, on each side [mm]
     wall: float  # least thickness [mm]
     journal: float  # length of the pin at the far end, which turns in the housing [mm]

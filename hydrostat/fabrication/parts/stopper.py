@@ -22,7 +22,7 @@ _FLAT = 1.5
 """Radius of the post that the cable goes round, of the key above it, and how far the flat of the key is from the axis
 [mm]."""
 
-_ROOM = 0.8  # how much wider than the cable the holes and the track are [mm]
+_ROOM = 0.8  # excess width of the holes and the track over the cable [mm]
 
 _LID = 2.6
 _KEY_HEIGHT = 1.2
@@ -36,7 +36,7 @@ _SMOOTH = 0.6  # chamfer of what lies on the cloth and of what a hand feels [mm]
 _OFF_CENTRE = 0.8
 """Distance of the middle of the button from the screw towards the cable, so that it is pulled flat [mm]."""
 
-_EXIT = 300.0  # where the cable leaves, counted round the post from where it comes up [degrees]
+_EXIT = 300.0  # angle where the cable leaves, round the post from where it comes up [degrees]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -46,7 +46,7 @@ class Stopper:
     printed: tuple[Printed, ...]  # the base, which lies on the cloth, and the lid
     # both with the screw, closed on a cable that is pressed to half its thickness; the cloth is at z = 0
     assembly: PartAssembly
-    screw: str  # that closes it, as it is bought
+    screw: str  # title of the screw that closes it
     hold: float  # tension at which the cable begins to slip, estimated [N]
 
 
@@ -155,7 +155,7 @@ def _base(options: PartOptions, rib: float) -> Construction:
 
 
 def _way_up(options: PartOptions) -> Construction:
-    """Air where the cable comes up beside the post: a hole with chamfers, and the slot by which it is laid in."""
+    """Channel of the cable next to the post: a hole with chamfers, and the slot by which it is laid in."""
     deck, radius = _deck(), (options.cable + _ROOM) / 2
     x, slot = _POST + radius, options.cable + 0.4
     below = Cylinder(0.7, radius + 0.7, radius).move(x, 0, -0.1)

@@ -1,4 +1,4 @@
-"""`WinchUnit`: motor, the spool that a winch needs on it, and housing: parts to print, assembly, what to mind."""
+"""`WinchUnit`: motor, the spool that a winch needs on it, and housing: parts to print, assembly, warnings."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -45,7 +45,7 @@ def wound_cables(robot: Robot, winch: Winch) -> Wound:
 def spool_for(
     robot: Robot, winch: Winch, wound: Wound, options: PartOptions, motor: Motor
 ) -> tuple[Spool, tuple[str, ...], tuple[str, ...]]:
-    """The spool of a winch, why it cannot be built well, and what to mind.
+    """Return the spool of a winch, its problems and its warnings.
 
     Each cable lies in one layer if the spool then is short enough, else all in as few layers as make it so. A radius
     too small for the shaft is made as small as it can be, one of the problems.
@@ -201,7 +201,7 @@ class Exit:
     point: tuple[float, float, float]  # in the outer face of the housing, in the middle of the seat of the tube [mm]
     direction: tuple[float, float, float]  # in which the cable leaves, of length 1
     lead: float  # cable from the spool to this point [mm]
-    seat: float  # how deep the tube goes in from this point [mm]
+    seat: float  # depth of the tube from this point [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -211,17 +211,17 @@ class WinchUnit:
     winch: str  # its name
     cables: tuple[int, ...]  # index of each of its cables in the robot, in the order of the grooves
     wound: Wound  # the same, groove by groove
-    mount: Mount  # where it is
-    motor: Motor  # that turns it
+    mount: Mount  # mount of the winch
+    motor: Motor  # motor that turns it
     housing: Housing  # its sizes, with those of its spool
-    printed: tuple[Printed, ...]  # what is printed for it, one of each
+    printed: tuple[Printed, ...]  # parts to print for it, one of each
     assembly: PartAssembly  # all of it, in its own coordinates, in the order in which it is put together
-    exits: tuple[Exit, ...]  # of its cables
-    bought: tuple[tuple[str, int], ...]  # what is bought for it besides the motor, and how many of each
-    across: bool  # whether its shaft stands across a flat body, with the roof to the front; else it lies in it
-    place: UnitPlace | None = None  # how it is laid in a flat body; None in space and outside
+    exits: tuple[Exit, ...]  # exits of its cables
+    bought: tuple[tuple[str, int], ...]  # parts to buy for it besides the motor, with the count of each
+    across: bool  # True if its shaft stands across a flat body, with the roof to the front; else it lies in it
+    place: UnitPlace | None = None  # place in a flat body; None in space and outside
     problems: tuple[str, ...] = ()  # why it cannot be built well
-    warnings: tuple[str, ...] = ()  # what to mind
+    warnings: tuple[str, ...] = ()  # warnings for the builder
 
     @property
     def spool(self) -> Spool:
@@ -241,7 +241,7 @@ def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[Winch
 
 
 def unit_problems(robot: Robot, options: PartOptions, motor: Motor) -> tuple[str, ...]:
-    """Why the units of the winches cannot be built well, as `winch_units` tells it, without making them."""
+    """Return the problems of the winch units, as in `winch_units`, without making them."""
     return tuple(
         problem
         for draft, laid in _drafts(robot, options, motor)

@@ -32,8 +32,8 @@ class Chord:
 
     through: tuple[float, float]  # a place on it [mm]
     along: tuple[float, float]  # its unit direction
-    low: float  # where it enters the patch, from that place along the direction [mm]
-    high: float  # where it leaves it
+    low: float  # distance along the direction from that place to where it enters the patch [mm]
+    high: float  # distance to where it leaves it [mm]
 
     def heights(self, places: Float[np.ndarray, "places 2"]) -> Float[np.ndarray, " places"]:
         """Signed distance of places from its line [mm]."""

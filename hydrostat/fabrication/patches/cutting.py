@@ -15,7 +15,7 @@ from hydrostat.fabrication.patches.seams import Seam, find_seams
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
 from hydrostat.fabrication.patterns.skin import Skin
 
-_SMOOTH = 0.02  # how far the normals are smoothed before the silhouette is drawn, as a share of the body's diagonal
+_SMOOTH = 0.02  # smoothing length of the normals before the silhouette is drawn, as a share of the body's diagonal
 _ALONG_AXIS = 0.94  # a direction so near to an axis (its cosine) is the axis: 20 degrees
 
 
@@ -82,9 +82,9 @@ MOST_PATCHES = 6  # a person loses track of more
 class Cutting:
     """A skin in patches."""
 
-    mesh: SkinMesh  # of the whole skin
+    mesh: SkinMesh  # mesh of the whole skin
     patches: tuple[Patch, ...]  # in the order of their numbers
-    back: tuple[bool, ...]  # of each whether it was cut from the back
+    back: tuple[bool, ...]  # True for each patch that was cut from the back
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from hydrostat.fabrication.patches.patch import Patch
 
-_GIVE = 0.12  # what cloth may give: the unit in which it is counted
+_GIVE = 0.12  # unit of the cloth's stretch
 
 LOOSE, HELD = 0.1, 0.03
 """The unit in which edges of the rim are counted that are longer or shorter than on the body: where only the cloth
@@ -32,7 +32,7 @@ def relax_patch(patch: Patch, *, ease: float = LOOSE) -> Patch:
     return replace(patch, flat=flat) if np.isfinite(found.fun) and found.fun < _NOWHERE else patch
 
 
-_NOWHERE = 1e12  # of images with a triangle on its back
+_NOWHERE = 1e12  # energy of images with a triangle on its back
 
 
 class PatchEnergy:

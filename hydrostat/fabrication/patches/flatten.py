@@ -18,7 +18,7 @@ class Distortion:
     longest: Float[np.ndarray, " triangles"]
     # the same in the direction of least: below 1 it has to shrink, or wrinkles
     shortest: Float[np.ndarray, " triangles"]
-    areas: Float[np.ndarray, " triangles"]  # of the triangles on the body [mm^2], their weights
+    areas: Float[np.ndarray, " triangles"]  # areas of the triangles on the body [mm^2], their weights
 
     @property
     def gives(self) -> Float[np.ndarray, " triangles"]:
@@ -52,7 +52,7 @@ def distortion(patch: Patch) -> Distortion:
 
 
 _STEPS = 5  # solves at a time
-_MOST = 40  # how many times at most
+_MOST = 40  # maximum number of rounds of such solves
 
 SETTLED = 5e-4
 """Relative change of the energy in one such time below which it has settled: it moves seams by less than cloth does."""

@@ -24,7 +24,7 @@ class Patch:
     """A disc with its flat image."""
 
     disc: Disc  # in space
-    flat: Float[np.ndarray, "vertices 2"]  # where its vertices lie [mm], seen from outside
+    flat: Float[np.ndarray, "vertices 2"]  # positions of its vertices [mm], seen from outside
 
     @property
     def outline(self) -> Polygon:

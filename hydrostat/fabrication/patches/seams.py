@@ -18,7 +18,7 @@ class Seam:
     """A stretch of seam between two patches."""
 
     patches: tuple[int, int]  # their numbers; the first has it on its left, seen from outside
-    closed: bool  # whether it ends where it begins
+    closed: bool  # True if it ends where it begins
     solid: Float[np.ndarray, "vertices 3"]  # its vertices on the body [mm], the first again at the end of a closed one
     # the same on the first and on the second patch [mm]
     sides: tuple[Float[np.ndarray, "vertices 2"], Float[np.ndarray, "vertices 2"]]
@@ -110,7 +110,7 @@ SEEN = 0.5
 """A difference of lengths [mm] that nobody who cuts and sews cloth sees: that of a line of a pen. Assumed."""
 _SPACING = 60.0  # about how far apart notches are along a seam [mm]
 _SHORTEST = 10.0  # a seam shorter than that [mm] needs no notch
-_PAIR = 5.0  # how far apart the strokes of a double notch are [mm]
+_PAIR = 5.0  # distance of the strokes of a double notch [mm]
 _STUFFING = 80.0  # length of seam left open for turning and stuffing where there is no zipper [mm], about
 
 

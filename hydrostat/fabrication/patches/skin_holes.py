@@ -35,11 +35,11 @@ class SkinHole:
 
     cable: int  # its number, 1 for the first cable of the robot
     point: int  # its number along the cable, 1 at the winch
-    depth: float  # how far under the skin the simulated point is [mm]
+    depth: float  # depth of the simulated point under the skin [mm]
     solid: tuple[float, float, float]  # the nearest place of the skin [mm]
     # patch number and place on it [mm]; two, one on each side, where the cable passes through a seam
     places: tuple[tuple[int, Place], ...]
-    passes: bool  # whether the cable goes through the cloth here
+    passes: bool  # True if the cable goes through the cloth here
     after: Side  # on which side it runs on
 
     @property

@@ -123,7 +123,7 @@ def _boundary(body: Body) -> Surface:
 
 
 def _coarse(mesh: SkinMesh) -> SkinMesh:
-    """The surface with fewer triangles if it has very many; quadric errors tell which (Garland, Heckbert 1997)."""
+    """The surface with fewer triangles if it has very many; by quadric errors (Garland, Heckbert 1997)."""
     import igl
 
     if len(mesh.triangles) <= _MOST:

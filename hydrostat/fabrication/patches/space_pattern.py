@@ -169,7 +169,7 @@ class SpacePattern(Pattern):
 
     patches: tuple[Patch, ...]  # flat, in places of the sheet [mm]; a panel each, in the same order
     seams: tuple[Seam, ...]  # between them, in places of the sheet [mm]
-    holes: tuple[SkinHole, ...]  # where cables are sewn to the skin, in places of the sheet [mm]
+    holes: tuple[SkinHole, ...]  # places on the sheet where cables are sewn to the skin [mm]
     skin: float  # area of the skin that was cut [mm^2]
 
 

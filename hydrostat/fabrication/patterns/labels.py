@@ -53,7 +53,7 @@ class FreeSpace:
         return x, y
 
     def anywhere(self, width: float, height: float) -> Place | None:
-        """Middle of a box where there is most room, rather near the middle of the panel [mm]; None if nowhere."""
+        """Middle of a box with most room, preferably near the middle of the panel [mm]; None if there is none."""
         left, bottom, right, top = self._inside.bounds
         x, y = np.meshgrid(np.arange(left, right, 3.0), np.arange(bottom, top, 3.0))
         centres = np.column_stack([x.ravel(), y.ravel()])
@@ -117,8 +117,8 @@ _GRAINS = (40.0, 25.0, 15.0)  # lengths of the arrow, the best first [mm]
 _FIGURE = 2.5  # height of the figure at a hole [mm], the least that a laser writes on felt
 _FIGURE_GAP = 2.2  # from the middle of a hole to its figure [mm]
 _LETTER = 3.0  # height of the letter at a notch [mm]
-_ALONG = 15.0  # how far from its winch a cable is numbered [mm]
-_NEAR = 4.0  # how far off a label still needs no line to its place [mm]
+_ALONG = 15.0  # distance of a cable's number from its winch [mm]
+_NEAR = 4.0  # maximum distance of a label without a line to its place [mm]
 
 
 class PanelLabels:
@@ -139,7 +139,7 @@ class PanelLabels:
         return tuple(self._shapes)
 
     def cable_numbers(self, robot: Robot, *, first: int = 1) -> None:
-        """C1, C2, ... from that of the first on, beside the stopper of each cable and where it leaves its winch."""
+        """Label cables C1, C2, ... from the first on, next to their stoppers and their exits from the winches."""
         for number, cable in enumerate(robot.cables, start=first):
             self.cable_name(number, place(cable.points[-1]))
         for number, cable in enumerate(robot.cables, start=first):
@@ -149,11 +149,11 @@ class PanelLabels:
                 self._beside(f"C{number}", (near.x, near.y), gap=2.5)
 
     def cable_name(self, cable: int, at: Place) -> None:
-        """C1, C2, ... beside a place."""
+        """Put a cable's number C1, C2, ... next to a place."""
         self._beside(f"C{cable}", at, gap=4.5)
 
     def winch_names(self, robot: Robot) -> None:
-        """The mark and the name of each winch beside it."""
+        """Label each winch with its mark and name."""
         for winch in robot.winches:
             if self._seam.contains(Point(place(winch.at))):
                 self._beside(
@@ -161,14 +161,14 @@ class PanelLabels:
                 )
 
     def hole_numbers(self, stitches: Iterable[CableStitches]) -> None:
-        """Small figures beside the holes of each cable, from 2 on, in stitch order; none where there is no room."""
+        """Number the holes of each cable in small figures, from 2 on, in stitch order, if there is room."""
         for sewn in stitches:
             for stitch in sewn.stitches[1:]:
                 if self._seam.contains(Point(stitch.place)):
                     self.figure(f"{stitch.number}", stitch.place)
 
     def figure(self, text: str, at: Place) -> None:
-        """A small number beside a hole; none where there is no room."""
+        """Put a small number next to a hole if there is room."""
         at = (-at[0], at[1]) if self._mirrored else at
         letters = Lettering(text, _FIGURE)
         middle = self._space.clear_beside(at, letters.width, _FIGURE, gap=_FIGURE_GAP)
@@ -176,7 +176,7 @@ class PanelLabels:
             self._write(letters, middle)
 
     def notch_names(self, strokes: Iterable[tuple[str, LineString]], cloth: Polygon) -> None:
-        """The letter of each notch beside its stroke, in the allowance; none where that is too narrow for a letter."""
+        """Label each notch with its letter, in the seam allowance if it is wide enough."""
         for name, stroke in strokes:
             letter = Lettering(name, _LETTER)
             if not name or stroke.length < _LETTER + 2:
@@ -200,7 +200,7 @@ class PanelLabels:
                 self._write(letters, ((left + right) / 2, y))
 
     def marker_names(self, robot: Robot, options: PatternOptions) -> None:
-        """The name of each marker beside it, if asked for."""
+        """Label each marker with its name."""
         for marker in robot.markers if options.marker_names else ():
             self._beside(marker.name, place(marker.at), gap=3.5)
 

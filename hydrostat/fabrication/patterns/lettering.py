@@ -1,4 +1,4 @@
-"""`Lettering`: text as single strokes, for machines that follow lines and know no fonts."""
+"""`Lettering`: text as single strokes, for machines that follow lines and have no fonts."""
 
 import unicodedata
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ class Lettering:
     """One line of text, about its middle."""
 
     text: str  # any text; small letters are drawn as capitals, accents left off, what has no letter drawn as a box
-    height: float  # of a capital [mm]
+    height: float  # height of a capital letter [mm]
 
     @property
     def width(self) -> float:

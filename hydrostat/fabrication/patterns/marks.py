@@ -17,7 +17,7 @@ from hydrostat.robot import Robot
 _SHEATH = 3.0  # width of the drawn sheath [mm]
 _STOPPER = 3.0  # radius of the ring round the hole at a stopper [mm]
 _DASH = 2.0  # length of a dash, and about that of the gap after it [mm]
-_CLEAR = 0.8  # how far lines end before a hole [mm], so that none is engraved into it
+_CLEAR = 0.8  # gap between lines and a hole [mm], so that none is engraved into it
 
 
 def place(point: Iterable[float]) -> Place:

@@ -29,7 +29,7 @@ _SHIFTS = (0, 6, -6, 12, -12, 18, -18)
 class Opening:
     """A slit and its zipper."""
 
-    slit: LineString  # as long as the teeth of the zipper, seen from the front [mm]
+    slit: LineString  # slit of the length of the zipper's teeth, seen from the front [mm]
     zipper: int  # length to buy [mm]; longer than the slit where none so short is sold
 
     @property

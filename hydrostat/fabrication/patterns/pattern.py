@@ -23,16 +23,16 @@ from hydrostat.robot import Face, Robot, sewn_sides
 class Pattern:
     """A sheet of panels at true scale, its lower left corner at (0, 0)."""
 
-    name: str  # of the robot
+    name: str  # name of the robot
     panels: tuple[Panel, ...]  # pieces of cloth: the front, the back, and the pieces of the gusset if there is one
-    shapes: tuple[Shape, ...]  # what lies on the sheet beside the panels: the bar of 100 mm
-    width: float  # of the sheet [mm]
-    height: float  # of the sheet [mm]
-    stitches: tuple[CableStitches, ...] = ()  # how each cable is sewn, in cable order
+    shapes: tuple[Shape, ...]  # shapes on the sheet next to the panels: the bar of 100 mm
+    width: float  # width of the sheet [mm]
+    height: float  # height of the sheet [mm]
+    stitches: tuple[CableStitches, ...] = ()  # stitches of each cable, in cable order
     # the slit in the back, seen from the front, from the robot's origin; None if there is none
     opening: Opening | None = None
-    problems: tuple[str, ...] = ()  # what cannot be cut honestly, a line each; only with `force`
-    warnings: tuple[str, ...] = ()  # what to mind, a line each
+    problems: tuple[str, ...] = ()  # reasons why it cannot be cut well, one line each; only with `force`
+    warnings: tuple[str, ...] = ()  # warnings, one line each
 
     def panel(self, name: str) -> Panel:
         """The panel of this name (InputError: there is none)."""
@@ -122,7 +122,7 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
 
 
 def pattern_problems(robot: Robot, options: PatternOptions) -> tuple[str, ...]:
-    """Why a flat body cannot be cut and sewn as drawn, a line each (InputError: the body is not flat)."""
+    """Return the reasons why a flat body cannot be cut and sewn, one line each (InputError: it is not flat)."""
     skin = flat_skin(robot.body, options)
     return _problems(robot, skin, find_pinholes(robot, skin.seam, options), options)
 
@@ -172,7 +172,7 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
     if draft.robot.cables and len(sewn_sides(draft.robot)) == 1:
         (panel,) = sewn_sides(draft.robot)
         warnings.append(
-            f"the cables are sewn on the {panel} only, so they also curl the body toward it (`hydrostat check` prints "
+            f"the cables are sewn on the {panel} alone, so they also curl the body toward it (`hydrostat check` prints "
             'by how much). Set face = "pairs" before [body] in the robot file to sew each on both panels'
         )
     warnings += _over_zipper(draft)
@@ -185,7 +185,7 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
 
 
 def _unheld(robot: Robot) -> tuple[str, ...]:
-    """A sentence if cables shall run where no cloth holds them."""
+    """Return a problem if cables would run without cloth to hold them."""
     if robot.face is not Face.MIDDLE or not robot.cables:
         return ()
     return (

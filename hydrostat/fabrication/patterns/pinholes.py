@@ -59,7 +59,7 @@ def find_pinholes(robot: Robot, seam: Polygon, options: PatternOptions) -> tuple
 
 
 def pinhole_problems(pinholes: Iterable[Pinhole], seam: Polygon, options: PatternOptions) -> tuple[str, ...]:
-    """Tell why holes cannot be cut, a line each: too near the seam, or overlapping."""
+    """Return the reasons why holes cannot be cut, one line each: too near the seam, or overlapping."""
     pinholes = tuple(pinholes)
     problems = []
     for hole in pinholes:

@@ -47,10 +47,10 @@ class PatternPart(StrEnum):
 class LaserLine:
     """A polyline."""
 
-    layer: Layer  # what the laser does along it
-    part: PatternPart  # what it stands for
+    layer: Layer  # operation of the laser along it
+    part: PatternPart  # part of the panel that it stands for
     points: tuple[Place, ...]  # [mm]; the first is not repeated at the end of a closed line
-    closed: bool = False  # whether it ends where it begins
+    closed: bool = False  # True if it ends where it begins
 
     def move(self, dx: float, dy: float) -> Self:
         """Return the line shifted by an offset [mm]."""
@@ -70,8 +70,8 @@ class LaserLine:
 class Circle:
     """A circle."""
 
-    layer: Layer  # what the laser does along it
-    part: PatternPart  # what it stands for
+    layer: Layer  # operation of the laser along it
+    part: PatternPart  # part of the panel that it stands for
     centre: Place  # [mm]
     radius: float  # [mm]
 
@@ -115,9 +115,9 @@ class Panel:
     """One piece of cloth, its right side up."""
 
     name: str  # "front", "back", or "gusset-1" and so on for the pieces of the strip between them
-    # where the robot's [0, 0] lies on the sheet [mm]; of a piece of the gusset, where its seam with the back begins
+    # place of the robot's [0, 0] on the sheet [mm]; for a piece of the gusset, start of its seam with the back
     origin: Place
-    mirrored: bool  # whether the robot's x runs to the left, as seen from behind
+    mirrored: bool  # True if the robot's x runs to the left, as seen from behind
     shapes: tuple[Shape, ...]  # in places of the sheet [mm]
 
     def on_sheet(self, point: Point) -> Place:

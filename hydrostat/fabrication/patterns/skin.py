@@ -14,7 +14,7 @@ from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.robot import Body
 
 _STEPS = 24  # straight pieces of a quarter turn: 0.004 mm from the arc of an 8 mm allowance
-_TOLERANCE = 0.01  # how far an offset line may be straightened [mm], a tenth of a laser's kerf
+_TOLERANCE = 0.01  # maximum deviation of a straightened offset line [mm], a tenth of a laser's kerf
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Skin:
     cut: Polygon  # its parallel, one seam allowance out into the cloth [mm]
     slits: MultiLineString  # further cuts, in bays too narrow for two allowances [mm]
     problems: tuple[str, ...]  # why it cannot be cut and sewn as drawn, a line each
-    warnings: tuple[str, ...]  # what to mind while sewing, a line each
+    warnings: tuple[str, ...]  # warnings for sewing, one line each
 
 
 def flat_skin(body: Body, options: PatternOptions) -> Skin:
@@ -118,15 +118,15 @@ def _at(geometry: Polygon | shapely.Point) -> str:
 
 
 _SPACING = 80.0  # about how far apart notches are along the seam [mm]
-_PAIR = 5.0  # how far apart the two notches of the double notch are [mm]: it tells where top is
+_PAIR = 5.0  # distance of the two notches of the double notch [mm], which marks the top
 
 
 @dataclass(frozen=True)
 class Notch:
     """One stroke."""
 
-    ring: int  # which seam it is on: 0 for the outer one, then the holes in order
-    along: float  # how far along that seam from its top, with the body on the left [mm]
+    ring: int  # number of its seam: 0 for the outer one, then the holes in order
+    along: float  # distance along that seam from its top, with the body on the left [mm]
     name: str  # a letter, the same on every panel; empty for the second stroke of the double notch
     stroke: LineString  # from the seam to the cut, seen from the front [mm]
 

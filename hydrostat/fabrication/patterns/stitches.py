@@ -28,10 +28,9 @@ class Side(StrEnum):
 class Stitch:
     """Point of a cable, and what the cable does there."""
 
-    number: int  # of the point along its cable, 1 at the winch
+    number: int  # number of the point along its cable, 1 at the winch
     place: Place  # seen from the front, from the origin of the robot [mm]
-    # whether the cable goes through the cloth here. Where it does not, what holds it (its winch, its sheath) is tied to
-    # the cloth with thread.
+    # True if the cable goes through the cloth here; else its winch or sheath is tied to the cloth with thread
     passes: bool
     after: Side  # on which side the cable runs on
 

@@ -215,7 +215,7 @@ def put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str) -> No
 
 
 def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Mapping[str, Spot]) -> None:
-    """A mark on each winch; where one is on another already, beside it, led to its place by a line."""
+    """Mark each winch; a mark on another winch is moved and led to its place by a line."""
     taken: list[Spot] = []
     size = 9.0 if len(stands) <= _MANY else 7.5
     for letter, stand in stands.items():
@@ -245,7 +245,7 @@ def _put_numbers(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun]) 
 def _put_number(
     canvas: Canvas, labels: LabelPlaces, run: CableRun, place: int, *, led: bool = False, words: str = ""
 ) -> None:
-    """A number beside its hole, or with `led` and the cable's name further away with a line to it."""
+    """Put a number next to its hole, or with `led` and the cable's name further away with a line to it."""
     words = words or (f"C{run.cable}-{place + 1}" if led else str(place + 1))
     size, spot = text_size(words, 7.5), run.spots[place]
     middle = labels.beside(spot, size, gap=0.75, most=40 if led else 3, rings=4 if led else 2)
@@ -280,7 +280,7 @@ def _put_stopper(canvas: Canvas, run: CableRun) -> None:
 FEWEST = 3
 """With fewer cables one map shows them all."""
 
-_COLUMNS, _ROWS = 3, 4  # of a page
+_COLUMNS, _ROWS = 3, 4  # maps on a page
 _CELL_HEAD, _CELL_MARGIN = 5.0, 4.0  # room for a title, and round the body [mm]
 _PALE = 0.72  # grey of what does not stand out
 

@@ -211,7 +211,7 @@ def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float
 
 
 def _put_drivers(canvas: Canvas, plan: PowerPlan, places: list[float], step: float, top: float) -> None:
-    """Boards that tell drivers how fast, and hear encoders."""
+    """Draw the boards with the speed signals to the drivers and from the encoders."""
     _put_board(canvas, {"uno": "Uno", "mega": "Mega"}[plan.boards[0]], top)
     del plan
     wide = 0.4 * step

@@ -25,7 +25,7 @@ class TableFacts(TypedDict):
 
     file: str  # in which all of its rows are
     heads: list[str]  # heading of each column
-    right: list[bool]  # whether each column stands on the right
+    right: list[bool]  # True for each right-aligned column
     rows: list[list[str]]
 
 
@@ -41,7 +41,7 @@ class WinchFacts(TypedDict):
     """A winch."""
 
     mark: str  # W1, W2, ...
-    files: str  # of the parts that it does not share with all others
+    files: str  # files of the parts that it does not share with all others
     name: str
     cables: str  # names of its cables
     spool: str  # diameter of its spool [mm]
@@ -68,8 +68,8 @@ class CheckFacts(TypedDict):
 class MouldFacts(TypedDict):
     """A mould and its fill."""
 
-    silicone: bool  # whether it is cast itself; else it is printed
-    foams: bool  # whether foam is poured into it
+    silicone: bool  # True if it is cast itself; else it is printed
+    foams: bool  # True if foam is poured into it
     weighs: str  # mass of the body alone
     undercut: str  # sentences on the surface that does not slide out
     amounts: list[list[str]]  # names and amounts of materials
@@ -82,7 +82,7 @@ class PowerFacts(TypedDict):
 
     rows: list[list[str]]  # parts and settings of the supply
     mind: list[str]  # sentences on what may go wrong
-    title: str  # of the table of pins
+    title: str  # title of the table of pins
     heads: list[str]  # heading of each column of that table
     pins: list[list[str]]  # its rows
 
@@ -101,11 +101,11 @@ class SheetFacts(TypedDict):
     method: str
     title: str  # name of the robot
     pairs: int  # number of cables that have a twin on the other panel
-    flat: bool  # whether the body is flat
-    kind: str  # of robot, in words
+    flat: bool  # True for a flat body
+    kind: str  # kind of robot, in words
     facts: list[str]  # size, number of parts, time and cost, a line each
     mind: list[str]  # problems and warnings
-    forced: bool  # whether the kit was written despite problems
+    forced: bool  # True if the kit was written despite problems
     bill: TableFacts
     cables: TableFacts | None  # to cut; None without cables
     tubes: TableFacts | None  # to cut; None without tubes

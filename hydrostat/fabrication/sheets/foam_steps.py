@@ -20,7 +20,7 @@ from hydrostat.units import plural
 
 _SILICONE_CURE = ("Mold Max 30 silicone", "24 h, or 6 h at 60 °C")
 
-_MODEL_CURES = (("alginate", "less than 5 min"), ("plaster", "several hours"))  # of what a positive is cast with
+_MODEL_CURES = (("alginate", "less than 5 min"), ("plaster", "several hours"))  # for casting a positive
 
 _OTHER_MOULD = (
     "“hydrostat fabricate” with “--mould silicone” writes what it takes instead: positive and frames to print, "
@@ -52,7 +52,7 @@ def foam_expansion(mould: Mould) -> bool:
 
 
 def other_way(mould: Mould) -> tuple[str, str]:
-    """Another way to the mould: a title, and what to know of it."""
+    """Return the title and the text on another method to make the mold."""
     if mould.kind is MouldKind.PRINTED:
         return "Or a mould of silicone", _OTHER_MOULD
     return "Or from a model, without a printed positive", _MODEL_FIRST

@@ -107,7 +107,7 @@ _MOTOR = re.compile(r"\b(motor|torque|N mm)\b")
 
 
 def note_lines(problems: tuple[str, ...], warnings: tuple[str, ...], robot: Robot | None = None) -> list[str]:
-    """Problems first, then what motors bear, then what else must fit, then cloth; how many more there are."""
+    """Return problems first, then warnings on motors, on fits, on cloth, and the number of those left out."""
     ranked = (*merge_sentences(problems), *sorted(merge_sentences(warnings), key=_rank))
     ordered = [_marked(in_words(words), robot) for words in ranked]
     shown = [shorten_text(sentence(words), _SENTENCE) for words in ordered[:_MOST]]

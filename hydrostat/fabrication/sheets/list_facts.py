@@ -139,7 +139,7 @@ def _called(placed: Placed) -> str:
 
 
 def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
-    """Supply, fuse, leads and battery, what to mind, and which wire goes where; None without motors."""
+    """Supply, fuse, leads, battery, warnings and wiring table; None without motors."""
     if plan is None:
         return None
     marks = winch_marks_of(robot)

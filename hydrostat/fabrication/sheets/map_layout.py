@@ -22,7 +22,7 @@ class Visibility:
     """The near and the far side of a body."""
 
     front: DepthBuffer  # depths of the near side
-    back: DepthBuffer  # of the far side, as seen from there: x and depth change their sign
+    back: DepthBuffer  # depths of the far side, as seen from there: x and depth change their sign
 
     @classmethod
     def of(cls, body: DrawnSolid, camera: Camera) -> Self:
@@ -95,7 +95,7 @@ def body_solid(robot: Robot) -> DrawnSolid:
 _WAYS = [(np.cos(turn), np.sin(turn)) for turn in np.radians(np.arange(0, 360, 30))]
 """Directions that are tried, to the right first."""
 
-_RINGS = (0.0, 1.5, 3.5, 6.0)  # how much further off than asked for a label may be, each tried in turn [mm]
+_RINGS = (0.0, 1.5, 3.5, 6.0)  # additional distances of a label, tried in turn [mm]
 _STEP = 0.5  # between points that stand for a line [mm]
 
 

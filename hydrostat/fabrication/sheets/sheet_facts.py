@@ -35,7 +35,7 @@ _CABLES = {"cable": "cable", "cut": "cut to", "slack": "slack", "spool_mark": "s
 _TUBES = {"cable": "cable", "start": "from", "end": "to", "length": "cut to"}
 """The same of the list of tubes."""
 
-_PLACES = {AT_BODY: "body"}  # what the list of tubes calls a place, and the sheet, which has less room
+_PLACES = {AT_BODY: "body"}  # short names of places for the sheet, which has less room than the list of tubes
 
 
 def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: str = "") -> SheetFacts:

@@ -42,7 +42,7 @@ def drawn_solid(solid: Manifold, *, shift: Sequence[float] = (0.0, 0.0, 0.0)) ->
 def exploded_picture(
     assembly: PartAssembly, numbers: Mapping[str, int], *, width: float, height: float, view: Camera | None = None
 ) -> Canvas:
-    """Pieces drawn away from each other, a dashed line on the way of each, and a number in a circle beside it.
+    """Pieces drawn away from each other, a dashed line on the path of each, and a number in a circle next to it.
 
     Numbers go by name: pieces without one get no circle, several of one number a single one. The picture is so wide and
     at most so high [mm]; the view is isometric if left out.

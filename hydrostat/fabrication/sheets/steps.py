@@ -15,10 +15,10 @@ from hydrostat.units import plural
 class AssemblyStep:
     """One thing to do."""
 
-    title: str  # what
+    title: str  # title of the step
     minutes: float  # about how long it keeps a person busy
-    text: str  # how, in short sentences
-    wait: str = ""  # how long to wait after it, in words; empty for not at all
+    text: str  # instructions, in short sentences
+    wait: str = ""  # waiting time after it, in words; empty for none
 
     @property
     def time(self) -> str:

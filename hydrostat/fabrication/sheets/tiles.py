@@ -19,9 +19,9 @@ from hydrostat.fabrication.patterns.svg_writer import COLOURS, shapes_svg
 from hydrostat.fabrication.sheets.legible import legible
 
 PAPERS = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}  # width and height [mm]
-MARGIN = 10.0  # what a printer leaves white along each edge [mm]
+MARGIN = 10.0  # white edge of a printer's pages [mm]
 FOOTER = 14.0  # room below a tile for its name and the bar [mm]
-OVERLAP = 10.0  # what a tile shares with the next [mm]
+OVERLAP = 10.0  # overlap of neighboring tiles [mm]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,19 +31,19 @@ class Tile:
     name: str  # column and row, such as "B2"
     column: int  # from the left, from 0
     row: int  # from the top, from 0
-    left: float  # of its left edge on the sheet [mm]
-    top: float  # how far its upper edge is below that of the sheet [mm]
-    shapes: tuple[Shape, ...]  # what lies on it, in places of the sheet
+    left: float  # position of its left edge on the sheet [mm]
+    top: float  # distance of its upper edge below that of the sheet [mm]
+    shapes: tuple[Shape, ...]  # shapes on it, in the coordinates of the sheet
 
 
 @dataclass(frozen=True, kw_only=True)
 class TileGrid:
     """All tiles of a sheet."""
 
-    columns: int  # of tiles
-    rows: int  # of tiles
-    width: float  # of a tile [mm]
-    height: float  # of a tile [mm]
+    columns: int  # columns of tiles
+    rows: int  # rows of tiles
+    width: float  # width of a tile [mm]
+    height: float  # height of a tile [mm]
     tiles: tuple[Tile, ...]  # row by row; without shapes where the tiles before it show all that is on it
 
     @property

@@ -12,18 +12,18 @@ LEAST = 1e-3  # mean thickness of what two pieces share, above which they are in
 class Placed:
     """One thing in an assembly."""
 
-    name: str  # of the piece, unique in the assembly, as in `Printed.name` if it is printed
-    title: str  # what a person calls it
-    solid: Manifold  # where it belongs when assembled [mm]
-    pulled: tuple[float, float, float] = (0.0, 0.0, 0.0)  # how far it is drawn away in an exploded picture [mm]
-    printed: bool = True  # whether it is printed; else it is bought, and this is its envelope
+    name: str  # name of the piece, unique in the assembly, as in `Printed.name` if it is printed
+    title: str  # title for a person
+    solid: Manifold  # solid in its assembled place [mm]
+    pulled: tuple[float, float, float] = (0.0, 0.0, 0.0)  # offset in an exploded picture [mm]
+    printed: bool = True  # True if it is printed; else it is bought, and this is its envelope
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PartAssembly:
     """Things put together, in millimetres."""
 
-    name: str  # of the whole
+    name: str  # name of the assembly
     pieces: tuple[Placed, ...]  # in the order in which they are put together
 
 
@@ -33,7 +33,7 @@ class Interference:
 
     one: str  # name of a piece
     other: str  # name of another
-    volume: float  # of what they share [mm^3]
+    volume: float  # volume of their overlap [mm^3]
 
 
 def interferences(assembly: PartAssembly, *, least: float = LEAST) -> tuple[Interference, ...]:

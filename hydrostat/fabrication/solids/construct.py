@@ -15,7 +15,7 @@ from manifold3d import CrossSection, Manifold
 Corner = tuple[float, float]  # a corner of a profile [mm]
 
 Sides = tuple[float, float, float]  # lengths along three axes [mm]
-_SAG = 0.02  # how far a round side is at most from its true place [mm]
+_SAG = 0.02  # maximum error of a round side [mm]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -34,9 +34,9 @@ class PartOnBed:
     """One part on a bed."""
 
     part: int  # its index
-    x: float  # how far it is moved [mm], after it is turned
+    x: float  # offset along x [mm], after the rotation
     y: float  # the same along y
-    turned: bool  # whether it is turned by a quarter, counter-clockwise from above
+    turned: bool  # True if it is rotated by 90 degrees, counter-clockwise from above
 
 
 @dataclass(frozen=True)

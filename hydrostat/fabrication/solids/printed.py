@@ -12,8 +12,8 @@ from scipy.sparse.csgraph import connected_components
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.solids.construct import Construction, solid_of
 
-_DECIMALS = 5  # of a coordinate [mm]: what a file of 32-bit numbers can hold of parts up to 128 mm
-_STEP = 2e-5  # how far apart vertices are put that would fall together, at least [mm]
+_DECIMALS = 5  # decimals of a coordinate [mm]: the limit of 32-bit numbers for parts up to 128 mm
+_STEP = 2e-5  # minimum distance of vertices that would otherwise coincide [mm]
 
 FileMesh = tuple[Float[np.ndarray, "kept 3"], Int[np.ndarray, "faces 3"]]
 """Vertices [mm], each a number that 32 bits hold, and triangles, counter-clockwise from outside."""
@@ -76,7 +76,7 @@ def _flaps(triangles: Int[np.ndarray, "triangles 3"]) -> Bool[np.ndarray, " tria
 
 
 def _apart(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corners 3"]:
-    """The corners with those in one place put beside each other, along x and y in turn so that a flat bottom stays."""
+    """The corners with those in one place put next to each other, along x and y in turn so that a flat bottom stays."""
     corners = corners.copy()
     step = max(_STEP, 2 * float(np.spacing(np.float32(np.abs(corners).max(initial=0.0)))))
     for turn in range(100):
@@ -99,11 +99,11 @@ class Printed:
     """A solid as it lies on the print bed, in millimetres: z up, its lowest point at z = 0."""
 
     name: str  # stem of its files, of letters, digits and underscores
-    title: str  # what a person calls it
+    title: str  # title for a person
     solid: Manifold  # watertight
-    count: int = 1  # how many are needed
-    note: str = ""  # how to print it: which way up, what to mind
-    model: Construction | None = None  # how it is made of shapes, for STEP; None for what is no sum of simple shapes
+    count: int = 1  # number of pieces
+    note: str = ""  # instruction to print it
+    model: Construction | None = None  # sum of shapes that it is made of, for STEP; None if there is none
     kind: str = ""  # its title without winches or the number of a piece; empty if the title says neither
     winches: tuple[str, ...] = ()  # names of the winches it is for; empty if all share it, or it is of no winch
 
@@ -150,7 +150,7 @@ class TriangleMesh:
     """Surface in triangles."""
 
     vertices: Float[np.ndarray, "vertices 3"]  # places [mm]
-    triangles: Int[np.ndarray, "triangles 3"]  # of three vertices each; seen from outside they turn counter-clockwise
+    triangles: Int[np.ndarray, "triangles 3"]  # three vertices each; seen from outside they turn counter-clockwise
 
     @cached_property
     def corners(self) -> Float[np.ndarray, "triangles 3 3"]:

@@ -102,7 +102,7 @@ def test_mould_that_is_linked_with_the_body_is_refused(monkeypatch: pytest.Monke
 def test_silicone_that_is_linked_is_to_be_cut(monkeypatch: pytest.MonkeyPatch) -> None:
     mould = mould_of(ball_with_handles(), MouldKind.SILICONE, monkeypatch)
     assert mould.problems == ()
-    assert any("cut the silicone open" in warning for warning in mould.warnings)
+    assert any("Cut the silicone open" in warning for warning in mould.warnings)
 
 
 @pytest.mark.slow
