@@ -193,13 +193,13 @@ class Constraints:
             for place, zone in enumerate(getattr(self, field)):
                 if zone.dim != mesh.dim:
                     raise InputError(
-                        f"constraints: {field}[{place}] has {zone.dim} dimensions, the body {mesh.dim}; "
-                        f"give its points {mesh.dim} coordinates"
+                        f"constraints: {field}[{place}]: wrong dimension ({zone.dim}). Body: {mesh.dim}. "
+                        f"Give its points {mesh.dim} coordinates."
                     )
                 if zone.distances(mesh.nodes).min() > mesh.edge_lengths.max():
                     raise InputError(
-                        f"constraints: {field}[{place}] does not touch the body, so it would change nothing; "
-                        "check its place and its unit"
+                        f"constraints: {field}[{place}]: does not touch the body. "
+                        "It would have no effect. Check its position and unit."
                     )
         for field, part in (("locked_winches", robot.winch), ("locked_cables", robot.cable)):
             for place, name in enumerate(getattr(self, field)):
@@ -211,13 +211,13 @@ class Constraints:
             value = getattr(self, field)
             if allowed.unit == "m" and value is not None and value > _SIZES * mesh.size:
                 raise InputError(
-                    f"constraints: {field} = {value:g} m is too much for a body of {mesh.size:.3g} m; "
-                    "lengths are in metres: 5 mm is 0.005"
+                    f"constraints: {field}: too large for a body of {mesh.size:.3g} m ({value:g} m). "
+                    f"Maximum: {_SIZES * mesh.size:.3g} m. Give lengths in meters: 5 mm is 0.005."
                 )
         if self.mount is Mount.WORLD and not robot.winches:
             raise InputError(
-                'constraints: mount = "world": winches in the world stand at places of the robot\'s own winches, and '
-                "it has none; add a [[winch]] at each place where one may stand"
+                "constraints: mount: the robot has no winches (world). Winches in the world stand at positions of the "
+                "robot's own winches. Add a [[winch]] at each position."
             )
         self._check_mirror(robot)
         self._check_depth(robot)
@@ -226,12 +226,12 @@ class Constraints:
         if self.depth is None:
             return
         if robot.body.mesh.dim == 2:
-            raise InputError("constraints: depth: a flat body has no skin for cables; leave it out")
+            raise InputError("constraints: depth: a flat body has no skin for cables. Remove depth.")
         winches = all(winch.mount is Mount.WORLD for winch in robot.winches) if self.mount is None else None
         if not robot.winches or not (self.mount is Mount.WORLD if winches is None else winches):
             raise InputError(
-                "constraints: depth: cables on the skin come from winches outside the body; give the robot [[winch]] "
-                'tables with mount = "world" where these stand'
+                "constraints: depth: cables on the skin come from winches outside the body. "
+                'Add a [[winch]] with mount = "world" at each position.'
             )
 
     def _check_mirror(self, robot: Robot) -> None:
@@ -239,12 +239,14 @@ class Constraints:
             return
         mesh, axis = robot.body.mesh, "xyz".index(self.mirror)
         if axis >= mesh.dim:
-            raise InputError(f'constraints: mirror = "{self.mirror}": a flat body has no such axis; choose "x" or "y"')
+            raise InputError(
+                f'constraints: mirror: no such axis in a flat body ("{self.mirror}"). Allowed: "x" or "y".'
+            )
         low, high = float(mesh.nodes[:, axis].min()), float(mesh.nodes[:, axis].max())
         if abs(low + high) > _ASKEW * (high - low):
             raise InputError(
-                f'constraints: mirror = "{self.mirror}": the body must lie evenly about {self.mirror} = 0, not from '
-                f"{1e3 * low:.4g} to {1e3 * high:.4g} mm; move it there, or set mirror to None"
+                f"constraints: mirror: body not centered on {self.mirror} = 0 "
+                f"({1e3 * low:.4g} to {1e3 * high:.4g} mm). Move it there or set mirror to None."
             )
 
     def _check_numbers(self) -> None:
@@ -261,7 +263,7 @@ class Constraints:
                 if not isinstance(name, str):
                     _refuse(f"{field}[{place}]", name, f"the name of a {kind}")
                 if names.count(name) > 1:
-                    raise InputError(f"constraints: {field} names {name!r} twice; name it once")
+                    raise InputError(f"constraints: {field}: name used twice ({name!r}). Name it once.")
 
 
 RANGES: dict[str, Range] = {one.name: allowed for one in fields(Constraints) if (allowed := one.metadata.get("range"))}

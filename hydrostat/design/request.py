@@ -226,7 +226,7 @@ class DesignRequest:
         if self.method is DesignMethod.TREES:
             self._check_trees()
         if self.improve and self.winches == AUTO:
-            raise InputError('winches = "auto" starts from nothing; give a number of winches to improve a network')
+            raise InputError('winches: cannot improve a network ("auto"). Give a number of winches.')
 
     @property
     def route_options(self) -> RouteOptions:
@@ -248,7 +248,7 @@ class DesignRequest:
             for name, point in pose.targets.items():
                 if len(point) != dim:
                     raise InputError(
-                        f'pose "{pose.name}": the target of {name} has {len(point)} coordinates, the body {dim}'
+                        f'pose "{pose.name}": target of {name}: wrong dimension ({len(point)}). Body: {dim}.'
                     )
                 place(f'pose "{pose.name}": the target of {name}', point, robot.body.mesh)  # in metres
                 if name not in markers:
@@ -256,7 +256,7 @@ class DesignRequest:
                     raise InputError(f'pose "{pose.name}": unknown marker "{name}". {known}')
         self.constraints.check(robot)
         if self.filled and robot.body.outline is None:
-            raise InputError("filled is for flat robots with a drawing; leave it out")
+            raise InputError("filled: only for flat robots with a drawing. Remove it.")
         fitted = replace(self, uncertainty=self.uncertainty or BuildTolerances.of(robot.body))
         return replace(fitted, constraints=_with_own(self.constraints, robot)) if self.improve else fitted
 
@@ -288,11 +288,13 @@ class DesignRequest:
     def _check_trees(self) -> None:
         """Refuse what the thesis's way does not know."""
         if self.improve or self.winches == AUTO:
-            raise InputError('method "trees" starts from nothing with a number of winches; use method "routes"')
+            raise InputError(
+                'method "trees" needs a number of winches and cannot improve a network. Use method "routes".'
+            )
         usual = Constraints()
         asked = [name for name in ROUTES_ONLY if getattr(self.constraints, name) != getattr(usual, name)]
         if asked:
-            raise InputError(f'method "trees" does not keep {", ".join(asked)}; use method "routes", which does')
+            raise InputError(f'method "trees" does not keep {", ".join(asked)}. Use method "routes", which does.')
 
 
 _OPTIONS: dict[str, type[RouteOptions] | type[TreeOptions]] = {
