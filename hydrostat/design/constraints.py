@@ -75,35 +75,36 @@ class Constraints:
     `hydrostat.design.buildable` tells whether a network keeps them, and how each of them is measured.
 
     Attributes:
-        winch_zones: winches stand in one of these only; anywhere in the body if there is none.
-        keep_out: no cable passes here.
-        still: cables run in sheaths here, so that they move nothing.
-        mount: winches in the body, or beside it; None: as the robot's own winches are, in the body if it has none.
+        winch_zones: zones for winches; anywhere in the body if there is none.
+        keep_out: zones without cables.
+        still: passive zones: cables run in sheaths here, so that they move nothing.
+        mount: place of the winches, in the body or in the world; None: as the robot's own winches are, in the body if
+            it has none.
             Winches in the world stand at places of the robot's own winches.
         built_in: restriction of new winches in a flat body to places where motor, spool and housing fit, if they fit
             anywhere; those of a network to be improved stay about where they are.
-        cables_per_winch: most cables of one winch.
-        clearance: least distance of a cable from the edge of the body.
-        depth: in space, how far under the surface cables run, sewn to the skin; 0: on it. It takes the place of
+        cables_per_winch: maximum number of cables of one winch.
+        clearance: minimum distance of a cable from the edge of the body [m].
+        depth: depth of cables under the surface in space [m], sewn to the skin; 0: on it. It takes the place of
             the clearance, and winches stand in the world. None: anywhere.
-        winch_clearance: least distance of a winch in the body from its edge.
-        winch_gap: least distance between two winches, unless both stand in the world.
-        hole_gap: least distance between two holes through which cables pass the cloth.
-        cable_gap: least distance between two cables, or two parts of one, so that none cross or run side by side
+        winch_clearance: minimum distance of a winch in the body from its edge [m].
+        winch_gap: minimum distance between two winches [m], unless both stand in the world.
+        hole_gap: minimum distance between two holes through which cables pass the cloth [m].
+        cable_gap: minimum distance [m] between two cables, or two parts of one, so that none cross or run side by side
             within a stitch; and of cables from winches that do not pull them beyond two spool radii. Cables of one
             winch may be nearer within two spool radii of it. 0: cables may cross.
-        turn: largest turn of a cable at a via point [degrees].
-        bend_radius: least radius of the arc that fits a turn between the middles of its two segments.
-        longest: greatest length of a cable from winch to stopper; None: any.
-        tension: the most that a cable bears [N].
-        torque: the most that the motor of a winch gives [N m]; None: as much as the tensions ask.
-        travel: the most that a winch takes in.
-        release: the most that a winch lets out.
+        turn: maximum turn of a cable at a via point [degrees].
+        bend_radius: minimum radius of the arc that fits a turn between the middles of its two segments [m].
+        longest: maximum length of a cable from winch to stopper [m]; None: any.
+        tension: maximum cable tension [N].
+        torque: maximum torque of the motor of a winch [N m]; None: as much as the tensions need.
+        travel: maximum contraction of a winch [m].
+        release: maximum payout of a winch [m].
         spool_radius: radius of the spools [m].
-        slack: the most that a stopper may leave loose.
-        spool_ratio: most times by which a cable's own spool may be larger or smaller than its winch's; 1: none may.
+        slack: maximum slack at a stopper [m].
+        spool_ratio: maximum ratio of a cable's own spool to its winch's, or its inverse; 1: equal spools.
         leads: True if a cable may run in a sheath from its winch to where bending should begin.
-        mirror: axis whose sign a left-right symmetric network does not feel: "x", "y" or "z"; None: no symmetry. The
+        mirror: axis across which the network is symmetric: "x", "y" or "z"; None: no symmetry. The
             mirror is the plane where that coordinate is 0, the middle of what was drawn.
         locked_winches: names of the robot's own winches that stay.
         locked_cables: names of the robot's own cables that stay as they are, and their winches with them.

@@ -39,9 +39,9 @@ class RouteOptions:
         tolerance: rms error of each pose [m] that the fewest winches must reach where their number is left open; a
             hundredth of the body's size if left out.
         spacing: distance between via points, in mean mesh edges.
-        hops: most edges of a path that is priced.
+        hops: maximum number of edges of a path that is priced.
         lead_penalty: share of the promised gain that a lead as long as the body costs.
-        trials: paths whose networks are solved before one is added.
+        trials: number of paths with solved networks before one is added.
         starts: networks that are grown side by side along priced paths; one more is grown from sketches.
         exchanges: most cables that are taken out, one at a time, for the best to be put in their place; the last round
             of all cables is followed by another where it gained a fifth.
@@ -108,15 +108,15 @@ class TreeOptions:
     Attributes:
         fibres: a muscle on every mesh edge, or one in every element.
         effort: weight of squared tensions in the activation: the larger, the weaker the muscles and the error left.
-        stages: steps in which the target is approached.
+        stages: number of steps toward the target.
         thresholds: numbers of candidate fibres to try.
-        distances: largest gaps to bridge between two fibres to try.
-        growth_steps: most fibres joined to one route.
-        turn: sharpest turn of a route [degrees].
-        shortest: least length of a route worth a cable.
+        distances: maximum gaps between two fibres to try.
+        growth_steps: maximum number of fibres joined to one route.
+        turn: maximum turn of a route [degrees].
+        shortest: minimum length of a route.
         phis: weights of the mean against the spread in the score to try.
         shares: most ways to share the cables among the winches to try, the evenest first.
-        trials: most networks whose poses are solved.
+        trials: maximum number of networks with solved poses.
         loss: largest increase of the pose error by leaving out cables, as a fraction.
         lead_penalty: loss of score for a lead as long as the body.
     """
