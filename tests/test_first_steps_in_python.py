@@ -121,7 +121,7 @@ MILLIMETRES = {
     "winch gap": (lambda _: hs.Constraints(winch_gap=25), "at most 20 m, not 25; in metres"),
     "a gap beside the body": (
         lambda simulation: hs.Constraints(hole_gap=4).check(simulation.robot),
-        "hole_gap = 4 m is too much for a body of 0.279 m",
+        r"hole_gap: too large for a body of 0.279 m \(4 m\)",
     ),
     "zone": (lambda _: hs.Zone(at=(0, 30), radius=0.01), "in metres, at most 20.*30 mm is 0.03"),
     "radius of a zone": (lambda _: hs.Zone(at=(0.0, 0.03), radius=30.0), "in metres, at most 20, not 30"),

@@ -62,16 +62,23 @@ def _pulled(robot: Robot, number: int, reached: IKResult, constraints: Constrain
     tensions, contractions = reached.pose.tensions, reached.pose.contractions
     most, found = constraints.tension_limit, []
     found += [
-        f"{name}: cable[{index}] is pulled with {tension:.4g} N, more than {most:.4g} N"
+        f"{name}: cable[{index}]: tension too high ({tension:.4g} N). Maximum: {most:.4g} N. "
+        "Ease the pose or add cables."
         for index, tension in enumerate(tensions)
         if tension > _SHARE * most
     ]
     for index, (winch, contraction) in enumerate(zip(robot.winches, contractions, strict=True)):
         which = f"{name}: winch[{index}] {winch.name}"
         if contraction > winch.travel + LENGTH:
-            found.append(f"{which} takes in {mm(contraction)}, more than its travel of {mm(winch.travel)}")
+            found.append(
+                f"{which}: contraction too large ({mm(contraction)}). Maximum travel: {mm(winch.travel)}. "
+                "Ease the pose or raise travel."
+            )
         if contraction < -winch.release - LENGTH:
-            found.append(f"{which} lets out {mm(-contraction)}, more than its release of {mm(winch.release)}")
+            found.append(
+                f"{which}: payout too large ({mm(-contraction)}). Maximum release: {mm(winch.release)}. "
+                "Ease the pose or raise release."
+            )
     return found + _turned(robot, name, tensions, constraints)
 
 
@@ -85,7 +92,7 @@ def _turned(robot: Robot, name: str, tensions: np.ndarray, constraints: Constrai
         torque = float(winch.spool_radius * (robot.spool_ratios[own] * tensions[own]).sum())
         if torque > _SHARE * constraints.torque:
             found.append(
-                f"{name}: winch[{index}] {winch.name} must give {torque:.4g} N m, "
-                f"more than the torque of {constraints.torque:.4g} N m"
+                f"{name}: winch[{index}] {winch.name}: torque too high ({torque:.4g} N m). "
+                f"Maximum: {constraints.torque:.4g} N m. Ease the pose or raise torque."
             )
     return found

@@ -75,35 +75,36 @@ class Constraints:
     `hydrostat.design.buildable` tells whether a network keeps them, and how each of them is measured.
 
     Attributes:
-        winch_zones: winches stand in one of these only; anywhere in the body if there is none.
-        keep_out: no cable passes here.
-        still: cables run in sheaths here, so that they move nothing.
-        mount: winches in the body, or beside it; None: as the robot's own winches are, in the body if it has none.
+        winch_zones: zones for winches; anywhere in the body if there is none.
+        keep_out: zones without cables.
+        still: passive zones: cables run in sheaths here, so that they move nothing.
+        mount: place of the winches, in the body or in the world; None: as the robot's own winches are, in the body if
+            it has none.
             Winches in the world stand at places of the robot's own winches.
         built_in: restriction of new winches in a flat body to places where motor, spool and housing fit, if they fit
             anywhere; those of a network to be improved stay about where they are.
-        cables_per_winch: most cables of one winch.
-        clearance: least distance of a cable from the edge of the body.
-        depth: in space, how far under the surface cables run, sewn to the skin; 0: on it. It takes the place of
+        cables_per_winch: maximum number of cables of one winch.
+        clearance: minimum distance of a cable from the edge of the body [m].
+        depth: depth of cables under the surface in space [m], sewn to the skin; 0: on it. It takes the place of
             the clearance, and winches stand in the world. None: anywhere.
-        winch_clearance: least distance of a winch in the body from its edge.
-        winch_gap: least distance between two winches, unless both stand in the world.
-        hole_gap: least distance between two holes through which cables pass the cloth.
-        cable_gap: least distance between two cables, or two parts of one, so that none cross or run side by side
+        winch_clearance: minimum distance of a winch in the body from its edge [m].
+        winch_gap: minimum distance between two winches [m], unless both stand in the world.
+        hole_gap: minimum distance between two holes through which cables pass the cloth [m].
+        cable_gap: minimum distance [m] between two cables, or two parts of one, so that none cross or run side by side
             within a stitch; and of cables from winches that do not pull them beyond two spool radii. Cables of one
             winch may be nearer within two spool radii of it. 0: cables may cross.
-        turn: largest turn of a cable at a via point [degrees].
-        bend_radius: least radius of the arc that fits a turn between the middles of its two segments.
-        longest: greatest length of a cable from winch to stopper; None: any.
-        tension: the most that a cable bears [N].
-        torque: the most that the motor of a winch gives [N m]; None: as much as the tensions ask.
-        travel: the most that a winch takes in.
-        release: the most that a winch lets out.
+        turn: maximum turn of a cable at a via point [degrees].
+        bend_radius: minimum radius of the arc that fits a turn between the middles of its two segments [m].
+        longest: maximum length of a cable from winch to stopper [m]; None: any.
+        tension: maximum cable tension [N].
+        torque: maximum torque of the motor of a winch [N m]; None: as much as the tensions need.
+        travel: maximum contraction of a winch [m].
+        release: maximum payout of a winch [m].
         spool_radius: radius of the spools [m].
-        slack: the most that a stopper may leave loose.
-        spool_ratio: most times by which a cable's own spool may be larger or smaller than its winch's; 1: none may.
+        slack: maximum slack at a stopper [m].
+        spool_ratio: maximum ratio of a cable's own spool to its winch's, or its inverse; 1: equal spools.
         leads: True if a cable may run in a sheath from its winch to where bending should begin.
-        mirror: axis whose sign a left-right symmetric network does not feel: "x", "y" or "z"; None: no symmetry. The
+        mirror: axis across which the network is symmetric: "x", "y" or "z"; None: no symmetry. The
             mirror is the plane where that coordinate is 0, the middle of what was drawn.
         locked_winches: names of the robot's own winches that stay.
         locked_cables: names of the robot's own cables that stay as they are, and their winches with them.
@@ -193,13 +194,13 @@ class Constraints:
             for place, zone in enumerate(getattr(self, field)):
                 if zone.dim != mesh.dim:
                     raise InputError(
-                        f"constraints: {field}[{place}] has {zone.dim} dimensions, the body {mesh.dim}; "
-                        f"give its points {mesh.dim} coordinates"
+                        f"constraints: {field}[{place}]: wrong dimension ({zone.dim}). Body: {mesh.dim}. "
+                        f"Give its points {mesh.dim} coordinates."
                     )
                 if zone.distances(mesh.nodes).min() > mesh.edge_lengths.max():
                     raise InputError(
-                        f"constraints: {field}[{place}] does not touch the body, so it would change nothing; "
-                        "check its place and its unit"
+                        f"constraints: {field}[{place}]: does not touch the body. "
+                        "It would have no effect. Check its position and unit."
                     )
         for field, part in (("locked_winches", robot.winch), ("locked_cables", robot.cable)):
             for place, name in enumerate(getattr(self, field)):
@@ -211,13 +212,13 @@ class Constraints:
             value = getattr(self, field)
             if allowed.unit == "m" and value is not None and value > _SIZES * mesh.size:
                 raise InputError(
-                    f"constraints: {field} = {value:g} m is too much for a body of {mesh.size:.3g} m; "
-                    "lengths are in metres: 5 mm is 0.005"
+                    f"constraints: {field}: too large for a body of {mesh.size:.3g} m ({value:g} m). "
+                    f"Maximum: {_SIZES * mesh.size:.3g} m. Give lengths in meters: 5 mm is 0.005."
                 )
         if self.mount is Mount.WORLD and not robot.winches:
             raise InputError(
-                'constraints: mount = "world": winches in the world stand at places of the robot\'s own winches, and '
-                "it has none; add a [[winch]] at each place where one may stand"
+                "constraints: mount: the robot has no winches (world). Winches in the world stand at positions of the "
+                "robot's own winches. Add a [[winch]] at each position."
             )
         self._check_mirror(robot)
         self._check_depth(robot)
@@ -226,12 +227,12 @@ class Constraints:
         if self.depth is None:
             return
         if robot.body.mesh.dim == 2:
-            raise InputError("constraints: depth: a flat body has no skin for cables; leave it out")
+            raise InputError("constraints: depth: a flat body has no skin for cables. Remove depth.")
         winches = all(winch.mount is Mount.WORLD for winch in robot.winches) if self.mount is None else None
         if not robot.winches or not (self.mount is Mount.WORLD if winches is None else winches):
             raise InputError(
-                "constraints: depth: cables on the skin come from winches outside the body; give the robot [[winch]] "
-                'tables with mount = "world" where these stand'
+                "constraints: depth: cables on the skin come from winches outside the body. "
+                'Add a [[winch]] with mount = "world" at each position.'
             )
 
     def _check_mirror(self, robot: Robot) -> None:
@@ -239,12 +240,14 @@ class Constraints:
             return
         mesh, axis = robot.body.mesh, "xyz".index(self.mirror)
         if axis >= mesh.dim:
-            raise InputError(f'constraints: mirror = "{self.mirror}": a flat body has no such axis; choose "x" or "y"')
+            raise InputError(
+                f'constraints: mirror: no such axis in a flat body ("{self.mirror}"). Allowed: "x" or "y".'
+            )
         low, high = float(mesh.nodes[:, axis].min()), float(mesh.nodes[:, axis].max())
         if abs(low + high) > _ASKEW * (high - low):
             raise InputError(
-                f'constraints: mirror = "{self.mirror}": the body must lie evenly about {self.mirror} = 0, not from '
-                f"{1e3 * low:.4g} to {1e3 * high:.4g} mm; move it there, or set mirror to None"
+                f"constraints: mirror: body not centered on {self.mirror} = 0 "
+                f"({1e3 * low:.4g} to {1e3 * high:.4g} mm). Move it there or set mirror to None."
             )
 
     def _check_numbers(self) -> None:
@@ -261,7 +264,7 @@ class Constraints:
                 if not isinstance(name, str):
                     _refuse(f"{field}[{place}]", name, f"the name of a {kind}")
                 if names.count(name) > 1:
-                    raise InputError(f"constraints: {field} names {name!r} twice; name it once")
+                    raise InputError(f"constraints: {field}: name used twice ({name!r}). Name it once.")
 
 
 RANGES: dict[str, Range] = {one.name: allowed for one in fields(Constraints) if (allowed := one.metadata.get("range"))}

@@ -172,7 +172,7 @@ class _ConstraintsReader(TablesFile):
         )
         dim = self.robot.body.mesh.dim
         if zone.dim != dim:
-            raise InputError(f"its points have {zone.dim} coordinates, but the body has {dim}")
+            raise InputError(f"wrong dimension of its points ({zone.dim}). Body: {dim}.")
         return zone
 
 

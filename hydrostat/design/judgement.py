@@ -44,6 +44,6 @@ def _limits(robot: Robot, constraints: Constraints) -> Iterator[Diagnostic]:
         told = list(check(parts))
         if not told:
             continue
-        more = f" (and {len(told) - 1} more such)" if len(told) > 1 else ""
+        more = f" {len(told) - 1} more such." if len(told) > 1 else ""
         places = dict.fromkeys(place for text in told for place in places_in(text, robot))
         yield Diagnostic(text=told[0] + more, weight=Severity.LIMIT, places=tuple(places))

@@ -92,9 +92,9 @@ class Network:
         reached: inverse-kinematics result of the new network for each pose, by its own winches; the true score.
         built: rms error over markers and poses expected of a robot as it is built, its commands played open loop [m]:
             `hydrostat.design.expected_error` with the uncertainty of the request.
-        alternatives: other networks, the best first; by counts where the number of winches was found.
+        alternatives: other networks, best first; by counts where the number of winches was found.
         trace: trace of the search.
-        tried: networks whose poses were solved.
+        tried: number of networks with solved poses.
         seconds: CPU time of the design [s].
         complete: True if the search came to its end; False if it was interrupted.
         filled: results on the filled body; None if not requested.

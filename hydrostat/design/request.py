@@ -39,9 +39,9 @@ class RouteOptions:
         tolerance: rms error of each pose [m] that the fewest winches must reach where their number is left open; a
             hundredth of the body's size if left out.
         spacing: distance between via points, in mean mesh edges.
-        hops: most edges of a path that is priced.
+        hops: maximum number of edges of a path that is priced.
         lead_penalty: share of the promised gain that a lead as long as the body costs.
-        trials: paths whose networks are solved before one is added.
+        trials: number of paths with solved networks before one is added.
         starts: networks that are grown side by side along priced paths; one more is grown from sketches.
         exchanges: most cables that are taken out, one at a time, for the best to be put in their place; the last round
             of all cables is followed by another where it gained a fifth.
@@ -108,15 +108,15 @@ class TreeOptions:
     Attributes:
         fibres: a muscle on every mesh edge, or one in every element.
         effort: weight of squared tensions in the activation: the larger, the weaker the muscles and the error left.
-        stages: steps in which the target is approached.
+        stages: number of steps toward the target.
         thresholds: numbers of candidate fibres to try.
-        distances: largest gaps to bridge between two fibres to try.
-        growth_steps: most fibres joined to one route.
-        turn: sharpest turn of a route [degrees].
-        shortest: least length of a route worth a cable.
+        distances: maximum gaps between two fibres to try.
+        growth_steps: maximum number of fibres joined to one route.
+        turn: maximum turn of a route [degrees].
+        shortest: minimum length of a route.
         phis: weights of the mean against the spread in the score to try.
         shares: most ways to share the cables among the winches to try, the evenest first.
-        trials: most networks whose poses are solved.
+        trials: maximum number of networks with solved poses.
         loss: largest increase of the pose error by leaving out cables, as a fraction.
         lead_penalty: loss of score for a lead as long as the body.
     """
@@ -226,7 +226,7 @@ class DesignRequest:
         if self.method is DesignMethod.TREES:
             self._check_trees()
         if self.improve and self.winches == AUTO:
-            raise InputError('winches = "auto" starts from nothing; give a number of winches to improve a network')
+            raise InputError('winches: cannot improve a network ("auto"). Give a number of winches.')
 
     @property
     def route_options(self) -> RouteOptions:
@@ -248,7 +248,7 @@ class DesignRequest:
             for name, point in pose.targets.items():
                 if len(point) != dim:
                     raise InputError(
-                        f'pose "{pose.name}": the target of {name} has {len(point)} coordinates, the body {dim}'
+                        f'pose "{pose.name}": target of {name}: wrong dimension ({len(point)}). Body: {dim}.'
                     )
                 place(f'pose "{pose.name}": the target of {name}', point, robot.body.mesh)  # in metres
                 if name not in markers:
@@ -256,7 +256,7 @@ class DesignRequest:
                     raise InputError(f'pose "{pose.name}": unknown marker "{name}". {known}')
         self.constraints.check(robot)
         if self.filled and robot.body.outline is None:
-            raise InputError("filled is for flat robots with a drawing; leave it out")
+            raise InputError("filled: only for flat robots with a drawing. Remove it.")
         fitted = replace(self, uncertainty=self.uncertainty or BuildTolerances.of(robot.body))
         return replace(fitted, constraints=_with_own(self.constraints, robot)) if self.improve else fitted
 
@@ -288,11 +288,13 @@ class DesignRequest:
     def _check_trees(self) -> None:
         """Refuse what the thesis's way does not know."""
         if self.improve or self.winches == AUTO:
-            raise InputError('method "trees" starts from nothing with a number of winches; use method "routes"')
+            raise InputError(
+                'method "trees" needs a number of winches and cannot improve a network. Use method "routes".'
+            )
         usual = Constraints()
         asked = [name for name in ROUTES_ONLY if getattr(self.constraints, name) != getattr(usual, name)]
         if asked:
-            raise InputError(f'method "trees" does not keep {", ".join(asked)}; use method "routes", which does')
+            raise InputError(f'method "trees" does not keep {", ".join(asked)}. Use method "routes", which does.')
 
 
 _OPTIONS: dict[str, type[RouteOptions] | type[TreeOptions]] = {

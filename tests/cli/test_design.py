@@ -216,7 +216,7 @@ def test_auto_tells_the_error_against_winches_and_cables(
     assert "by number of winches" not in run("design", strip, "--out", tmp_path / "out")[1]
 
 
-STARTS = 'method "trees" starts from nothing with a number of winches; use method "routes"'
+STARTS = 'method "trees" needs a number of winches and cannot improve a network. Use method "routes".'
 BAD = {
     ("--winches", "many"): "winches must be a whole number from 1 to 20 or \"auto\", not 'many'",
     ("--winches", "0"): 'winches must be a whole number from 1 to 20 or "auto", not 0',
@@ -234,14 +234,14 @@ BAD = {
     ("--cables", "61"): "cables must be a whole number from 1 to 60, not 61",
     ("--method", "trees", "--winches", "auto"): STARTS,
     ("--method", "trees", "--improve"): STARTS,
-    ("--method", "trees", "--stepped-spools"): 'method "trees" does not keep spool_ratio; use method "routes", '
-    "which does",
+    ("--method", "trees", "--stepped-spools"): 'method "trees" does not keep spool_ratio. Use method "routes", '
+    "which does.",
     ("--clearance", "5"): '--clearance 5: "5" has no unit; write for example "12 mm"',
     ("--tension", "0 N"): "--tension 0 N: must be above 0, e.g. 20 N",
     ("--slack", "-1 mm"): "--slack -1 mm: must be 0 or more, e.g. 12 mm",
     ("--symmetric", "w"): "--symmetric w: unknown axis. Allowed: x, y, z.",
-    ("--symmetric", "x"): 'constraints: mirror = "x": the body must lie evenly about x = 0, not from 0 to 200 mm; '
-    "move it there, or set mirror to None",
+    ("--symmetric", "x"): "constraints: mirror: body not centered on x = 0 (0 to 200 mm). "
+    "Move it there or set mirror to None.",
     ("--lock-winch", "bob"): '--lock-winch bob: unknown winch "bob". Available: up, down.',
     ("--lock-cable", "3"): '--lock-cable 3: unknown cable "3". Available: up 1, down 1.',
     ("--constraints", "none.toml"): "none.toml: there is no such file",

@@ -96,194 +96,194 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
         {"winch_zones": (Zone(at=(0.03, 0.0), radius=0.03), Zone(at=(0.15, 0.0), radius=0.02))},
         {},
         {"up": moved(UP, 0, 0.03, 0.0301)},
-        "winch[0] up stands at [30, 30.1] mm, 0.1 mm outside the nearest of winch_zones",
+        "winch[0] up: outside winch_zones (by 0.1 mm, at [30, 30.1] mm). Allowed: inside a zone. Move it there.",
     ),
     "winch_clearance": (
         {},
         {"up": moved(UP, 0, 0.03, 0.038 - HAIR)},
         {"up": moved(UP, 0, 0.03, 0.038 + HAIR)},
-        "winch[0] up stands 11.9 mm inside the edge, less than the winch_clearance of 12 mm",
+        "winch[0] up: low clearance (11.9 mm inside the edge). Minimum winch_clearance: 12 mm. Move it inward.",
     ),
     "winch_gap": (
         {"winch_gap": 0.06},
         {"up": moved(UP, 0, 0.03, 0.03 + HAIR)},
         {"up": moved(UP, 0, 0.03, 0.03 - HAIR)},
-        "winch[1] down stands 59.9 mm from winch[0] up, less than the winch_gap of 60 mm",
+        "winch[1] down: too close to winch[0] up (59.9 mm). Minimum winch_gap: 60 mm. Move them apart.",
     ),
     "mount": (
         {"mount": Mount.BODY},
         {},
         {"winch": {"mount": Mount.WORLD}},
-        'winch[0] up has mount = "world", not "body"',
+        'winch[0] up: wrong mount ("world"). Allowed: "body". Change it.',
     ),
     "travel": (
         {},
         {"winch": {"travel": 0.06}},
         {"winch": {"travel": 0.0601}},
-        "winch[0] up has a travel of 60.1 mm, more than 60 mm",
+        "winch[0] up: travel too large (60.1 mm). Maximum: 60 mm. Reduce it.",
     ),
     "release": (
         {"release": 0.01},
         {"winch": {"release": 0.01}},
         {"winch": {"release": 0.0101}},
-        "winch[0] up has a release of 10.1 mm, more than 10 mm",
+        "winch[0] up: release too large (10.1 mm). Maximum: 10 mm. Reduce it.",
     ),
     "spool_radius": (
         {"spool_radius": 0.006},
         {"winch": {"spool_radius": 0.006}},
         {"winch": {"spool_radius": 0.0059}},
-        "winch[0] up has a spool_radius of 5.9 mm, not 6 mm",
+        "winch[0] up: wrong spool_radius (5.9 mm). Allowed: 6 mm. Change it.",
     ),
     "cables_per_winch": (
         {"cables_per_winch": 2},
         third(0.15, -0.012),
         {"more": [*third(0.15, -0.012)["more"], ("down", (DOWN[0], (0.06, 0.0), (0.15, 0.0)))]},
-        "winch[1] down pulls 3 cables, more than the cables_per_winch of 2",
+        "winch[1] down: too many cables (3). Maximum cables_per_winch: 2. Add a winch.",
     ),
     "clearance of a point": (
         {},
         {"up": moved(UP, 3, 0.15, 0.045 - HAIR)},
         {"up": moved(UP, 3, 0.15, 0.045 + HAIR)},
-        "cable[0].points[3] at [150, 45.1] mm lies 4.9 mm inside the edge, less than the clearance of 5 mm",
+        "cable[0].points[3]: low clearance (4.9 mm inside the edge, at [150, 45.1] mm). Minimum clearance: 5 mm.",
     ),
     "clearance of a point in space": (
         {},
         {"up": moved(high(UP), 3, 0.15, 0.03, 0.005 + HAIR), "down": high(DOWN)},
         {"up": moved(high(UP), 3, 0.15, 0.03, 0.005 - HAIR), "down": high(DOWN)},
-        "cable[0].points[3] at [150, 30, 4.9] mm lies 4.9 mm inside the surface, less than the clearance of 5 mm",
+        "cable[0].points[3]: low clearance (4.9 mm inside the surface, at [150, 30, 4.9] mm). Minimum clearance: 5 mm.",
     ),
     "keep_out of a segment": (
         {"keep_out": (Zone(at=(0.125, 0.02), radius=0.01),)},
         {"up": (*UP[:2], (0.1, 0.03 + HAIR), (0.15, 0.03 + HAIR))},
         {"up": (*UP[:2], (0.1, 0.03 - HAIR), (0.15, 0.03 - HAIR))},
-        "cable[0] between points 2 and 3 passes through keep_out[0], 0.1 mm deep",
+        "cable[0] between points 2 and 3: inside keep_out[0] (0.1 mm deep). Allowed: outside. Reroute it.",
     ),
     "keep_out of a point": (
         {"keep_out": (Zone(at=(0.2, 0.05), radius=0.001), Zone(box=((0.16, 0.0), (0.18, 0.04))))},
         {"up": moved(UP, 3, 0.16 - HAIR, 0.03)},
         {"up": moved(UP, 3, 0.16 + HAIR, 0.03)},
-        "cable[0] between points 2 and 3 passes through keep_out[1], 0.1 mm deep",
+        "cable[0] between points 2 and 3: inside keep_out[1] (0.1 mm deep). Allowed: outside. Reroute it.",
     ),
     "keep_out in a sheath": (
         {"keep_out": (Zone(at=(0.045, 0.03), radius=0.005),)},
         {"up": moved(UP, 1, 0.05, 0.042), "sheathed": ((0, 1),)},
         {"sheathed": ((0, 1),)},
-        "cable[0] between points 0 and 1 passes through keep_out[0], 5 mm deep",
+        "cable[0] between points 0 and 1: inside keep_out[0] (5 mm deep). Allowed: outside. Reroute it.",
     ),
     "still": (
         {"still": (Zone(at=(0.045, 0.03), radius=0.005),)},
         {"sheathed": ((0, 1),)},
         {"sheathed": ((1, 2),)},
-        "cable[0] between points 0 and 1 runs without a sheath through still[0], 5 mm deep",
+        "cable[0] between points 0 and 1: no sheath in still[0] (5 mm deep). Allowed: outside.",
     ),
     "still beside a bare segment": (
         {"still": (Zone(at=(0.045, 0.02), radius=0.01),)},
         {"up": ((0.03, 0.03 + HAIR), (0.06, 0.03 + HAIR), *UP[2:])},
         {"up": ((0.03, 0.03 - HAIR), (0.06, 0.03 - HAIR), *UP[2:])},
-        "cable[0] between points 0 and 1 runs without a sheath through still[0], 0.1 mm deep",
+        "cable[0] between points 0 and 1: no sheath in still[0] (0.1 mm deep). Allowed: outside.",
     ),
     "no leads": (
         {"leads": False},
         {},
         {"sheathed": ((0, 1),)},
-        "cable[0] between points 0 and 1 runs in a sheath outside the still zones, and leads are not allowed",
+        "cable[0] between points 0 and 1: sheath outside the still zones. Not allowed without leads.",
     ),
     "no leads but in still zones": (
         LEADS,
         {"sheathed": ((0, 2),)},
         {"sheathed": ((0, 3),), "up": (*UP, (0.18, 0.03))},
-        "cable[0] between points 2 and 3 runs in a sheath outside the still zones, and leads are not allowed",
+        "cable[0] between points 2 and 3: sheath outside the still zones. Not allowed without leads.",
     ),
     "hole_gap": (
         {"hole_gap": 0.06},
         {"up": ((0.03, 0.03), (0.15, 0.03 + HAIR)), "down": ((0.03, -0.03), (0.15, -0.03))},
         {"up": ((0.03, 0.03), (0.15, 0.03 - HAIR)), "down": ((0.03, -0.03), (0.15, -0.03))},
-        "cable[1].points[1] is 59.9 mm from cable[0].points[1], less than the hole_gap of 60 mm",
+        "cable[1].points[1]: too close to cable[0].points[1] (59.9 mm). Minimum hole_gap: 60 mm. Move them apart.",
     ),
     "hole_gap along one cable": (
         {},
         {"up": (*UP, (0.154 + HAIR, 0.03))},
         {"up": (*UP, (0.154 - HAIR, 0.03))},
-        "cable[0].points[4] is 3.9 mm from cable[0].points[3], less than the hole_gap of 4 mm",
+        "cable[0].points[4]: too close to cable[0].points[3] (3.9 mm). Minimum hole_gap: 4 mm. Move them apart.",
     ),
     "a hole that is shared": (
         {},
         {"more": [("down", (DOWN[0], (0.06, -0.012), (0.1, -0.02), DOWN[3]))]},
         {"more": [("down", (DOWN[0], (0.06, -0.012), (0.1, -0.02), (0.15, -0.0299)))]},
-        "cable[2].points[3] is 0.1 mm from cable[1].points[3], less than the hole_gap of 4 mm",
+        "cable[2].points[3]: too close to cable[1].points[3] (0.1 mm). Minimum hole_gap: 4 mm. Move them apart.",
     ),
     "a hole at a winch": (
         {},
         {"more": [("down", (DOWN[0], (0.03, 0.018 - HAIR)))]},
         {"more": [("down", (DOWN[0], (0.03, 0.018 + HAIR)))]},
-        "cable[2].points[1] is 11.9 mm from winch[0] up, which pulls other cables, less than two spool radii of 12 mm",
+        "cable[2].points[1]: too close to winch[0] up of other cables (11.9 mm). Minimum: two spool radii, 12 mm.",
     ),
     "cable_gap": (
         {"cable_gap": 0.01},
         {"up": STRAIGHT_UP, "down": STRAIGHT_DOWN, "more": [("down", (DOWN[0], (0.05, 0.0), (0.15, 0.02 - HAIR)))]},
         {"up": STRAIGHT_UP, "down": STRAIGHT_DOWN, "more": [("down", (DOWN[0], (0.05, 0.0), (0.15, 0.02 + HAIR)))]},
-        "cable[2] between points 1 and 2 is 9.9 mm from cable[0] between points 0 and 1, less than",
+        "cable[2] between points 1 and 2: too close to cable[0] between points 0 and 1 (9.9 mm). Minimum cable_gap: 10",
     ),
     "cable_gap where cables cross": (
         {"cable_gap": 0.004},
         {"up": STRAIGHT_UP, "down": STRAIGHT_DOWN, "more": [("down", (DOWN[0], (0.09, 0.026 - HAIR)))]},
         {"up": STRAIGHT_UP, "down": STRAIGHT_DOWN, "more": [("down", (DOWN[0], (0.09, 0.045)))]},
-        "cable[2] between points 0 and 1 crosses cable[0] between points 0 and 1, less than the cable_gap of 4 mm",
+        "cable[2] between points 0 and 1: crosses cable[0] between points 0 and 1. Minimum cable_gap: 4 mm.",
     ),
     "cable_gap beside a winch of others": (
         {"cable_gap": 0.004},
         {"more": [("down", (DOWN[0], (0.018 - HAIR, 0.0), (0.018 - HAIR, 0.044)))]},
         {"more": [("down", (DOWN[0], (0.018 + HAIR, 0.0), (0.018 + HAIR, 0.044)))]},
-        "cable[2] between points 1 and 2 passes 11.9 mm from winch[0] up, which pulls other cables, less than",
+        "cable[2] between points 1 and 2: too close to winch[0] up of other cables (11.9 mm). Minimum: two spool",
     ),
     "cable_gap of two cables of a winch": (  # by the angle between them, two spool radii from it
         {"cable_gap": 0.01},
         {"more": [("up", (UP[0], (UP[0][0] + 0.04 * np.cos(FAN + 0.01), UP[0][1] - 0.04 * np.sin(FAN + 0.01))))]},
         {"more": [("up", (UP[0], (UP[0][0] + 0.04 * np.cos(FAN - 0.01), UP[0][1] - 0.04 * np.sin(FAN - 0.01))))]},
-        "cable[2] between points 0 and 1 is 9.8",
+        "cable[2] between points 0 and 1: too close to cable[0] between points 0 and 1 (9.8",
     ),
-    "turn": ({}, {"up": corner(74.8)}, {"up": corner(75.2)}, "cable[0].points[1] turns by 75.2 degrees, more than"),
+    "turn": ({}, {"up": corner(74.8)}, {"up": corner(75.2)}, "cable[0].points[1]: turn too sharp (75.2 degrees)."),
     "turn in space": (
         {},
         {"up": high(corner(74.8)), "down": high(DOWN)},
         {"up": high(corner(75.2)), "down": high(DOWN)},
-        "cable[0].points[1] turns by 75.2 degrees, more than the turn of 75",
+        "cable[0].points[1]: turn too sharp (75.2 degrees). Maximum turn: 75 degrees. Move the point.",
     ),
     "bend_radius": (  # a right angle: the radius is half the shorter segment
         ROUND,
         {"up": corner(90, last=0.04 + HAIR, first=0.05)},
         {"up": corner(90, last=0.04 - 2 * HAIR, first=0.05)},
-        "cable[0].points[1] bends with a radius of 19.9 mm, less than the bend_radius of 20 mm",
+        "cable[0].points[1]: bend too sharp (radius 19.9 mm). Minimum bend_radius: 20 mm. Move the point.",
     ),
     "bend_radius by the first segment": (  # 60 degrees: half of it times the root of 3
         ROUND,
         {"up": corner(60, first=0.04 / 3**0.5 + HAIR)},
         {"up": corner(60, first=0.04 / 3**0.5 - HAIR)},
-        "cable[0].points[1] bends with a radius of 19.91 mm, less than the bend_radius of 20 mm",
+        "cable[0].points[1]: bend too sharp (radius 19.91 mm). Minimum bend_radius: 20 mm. Move the point.",
     ),
     "longest": (
         {"longest": 0.13},
         {"up": moved(UP, 3, 0.16 - HAIR, 0.03)},
         {"up": moved(UP, 3, 0.16 + HAIR, 0.03)},
-        "cable[0] is 130.1 mm long, more than the longest of 130 mm",
+        "cable[0]: too long (130.1 mm). Maximum (longest): 130 mm. Shorten it.",
     ),
     "slack": (
         {"slack": 0.005},
         {"slack": 0.005},
         {"slack": 0.0051},
-        "cable[0] has a slack of 5.1 mm, more than 5 mm",
+        "cable[0]: slack too large (5.1 mm). Maximum: 5 mm. Reduce it.",
     ),
     "spool_ratio": (
         {"spool_ratio": 1.5},
         {"spool_radius": 0.009},
         {"spool_radius": 0.0091},
-        "cable[0] winds on a spool 1.517 times as large as its winch's, beyond the spool_ratio of 1.5",
+        "cable[0]: spool too different from its winch's (1.517 times its radius). Maximum spool_ratio",
     ),
     "spool_ratio below one": (
         {"spool_ratio": 1.5},
         {"spool_radius": 0.004},
         {"spool_radius": 0.0039},
-        "cable[0] winds on a spool 0.65 times as large as its winch's, beyond the spool_ratio of 1.5",
+        "cable[0]: spool too different from its winch's (0.65 times its radius). Maximum spool_ratio",
     ),
 }
 
@@ -320,8 +320,8 @@ def test_a_segment_keeps_half_the_clearance(dim: int) -> None:
         told = broken(robot)
         assert len(told) == bool(words)
         if told:
-            assert told[0].startswith(f"cable[0] between points 0 and 1 comes to {words} the ")
-            assert told[0].endswith("less than half the clearance of 5 mm")
+            assert told[0].startswith(f"cable[0] between points 0 and 1: low clearance ({words} the ")
+            assert told[0].endswith("Minimum: half the clearance of 5 mm. Reroute it.")
 
 
 def _part(mesh: Any, chosen: np.ndarray) -> Any:
@@ -338,8 +338,9 @@ def test_a_cable_from_the_world_may_come_in_at_the_edge(dim: int) -> None:
     make = {"winch": {"mount": Mount.WORLD}, "down": down}
     assert broken(network(into if dim == 2 else high(into), **make)) == []
     told = broken(network(along if dim == 2 else high(along), **make))
-    assert [one.split(" lies ")[0].split(" comes ")[0] for one in told] == [
-        f"cable[0].points[2] at [100, 48{', 30' if dim == 3 else ''}] mm",
+    assert f", at [100, 48{', 30' if dim == 3 else ''}] mm)" in told[0]
+    assert [one.split(": low clearance (")[0] for one in told] == [
+        "cable[0].points[2]",
         "cable[0] between points 1 and 2",
         "cable[0] between points 2 and 3",
     ]
@@ -353,23 +354,33 @@ def test_winches_in_the_world_may_stand_close() -> None:
     body_and_world = network(into, ((0.02, 0.005), *other[1:]), winch={"mount": Mount.WORLD})
     assert broken(body_and_world, winch_gap=0.06) == []
     (told,) = broken(body_and_world, winch_gap=0.08)
-    assert "stands 70 mm from" in told
+    assert "(70 mm). Minimum winch_gap: 80 mm" in told
 
 
 def test_a_mirrored_network() -> None:
     assert broken(network(), mirror="y") == []
     assert broken(network(up=moved(UP, 2, 0.1, 0.0305)), mirror="y") == [
-        "cable[0] has no mirror image that ends at [150, -30] mm",
-        "cable[1] has no mirror image that ends at [150, 30] mm",
+        "cable[0]: no mirror image (expected to end at [150, -30] mm). Add it or clear mirror.",
+        "cable[1]: no mirror image (expected to end at [150, 30] mm). Add it or clear mirror.",
     ]
     assert broken(network(up=moved(UP, 2, 0.1, 0.03005)), mirror="y") == []
     told = broken(network(up=moved(UP, 0, 0.03, 0.031)), mirror="y")
-    assert [one.split(" has ")[0] for one in told] == ["winch[0] up", "winch[1] down", "cable[0]", "cable[1]"]
+    assert [one.split(": no mirror image ")[0] for one in told] == [
+        "winch[0] up",
+        "winch[1] down",
+        "cable[0]",
+        "cable[1]",
+    ]
     told = broken(network(winch={"travel": 0.05}), mirror="y")
-    assert [one.split(" has ")[0] for one in told] == ["winch[0] up", "winch[1] down", "cable[0]", "cable[1]"]
+    assert [one.split(": no mirror image ")[0] for one in told] == [
+        "winch[0] up",
+        "winch[1] down",
+        "cable[0]",
+        "cable[1]",
+    ]
     for values in ({"slack": 0.01}, {"spool_radius": 0.007}, {"sheathed": ((0, 1),)}, {"stiffness": 5e3}):
         told = broken(network(**values), mirror="y", slack=0.01, spool_ratio=2.0)
-        assert [one.split(" has ")[0] for one in told] == ["cable[0]", "cable[1]"]
+        assert [one.split(": no mirror image ")[0] for one in told] == ["cable[0]", "cable[1]"]
 
 
 def test_a_winch_in_the_mirror_is_its_own_image() -> None:
@@ -385,7 +396,7 @@ def test_a_winch_in_the_mirror_is_its_own_image() -> None:
     assert broken(pair, mirror="y") == []
     one = pair.with_network(pair.winches, pair.cables[1:])
     (told,) = broken(one, mirror="y")
-    assert told == "cable[0] has no mirror image that ends at [150, 30] mm"
+    assert told == "cable[0]: no mirror image (expected to end at [150, 30] mm). Add it or clear mirror."
 
 
 def test_an_image_is_pulled_by_the_image_of_its_winch() -> None:
@@ -404,7 +415,7 @@ def test_what_is_locked_is_not_looked_at() -> None:
     assert len(broken(wild, winch_gap=0.03)) == 6
     assert broken(wild, locked_cables=("up 1",)) == []
     told = broken(wild, locked_winches=("up",))
-    assert [one.split()[0] for one in told] == ["cable[0].points[1]", "cable[0]", "cable[0]"]
+    assert [one.split()[0].rstrip(":") for one in told] == ["cable[0].points[1]", "cable[0]", "cable[0]"]
 
 
 def test_a_cable_may_begin_at_a_locked_winch_near_the_edge() -> None:
@@ -414,8 +425,9 @@ def test_a_cable_may_begin_at_a_locked_winch_near_the_edge() -> None:
     assert len(broken(network(up=edge))) == 3
     along = network(up=(edge[0], (0.06, 0.048), (0.15, 0.03)))
     told = broken(along, locked_winches=("up",))
-    assert [one.split(" lies ")[0].split(" comes ")[0] for one in told] == [
-        "cable[0].points[1] at [60, 48] mm",
+    assert ", at [60, 48] mm)" in told[0]
+    assert [one.split(": low clearance (")[0] for one in told] == [
+        "cable[0].points[1]",
         "cable[0] between points 0 and 1",
         "cable[0] between points 1 and 2",
     ]
@@ -438,13 +450,13 @@ def test_locked_cables_are_known_by_their_names() -> None:
 
 def test_what_is_new_keeps_away_from_what_is_locked() -> None:
     near = network(**third(0.1, -0.0265))
-    words = "cable[2].points[2] is 3.5 mm from cable[1].points[2], less than the hole_gap of 4 mm"
+    words = "cable[2].points[2]: too close to cable[1].points[2] (3.5 mm). Minimum hole_gap: 4 mm. Move them apart."
     assert broken(near, locked_cables=("down 1",)) == [words]
     assert broken(near, locked_cables=("down 2",)) == [words]
     assert broken(near, locked_cables=("down 1", "down 2")) == []
     crowded = network(up=moved(UP, 0, 0.03, -0.01))
     (told,) = broken(crowded, locked_winches=("down",))
-    assert told.startswith("winch[1] down stands 20 mm from winch[0] up")
+    assert told.startswith("winch[1] down: too close to winch[0] up (20 mm)")
     assert broken(crowded, locked_winches=("down", "up")) == []
 
 
@@ -474,13 +486,15 @@ def test_what_poses_ask(unchecked: None) -> None:
     assert pulls(robot, [within], limits) == []
     beyond = reached((0.0501, -0.0001), (10.02, 0.0, 9.0), None)
     assert pulls(robot, [within, beyond], limits) == [
-        "pose 1: cable[0] is pulled with 10.02 N, more than 10 N",
-        "pose 1: winch[0] up takes in 50.1 mm, more than its travel of 50 mm",
-        "pose 1: winch[1] down lets out 0.1 mm, more than its release of 0 mm",
+        "pose 1: cable[0]: tension too high (10.02 N). Maximum: 10 N. Ease the pose or add cables.",
+        "pose 1: winch[0] up: contraction too large (50.1 mm). Maximum travel: 50 mm. Ease the pose or raise travel.",
+        "pose 1: winch[1] down: payout too large (0.1 mm). Maximum release: 0 mm. Ease the pose or raise release.",
     ]
     out = reached((-0.0101, 0.0), (0.0, 0.0, 0.0))
     assert pulls(robot, [reached((-0.01, 0.0), (0.0, 0.0, 0.0))], limits) == []
-    assert pulls(robot, [out], limits) == ['pose "wave": winch[0] up lets out 10.1 mm, more than its release of 10 mm']
+    assert pulls(robot, [out], limits) == [
+        'pose "wave": winch[0] up: payout too large (10.1 mm). Maximum release: 10 mm. Ease the pose or raise release.'
+    ]
 
 
 def test_what_motors_must_give(unchecked: None) -> None:
@@ -490,6 +504,6 @@ def test_what_motors_must_give(unchecked: None) -> None:
     assert limits.tension_limit == pytest.approx(9.0)
     assert pulls(robot, [reached((0.0, 0.0), (6.0, 5.0, 4.0))], limits) == []
     assert pulls(robot, [reached((0.0, 0.0), (6.1, 5.0, 4.1))], limits) == [
-        'pose "wave": winch[0] up must give 0.0549 N m, more than the torque of 0.054 N m',
-        'pose "wave": winch[1] down must give 0.0546 N m, more than the torque of 0.054 N m',
+        'pose "wave": winch[0] up: torque too high (0.0549 N m). Maximum: 0.054 N m. Ease the pose or raise torque.',
+        'pose "wave": winch[1] down: torque too high (0.0546 N m). Maximum: 0.054 N m. Ease the pose or raise torque.',
     ]

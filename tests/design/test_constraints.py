@@ -124,8 +124,8 @@ def test_constraints_that_fit() -> None:
 
 @pytest.mark.parametrize("field", ["winch_zones", "keep_out", "still"])
 def test_zones_have_the_dimensions_of_the_body(field: str) -> None:
-    assert misfit({field: (DISC, BALL)}).startswith(f"constraints: {field}[1] has 3 dimensions, the body 2;")
-    assert misfit({field: (DISC,)}, space=True).startswith(f"constraints: {field}[0] has 2 dimensions, the body 3;")
+    assert misfit({field: (DISC, BALL)}).startswith(f"constraints: {field}[1]: wrong dimension (3). Body: 2. ")
+    assert misfit({field: (DISC,)}, space=True).startswith(f"constraints: {field}[0]: wrong dimension (2). Body: 3. ")
 
 
 def test_what_is_locked_must_be_there() -> None:
@@ -144,13 +144,13 @@ def test_what_stays_is_what_is_locked_and_its_winches() -> None:
 
 
 def test_winches_in_the_world_need_places() -> None:
-    assert "add a [[winch]]" in misfit({"mount": Mount.WORLD}, bare=True)
+    assert "Add a [[winch]]" in misfit({"mount": Mount.WORLD}, bare=True)
     Constraints(mount=Mount.BODY).check(strip_robot().with_network((), ()))
 
 
 def test_a_mirror_needs_a_body_about_it() -> None:
-    assert 'choose "x" or "y"' in misfit({"mirror": "z"})
-    assert "must lie evenly about x = 0, not from 0 to 200 mm" in misfit({"mirror": "x"})
+    assert 'Allowed: "x" or "y"' in misfit({"mirror": "z"})
+    assert "body not centered on x = 0 (0 to 200 mm)" in misfit({"mirror": "x"})
     middle = strip_mesh(8, 2)
     moved = replace(middle, nodes=middle.nodes - np.array([0.1, 0.0]))
     robot = replace(strip_robot().with_network((), ()), body=mesh_body(moved), markers=(), pins=(_pin(),))

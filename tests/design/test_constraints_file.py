@@ -192,7 +192,7 @@ ERRORS = {
     "[[keep_out]]\nat = [1, 2]": "line 1: keep_out[0]: a zone about a point needs both at and radius; "
     "give the other too",
     "[[still]]\nat = [1, 2]\nradius = 0": "line 3: still[0].radius of a zone must be finite and above 0 m, not 0.0",
-    "[[still]]\nat = [1, 2, 3]\nradius = 1": "line 1: still[0]: its points have 3 coordinates, but the body has 2",
+    "[[still]]\nat = [1, 2, 3]\nradius = 1": "line 1: still[0]: wrong dimension of its points (3). Body: 2.",
     "[[still]]\noutline = [[0, 0], [1, 1]]": "line 2: still[0].outline: has 2 entries, at least 3 are needed",
     "[[keep_out]]\nat = [1, 2]\nradius = 3\n[[keep_out]]\nradios = 3": "line 5: keep_out[1].radios: unknown key "
     '"radios", did you mean radius? allowed here are: at, radius, box, outline',

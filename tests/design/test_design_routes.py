@@ -304,7 +304,7 @@ def test_what_is_asked_for_wrongly() -> None:
     error_of('options of method "routes" must be RouteOptions, not TreeOptions', options=TreeOptions())
     error_of('options of method "trees" must be TreeOptions, not RouteOptions', options=SMALL, method="trees")
     error_of(
-        'method "trees" starts from nothing with a number of winches; use method "routes"',
+        'method "trees" needs a number of winches and cannot improve a network. Use method "routes".',
         method="trees", improve=True,
     )  # fmt: skip
     error_of("winches must be a whole number from 1 to 20 or \"auto\", not 'two'", winches="two")
@@ -331,8 +331,8 @@ def test_what_is_asked_for_wrongly() -> None:
 def test_a_network_that_cannot_be_improved_says_why() -> None:
     """A cable sheathed in the middle stays, and its winch stands 10 mm inside the edge."""
     error_of(
-        "the robot's own network cannot be moved into what the constraints allow (winch[0] up stands 10 mm inside the "
-        "edge, less than the winch_clearance of 12 mm); relax them, or design without improving it",
+        "the robot's own network cannot be moved into what the constraints allow (winch[0] up: low clearance (10 mm "
+        "inside the edge). Minimum winch_clearance: 12 mm. Move it inward); relax them, or design without improving it",
         robot=strip_robot(columns=10, rows=3, sheathed=((2, 4),)), improve=True,
     )  # fmt: skip
 

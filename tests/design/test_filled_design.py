@@ -112,5 +112,5 @@ def test_the_finalist_that_is_best_when_filled_is_chosen(robot: Robot, reached: 
 
 def test_what_cannot_be_filled_is_told_before_the_search() -> None:
     trunk = gallery_robot("trunk")
-    with pytest.raises(InputError, match="filled is for flat robots with a drawing"):
+    with pytest.raises(InputError, match="filled: only for flat robots with a drawing"):
         design_cables(trunk, trunk.poses.values(), filled=True)

@@ -25,9 +25,17 @@ def strip() -> Robot:
     [
         ("winch[1] down: pulls no cable", ["winch:down"], (10, -12)),
         ('winch "up": only 2 mm of the shaft', ["winch:up"], (10, 15)),
-        ("cable[0].points[2] turns by 40 degrees, more than the turn of 30", ["via:0:2"], (70, 15)),
+        (
+            "cable[0].points[2]: turn too sharp (40 degrees). Maximum turn: 30 degrees. Move the point.",
+            ["via:0:2"],
+            (70, 15),
+        ),
         ("cable[1].points[6] is 1 mm from it", ["via:1:6"], (190, -12)),
-        ("cable[1] between points 1 and 2 passes through keep_out[0], 3 mm deep", ["cable:1"], (55, -12)),
+        (
+            "cable[1] between points 1 and 2: inside keep_out[0] (3 mm deep). Allowed: outside. Reroute it.",
+            ["cable:1"],
+            (55, -12),
+        ),
         ("cable[0]: leaves the body by 3 mm at [12, -7] mm; add a point", ["cable:0"], (12, -7)),
         ("cable[0] and cable[1]: only 2 mm inside the edge at [9, 8] mm (cable[1] is the worst)", ["cable:1"], (9, 8)),
         ('cable C2 of winch "down" pulls 90.0 N, but it breaks', ["cable:1", "winch:down"], (115, -12)),
@@ -55,7 +63,7 @@ def test_a_crossing_is_where_the_cables_cross(strip: Robot) -> None:
     """Two lines over the middle of (80, 0) mm."""
     one, other = ((0.06, -0.01), (0.1, 0.01)), ((0.06, 0.01), (0.1, -0.01))
     cables = [replace(strip.cables[0], points=one), replace(strip.cables[1], points=other)]
-    text = "cable[1] between points 0 and 1 crosses cable[0] between points 0 and 1, less than the cable_gap of 4 mm"
+    text = "cable[1] between points 0 and 1: crosses cable[0] between points 0 and 1. Minimum cable_gap: 4 mm."
     winches = [replace(winch, at=cable.points[0]) for winch, cable in zip(strip.winches, cables, strict=True)]
     (place,) = places_in(text, strip.with_network(winches, cables))
     assert place.part == "cable:1"

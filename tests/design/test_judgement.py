@@ -47,14 +47,14 @@ def test_one_sentence_for_each_kind_of_limit_with_all_places(unchecked: None) ->
     """Oracle: the holes of letter_e that turn by more than 30 degrees, from their coordinates."""
     robot = gallery_robot("letter_e")
     found = [one for one in review_robot(robot, constraints=Constraints()) if one.weight is Severity.LIMIT]
-    (turns,) = [one for one in found if "turns by" in one.text]
+    (turns,) = [one for one in found if "turn too sharp" in one.text]
     sharp = set()
     for number, cable in enumerate(robot.cables):
         steps = np.diff(np.array(cable.points), axis=0)
         angles = np.degrees(np.abs(np.diff(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0])))))
         sharp |= {f"via:{number}:{at + 1}" for at in np.flatnonzero(angles > 30.1)}
     assert {place.part for place in turns.places} == sharp
-    assert turns.text.endswith(f"(and {len(sharp) - 1} more such)")
+    assert turns.text.endswith(f" Move the point. {len(sharp) - 1} more such.")
     assert review_robot(robot) == tuple(
         one for one in review_robot(robot, constraints=Constraints()) if one not in found
     )

@@ -97,9 +97,18 @@ def outside_robot(*points: tuple[float, float, float]) -> Robot:
     ("points", "words"),
     [
         (((0.01, 0.02, 0.003), (0.06, 0.02, 0.0035), (0.1, 0.02, 0.0025)), ""),
-        (((0.01, 0.02, 0.003), (0.06, 0.02, 0.0045)), "lies 4.5 mm under the surface, more than the 3.5 mm"),
-        (((0.01, 0.02, 0.003), (0.06, 0.02, 0.0015)), "lies 1.5 mm inside the surface, less than the 2.5 mm"),
-        (((0.01, 0.02, 0.003), (0.1, 0.02, 0.037)), "dives to 20 mm under the surface, more than the 6 mm"),
+        (
+            ((0.01, 0.02, 0.003), (0.06, 0.02, 0.0045)),
+            "(4.5 mm inside the surface, at [60, 20, 4.5] mm). Maximum at a depth of 3 mm: 3.5 mm",
+        ),
+        (
+            ((0.01, 0.02, 0.003), (0.06, 0.02, 0.0015)),
+            "(1.5 mm inside the surface, at [60, 20, 1.5] mm). Minimum at a depth of 3 mm: 2.5 mm",
+        ),
+        (
+            ((0.01, 0.02, 0.003), (0.1, 0.02, 0.037)),
+            "too deep (20 mm inside the surface). Maximum at a depth of 3 mm: 6 mm",
+        ),
     ],
 )
 def test_points_and_runs_off_the_layer_are_told(points: tuple[tuple[float, float, float], ...], words: str) -> None:
@@ -108,7 +117,7 @@ def test_points_and_runs_off_the_layer_are_told(points: tuple[tuple[float, float
     found = [one for one in violations(robot, limits, cable_region(robot.body, limits)) if "surface" in one]
     if words:
         assert words in found[0]
-        assert "that a depth of 3 mm allows" in found[0]
+        assert "at a depth of 3 mm: " in found[0]
     else:
         assert found == []
 
@@ -172,5 +181,5 @@ def test_the_judgement_knows_the_layer() -> None:
     told = {
         limits.depth: review_robot(robot, constraints=limits) for limits in (Constraints(), Constraints(depth=0.003))
     }
-    assert any("less than the clearance of 5 mm" in finding.text for finding in told[None])
+    assert any("Minimum clearance: 5 mm" in finding.text for finding in told[None])
     assert not any("surface" in finding.text for finding in told[0.003])

@@ -36,11 +36,10 @@ def clearance_violations(parts: Parts) -> Iterator[str]:
     yield from _near_the_edge_at_points(parts)
     yield from _near_the_edge(parts, segments)
     for number, zone in enumerate(parts.constraints.keep_out):
-        yield from _through(
-            segments, zone, f"passes through keep_out[{number}]", np.ones(len(segments.bare), dtype=bool)
-        )
+        every = np.ones(len(segments.bare), dtype=bool)
+        yield from _through(segments, zone, f"inside keep_out[{number}]", "Reroute it", every)
     for number, zone in enumerate(parts.constraints.still):
-        yield from _through(segments, zone, f"runs without a sheath through still[{number}]", segments.bare)
+        yield from _through(segments, zone, f"no sheath in still[{number}]", "Sheathe or reroute it", segments.bare)
     if not parts.constraints.leads:
         yield from _sheathed_for_nothing(parts, segments)
 
@@ -75,20 +74,20 @@ def _near_the_edge_at_points(parts: Parts) -> Iterator[str]:
     for (index, at), depth in zip(asked, depths, strict=True):
         if depth < least - LENGTH:
             yield (
-                f"cable[{index}].points[{at}] at {place(parts.points[index][at])} lies {parts.within(depth)}, "
-                f"less than the {_limit(parts, least)}"
+                f"{_hole_name((index, at))}: low clearance ({parts.within(depth)}, "
+                f"at {place(parts.points[index][at])}). Minimum {_limit(parts, least)}. Move it inward."
             )
         elif depth > most + LENGTH:
             yield (
-                f"cable[{index}].points[{at}] at {place(parts.points[index][at])} lies {mm(depth)} under the "
-                f"{parts.edge}, more than the {_limit(parts, most)}"
+                f"{_hole_name((index, at))}: too deep ({parts.within(depth)}, at {place(parts.points[index][at])}). "
+                f"Maximum {_limit(parts, most)}. Move it outward."
             )
 
 
 def _limit(parts: Parts, depth: float) -> str:
     """Return the limit that a point keeps, in words."""
     wanted = parts.constraints.depth
-    return f"clearance of {mm(depth)}" if wanted is None else f"{mm(depth)} that a depth of {mm(wanted)} allows"
+    return f"clearance: {mm(depth)}" if wanted is None else f"at a depth of {mm(wanted)}: {mm(depth)}"
 
 
 def _near_the_edge(parts: Parts, segments: _Segments) -> Iterator[str]:
@@ -105,8 +104,8 @@ def _near_the_edge(parts: Parts, segments: _Segments) -> Iterator[str]:
     found = least_along(parts.region.depths, starts[asked], segments.ends[asked], least - LENGTH, resolution=1e-4)
     for index, depth in zip(asked, found, strict=True):
         if depth < least - LENGTH:
-            allowed = _limit(parts, least) if skin else f"half the clearance of {mm(clearance)}"
-            yield f"{segments.name(index)} comes to {parts.within(depth)}, less than {allowed}"
+            allowed = f"Minimum {_limit(parts, least)}" if skin else f"Minimum: half the clearance of {mm(clearance)}"
+            yield f"{segments.name(index)}: low clearance ({parts.within(depth)}). {allowed}. Reroute it."
     if not skin:
         return
     found = least_along(
@@ -115,16 +114,18 @@ def _near_the_edge(parts: Parts, segments: _Segments) -> Iterator[str]:
     )  # fmt: skip
     for index, depth in zip(asked, -found, strict=True):
         if depth > most + LENGTH:
-            allowed = _limit(parts, most)
-            yield f"{segments.name(index)} dives to {mm(depth)} under the {parts.edge}, more than the {allowed}"
+            allowed = f"Maximum {_limit(parts, most)}"
+            yield f"{segments.name(index)}: too deep ({parts.within(depth)}). {allowed}. Add a point between."
 
 
-def _through(segments: _Segments, zone: Zone, what: str, asked: Bool[np.ndarray, " segments"]) -> Iterator[str]:
+def _through(
+    segments: _Segments, zone: Zone, what: str, fix: str, asked: Bool[np.ndarray, " segments"]
+) -> Iterator[str]:
     chosen = np.flatnonzero(asked)
     found = zone.least(segments.starts[chosen], segments.ends[chosen], limit=-LENGTH)
     for index, away in zip(chosen, found, strict=True):
         if away < -LENGTH:
-            yield f"{segments.name(index)} {what}, {mm(-away)} deep"
+            yield f"{segments.name(index)}: {what} ({mm(-away)} deep). Allowed: outside. {fix}."
 
 
 def _sheathed_for_nothing(parts: Parts, segments: _Segments) -> Iterator[str]:
@@ -134,7 +135,10 @@ def _sheathed_for_nothing(parts: Parts, segments: _Segments) -> Iterator[str]:
     for zone in parts.constraints.still:
         needed |= zone.least(starts, ends, limit=LENGTH) < LENGTH
     for index in chosen[~needed]:
-        yield f"{segments.name(index)} runs in a sheath outside the still zones, and leads are not allowed"
+        yield (
+            f"{segments.name(index)}: sheath outside the still zones. Not allowed without leads. "
+            "Remove it or allow leads."
+        )
 
 
 SAME = 1e-5  # points no farther apart than this [m] share a hole
@@ -161,8 +165,8 @@ def _holes_near_each_other(
     close = (gaps < least - LENGTH) & (gaps > SAME * (1 + 1e-6)) & (new[:, None] | new)
     for one, other in np.argwhere(np.triu(close, 1)):
         yield (
-            f"{_hole_name(holes[other])} is {mm(gaps[one, other])} from {_hole_name(holes[one])}, "
-            f"less than the hole_gap of {mm(least)}"
+            f"{_hole_name(holes[other])}: too close to {_hole_name(holes[one])} ({mm(gaps[one, other])}). "
+            f"Minimum hole_gap: {mm(least)}. Move them apart."
         )
 
 
@@ -178,8 +182,8 @@ def _holes_near_winches(
         asked = (owners != number) & (new | (number in parts.new_winches))
         for index in np.flatnonzero(asked & (gaps < least - LENGTH)):
             yield (
-                f"{_hole_name(holes[index])} is {mm(gaps[index])} from {parts.winch_name(number)}, which pulls "
-                f"other cables, less than two spool radii of {mm(least)}"
+                f"{_hole_name(holes[index])}: too close to {parts.winch_name(number)} of other cables "
+                f"({mm(gaps[index])}). Minimum: two spool radii, {mm(least)}. Move it away."
             )
 
 
@@ -204,10 +208,10 @@ def gap_violations(parts: Parts) -> Iterator[str]:
                 continue
             gap = _gap(parts, (index, at), (other, there))
             if gap < least - LENGTH:
-                told = "crosses" if gap < SAME else f"is {mm(gap)} from"
+                told, value = ("crosses", "") if gap < SAME else ("too close to", f" ({mm(gap)})")
                 yield (
-                    f"cable[{other}] between points {there} and {there + 1} {told} cable[{index}] between points {at} "
-                    f"and {at + 1}, less than the cable_gap of {mm(least)}"
+                    f"cable[{other}] between points {there} and {there + 1}: {told} cable[{index}] between points {at} "
+                    f"and {at + 1}{value}. Minimum cable_gap: {mm(least)}. Reroute one of them."
                 )
 
 
@@ -246,8 +250,8 @@ def _over_winches(parts: Parts, index: int, at: int) -> Iterator[str]:
         gap = float(np.linalg.norm(ends[0] + share * (ends[1] - ends[0]) - centre))
         if gap < 2 * winch.spool_radius - LENGTH:
             yield (
-                f"cable[{index}] between points {at} and {at + 1} passes {mm(gap)} from {parts.winch_name(number)}, "
-                f"which pulls other cables, less than two spool radii of {mm(2 * winch.spool_radius)}"
+                f"cable[{index}] between points {at} and {at + 1}: too close to {parts.winch_name(number)} of other "
+                f"cables ({mm(gap)}). Minimum: two spool radii, {mm(2 * winch.spool_radius)}. Reroute it."
             )
 
 
@@ -281,17 +285,18 @@ def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
         name = f"cable[{index}].points[{corner + 1}]"
         enters = corner == 0 and parts.outside(parts.robot.cables[index])
         if turn > limits.turn + ANGLE and not enters:
-            yield f"{name} turns by {turn:.4g} degrees, more than the turn of {limits.turn:g}"
+            yield f"{name}: turn too sharp ({turn:.4g} degrees). Maximum turn: {limits.turn:g} degrees. Move the point."
         if limits.bend_radius * gentler[corner] > tangents[corner] + LENGTH:
-            yield f"{name} bends with a radius of {mm(arc)}, less than the bend_radius of {mm(limits.bend_radius)}"
+            least = mm(limits.bend_radius)
+            yield f"{name}: bend too sharp (radius {mm(arc)}). Minimum bend_radius: {least}. Move the point."
 
 
 def _wrong_lengths(parts: Parts, index: int) -> Iterator[str]:
     cable, limits = parts.robot.cables[index], parts.constraints
     if limits.longest is not None and cable.length > limits.longest + LENGTH:
-        yield f"cable[{index}] is {mm(cable.length)} long, more than the longest of {mm(limits.longest)}"
+        yield f"cable[{index}]: too long ({mm(cable.length)}). Maximum (longest): {mm(limits.longest)}. Shorten it."
     if cable.slack > limits.slack + LENGTH:
-        yield f"cable[{index}] has a slack of {mm(cable.slack)}, more than {mm(limits.slack)}"
+        yield f"cable[{index}]: slack too large ({mm(cable.slack)}). Maximum: {mm(limits.slack)}. Reduce it."
 
 
 def _wrong_spools(parts: Parts) -> Iterator[str]:
@@ -299,8 +304,8 @@ def _wrong_spools(parts: Parts) -> Iterator[str]:
     for index in parts.new_cables:
         if not 1 / most <= ratios[index] <= most:
             yield (
-                f"cable[{index}] winds on a spool {ratios[index]:.4g} times as large as its winch's, "
-                f"beyond the spool_ratio of {parts.constraints.spool_ratio:g}"
+                f"cable[{index}]: spool too different from its winch's ({ratios[index]:.4g} times its radius). "
+                f"Maximum spool_ratio, also of its inverse: {parts.constraints.spool_ratio:g}. Change its spool radius."
             )
 
 

@@ -31,7 +31,10 @@ def _out_of_zones(parts: Parts) -> Iterator[str]:
         at = np.array([parts.robot.winches[index].at], dtype=float)
         away = min(float(zone.distances(at)[0]) for zone in zones)
         if away > LENGTH:
-            yield f"{parts.winch_name(index)} stands at {place(at[0])}, {mm(away)} outside the nearest of winch_zones"
+            yield (
+                f"{parts.winch_name(index)}: outside winch_zones (by {mm(away)}, at {place(at[0])}). "
+                "Allowed: inside a zone. Move it there."
+            )
 
 
 def _near_the_edge(parts: Parts) -> Iterator[str]:
@@ -43,7 +46,8 @@ def _near_the_edge(parts: Parts) -> Iterator[str]:
     for index, depth in zip(inside, depths, strict=True):
         if depth < least - LENGTH:
             yield (
-                f"{parts.winch_name(index)} stands {parts.within(depth)}, less than the winch_clearance of {mm(least)}"
+                f"{parts.winch_name(index)}: low clearance ({parts.within(depth)}). "
+                f"Minimum winch_clearance: {mm(least)}. Move it inward."
             )
 
 
@@ -56,8 +60,8 @@ def _near_each_other(parts: Parts) -> Iterator[str]:
         gap = float(np.linalg.norm(np.subtract(winches[one].at, winches[other].at)))
         if gap < least - LENGTH:
             yield (
-                f"{parts.winch_name(other)} stands {mm(gap)} from {parts.winch_name(one)}, "
-                f"less than the winch_gap of {mm(least)}"
+                f"{parts.winch_name(other)}: too close to {parts.winch_name(one)} ({mm(gap)}). "
+                f"Minimum winch_gap: {mm(least)}. Move them apart."
             )
 
 
@@ -66,13 +70,14 @@ def _of_other_makes(parts: Parts) -> Iterator[str]:
     for index in parts.new_winches:
         winch, name = parts.robot.winches[index], parts.winch_name(index)
         if limits.mount is not None and winch.mount is not limits.mount:
-            yield f'{name} has mount = "{winch.mount}", not "{limits.mount}"'
+            yield f'{name}: wrong mount ("{winch.mount}"). Allowed: "{limits.mount}". Change it.'
         if winch.travel > limits.travel + LENGTH:
-            yield f"{name} has a travel of {mm(winch.travel)}, more than {mm(limits.travel)}"
+            yield f"{name}: travel too large ({mm(winch.travel)}). Maximum: {mm(limits.travel)}. Reduce it."
         if winch.release > limits.release + LENGTH:
-            yield f"{name} has a release of {mm(winch.release)}, more than {mm(limits.release)}"
+            yield f"{name}: release too large ({mm(winch.release)}). Maximum: {mm(limits.release)}. Reduce it."
         if abs(winch.spool_radius - limits.spool_radius) > LENGTH:
-            yield f"{name} has a spool_radius of {mm(winch.spool_radius)}, not {mm(limits.spool_radius)}"
+            allowed = mm(limits.spool_radius)
+            yield f"{name}: wrong spool_radius ({mm(winch.spool_radius)}). Allowed: {allowed}. Change it."
 
 
 def _crowded(parts: Parts) -> Iterator[str]:
@@ -81,7 +86,8 @@ def _crowded(parts: Parts) -> Iterator[str]:
     for index, winch in enumerate(parts.robot.winches):
         count = sum(cable.winch == winch.name for cable in parts.robot.cables)
         if winch.name in changed and count > most:
-            yield f"{parts.winch_name(index)} pulls {count} cables, more than the cables_per_winch of {most}"
+            name = parts.winch_name(index)
+            yield f"{name}: too many cables ({count}). Maximum cables_per_winch: {most}. Add a winch."
 
 
 _NEAR = 1e-4  # a mirror image may be so far from where it should be [m]
@@ -95,7 +101,8 @@ def mirror_violations(parts: Parts) -> Iterator[str]:
     images = [_image_of(parts, winch, flip) for winch in parts.robot.winches]
     for index in parts.new_winches:
         if images[index] is None:
-            yield f"{parts.winch_name(index)} has no mirror image at {place(flip * parts.robot.winches[index].at)}"
+            image_at = place(flip * parts.robot.winches[index].at)
+            yield f"{parts.winch_name(index)}: no mirror image (expected at {image_at}). Add it or clear mirror."
     for index in parts.new_cables:
         cable = parts.robot.cables[index]
         image = images[parts.numbers[cable.winch]]
@@ -103,7 +110,8 @@ def mirror_violations(parts: Parts) -> Iterator[str]:
             other.winch == parts.robot.winches[image].name and _mirrors(parts, index, number, flip)
             for number, other in enumerate(parts.robot.cables)
         ):
-            yield f"cable[{index}] has no mirror image that ends at {place(flip * cable.points[-1])}"
+            end = place(flip * cable.points[-1])
+            yield f"cable[{index}]: no mirror image (expected to end at {end}). Add it or clear mirror."
 
 
 def _image_of(parts: Parts, winch: Winch, flip: np.ndarray) -> int | None:

@@ -28,7 +28,7 @@ class FreePosing:
     Attributes:
         robot: robot with the body.
         fibres: the muscles.
-        strength: the most that a fibre pulls [N].
+        strength: maximum tension of a fibre [N].
         nodes: positions of the nodes [m].
         tensions: tension of each fibre [N].
     """

@@ -241,7 +241,7 @@ class RouteSearch:
             if pushed is None or told:
                 raise InputError(
                     "the robot's own network cannot be moved into what the constraints allow"
-                    f"{f' ({told[0]})' if told else ''}; relax them, or design without improving it"
+                    f"{f' ({told[0][:-1]})' if told else ''}; relax them, or design without improving it"
                 )
             return pushed
         winches, cables = self.constraints.staying(self.robot)
