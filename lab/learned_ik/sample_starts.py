@@ -27,6 +27,7 @@ import hydrostat as hs
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import find_crossings
 from hydrostat.learning import LearnOptions, Samples, TrainingSet, linear_map, read_samples, train_forward
+from hydrostat.progress import no_progress
 
 COMPONENTS = 100
 ELSEWHERE = 1e-4
