@@ -109,7 +109,7 @@ def _keys(page: WindowPage) -> None:
 def _poses(page: WindowPage) -> None:
     """Keys from stored poses."""
     driver, document = page.session.driver, page.session.document
-    button = _button("accessibility_new", "Add keyframe from a pose", None)
+    button = _button("accessibility_new", "Keyframe from a pose", None)
     with button:
         menu = _menu()
 
