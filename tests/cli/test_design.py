@@ -262,4 +262,4 @@ def test_what_is_wrong_is_one_line(
 def test_help_shows_an_example(run: Run) -> None:
     code, out, _ = run("design", "--help")
     assert code == 0
-    assert "Example: hydrostat design examples/starfish" in out
+    assert "Example: hydrostat design gallery:starfish" in out
