@@ -182,7 +182,7 @@ def test_two_winches_in_one_place_of_a_robot():
 @pytest.mark.slow
 def test_eight_long_motors_do_not_fit_into_a_squid():
     assert any(
-        "move the winches apart" in text
+        "Move the winches apart" in text
         for unit in units_of(gallery_robot("squid"), POLOLU_25D)
         for text in unit.problems
     )

@@ -31,7 +31,7 @@ def found_by(session: Session, robot: Robot) -> None:
         Alternative(robot=one, reached=(solve_ik(Simulation(one), pose, options=once),), built=0.004)
         for one in (robot, few)
     ]
-    designer._found(DesignsFound(solutions=tuple(map(solution, made)), tried=2, complete=True))
+    designer._on_found(DesignsFound(solutions=tuple(map(solution, made)), tried=2, complete=True))
 
 
 @pytest.fixture
