@@ -57,7 +57,7 @@ def parse_request(robot: "Robot", typed: DesignArguments) -> "DesignRequest":
         uncertainty=_uncertainty(robot, typed),
         **given,
     )
-    request.fit_robot(robot)  # what does not fit is told before anything begins
+    request.fit_robot(robot)  # raises before anything begins
     return request
 
 

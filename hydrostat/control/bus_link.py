@@ -155,10 +155,10 @@ class BusLink(Link):
             self._must_be_armed()
             if np.shape(contractions) != self._low.shape or not np.isfinite(contractions).all() or not speed >= 0:
                 words = f"told {len(self._names)} finite contractions at a speed, not {contractions} at {speed:g} m/s"
-                raise self._stop_with_error(LinkState.HOLD, f"motors must be {words}; arm them anew")
+                raise self._stop_with_error(LinkState.HOLD, f"motors must be {words}; re-arm them")
             since = self._clock() - self._sent
             if since > DEADLINE:
-                raise self._stop_with_error(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
+                raise self._stop_with_error(LinkState.HOLD, f"no command for {since:.2f} s; re-arm the motors")
             self._goal = np.clip(contractions, self._low, self._high)
             self._speed = min(speed, self.limits.speed, self._speed + self.limits.rise * max(since, 1e-3))
             ahead = self._speed * MAX_LEAD_TIME
@@ -205,7 +205,7 @@ class BusLink(Link):
         if self.state is LinkState.ARMED and self._clock() - self._sent > DEADLINE:
             with self._lock:
                 if self.state is LinkState.ARMED and (since := self._clock() - self._sent) > DEADLINE:
-                    self._stop_with_error(LinkState.HOLD, f"nothing was told for {since:.2f} s; arm the motors anew")
+                    self._stop_with_error(LinkState.HOLD, f"no command for {since:.2f} s; re-arm the motors")
 
     def watch(self) -> None:
         """Keep the deadline from a thread of its own, whatever else this program is busy with; arming begins it."""

@@ -42,7 +42,7 @@ def _pairs(attributes: dict[str, object]) -> str:
 
 
 def number(value: float, digits: int) -> str:
-    """Number with at most so many digits after the point, one or more, without a minus before nought."""
+    """Number with a largest number of digits after the point, one or more, without a minus before nought."""
     return f"{round(value, digits) + 0.0:.{digits}f}".rstrip("0").rstrip(".")
 
 

@@ -229,5 +229,5 @@ _SMALLEST = 1e-4
 _TRIES = 3
 """Steps tried in one update before the robot stays where it is."""
 
-_RULES = StepRules(mends=1.0, far=1e-3)
-"""When an update takes a step; what exceeds a limit, the next one mends."""
+_RULES = StepRules(excess_share=1.0, far=1e-3)
+"""When an update takes a step; what exceeds a limit, the next one reduces."""

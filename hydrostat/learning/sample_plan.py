@@ -21,7 +21,7 @@ class SamplePlan:
     """Plan of samples of a robot. Equal plans give equal bytes, whoever works on them.
 
     Attributes:
-        robot: with contact if the samples shall know it.
+        robot: with contact if samples are to include it.
         count: number of samples.
         seed: random seed.
         draws: ways in which contractions are drawn, one sample each in turn.

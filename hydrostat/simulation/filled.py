@@ -31,7 +31,7 @@ class FilledMotion:
 
 
 def is_filled_motion_fast(robot: Robot, poses: int) -> bool:
-    """Return True if `filled_motion` of so many poses takes only seconds: a flat drawn body, not too fine."""
+    """Return True if `filled_motion` of this number of poses takes only seconds: a flat drawn body, not too fine."""
     body = robot.body
     if body.outline is None or body.thickness is None or not robot.cables or not poses:
         return False

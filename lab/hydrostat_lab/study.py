@@ -113,7 +113,7 @@ def run_study(
 
     Args:
         study: comparison to run.
-        robot: robot; with contact if its samples shall know it.
+        robot: robot; with contact if samples are to include it.
         folder: folder for samples and rows; it may be that of other robots too.
         jobs: processes that sample; -1 for one on each core.
         progress: same as for `sample_robot`.

@@ -23,7 +23,7 @@ WORDS = {
     "anew": ("lost power", "does not follow", "slack or broken"),  # its torque is off, and no cable is felt
     "unplugged": ("is gone",),
     "host dies": ("",),
-    "host sleeps": ("nothing was told for",),
+    "host sleeps": ("no command for",),
     "cut": ("slack or broken",),
     "jammed": ("measured tension",),
 }

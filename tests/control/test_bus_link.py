@@ -98,7 +98,7 @@ def test_the_deadline_of_the_host_alone_stops_them() -> None:
         rig.link.check_deadline()
     assert rig.link.state is LinkState.HOLD
     assert moved_after(rig, 0.0) == 0.0
-    with pytest.raises(HydrostatError, match=r"nothing was told for 0\.2"):
+    with pytest.raises(HydrostatError, match=r"no command for 0\.2"):
         rig.link.send(np.full(3, 0.03), 0.0, speed=0.05)
 
 
@@ -122,7 +122,7 @@ def test_a_suspended_computer_finds_its_motors_on_hold() -> None:
     rig.begin()
     rig.go(0.03, 0.2)
     rig.chain.wait(3600.0 / 1000)
-    with pytest.raises(HydrostatError, match="arm the motors anew"):
+    with pytest.raises(HydrostatError, match="re-arm the motors"):
         rig.link.send(np.full(3, 0.03), 0.0, speed=0.05)
     before = rig.places
     rig.link.arm()

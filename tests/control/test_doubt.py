@@ -149,7 +149,7 @@ def test_a_computer_that_slept_finds_its_motors_on_hold(monkeypatch: pytest.Monk
     link.arm()
     link.send(np.full(3, 0.01), 0.0, speed=0.05)
     slept[0] = 3600.0
-    with pytest.raises(HydrostatError, match="nothing was told for 36"):
+    with pytest.raises(HydrostatError, match="no command for 36"):
         link.send(np.full(3, 0.03), 0.0, speed=0.05)
 
 
@@ -213,7 +213,7 @@ def test_a_board_that_fell_silent_on_hold_is_armed_again() -> None:
     link.identify()
     link.arm()
     board.run(1.0)
-    with pytest.raises(HydrostatError, match="nothing was told for"):
+    with pytest.raises(HydrostatError, match="no command for"):
         link.send(np.full(2, 0.01), 0.0, speed=0.06)
     board.run(1.0)
     link.arm()

@@ -54,7 +54,7 @@ def design_fewest(
             if winches == largest and not found:
                 raise
             continue
-        judged = (search.judged(trial.layout) for trial in search.sizes.values())
+        judged = (search.judge(trial.layout) for trial in search.sizes.values())
         _keep_best(front, [*(network for network in judged if network is not None), *_all(found[-1])])
         if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
             break

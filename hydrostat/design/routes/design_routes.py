@@ -292,14 +292,14 @@ class RouteSearch:
         return judged[first], [*judged[:first], *judged[first + 1 :]]
 
     def _all_judged(self, trials: Iterable[Trial | None]) -> list[Alternative]:
-        return [judged for trial in trials if trial is not None and (judged := self.judged(trial.layout)) is not None]
+        return [judged for trial in trials if trial is not None and (judged := self.judge(trial.layout)) is not None]
 
     def _first_to_fit(self) -> list[Alternative]:
         """The best of the networks on the way that a kit can be made of, for when none of the refined ones can."""
         known = [trial.layout for trial in self.found]
         others = [(cost, layout) for cost, layout in self.passed if not any(layout is other for other in known)]
         for _, layout in sorted(others, key=lambda passed: passed[0])[:_LOOKED_AT]:
-            judged = self.judged(layout)
+            judged = self.judge(layout)
             if judged is not None and kit_fits(judged):
                 return [judged]
         return []
@@ -320,7 +320,7 @@ class RouteSearch:
                 kept.append(trial)
         return kept
 
-    def judged(self, layout: Layout) -> Alternative | None:
+    def judge(self, layout: Layout) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
         robot = self._numbered(layout).robot(digits=_DIGITS)
         if violations(robot, self.constraints, self.region):

@@ -29,19 +29,19 @@ class WinchSizing:
     motor: Motor  # motor that turns it
 
     @property
-    def needed(self) -> float:
+    def torque_with_margin(self) -> float:
         """Largest torque with the margin [N mm]."""
         return MARGIN * self.torque
 
     @property
-    def loaded(self) -> float:
+    def loaded_speed(self) -> float:
         """Speed of the motor at the largest torque [rpm]: speed falls evenly with torque, to none at stall."""
         return self.motor.speed * max(0.0, 1 - self.torque / self.motor.stall_torque)
 
     @property
     def pull(self) -> float:
         """Speed of the cable at the largest torque [mm/s]."""
-        return 2 * math.pi * self.radius * self.loaded / 60
+        return 2 * math.pi * self.radius * self.loaded_speed / 60
 
     @property
     def time(self) -> float | None:
@@ -61,9 +61,9 @@ class WinchSizing:
         """Verdict on the motor, in words."""
         if self.torque >= self.motor.stall_torque:
             return "too weak"
-        if self.needed > self.motor.stall_torque:
+        if self.torque_with_margin > self.motor.stall_torque:
             return "no margin"
-        return "holds for seconds" if self.needed > self.motor.rated_torque else "good"
+        return "holds for seconds" if self.torque_with_margin > self.motor.rated_torque else "good"
 
 
 _MINDS = {
@@ -85,7 +85,8 @@ def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
             worst = max(alike, key=lambda sizing: sizing.torque)
             names = ", ".join(f'"{sizing.winch}"' for sizing in alike)
             who = f"winch {names} needs" if len(alike) == 1 else f"winches {names} need up to"
-            margin = "" if verdict == "too weak" else f", {worst.needed:.0f} N mm with the margin of {MARGIN:g}"
+            enough = f", {worst.torque_with_margin:.0f} N mm with the margin of {MARGIN:g}"
+            margin = "" if verdict == "too weak" else enough
             found.append(f"{who} {worst.torque:.0f} N mm{margin}, {mind.format(worst.motor)}")
     slow = (sizing for sizing in sizings if sizing.time is not None and sizing.time > SLOW)
     return (
@@ -165,12 +166,12 @@ def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) 
                 tension=sizing.tension,
                 radius=sizing.radius,
                 torque=sizing.torque,
-                needed=sizing.needed,
+                needed=sizing.torque_with_margin,
                 stall_torque=motor.stall_torque,
                 rated_torque=motor.rated_torque,
                 turns=sizing.turns,
                 free_speed=motor.speed,
-                loaded_speed=sizing.loaded,
+                loaded_speed=sizing.loaded_speed,
                 cable_speed=sizing.pull,
                 time=sizing.time,
                 verdict=sizing.verdict,
@@ -186,7 +187,7 @@ def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) 
 
 
 SPARE = 1.5
-"""A supply gives so many times the current of all motors at their largest torque at once: bodies are stiffer than
+"""Ratio of a supply's current to the current of all motors at their largest torque at once: bodies are stiffer than
 assumed, and supplies sag at their limit."""
 
 SUPPLIES = (2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0)  # currents of available supplies [A]

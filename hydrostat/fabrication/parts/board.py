@@ -46,5 +46,5 @@ BOARDS = {
 
 
 def board_for(motors: int) -> str:
-    """Name of the smallest board that drives so many motors, else of the largest."""
+    """Name of the smallest board that drives a number of motors, else of the largest."""
     return next((name for name, kind in BOARDS.items() if kind.motors >= motors), list(BOARDS)[-1])

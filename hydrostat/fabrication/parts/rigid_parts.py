@@ -163,7 +163,7 @@ def rigid_parts(
 
 
 def _for_winches(part: Printed, winches: tuple[str, ...], count: int) -> Printed:
-    """A part for some of so many winches, with their names in its title."""
+    """Part for some of the winches, with their names in its title; `count` is that of all."""
     if len(winches) == count > 1:
         return replace(part, count=count, title=f"{part.title} of every winch", kind=part.title)
     words = f"winch{'es' if len(winches) > 1 else ''} {', '.join(winches)}"

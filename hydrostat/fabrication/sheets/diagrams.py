@@ -152,7 +152,7 @@ def _dimension(canvas: Canvas, left: float, right: float, at: float, foot: float
     canvas.text((middle, beside), words, size=8, halo=False)
 
 
-_MAX_MOTORS = 6  # motors that are drawn; of more the last are told in words
+_MAX_MOTORS = 6  # largest number of motors drawn; a sentence states the rest
 
 
 def wiring_scheme(plan: PowerPlan, marks: tuple[str, ...], *, width: float) -> Canvas:

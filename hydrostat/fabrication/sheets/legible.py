@@ -148,6 +148,6 @@ def sentence(words: str) -> str:
 
 
 def shorten_text(text: str, most: int) -> str:
-    """Shorten a text to one line of at most so many letters; a longer one ends with an ellipsis."""
+    """Shorten a text to one line of a largest number of letters; a longer one ends with an ellipsis."""
     line = " ".join(text.split())
     return line if len(line) <= most else line[: most - 1].rstrip() + "…"

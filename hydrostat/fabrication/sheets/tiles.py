@@ -123,7 +123,7 @@ def _letters(index: int) -> str:
 
 
 _WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
-"""Widths of the lines [mm]: an operation is told by its width too where the printer knows no colour."""
+"""Widths of the lines [mm]: the width too shows the operation where the printer knows no colour."""
 
 _NAMED = 12  # so many empty tiles are named; more would fill the page
 _BAR = 100.0  # length of the bar that shows whether a page was printed at its true scale [mm]

@@ -191,7 +191,7 @@ class _TrustRegionDescent:
 
 _STEEP = 1e-3  # where the residual's length still falls faster than this [m/m], it is no optimum
 _ROUGH = 1e-2  # progress at which a descent with a fixed weight of the effort ends: it is a stage on the way
-_RULES = StepRules(mends=0.995, far=0.1)  # when a descent takes a step
+_RULES = StepRules(excess_share=0.995, far=0.1)  # when a descent takes a step
 _SMALLEST_RADIUS = 1e-7  # steps of less than this fraction of the range are not worth a solve
 
 

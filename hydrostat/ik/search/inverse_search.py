@@ -222,7 +222,7 @@ EXCESS = 1e-6  # a tension may exceed its limit by this share
 class StepRules:
     """When a trust-region step is taken."""
 
-    mends: float  # a step that reduces a tension must reduce its excess to this share
+    excess_share: float  # a step that reduces a tension must reduce its excess to this share
     far: float  # share by which a step may exceed a tension limit, for the next one to correct
 
 
@@ -262,7 +262,7 @@ def try_step(
     gain = problem.objective(state, weight) - problem.objective(trial, weight)
     ratio = gain / step.promise if step.promise > 0 else -np.inf
     if state.excess > EXCESS:
-        return StepTried(trial, ratio, trial.excess < rules.mends * state.excess)
+        return StepTried(trial, ratio, trial.excess < rules.excess_share * state.excess)
     return StepTried(trial, ratio, gain > 0 and trial.excess <= rules.far)
 
 

@@ -26,7 +26,7 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
         options=wishes.tree_options if trees else options or wishes.options,
         improve=wishes.improve,
     )
-    request.fit_robot(robot)  # what does not fit is told at once
+    request.fit_robot(robot)  # raises InputError for what does not fit
     return request
 
 

@@ -18,7 +18,7 @@ from hydrostat.studio.view.touching import with_touches
 PATIENCE = 150  # so many updates are made towards targets that stay where they are
 CALM, CALMEST = 4.0, 0.3
 """Weights that keep free parts at rest, or all fingers of a hand move for a hair that they gain for one: a meter of the
-whole body away from rest counts by so many times the error, in sizes of the body, relative to a meter of error, at most
+whole body away from rest counts by this factor, in sizes of the body, relative to a meter of error, at most
 the second. So it hides no target: it fades as one is reached."""
 
 GAIN = 0.5
@@ -64,7 +64,7 @@ class CableMover(Mover):
         start: Equilibrium | None = None,
         predictor: Predictor | None = None,
     ) -> None:
-        """Begin in a pose, or at rest; cables bear at most a tension [N]. With a predictor its answer comes first."""
+        """Begin in a pose, or at rest, with a tension limit [N]. With a predictor its answer comes first."""
         self.predictor, self._told = predictor, False
         self.robot, self.tension = simulation.robot, tension
         self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)

@@ -28,17 +28,17 @@ def sizing(
 def test_loads_of_two_cables_on_one_spool() -> None:
     found = sizing(5.0, 7.0)
     assert found.torque == pytest.approx(6 * 12)
-    assert found.needed == pytest.approx(MARGIN * 72)
+    assert found.torque_with_margin == pytest.approx(MARGIN * 72)
     assert found.tension == 7.0
     assert found.cables == 2
     assert found.turns == pytest.approx(66 / (12 * math.pi))
 
 
 def test_speed_falls_evenly_to_none_at_stall() -> None:
-    assert sizing(10.0, stall_torque=240.0, speed=60.0).loaded == pytest.approx(45)  # 60 of 240 N mm
+    assert sizing(10.0, stall_torque=240.0, speed=60.0).loaded_speed == pytest.approx(45)  # 60 of 240 N mm
     assert sizing(10.0, stall_torque=240.0, speed=60.0).pull == pytest.approx(2 * math.pi * 6 * 0.75)
-    assert sizing(40.0, stall_torque=240.0).loaded == 0
-    assert sizing(50.0, stall_torque=240.0).loaded == 0
+    assert sizing(40.0, stall_torque=240.0).loaded_speed == 0
+    assert sizing(50.0, stall_torque=240.0).loaded_speed == 0
 
 
 @pytest.mark.parametrize("tension", [0.0, 1e-9, 1.0, 10.0, 39.0])

@@ -80,7 +80,7 @@ def printed(winches: int, cables: int) -> tuple[Printed, ...]:
 
 
 def lists(cables: int, items: int | tuple[Item, ...] = 8, **more: Any) -> Lists:
-    """Lists of so many cables, each in a tube, and of some things to buy."""
+    """Lists of a number of cables, each in a tube, and of some things to buy."""
     price = Price(amount=3.0, unit="m")
     if isinstance(items, int):
         names = [f"thing number {number}" for number in range(1, items + 1)]
