@@ -231,13 +231,6 @@ def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[Curve
     return curve
 
 
-def _no_other(out: Path) -> list[CurvePoint]:
-    """The curve of a run that begins (InputError: the folder holds one that would be lost)."""
-    if list(out.glob("checkpoint-*")):
-        raise InputError(f"{out}: holds a run already; go on with --resume, or name another folder")
-    return []
-
-
 @contextmanager
 def _copies(env: GoalEnv, options: TrainOptions, processes: int) -> Iterator[Any]:
     """Episodes side by side, until no more are needed (HydrostatError: stable-baselines3 is not installed)."""
