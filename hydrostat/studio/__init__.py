@@ -11,12 +11,17 @@ if TYPE_CHECKING:
     from hydrostat.studio.face.rooms import Rooms
     from hydrostat.studio.face.serve import serve
     from hydrostat.studio.jobs import Jobs
-    from hydrostat.studio.posing.cable_mover import STRIDE, CableMover
-    from hydrostat.studio.posing.held import HeldPoint, Mode
-    from hydrostat.studio.posing.mover import MuscleMover
-    from hydrostat.studio.posing.poser import Poser
-    from hydrostat.studio.posing.poses import held_of
-    from hydrostat.studio.posing.propose_work import ProposalInput, propose_network
+    from hydrostat.studio.posing import (
+        STRIDE,
+        CableMover,
+        HeldPoint,
+        Mode,
+        MuscleMover,
+        Poser,
+        ProposalInput,
+        held_of,
+        propose_network,
+    )
     from hydrostat.studio.session import Session
     from hydrostat.studio.stage import Hit
     from hydrostat.studio.starting.shelf import state_folder

@@ -22,7 +22,7 @@ from hydrostat.studio.editing.editor import Editor
 from hydrostat.studio.exporting.download import Download
 from hydrostat.studio.exporting.exporter import Exporter
 from hydrostat.studio.jobs import Jobs, Slots
-from hydrostat.studio.posing.poser import Poser
+from hydrostat.studio.posing import Poser
 from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter

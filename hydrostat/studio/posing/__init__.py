@@ -1,1 +1,26 @@
-"""Poses by hand: as if full of muscles, or by the robot's own cables."""
+"""Posing: drag points of a body; muscles or cables follow. Begin reading at `poser.py`."""
+
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.studio.posing.cable_proposals import ProposalInput, propose_network
+    from hydrostat.studio.posing.movers import STRIDE, CableMover, MuscleMover
+    from hydrostat.studio.posing.pose_state import HeldPoint, Mode, held_of, same_as
+    from hydrostat.studio.posing.poser import Poser
+
+__all__ = [
+    "STRIDE",
+    "CableMover",
+    "HeldPoint",
+    "Mode",
+    "MuscleMover",
+    "Poser",
+    "ProposalInput",
+    "held_of",
+    "propose_network",
+    "same_as",
+]
+
+open_package(__name__)

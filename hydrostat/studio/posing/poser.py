@@ -13,30 +13,33 @@ from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.cable_proposals import CableProposals
-from hydrostat.studio.posing.grip import name_under, point_of
-from hydrostat.studio.posing.held import (
+from hydrostat.studio.posing.cable_proposals import CableProposals, ProposalInput
+from hydrostat.studio.posing.movers import Movers, same_body
+from hydrostat.studio.posing.pose_state import (
     Anchored,
     HeldPoint,
     Mode,
     PoseState,
     PoseTargets,
+    Trail,
+    checked_name,
+    held_of,
+    name_under,
+    point_of,
     renamed_markers,
+    renamed_pose,
+    wishes_after,
     with_network_of,
+    with_pose,
+    without_pose,
 )
-from hydrostat.studio.posing.movers import Movers, same_body
-from hydrostat.studio.posing.poses import checked_name, held_of, renamed_pose, wishes_after, with_pose, without_pose
-from hydrostat.studio.posing.propose_work import ProposalInput
 from hydrostat.studio.posing.reach import MarkerReach
-from hydrostat.studio.posing.trail import Trail
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import MARKER, Bar, prediction_things, robot_things, target_things, winch_bars
 from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
 from hydrostat.studio.view.touching import touch_things
 
 READY = "preparing the physics…"  # said while the physics of a robot is made
-FARTHEST = 1.0  # no target is farther from the box of the body at rest, in sizes of the body
-TARGET_GHOST = "#8fb4d6"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,8 +70,7 @@ class Poser(Stage):
         self._hold: _Hold | None = None
         self._trail = Trail(document)
         self._dragged = False
-        self._armed = ""
-        self._chosen = ""
+        self._armed = self._chosen = ""
         document.bell.listen(self._heard)
 
     @property
@@ -201,7 +203,7 @@ class Poser(Stage):
                 raise InputError("this robot has no cables yet. Find some in Design, or place them in Edit")
             ghost = None
             if mode is Mode.CABLES and now.targets.held:
-                ghost = Ghost(name="target", nodes=now.shape.nodes, colour=TARGET_GHOST)
+                ghost = Ghost(name="target", nodes=now.shape.nodes, colour="#8fb4d6")
             self._now = replace(now, targets=replace(now.targets, mode=mode), ghost=ghost)
         self._ring()
 
@@ -356,9 +358,8 @@ class Poser(Stage):
             if before is None or not same_body(before.robot, robot):
                 rests = 0 if before is None else before.targets.rests
                 targets = PoseTargets(mode=Mode.CABLES if robot.cables else Mode.MUSCLES, rests=rests + 1)
-                now = PoseState(
-                    robot=robot, targets=targets, anchored=Anchored(robot.body.mesh), shape=rest_shape(robot)
-                )
+                anchored = Anchored(robot.body.mesh)
+                now = PoseState(robot=robot, targets=targets, anchored=anchored, shape=rest_shape(robot))
                 self._let_go()
             else:
                 now = before.adapt_to(robot)
@@ -391,10 +392,9 @@ class Poser(Stage):
         return tuple(Anchored(now.robot.body.mesh).places({name: point}, now.shape.nodes)[0].tolist())
 
     def _hold_at(self, name: str, point: HeldPoint, target: np.ndarray) -> None:
-        """Wish a point somewhere, though not out of sight."""
+        """Set the target of a point, at most one size of the body away from the box of the body at rest."""
         now = self._fit()
         mesh = now.robot.body.mesh
-        far = FARTHEST * mesh.size
-        near = np.clip(target, mesh.nodes.min(axis=0) - far, mesh.nodes.max(axis=0) + far)
+        near = np.clip(target, mesh.nodes.min(axis=0) - mesh.size, mesh.nodes.max(axis=0) + mesh.size)
         held = {**now.targets.held, name: replace(point, target=tuple(near.tolist()))}
         self._now = replace(now, targets=replace(now.targets, held=held))

@@ -10,7 +10,7 @@ from hydrostat.ik import Targets, named_targets
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Equilibrium
-from hydrostat.studio.posing.held import HeldPoint
+from hydrostat.studio.posing.pose_state import HeldPoint
 from hydrostat.studio.view.things import Prediction
 
 

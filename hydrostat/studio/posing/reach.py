@@ -12,8 +12,8 @@ from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs, Report
-from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
+from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.view.things import Cloud
 
 COUNT = 400  # so many poses are tried

@@ -15,11 +15,17 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.held import HeldPoint, Mode
-from hydrostat.studio.posing.mover import MuscleMover
+from hydrostat.studio.posing.cable_proposals import (
+    OPTIONS,
+    POSE,
+    Proposal,
+    ProposalInput,
+    asked_of_trees,
+    propose_network,
+)
+from hydrostat.studio.posing.movers import MuscleMover
+from hydrostat.studio.posing.pose_state import HeldPoint, Mode, held_of, with_pose
 from hydrostat.studio.posing.poser import Poser
-from hydrostat.studio.posing.poses import held_of, with_pose
-from hydrostat.studio.posing.propose_work import OPTIONS, POSE, Proposal, ProposalInput, asked_of_trees, propose_network
 from hydrostat.studio.view.things import Dot
 
 PATIENCE = 120.0  # the process has to start [s]

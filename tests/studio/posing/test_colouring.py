@@ -8,8 +8,8 @@ from builders import box_robot, strip_robot
 
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics
-from hydrostat.studio.posing.held import HeldPoint
-from hydrostat.studio.posing.mover import MuscleMover
+from hydrostat.studio.posing.movers import MuscleMover
+from hydrostat.studio.posing.pose_state import HeldPoint
 from hydrostat.studio.view.colouring import Colouring, node_strains, node_stresses, node_values, scale
 from hydrostat.studio.view.things import rest_shape
 

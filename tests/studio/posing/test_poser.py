@@ -14,7 +14,7 @@ from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.posing.poser import READY, Poser
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Dot

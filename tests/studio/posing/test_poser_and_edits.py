@@ -13,9 +13,8 @@ from hydrostat.project import Wishes, Work
 from hydrostat.robot import Robot, load_robot, save_robot
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.held import HeldPoint, Mode
+from hydrostat.studio.posing.pose_state import HeldPoint, Mode, with_pose
 from hydrostat.studio.posing.poser import Poser
-from hydrostat.studio.posing.poses import with_pose
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Dot
 

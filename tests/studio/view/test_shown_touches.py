@@ -9,8 +9,8 @@ from touching import fork_robot
 
 from hydrostat.robot import Obstacle
 from hydrostat.simulation import Simulation, find_contacts
-from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
+from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand
 from hydrostat.studio.view.touching import OFF, touch_things, with_touches

@@ -4,7 +4,7 @@ from nicegui import ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
-from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.posing import Mode
 from hydrostat.studio.told_error import told_error
 from hydrostat.studio.view.colouring import Colouring
 from hydrostat.units import plural

@@ -10,8 +10,7 @@ from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.face.panels.pose_muscles import muscles_card
-from hydrostat.studio.posing.held import Mode
-from hydrostat.studio.posing.poses import same_as
+from hydrostat.studio.posing import Mode, same_as
 from hydrostat.studio.told_error import told_error
 from hydrostat.studio.view.robot_things import Bar
 from hydrostat.studio.view.things import RobotShape

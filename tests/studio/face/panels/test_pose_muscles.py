@@ -4,8 +4,8 @@ import pytest
 from desk import Desk, at_desk, is_shown
 
 from hydrostat.robot import Robot
-from hydrostat.studio.posing.held import Mode
-from hydrostat.studio.posing.propose_work import Proposal
+from hydrostat.studio.posing.cable_proposals import Proposal
+from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.view.colouring import Colouring
 from hydrostat.units import plural

@@ -3,7 +3,7 @@
 from desk import Desk, at_desk
 
 from hydrostat.robot import Robot
-from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.stage import Hit, StageName
 
 
