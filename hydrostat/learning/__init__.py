@@ -6,22 +6,26 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.learning.certify import exact_steps, solve_exactly, verify
-    from hydrostat.learning.correct_model import correct_model
-    from hydrostat.learning.draw import SamplingScheme, antagonists, contractions, shared_numbers
     from hydrostat.learning.export import EXPORTS, check_export, export_samples
-    from hydrostat.learning.learn_model import learn_model
+    from hydrostat.learning.learn_model import correct_model, learn_model
     from hydrostat.learning.learn_options import LearnOptions
-    from hydrostat.learning.learned_model import LearnedModel
-    from hydrostat.learning.learned_pose import LearnedPose, Tier
+    from hydrostat.learning.learned_model import LearnedModel, LearnedPose, Tier
     from hydrostat.learning.model_card import ModelCard
     from hydrostat.learning.model_file import load_model, save_model
     from hydrostat.learning.perceptrons import Perceptrons
     from hydrostat.learning.portable_policy import PortablePolicy, load_policy
-    from hydrostat.learning.sample_folder import SampleFolder
-    from hydrostat.learning.sample_plan import SamplePlan, physics_hash, plan_samples
+    from hydrostat.learning.sample_plan import (
+        SamplePlan,
+        SamplingScheme,
+        antagonists,
+        contractions,
+        physics_hash,
+        plan_samples,
+        shared_numbers,
+    )
     from hydrostat.learning.sample_robot import BACKENDS, sample_robot
     from hydrostat.learning.sample_shard import sample_shard
-    from hydrostat.learning.samples import Samples, read_samples
+    from hydrostat.learning.samples import SampleFolder, Samples, read_samples
     from hydrostat.learning.train import answer, tensors_of, train_forward
     from hydrostat.learning.training_set import LEAST, TrainingSet, linear_map, make_training_set
 

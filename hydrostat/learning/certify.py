@@ -9,8 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.given import check_type
 from hydrostat.ik import IKOptions, IKStatus, Limits, Targets, Tracker, named_targets, solve_ik
 from hydrostat.learning.known_contact import contact_facts
-from hydrostat.learning.learned_model import LearnedModel
-from hydrostat.learning.learned_pose import LearnedPose, Tier
+from hydrostat.learning.learned_model import LearnedModel, LearnedPose, Tier
 from hydrostat.learning.sample_plan import physics_hash
 from hydrostat.robot import Point, PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation

@@ -10,9 +10,9 @@ from typing import Any, cast
 import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.learning.sample_folder import SampleFolder
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import sample_shard
+from hydrostat.learning.samples import SampleFolder
 from hydrostat.progress import Progress
 
 Sampled = tuple[int, np.ndarray]

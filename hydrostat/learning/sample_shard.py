@@ -4,8 +4,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.geometry import find_crossings
-from hydrostat.learning.draw import SamplingScheme
-from hydrostat.learning.sample_plan import SamplePlan, physics_hash
+from hydrostat.learning.sample_plan import SamplePlan, SamplingScheme, physics_hash
 from hydrostat.mechanics import Reason
 from hydrostat.simulation import Equilibrium, Simulation
 

@@ -10,14 +10,12 @@ import gymnasium
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.training.gait import Gait
     from hydrostat.training.goal_env import GoalEnv, TaskOptions
-    from hydrostat.training.hysteresis_env import HysteresisEnv
     from hydrostat.training.portable import policy_of, portable_policy
-    from hydrostat.training.push_env import PushEnv, PushOptions
-    from hydrostat.training.reach_env import BEYOND, ReachEnv, ReachOptions
+    from hydrostat.training.reach_env import BEYOND, HysteresisEnv, ReachEnv, ReachOptions
     from hydrostat.training.tasks import TASKS, Task, task_of
     from hydrostat.training.thing_env import ThingEnv, ThingOptions
+    from hydrostat.training.thing_tasks import PushEnv, PushOptions, TwistEnv, TwistOptions
     from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld
     from hydrostat.training.train import (
         CurvePoint,
@@ -30,8 +28,7 @@ if TYPE_CHECKING:
         moves_of,
         train,
     )
-    from hydrostat.training.twist_env import TwistEnv, TwistOptions
-    from hydrostat.training.walk_env import WalkActions, WalkEnv, WalkOptions
+    from hydrostat.training.walk_env import Gait, WalkActions, WalkEnv, WalkOptions
     from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
 __all__ = [

@@ -5,10 +5,8 @@ from dataclasses import dataclass
 
 from hydrostat.errors import InputError
 from hydrostat.training.goal_env import GoalEnv
-from hydrostat.training.hysteresis_env import HysteresisEnv
-from hydrostat.training.push_env import PushEnv
-from hydrostat.training.reach_env import ReachEnv
-from hydrostat.training.twist_env import TwistEnv
+from hydrostat.training.reach_env import HysteresisEnv, ReachEnv
+from hydrostat.training.thing_tasks import PushEnv, TwistEnv
 from hydrostat.training.walk_env import WalkEnv
 
 

@@ -11,8 +11,8 @@ from gymnasium import spaces
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
+from hydrostat.training.env_pictures import ThingPictures
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
-from hydrostat.training.thing_pictures import ThingPictures
 from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld, as_drawn, is_clear
 
 

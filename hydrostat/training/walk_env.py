@@ -13,9 +13,66 @@ from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.robot import ObstacleShape, Robot
 from hydrostat.simulation import Motion, Simulation, StepOptions
-from hydrostat.training.gait import Gait, GaitClock
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
 from hydrostat.training.ground import standing, tilt, with_friction
+
+FASTEST, SLOWEST = 0.3, 2.0
+"""Periods of gaits that an action can ask for [s]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gait:
+    """Raised cosines, one winch after the other.
+
+    Attributes:
+        amplitude: the most that each winch takes in [m].
+        lag: lag of each winch behind the one before, in cycles.
+        period: period of a cycle [s].
+    """
+
+    amplitude: float
+    lag: float
+    period: float
+
+    @classmethod
+    def of_action(cls, action: np.ndarray, most: float) -> "Gait":
+        """The gait of three numbers from -1 to 1: amplitude from 0 to `most` [m], lag of half a cycle, period."""
+        size, lag, period = np.clip(np.asarray(action, dtype=float), -1.0, 1.0).tolist()
+        return cls(amplitude=0.5 * (size + 1.0) * most, lag=0.5 * lag, period=_MIDDLE + _HALF * period)
+
+    def action(self, most: float) -> Vector:
+        """The action that asks for this gait (see `of_action`)."""
+        return np.array([2.0 * self.amplitude / most - 1.0, 2.0 * self.lag, (self.period - _MIDDLE) / _HALF])
+
+
+class GaitClock:
+    """Phase of winches within a gait.
+
+    Attributes:
+        phase: cycles since the beginning.
+        amplitude: present amplitude [m].
+        lag: present lag, in cycles.
+    """
+
+    def __init__(self, winches: int, most: float) -> None:
+        """Begin with nothing taken in; in a period amplitudes change by `most` [m] at most, lags by half a cycle."""
+        self.phase = self.amplitude = self.lag = 0.0
+        self._order, self._most = np.arange(winches), most
+
+    def after(self, gait: Gait, dt: float) -> Vector:
+        """Contractions [m] after a time [s] of a gait."""
+        share = dt / gait.period
+        self.phase += share
+        if self.amplitude == 0.0:
+            self.lag = gait.lag
+        self.lag += float(np.clip(gait.lag - self.lag, -0.5 * share, 0.5 * share))
+        change = self._most * share
+        self.amplitude += float(np.clip(gait.amplitude - self.amplitude, -change, change))
+        return self.amplitude * 0.5 * (1.0 - np.cos(2.0 * np.pi * (self.phase - self.lag * self._order)))
+
+
+_MIDDLE, _HALF = 0.5 * (SLOWEST + FASTEST), 0.5 * (SLOWEST - FASTEST)
+
 
 STEP = 0.02
 """A time step [s]."""
@@ -204,7 +261,7 @@ class WalkEnv(GoalEnv):
         """Picture of the robot, and the ground that goes by below it; None before the first episode."""
         if self.motion is None:
             return None
-        from hydrostat.training.walk_pictures import WalkPictures
+        from hydrostat.training.env_pictures import WalkPictures
 
         if self._pictures is None:
             self._pictures = WalkPictures(self.robot, self.most)

@@ -28,10 +28,10 @@ from hydrostat.learning import (
     sample_robot,
     sample_shard,
 )
-from hydrostat.learning.draw import contractions as drawn
-from hydrostat.learning.draw import shared_numbers
-from hydrostat.learning.sample_folder import SampleFolder
+from hydrostat.learning.sample_plan import contractions as drawn
+from hydrostat.learning.sample_plan import shared_numbers
 from hydrostat.learning.sample_shard import REASONS
+from hydrostat.learning.samples import SampleFolder
 from hydrostat.robot import temporary_path
 
 pytestmark = pytest.mark.usefixtures("unchecked")
