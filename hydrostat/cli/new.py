@@ -230,7 +230,7 @@ def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
 
 def _draw(folder: Path) -> "Robot":
     """Read the robot back, as any command will, and draw it."""
-    from hydrostat.cli.pictures import load_matplotlib
+    from hydrostat.cli.options import load_matplotlib
 
     load_matplotlib()
     from hydrostat.plot import draw_rest, save_png

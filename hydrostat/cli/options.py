@@ -1,6 +1,8 @@
 """Parsing of options given as text: quantities with units, limits, contractions."""
 
+import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -13,6 +15,28 @@ if TYPE_CHECKING:
     from hydrostat.ik import Limits
     from hydrostat.robot import Robot
     from hydrostat.units import Dimension
+
+
+def load_matplotlib() -> None:
+    """Load matplotlib without writing the texts of its setters, which takes a third of the time.
+
+    Classes describe the keywords of their `set` for `help()` as they are made; no command shows that.
+    """
+    if "matplotlib.artist" in sys.modules:
+        return
+    from matplotlib.artist import Artist
+
+    name = "_update_set_signature_and_docstring"
+    describe = vars(Artist).get(name)
+    if describe is None:  # another version, which does otherwise
+        return
+    setattr(Artist, name, classmethod(lambda _: None))
+    try:
+        with suppress(ImportError):
+            import matplotlib.figure  # noqa: F401
+    finally:
+        setattr(Artist, name, describe)
+
 
 Contract = Annotated[
     list[str] | None,

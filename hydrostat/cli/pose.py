@@ -112,7 +112,7 @@ def _write(
     outline: "Outline | None",
     jacobian: bool,
 ) -> None:
-    from hydrostat.cli.pictures import load_matplotlib
+    from hydrostat.cli.options import load_matplotlib
     from hydrostat.version import __version__
 
     load_matplotlib()

@@ -56,7 +56,7 @@ def simulate(
 
     Example: hydrostat simulate gallery:starfish --contract left=12mm --out build/pose
     """
-    from hydrostat.cli.pictures import load_matplotlib
+    from hydrostat.cli.options import load_matplotlib
     from hydrostat.simulation import write_pose
     from hydrostat.units import TIME
     from hydrostat.version import __version__

@@ -8,8 +8,7 @@ import numpy as np
 
 from hydrostat.control.dynamixel_packets import ALL, PING, READ, SYNC_READ, SYNC_WRITE, WRITE
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
-from hydrostat.control.feetech_bus import AMPERE, BOUND, FULL, GOAL, RISE, STALL, STATE, TICK, TORQUE
-from hydrostat.control.feetech_packets import SumReader, pack
+from hydrostat.control.feetech_bus import AMPERE, BOUND, FULL, GOAL, RISE, STALL, STATE, TICK, TORQUE, SumReader, pack
 
 
 @dataclass

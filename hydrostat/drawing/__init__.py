@@ -8,15 +8,21 @@ if TYPE_CHECKING:
     from hydrostat.drawing.camera import Camera, Spots, along_an_axis, three_quarter, upright
     from hydrostat.drawing.canvas import (
         MIDDLE,
+        NAMESPACE,
         PIXELS,
         THICK,
         THIN,
         Box,
         Canvas,
         CanvasFrame,
+        Html,
         Spot,
         balloon_radius,
         fit_height,
+        number,
+        path,
+        shape,
+        tag,
         text_size,
     )
     from hydrostat.drawing.creases import smooth_normals
@@ -46,7 +52,6 @@ if TYPE_CHECKING:
         winch_colours,
     )
     from hydrostat.drawing.render import CREASE, Render, render, silhouette
-    from hydrostat.drawing.svg import NAMESPACE, Html, number, path, shape, tag
 
 __all__ = [
     "CREASE",

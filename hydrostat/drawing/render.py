@@ -9,8 +9,20 @@ from hydrostat.arrays import Vector
 from hydrostat.drawing.camera import Spots
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer, Polyline
-from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, MESH, PAPER, SEAM, SHADE, STITCH, channels, mix
-from hydrostat.drawing.shades import paint, sky_shares
+from hydrostat.drawing.palette import (
+    DARK,
+    FELT,
+    FELT_LIGHT,
+    MESH,
+    PAPER,
+    SEAM,
+    SHADE,
+    STITCH,
+    channels,
+    mix,
+    paint,
+    sky_shares,
+)
 
 FINER = 2  # samples along each side of a pixel
 CREASE = 42.0  # a sharper bend than this between two facets is drawn as an edge [degree]

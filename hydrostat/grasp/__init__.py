@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.grasp.pull_out import PullOptions, PullOut, pull_out
-    from hydrostat.grasp.spread import PullCase, pull_bands
+    from hydrostat.grasp.pull_out import PullCase, PullOptions, PullOut, pull_bands, pull_out
     from hydrostat.grasp.thing import FORMS, moved_thing, place_thing, read_thing
 
 __all__ = [

@@ -7,11 +7,11 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.ik.ik_result import IKResult, IKStatus
     from hydrostat.ik.limits import Limits
-    from hydrostat.ik.linearized_pose import LinearizedPose
+    from hydrostat.ik.linearized_pose import LinearizedPose, unconstrained_motion
     from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, begin_robot, new_robot
     from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
     from hydrostat.ik.objectives.effort import Effort, EffortKind
-    from hydrostat.ik.objectives.marker_target import MarkerTarget, named_targets
+    from hydrostat.ik.objectives.marker_target import MarkerTarget, PointTarget, named_targets
     from hydrostat.ik.objectives.objective import (
         EquilibriumState,
         Objective,
@@ -21,11 +21,9 @@ if TYPE_CHECKING:
         state_at,
         state_jacobian_at,
     )
-    from hydrostat.ik.objectives.point_target import PointTarget
     from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
     from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
-    from hydrostat.ik.reach import FoundReach, find_reach
-    from hydrostat.ik.reach_extent import reach_extent, usable_spans
+    from hydrostat.ik.reach import FoundReach, find_reach, reach_extent, usable_spans
     from hydrostat.ik.search.linear_model import least_squares
     from hydrostat.ik.search.problem import IKOptions
     from hydrostat.ik.solve_ik import Targets, solve_ik
@@ -34,7 +32,6 @@ if TYPE_CHECKING:
     from hydrostat.ik.trajectory.poses import BranchJump
     from hydrostat.ik.trajectory.solve_ik_trajectory import TrajectoryOptions, solve_ik_trajectory
     from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory
-    from hydrostat.ik.unconstrained_motion import unconstrained_motion
 
 __all__ = [
     "BegunRobot",

@@ -1,5 +1,4 @@
 """`LinearizedPose`: contractions for targets that have just moved, before the next update of a `Tracker` is done."""
-
 # Of the thesis (docs/thesis.md): R34
 
 from collections.abc import Mapping
@@ -10,6 +9,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.ik.ik_result import IKResult
 from hydrostat.ik.search.linear_model import LinearModel
 from hydrostat.ik.search.problem import effort_weight
 from hydrostat.robot import Point
@@ -49,3 +49,29 @@ class LinearizedPose:
         residual[: len(moved)] += moved
         model, weight = self.model.with_residual(residual), effort_weight(residual, self.size, self.effort)
         return self.spread @ model.apply_step(model.best(weight * self.worth, self.radius)[0])
+
+
+def unconstrained_motion(reached: IKResult) -> str:
+    """Markers that the pose does not name and that go far, in words; "" if none does.
+
+    A pose leaves free what it does not name: an arm that waves may lift a leg, if nobody asks the leg to stay.
+    """
+    pose, robot = reached.pose, reached.pose.robot
+    named = set() if reached.target is None else set(reached.target.targets)
+    moved = {
+        marker.name: float(np.linalg.norm(np.subtract(pose.markers[marker.name], marker.at)))
+        for marker in robot.markers
+        if marker.name not in named
+    }
+    far = sorted(
+        (name for name, way in moved.items() if way > _FAR * robot.body.mesh.size), key=lambda name: -moved[name]
+    )
+    if not named or not far:
+        return ""
+    goes = ", ".join(f"{name} by {1e3 * moved[name]:.0f} mm" for name in far[:_MOST])
+    more = f" and {len(far) - _MOST} more" if len(far) > _MOST else ""
+    return f"free markers move: {goes}{more}. Give them targets at rest to hold them"
+
+
+_FAR = 0.1  # of the size of the body
+_MOST = 3

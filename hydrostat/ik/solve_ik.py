@@ -1,5 +1,4 @@
 """`solve_ik`: the contractions that bring a robot nearest to a pose, by descents from several beginnings."""
-
 # Of the thesis (docs/thesis.md): R31 to R33, E18
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -16,7 +15,7 @@ from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.effort import keeps_taut
 from hydrostat.ik.objectives.marker_target import MarkerTarget, named_targets
 from hydrostat.ik.objectives.objective import Objective, checked_objectives
-from hydrostat.ik.search.anchor_untargeted import anchor_untargeted_markers
+from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
 from hydrostat.ik.search.descend import descend, least_effort
 from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_pose
 from hydrostat.ik.search.problem import IKOptions, InverseProblem, InverseState
@@ -31,6 +30,45 @@ from hydrostat.simulation import (
     require_static_obstacles,
     without_contact_friction,
 )
+
+
+def anchor_untargeted_markers(
+    search: InverseSearch, found: Descent, target: PoseTarget | None, start: Equilibrium | None
+) -> tuple[InverseSearch, Descent]:
+    """Return the answer with markers without a target moved back to rest where their motion gains too little.
+
+    It makes |r| + d^2 / (4 size) stationary, with what is missed in all, |r|, and the distance d of these markers from
+    rest. A few descents do, in which d^2 weighs |r| / (2 size) with the last |r|. The answer is as it was where the
+    target is in reach or names all markers, and where `options.hold_free_markers` is off.
+    """
+    problem, simulation = search.problem, search.problem.simulation
+    size = simulation.robot.body.mesh.size
+    names = () if target is None else tuple(m.name for m in simulation.robot.markers if m.name not in target.targets)
+    rows = len(found.state.residual)
+    if not problem.options.hold_free_markers or not names or found.state.error <= _MISSED * size:
+        return search, found
+    for _ in range(_ROUNDS):
+        if search.patience.over:
+            break
+        missed = float(np.linalg.norm(found.state.residual[:rows]))
+        calm = PoseRegularizer(
+            pose=simulation.rest, of=ClosenessKind.MARKERS, markers=names, weight=float(np.sqrt(0.5 * missed / size))
+        )
+        wary = InverseSearch(problem.with_term(calm.bind(simulation)), origin=start, patience=search.patience)
+        wary.steps = search.steps
+        history = found.state.history if simulation.assembly.has_history else None
+        begun = wary.problem.state(found.state.values, found.state.result, history)
+        calmer = descend(wary, begun)
+        if calmer.allowed < found.allowed:
+            break
+        wary.solves += search.solves
+        search, found = wary, calmer.after(found.iterations + calmer.iterations)
+    return search, found
+
+
+_MISSED = 1e-3  # missed by more than this, in sizes of the body, a target is out of reach
+_ROUNDS = 3
+
 
 Targets = PoseTarget | Mapping[str, Sequence[float] | Vector]  # where markers should go [m]: a pose, or points by name
 

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.assembly import Assembly
     from hydrostat.mechanics.cable import CableEnergy, CableSegments
     from hydrostat.mechanics.cable_friction import FrictionCableEnergy
-    from hydrostat.mechanics.chain_law import ChainLaw
+    from hydrostat.mechanics.capstan import ViaPointTurns
     from hydrostat.mechanics.contact import ContactEnergy
     from hydrostat.mechanics.energy import (
         Compliance,
@@ -21,24 +21,19 @@ if TYPE_CHECKING:
     )
     from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
     from hydrostat.mechanics.fibre import FibreEnergy
-    from hydrostat.mechanics.inertia import InertiaEnergy
+    from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimise
-    from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
-    from hydrostat.mechanics.newton_result import NewtonResult
+    from hydrostat.mechanics.newton_result import NewtonOptions, NewtonResult, Reason, RoundOff
+    from hydrostat.mechanics.nodal_energies import PinEnergy, WeightEnergy
     from hydrostat.mechanics.obstacle import ObstacleEnergy
-    from hydrostat.mechanics.patch_volume import PatchVolume
-    from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
-    from hydrostat.mechanics.pin import PinEnergy
+    from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
     from hydrostat.mechanics.self_friction import SelfFrictionEnergy
     from hydrostat.mechanics.stiffness import Stiffness
-    from hydrostat.mechanics.tension_law import TensionLaw
-    from hydrostat.mechanics.time_scheme import SCHEMES
-    from hydrostat.mechanics.via_point_turns import ViaPointTurns
+    from hydrostat.mechanics.tension_law import ChainLaw, TensionLaw
     from hydrostat.mechanics.viscous import MaxwellBranches, Metrics
     from hydrostat.mechanics.warp import Bend, Warp
-    from hydrostat.mechanics.weight import WeightEnergy
 
 __all__ = [
     "PATCH_SIZE",

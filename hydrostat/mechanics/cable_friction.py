@@ -9,8 +9,7 @@ from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
-from hydrostat.mechanics.capstan import CapstanChains
-from hydrostat.mechanics.chain_law import ChainLaw
+from hydrostat.mechanics.capstan import CapstanChains, ViaPointTurns
 from hydrostat.mechanics.energy import (
     Blocks,
     Compliance,
@@ -21,8 +20,7 @@ from hydrostat.mechanics.energy import (
     RankMatrix,
     Response,
 )
-from hydrostat.mechanics.tension_law import TensionLaw
-from hydrostat.mechanics.via_point_turns import ViaPointTurns
+from hydrostat.mechanics.tension_law import ChainLaw, TensionLaw
 
 
 class LockedTensions(NamedTuple):

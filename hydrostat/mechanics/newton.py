@@ -8,10 +8,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
-from hydrostat.mechanics.negative_curvature import find_negative_curvature
-from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
-from hydrostat.mechanics.newton_result import NewtonResult
-from hydrostat.mechanics.stiffness import Stiffness
+from hydrostat.mechanics.newton_result import NewtonOptions, NewtonResult, Reason, RoundOff
+from hydrostat.mechanics.stiffness import Stiffness, find_negative_curvature
 from hydrostat.mechanics.warp import Bend
 
 

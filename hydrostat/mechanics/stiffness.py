@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from hydrostat.arrays import Vector
 from hydrostat.mechanics.energy import Compliance, LowRankBasis, LowRankStiffness, RankMatrix
 from hydrostat.mechanics.factorisation import Factorisation
 
@@ -131,3 +132,19 @@ def _square_root(weights: RankMatrix) -> RankMatrix:
         return np.diag(np.sqrt(diagonal))
     values, vectors = np.linalg.eigh(weights)
     return vectors * np.sqrt(np.maximum(values, 0.0))
+
+
+def find_negative_curvature(stiffness: Stiffness, size: int) -> Vector | None:
+    """Find a mode of negative curvature, largest entry 1: that of the most negative eigenvalue of H^-1, by Lanczos.
+
+    None if Lanczos does not arrive.
+    """
+    from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh  # Imported here: seldom needed.
+
+    inverse = LinearOperator((size, size), matvec=stiffness.solve, dtype=float)  # pyright: ignore[reportCallIssue]
+    start = np.random.default_rng(0).standard_normal(size)
+    try:
+        mode = eigsh(inverse, k=1, which="SA", v0=start, tol=1e-3)[1][:, 0]  # pyright: ignore[reportArgumentType]
+    except ArpackError:
+        return None
+    return mode / np.abs(mode).max()

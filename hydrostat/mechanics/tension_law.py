@@ -1,9 +1,9 @@
-"""`TensionLaw`: tension of a cable against its elongation; and `spring`, the same for compiled loops."""
+"""`TensionLaw`, `ChainLaw`: tension of a cable from its stretch, without and with friction."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Vector
 from hydrostat.kernel import native
@@ -64,3 +64,96 @@ class TensionLaw:
         tensions = np.zeros_like(elongations)
         found = native.balance(self.stiffness, self.smoothing, elongations, compliance, tensions)
         return tensions if found else None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChainLaw(TensionLaw):
+    """Tensions of the spans of cables between which cable slips, against friction of given largest force.
+
+    A span is a spring of the law of `TensionLaw`, and over the points between spans cable slips by lengths p. They are
+    those of least energy: sum of U(elongation + p before - p after) + sum of limit |p|. So neighbouring tensions differ
+    by no more than the limit, and by just the limit where cable slips, from the lower to the higher tension. As this is
+    the minimum of a convex function, the tensions are the gradient of a convex function of the elongations.
+
+    Attributes:
+        starts: first span of each cable, followed by the number of spans.
+        limits: largest friction force at the point before each span [N]; 0 for the first span of a cable.
+    """
+
+    starts: Int[np.ndarray, " ends"]
+    limits: Vector
+    _last: list[tuple[Vector, Vector]] = field(default_factory=list, init=False, repr=False)
+
+    def slips(self, elongation: Vector) -> Vector:
+        """Slip over the point before each span [m], positive towards the winch; 0 for the first span of a cable.
+
+        The last answer is kept: energy, forces and Hessian of one state ask for the same. Threads may share the law, so
+        question and answer are read and replaced together.
+        """
+        for asked, slips in self._last:
+            if np.array_equal(asked, elongation):
+                return slips
+        slips = np.zeros_like(elongation)
+        native.relax_chains(elongation, self.stiffness, self.smoothing, self.limits, self.starts, slips)
+        self._last[:] = [(elongation.copy(), slips)]
+        return slips
+
+    def energy(self, elongation: Vector) -> Vector:
+        """Elastic energy of each span plus the energy dissipated by friction at the point before it [J]."""
+        slips = self.slips(elongation)
+        return super().energy(self._own(elongation, slips)) + self.limits * np.abs(slips)
+
+    def tension(self, elongation: Vector) -> Vector:
+        """T of each span [N]."""
+        return super().tension(self._own(elongation, self.slips(elongation)))
+
+    def tangents(self, elongation: Vector) -> RankMatrix:
+        """dT/ds [N/m]: springs joined where cable slips are one spring in series."""
+        slips = self.slips(elongation)
+        return self._join_spans(super().tangent(self._own(elongation, slips)), slips != 0)[0]
+
+    def springs(self, elongation: Vector) -> tuple[Int[np.ndarray, " spans"], Vector]:
+        """Spring that each span belongs to, -1 where it is slack, and dT/ds of each [N/m].
+
+        Spans are one spring, in series, between points where cable sticks.
+        """
+        slips = self.slips(elongation)
+        group, series = self._series(super().tangent(self._own(elongation, slips)), slips != 0)
+        taut = series > 0
+        return np.where(taut, np.cumsum(taut) - 1, -1)[group], series[taut]
+
+    def compute_slip_jacobians(self, tensions: Vector, signs: Vector) -> tuple[RankMatrix, RankMatrix]:
+        """dT/ds [N/m] and dT/dlimits while cable goes on slipping where it does.
+
+        Args:
+            tensions: tensions of the spans [N].
+            signs: slip direction at the point before each span: 1 towards the winch, -1 the other way, 0 for no slip.
+        """
+        springs = super().tangent(np.where(tensions > 0, self.elongation(tensions), 0.0))
+        by_elongation, soft, same = self._join_spans(springs, signs != 0)
+        # A limit lowers the tension of all spans behind it in its group; then all move so that no length changes.
+        lowered = -np.tril(same) * signs
+        weights = same * soft
+        return by_elongation, lowered - weights @ lowered / weights.sum(axis=1, keepdims=True)
+
+    def _own(self, elongation: Vector, slips: Vector) -> Vector:
+        """Elongation of each span after the slips."""
+        after = np.append(slips[1:], 0.0)
+        return elongation + slips - after
+
+    def _join_spans(
+        self, springs: Vector, slipping: Bool[np.ndarray, " spans"]
+    ) -> tuple[RankMatrix, Vector, RankMatrix]:
+        """dT/ds, the compliance of each span, and which spans are joined by points that slip."""
+        group, series = self._series(springs, slipping)
+        same = (group[:, None] == group).astype(float)
+        return same * series[group], 1.0 / np.maximum(springs, 1e-12 * self.stiffness), same
+
+    def _series(
+        self, springs: Vector, slipping: Bool[np.ndarray, " spans"]
+    ) -> tuple[Int[np.ndarray, " spans"], Vector]:
+        """Group of each span that points that slip join, and dT/ds of each group; 0 where a span is slack."""
+        group = np.cumsum(~slipping) - 1
+        weakest = np.minimum.reduceat(springs, np.flatnonzero(~slipping)) if len(springs) else springs
+        soft = np.bincount(group, 1.0 / np.maximum(springs, 1e-12 * self.stiffness))
+        return group, np.where(weakest > 0, 1.0 / soft, 0.0)

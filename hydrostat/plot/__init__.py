@@ -7,14 +7,13 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
     from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
-    from hydrostat.plot.attachments import Attachments
     from hydrostat.plot.branch_figure import draw_branches
     from hydrostat.plot.calibration_page import reach, write_calibration_page
     from hydrostat.plot.chart import new_chart, plain_axes, short_number
     from hydrostat.plot.design_charts import draw_front, draw_growth
     from hydrostat.plot.drawn_body import DrawnBody
     from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, upright, winch_stops
-    from hydrostat.plot.frame import Frame
+    from hydrostat.plot.frame import Attachments, Frame
     from hydrostat.plot.frame_pictures import FramePictures, Picture
     from hydrostat.plot.grasp_figure import draw_pull, pull_frames
     from hydrostat.plot.healing_figure import draw_healing

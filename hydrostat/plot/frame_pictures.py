@@ -8,8 +8,7 @@ from jaxtyping import UInt8
 from matplotlib.artist import Artist
 
 from hydrostat.drawing import PAPER
-from hydrostat.plot.attachments import Attachments
-from hydrostat.plot.frame import Frame
+from hydrostat.plot.frame import Attachments, Frame
 from hydrostat.plot.hardware import draw_hardware
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.open_sheet import open_sheet

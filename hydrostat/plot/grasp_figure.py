@@ -7,9 +7,8 @@ from matplotlib.figure import Figure
 
 from hydrostat.drawing import ERROR, INK, MUTED, WINCHES
 from hydrostat.grasp import PullCase, PullOut
-from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.chart import plain_axes
-from hydrostat.plot.frame import Frame
+from hydrostat.plot.frame import Attachments, Frame
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_portrait

@@ -7,8 +7,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing import DARK, FELT, LIGHT, MUTED, mix, winch_colours
-from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
+from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places, join_lines

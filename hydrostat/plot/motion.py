@@ -19,7 +19,7 @@ from hydrostat.drawing import (
     tag,
     winch_colours,
 )
-from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import spool_size, stopper_bar
 from hydrostat.plot.sheet import MILLIMETRES, Places, frame_points
 from hydrostat.plot.skin import FlatSkin

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from hydrostat.arrays import Vector
 from hydrostat.drawing import ERROR, GHOST, INK, MUTED, WINCHES, winch_colours
 from hydrostat.ik import KeyPose, Trajectory
-from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.chart import DASHES, plain_axes
+from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_portrait

@@ -9,7 +9,7 @@ from hydrostat.arrays import Nodes
 from hydrostat.design import Network, TreeTrace, rest_error
 from hydrostat.drawing import Html, tag
 from hydrostat.errors import InputError
-from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.frame import Attachments
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.report_chapters import chapters

@@ -10,8 +10,8 @@ from hydrostat.drawing import ERROR, LIGHT, winch_colours
 from hydrostat.geometry import Outline, Ring
 from hydrostat.given import check_type
 from hydrostat.ik import IKResult, IKStatus
-from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody
+from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, name_winches
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet

@@ -11,8 +11,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.drawing import DARK, FELT, LIGHT, Spots, channels, upright, winch_colours
 from hydrostat.errors import InputError
-from hydrostat.plot.attachments import Attachments
-from hydrostat.plot.frame import Frame, check_frames
+from hydrostat.plot.frame import Attachments, Frame, check_frames
 from hydrostat.plot.glb import Glb, GlbPart
 from hydrostat.plot.open_sheet import way_up
 from hydrostat.plot.sheet import Spread

@@ -6,14 +6,16 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.project.project_file import PROJECT_FILE, read_project_file, write_project_file
-    from hydrostat.project.wished_constraints import wished_constraints
-    from hydrostat.project.wishes import WISH_RANGES, Paint, Wishes, moved_zone
-    from hydrostat.project.work import Work, after_design, follow_robot, fresh_name
+    from hydrostat.project.wishes import WISH_RANGES, Paint, Wishes, moved_zone, wished_constraints
     from hydrostat.project.work_folder import (
+        Work,
+        after_design,
         changed_outside,
         comments_lost,
         doubts,
         folder_stamp,
+        follow_robot,
+        fresh_name,
         open_note,
         open_work,
         save_work,

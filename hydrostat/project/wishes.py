@@ -21,7 +21,7 @@ from hydrostat.design import (
     Zone,
 )
 from hydrostat.errors import InputError
-from hydrostat.robot import Point
+from hydrostat.robot import Point, Robot
 from hydrostat.units import quote
 
 
@@ -136,3 +136,16 @@ def _check(name: str, value: Any) -> None:
 def _check_mirror(value: object) -> None:
     if value not in (None, "x", "y", "z"):
         raise InputError(f"mirror must be x, y, z or nothing, not {quote(value)}")
+
+
+def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
+    """Constraints of the design settings, without parts to keep that are gone (InputError: impossible limits)."""
+    zones: dict[str, Any] = {paint: tuple(zone for other, zone in wishes.zones if other is paint) for paint in Paint}
+    names = {winch.name for winch in robot.winches}
+    return replace(
+        wishes.constraints,
+        **zones,
+        depth=wishes.constraints.depth if robot.body.mesh.dim == 3 else None,
+        locked_winches=tuple(name for name in wishes.kept_winches if name in names),
+        locked_cables=tuple(cable.name for cable in robot.cables if cable.name in wishes.kept_cables),
+    )

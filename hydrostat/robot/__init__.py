@@ -8,30 +8,24 @@ if TYPE_CHECKING:
     from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body, surface_body
     from hydrostat.robot.cable import Cable
     from hydrostat.robot.checks import Point, check_name, check_not_negative, check_number, check_positive
-    from hydrostat.robot.closed_mesh import ClosedMesh, closed_mesh
-    from hydrostat.robot.commented import commented_text
-    from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
+    from hydrostat.robot.contact import DISTANCE, ClosedMesh, Contact, Obstacle, ObstacleShape, closed_mesh
     from hydrostat.robot.face import Face
-    from hydrostat.robot.gallery import GALLERY, gallery_folder, is_of_gallery, list_gallery
     from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
-    from hydrostat.robot.html_repr import html_repr
-    from hydrostat.robot.in_words import in_words
-    from hydrostat.robot.inflated import inflated_robot
-    from hydrostat.robot.marker import Marker, PoseTarget
+    from hydrostat.robot.html_repr import html_repr, in_words
+    from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
+    from hydrostat.robot.marker import Marker, Pin, PoseTarget
     from hydrostat.robot.materials import MATERIALS, Material, Relaxation, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
-    from hydrostat.robot.pin import Pin
-    from hydrostat.robot.read import FILE, RobotReader, load_robot
+    from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
     from hydrostat.robot.risks import find_risks
     from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
     from hydrostat.robot.robot import LARGEST_STEP, Robot
     from hydrostat.robot.scaled import scaled_robot
     from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
-    from hydrostat.robot.sewn import describe_cable_side, sewn_robot, sewn_sides
     from hydrostat.robot.sketch import sketch_robot
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh, sketch_surface
-    from hydrostat.robot.tables_file import TablesFile, read_text
+    from hydrostat.robot.tables_file import TablesFile, commented_text, read_text
     from hydrostat.robot.unfinished import clear_unfinished, temporary_path
     from hydrostat.robot.winch import Mount, Winch
     from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_robot, with_values

@@ -14,8 +14,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import Contact, Obstacle
-from hydrostat.robot.marker import Marker, PoseTarget
-from hydrostat.robot.pin import Pin
+from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Winch

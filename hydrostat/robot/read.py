@@ -4,27 +4,53 @@ import os
 from dataclasses import replace
 from decimal import Decimal
 from functools import partial
+from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.closed_mesh import closed_mesh
-from hydrostat.robot.contact import Contact, Obstacle
-from hydrostat.robot.gallery import GALLERY, gallery_folder, is_of_gallery
+from hydrostat.robot.contact import Contact, Obstacle, closed_mesh
 from hydrostat.robot.gravity import gravity_along
-from hydrostat.robot.marker import Marker, PoseTarget
+from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, Relaxation, get_material
-from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.tables_file import TablesFile, read_text
 from hydrostat.robot.winch import Winch
 
 if TYPE_CHECKING:
     from hydrostat.robot.schema import TomlTable
+
+GALLERY = "gallery:"
+"""Prefix of the name of a gallery robot, instead of a folder."""
+
+
+def is_of_gallery(source: object) -> TypeGuard[str]:
+    """Return True if a source names a robot of the gallery, such as "gallery:starfish"."""
+    return isinstance(source, str) and source.startswith(GALLERY)
+
+
+def list_gallery() -> list[str]:
+    """Names of the robots in the gallery, sorted."""
+    return sorted(folder.name for folder in _shelf().iterdir() if (folder / "robot.toml").is_file())
+
+
+def gallery_folder(name: str) -> Path:
+    """Folder of a gallery robot (InputError: the gallery has no robot of this name)."""
+    if name not in list_gallery():
+        raise InputError(f'unknown gallery robot "{name}". Available: {", ".join(list_gallery())}.')
+    return _shelf() / name
+
+
+def _shelf() -> Path:
+    """Folder of the gallery: inside an installed package, or next to it in a checkout."""
+    package = Path(str(files("hydrostat")))
+    inside = package / "examples"
+    return inside if inside.is_dir() else package.parent / "examples"
+
 
 FILE = "robot.toml"
 

@@ -20,9 +20,8 @@ from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.html_repr import html_repr
-from hydrostat.robot.marker import Marker, PoseTarget
+from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, get_material
-from hydrostat.robot.pin import Pin
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import plural
 

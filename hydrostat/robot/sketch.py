@@ -4,13 +4,31 @@ from functools import partial
 
 import numpy as np
 
-from hydrostat.geometry import Inner, Outline, read_outline, size_for, triangulate
-from hydrostat.robot.body import outline_body
-from hydrostat.robot.finer import finer_size
-from hydrostat.robot.marker import Marker, PoseTarget
+from hydrostat.geometry import Inner, Outline, read_outline, size_for, thin_parts, triangulate
+from hydrostat.robot.body import Body, outline_body
+from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import get_material
-from hydrostat.robot.pin import Pin
+from hydrostat.robot.risks.body_risks import LEAST_ACROSS
 from hydrostat.robot.robot import Robot
+
+
+def finer_size(body: Body, most: int) -> float | None:
+    """Element size [m] with which limbs should have enough elements across.
+
+    None where they have, where the body is a ready mesh, or where it would have more nodes than `most`.
+    """
+    least, dim = LEAST_ACROSS[body.mesh.dim], body.mesh.dim
+    parts = thin_parts(body.measured_thickness, least) if body.element_size else []
+    if not parts or body.element_size is None:
+        return None
+    few = min(part.across for part in parts)
+    size = body.element_size * max(few / (_SPARE * least), 0.5)
+    nodes = len(body.mesh.nodes) * (body.element_size / size) ** dim
+    return size if nodes <= most else None
+
+
+_SPARE = 1.15  # as meshes differ, so much more than is needed is aimed at
+
 
 MOST_NODES = 2000
 """A sketch gets no more nodes than this for the sake of its thin limbs."""

@@ -17,8 +17,8 @@ from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.gravity import direction_of
+from hydrostat.robot.marker import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
-from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.unfinished import temporary_path
 from hydrostat.robot.winch import Mount

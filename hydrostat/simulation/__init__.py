@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     )
     from hydrostat.simulation.filled import FilledMotion, filled_motion, is_filled_motion_fast
     from hydrostat.simulation.find_contacts import ContactPatch, describe_contacts, find_contacts
-    from hydrostat.simulation.motion_file import MotionTable, write_motion
+    from hydrostat.simulation.motion_file import MotionTable, pose_facts, write_motion, write_pose
     from hydrostat.simulation.obstacle_frames import (
         carried_frames,
         obstacle_forces,
@@ -35,14 +35,12 @@ if TYPE_CHECKING:
         with_obstacles,
         with_replaced,
     )
-    from hydrostat.simulation.pose_file import pose_facts, write_pose
     from hydrostat.simulation.sensitivities.adjoint import Sensitivity
     from hydrostat.simulation.simulation import Simulation
     from hydrostat.simulation.static_obstacles import require_static_obstacles, rests_at_first, without_contact_friction
     from hydrostat.simulation.statics.batch_result import BatchResult
-    from hydrostat.simulation.statics.diagnose_failure import not_converged
     from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium
-    from hydrostat.simulation.statics.static_solver import StaticSolver
+    from hydrostat.simulation.statics.static_solver import StaticSolver, not_converged
     from hydrostat.simulation.strain import node_strains, node_stresses
     from hydrostat.simulation.time.dynamics import Dynamics, PinShifts, StepOptions
     from hydrostat.simulation.time.motion import Motion

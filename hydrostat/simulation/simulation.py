@@ -20,14 +20,12 @@ from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.contraction_profile import ContractionProfile, check_profile
 from hydrostat.simulation.equilibrium import Contractions, Equilibrium, check_apart, check_pose, contraction_values
 from hydrostat.simulation.route_points import RoutePoints, route_points
-from hydrostat.simulation.sensitivities.adjoint import Sensitivity, cotangents, sensitivity
+from hydrostat.simulation.sensitivities.adjoint import Sensitivity, cotangents, response, sensitivity
 from hydrostat.simulation.sensitivities.friction import FrictionSensitivities, friction_adjoint, friction_sensitivities
-from hydrostat.simulation.sensitivities.response import response
 from hydrostat.simulation.static_obstacles import require_static_obstacles
 from hydrostat.simulation.statics.batch_result import BatchResult, PoseRow, pose_row, solve_rows
-from hydrostat.simulation.statics.diagnose_failure import diagnose_failure, not_converged
 from hydrostat.simulation.statics.loading_path import LoadingPath
-from hydrostat.simulation.statics.static_solver import StaticSolver
+from hydrostat.simulation.statics.static_solver import StaticSolver, diagnose_failure, not_converged
 from hydrostat.simulation.time.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.time.motion import Motion
 

@@ -11,18 +11,15 @@ if TYPE_CHECKING:
     from hydrostat.teleop.drive import DriveLoop, drive
     from hydrostat.teleop.gamepad import Gamepad
     from hydrostat.teleop.hand_map import HandMap
-    from hydrostat.teleop.hand_source import HandReading, HandSource
     from hydrostat.teleop.keys import HELP, Keys
     from hydrostat.teleop.landmarks import HandLandmarks
     from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold_still, pose_pool
-    from hydrostat.teleop.mapped_hand import MappedHand
-    from hydrostat.teleop.midi_knobs import MidiKnobs
+    from hydrostat.teleop.mapped_hand import MappedHand, OneEuro, Smoothing
+    from hydrostat.teleop.midi_osc import MidiKnobs, Osc
     from hydrostat.teleop.mimicry import Mimicry, write_mcap
-    from hydrostat.teleop.one_euro import OneEuro, Smoothing
     from hydrostat.teleop.open_source import EmulatedHand, open_hand, open_source
-    from hydrostat.teleop.osc import Osc
     from hydrostat.teleop.ridge import Ridge, fit_ridge
-    from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
+    from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish, HandReading, HandSource
     from hydrostat.teleop.ways import CommandMapper, MarkerMapper, WinchMapper, marker_channels, winch_channels
 
 __all__ = [

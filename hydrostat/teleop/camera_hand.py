@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.teleop.hand_source import HandReading, HandSource
 from hydrostat.teleop.landmarks import COUNT, HandLandmarks, bends
+from hydrostat.teleop.source import HandReading, HandSource
 
 MODEL = "hand_landmarker.task"
 """File name of MediaPipe's hand landmarker; hydrostat neither ships nor downloads it."""

@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import Port
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop.hand_source import HandReading, HandSource
+from hydrostat.teleop.source import HandReading, HandSource
 
 BAUD = 115200
 SENSORS = 22

@@ -11,7 +11,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop.hand_source import HandReading, HandSource
+from hydrostat.teleop.source import HandReading, HandSource
 
 COUNT = 21
 """Landmarks: the wrist, then from root to tip those of thumb, index, middle, ring and little finger (MediaPipe)."""

@@ -9,10 +9,9 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import Motors
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop.hand_source import HandSource
 from hydrostat.teleop.mimicry import Mimicry
 from hydrostat.teleop.ridge import Table
-from hydrostat.teleop.source import DriveChannels
+from hydrostat.teleop.source import DriveChannels, HandSource
 from hydrostat.units import plural
 
 POOL = 400

@@ -10,14 +10,11 @@ from hydrostat.teleop.camera_hand import MODEL, CameraHand
 from hydrostat.teleop.cyber_glove import BAUD, CyberGlove, EmulatedPerson
 from hydrostat.teleop.gamepad import Gamepad
 from hydrostat.teleop.hand_map import HandMap
-from hydrostat.teleop.hand_source import HandReading, HandSource
 from hydrostat.teleop.keys import Keys
 from hydrostat.teleop.landmarks import HandLandmarks
-from hydrostat.teleop.mapped_hand import USUAL_SMOOTHING, MappedHand
-from hydrostat.teleop.midi_knobs import USUAL, MidiKnobs
-from hydrostat.teleop.one_euro import Smoothing
-from hydrostat.teleop.osc import HERE, PORT, Osc
-from hydrostat.teleop.source import DriveChannels, DriveSource
+from hydrostat.teleop.mapped_hand import USUAL_SMOOTHING, MappedHand, Smoothing
+from hydrostat.teleop.midi_osc import HERE, PORT, USUAL, MidiKnobs, Osc
+from hydrostat.teleop.source import DriveChannels, DriveSource, HandReading, HandSource
 
 
 def open_source(

@@ -7,8 +7,7 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.testing.check_energy import check_energy
     from hydrostat.testing.check_objective import check_objective
-    from hydrostat.testing.conformance_error import ConformanceError
-    from hydrostat.testing.differences import central_differences
+    from hydrostat.testing.differences import ConformanceError, central_differences
 
 __all__ = [
     "ConformanceError",

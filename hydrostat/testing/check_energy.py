@@ -7,8 +7,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics import Energy
 from hydrostat.testing.check_solver_contract import check_history, check_law, check_loads, check_steps, check_supports
-from hydrostat.testing.conformance_error import ConformanceError
-from hydrostat.testing.differences import central_differences, steps
+from hydrostat.testing.differences import ConformanceError, central_differences, steps
 
 
 def check_energy(

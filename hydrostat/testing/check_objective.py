@@ -9,8 +9,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Vector
 from hydrostat.ik import EquilibriumState, Objective, Residual, state_at, state_jacobian_at
 from hydrostat.simulation import Contractions, Equilibrium, Simulation
-from hydrostat.testing.conformance_error import ConformanceError
-from hydrostat.testing.differences import central_differences, steps
+from hydrostat.testing.differences import ConformanceError, central_differences, steps
 
 
 def check_objective(

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics import Energy, LowRankStiffness
-from hydrostat.testing.conformance_error import ConformanceError
+from hydrostat.testing.differences import ConformanceError
 
 _TINY = np.finfo(float).tiny
 

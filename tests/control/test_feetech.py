@@ -10,8 +10,7 @@ from hydrostat.control.bus_link import BusLink, LinkState
 from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.control.emulated_servos import InjectedFaults
-from hydrostat.control.feetech_bus import BOUND, LOW, MODE, TICK, TORQUE, FeetechBus
-from hydrostat.control.feetech_packets import SumReader, pack, pad_bytes
+from hydrostat.control.feetech_bus import BOUND, LOW, MODE, TICK, TORQUE, FeetechBus, SumReader, pack, pad_bytes
 from hydrostat.control.guard import not_judged
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch

@@ -8,9 +8,8 @@ from builders import box_mesh
 from hydrostat.drawing.camera import Camera, along_an_axis, three_quarter
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer
-from hydrostat.drawing.palette import FELT
+from hydrostat.drawing.palette import FELT, sky_shares
 from hydrostat.drawing.render import render, silhouette
-from hydrostat.drawing.shades import sky_shares
 from hydrostat.geometry import Mesh
 from hydrostat.plot import DrawnBody
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from hydrostat.drawing.camera import Camera
-from hydrostat.drawing.canvas import Canvas, CanvasFrame
-from hydrostat.drawing.svg import NAMESPACE, number, path, safe, shape, tag
+from hydrostat.drawing.canvas import NAMESPACE, Canvas, CanvasFrame, number, path, safe, shape, tag
 
 HARD = "<script>\"&'"
 

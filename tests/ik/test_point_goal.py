@@ -5,9 +5,8 @@ import pytest
 from wishes import BENT, FLAT, SPACE
 
 from hydrostat.errors import InputError
-from hydrostat.ik.objectives.marker_target import MarkerTarget
+from hydrostat.ik.objectives.marker_target import MarkerTarget, PointTarget
 from hydrostat.ik.objectives.objective import state_at
-from hydrostat.ik.objectives.point_target import PointTarget
 from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.ik.tracker import Tracker
 from hydrostat.testing import check_objective

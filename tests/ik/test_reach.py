@@ -8,8 +8,7 @@ from builders import box_robot, strip_robot
 
 import hydrostat as hs
 from hydrostat.ik import find_reach
-from hydrostat.ik.reach import _covered_volume
-from hydrostat.ik.reach_extent import reach_extent, usable_spans
+from hydrostat.ik.reach import _covered_volume, reach_extent, usable_spans
 
 TRAVEL = 0.02  # of the strip's winches [m]
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from states import deform, rough_mesh
 
-from hydrostat.mechanics.inertia import InertiaEnergy
-from hydrostat.mechanics.time_scheme import SCHEMES, TimeScheme
+from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy, TimeScheme
 from hydrostat.testing import check_energy
 
 

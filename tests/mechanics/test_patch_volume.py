@@ -7,8 +7,7 @@ from states import CONTROLS, deform, rough_mesh
 
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import Assembly, NeoHookean
-from hydrostat.mechanics.patch_volume import PatchVolume
-from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
+from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
 from hydrostat.testing import ConformanceError, check_energy
 
 LAME, MU = 17e3, 11e3

@@ -160,7 +160,7 @@ def test_another_program_finds_the_volume_of_the_body(kind: str, tmp_path: Path)
 
 def test_winches_and_markers_are_carried_and_targets_come_and_go(tmp_path: Path) -> None:
     """Oracle: the marker of each frame by its element's weights; the target's place, and the frames it is shown in."""
-    from hydrostat.plot.attachments import Attachments
+    from hydrostat.plot.frame import Attachments
 
     robot, made = space_film()
     read = scene("space", tmp_path)

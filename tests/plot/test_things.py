@@ -6,9 +6,8 @@ from builders import box_robot, gallery_robot
 
 from hydrostat.plot import draw_portrait
 from hydrostat.plot.open_sheet import open_sheet
-from hydrostat.plot.pane import SpacePane
+from hydrostat.plot.pane import SpacePane, thing_surface
 from hydrostat.plot.picture_file import figure_pixels
-from hydrostat.plot.things import thing_surface
 from hydrostat.robot import Obstacle, rims
 from hydrostat.simulation import with_obstacles
 

@@ -1,5 +1,4 @@
-"""`MarkerTarget`: markers at points."""
-
+"""`MarkerTarget`, `PointTarget`: markers, or any points of the body, at their targets."""
 # Of the thesis (docs/thesis.md): R31, E19
 
 from collections.abc import Mapping, Sequence
@@ -10,7 +9,7 @@ from jaxtyping import Bool, Float
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import Anchors
+from hydrostat.geometry import Anchors, locate
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
     Objective,
@@ -25,6 +24,42 @@ from hydrostat.ik.objectives.objective import (
 )
 from hydrostat.robot import Point, PoseTarget, Robot
 from hydrostat.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointTarget(Objective):
+    """Targets for material points, for example where a hand holds a body.
+
+    Attributes:
+        points: position of each point in the rest shape [m]; a point outside the body stands for the nearest one on it.
+        targets: target position of each point [m], by the same names.
+        weight: weight of these errors relative to a marker's error.
+    """
+
+    points: Mapping[str, Point]
+    targets: Mapping[str, Point]
+    weight: float = 1.0
+
+    def bind(self, simulation: Simulation) -> Residual:
+        """Return the residual on this robot.
+
+        Raises:
+            InputError: no points, one without a target or the other way round, a place that is not in the body's space,
+                not finite or not in metres, or a weight below 0.
+        """
+        mesh = simulation.robot.body.mesh
+        points = by_name("points of the body", self.points, '{"knuckle": (0.1, 0.02)}')
+        targets = by_name("targets of points", self.targets, '{"knuckle": (0.1, 0.02)}')
+        if not points:
+            raise InputError("points of the body must name at least one point")
+        for name in {*points} ^ {*targets}:
+            has, lacks = ("place on the body", "target") if name in points else ("target", "place on the body")
+            raise InputError(f'point "{name}" has a {has} but no {lacks}; give it one')
+        rest = np.array([place(f"point {name}", points[name], mesh) for name in points])
+        goals = np.array([place(f"target {name}", targets[name], mesh) for name in points])
+        weights = np.full(len(points), not_negative("weight of points", self.weight))
+        return MarkerResidual(tuple(points), locate(mesh, rest), goals, weights, np.ones(goals.shape, dtype=bool))
+
 
 AXES = "xyz"
 

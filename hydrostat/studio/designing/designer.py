@@ -23,7 +23,6 @@ from hydrostat.studio.designing.design_work import (
     design_work,
     network_words,
 )
-from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
 from hydrostat.studio.designing.run import (
     DesignRun,
@@ -33,7 +32,7 @@ from hydrostat.studio.designing.run import (
     wished_poses,
     wished_request,
 )
-from hydrostat.studio.designing.sketch import BodySketch
+from hydrostat.studio.designing.sketch import BodySketch, Ease
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage

@@ -1,5 +1,6 @@
 """`Machine`: the motors, the body that follows them, and the playhead that commands them."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from math import inf
@@ -8,16 +9,39 @@ from threading import RLock
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control import Link, Motors, Player, Timeline
+from hydrostat.control import FASTEST, Link, Motors, Player, Timeline
 from hydrostat.errors import HydrostatError
+from hydrostat.fabrication import choose_motor
 from hydrostat.plot import upright
-from hydrostat.robot import Robot
+from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.keyframes import Keyframes
-from hydrostat.studio.driving.kit_speed import kit_speed
 from hydrostat.studio.view.things import RobotShape, rest_shape
 from hydrostat.studio.view.touching import with_touches
+
+
+def kit_speed(robot: Robot, tension: float) -> tuple[float, str]:
+    """The speed of the slowest winch where its cables pull all that they may [m/s], and the motor's name.
+
+    Args:
+        robot: with winches; without, the speed is that of motors in general.
+        tension: the most that a cable bears [N].
+    """
+    counts = {winch.name: sum(cable.winch == winch.name for cable in robot.cables) for winch in robot.winches}
+    loads = {winch: counts[winch.name] * tension * winch.spool_radius for winch in robot.winches if counts[winch.name]}
+    if not loads:
+        return FASTEST, ""
+    inside = any(winch.mount is Mount.BODY for winch in robot.winches)
+    motor = choose_motor("auto", loads.values(), inside=inside, winches=len(loads))
+    share = max(1e3 * load / motor.stall_torque for load in loads.values())
+    turns = motor.speed / 60 * max(1 - share, _LEAST)
+    return 2 * math.pi * min(winch.spool_radius for winch in loads) * turns, motor.title
+
+
+_LEAST = 0.1
+"""Motors that would stall are shown at this share of their free speed: the kit says that they are too weak."""
+
 
 TICK = 1 / 70  # motors are told and read once in this time [s], however often there is a step: about 60 times a second
 ROUGH = 3e-4  # how far a node may be from equilibrium while it moves, in sizes of the body: less than a pixel

@@ -15,12 +15,10 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.editing.cable_draft import CableDraft, begin_cable, end_cable, overlay
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity
 from hydrostat.studio.editing.copies import paste_parts, shift_parts
-from hydrostat.studio.editing.findings import Findings, look_over
 from hydrostat.studio.editing.hold import Hold, below_skin, inside, snap_to_grid, take_hold
 from hydrostat.studio.editing.part import Mirror, find_part, keys_of, name_of, place_of, title_of
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
-from hydrostat.studio.editing.ruler import Ruler
-from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Tool
+from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Findings, Ruler, Tool, look_over
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.finding_things import finding_things

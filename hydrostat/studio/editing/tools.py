@@ -1,6 +1,69 @@
 """`Tool`: what the pointer does in the stage "edit", and the keys."""
 
+from dataclasses import dataclass
 from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.drawing import INK
+from hydrostat.robot import Point, Robot
+from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
+
+
+@dataclass(frozen=True, kw_only=True)
+class Findings:
+    """Counts that are known of a robot without simulating it."""
+
+    nodes: int  # of the mesh
+    elements: int  # of it
+    kind: str  # what the elements are
+    mass: float  # of the body [kg]
+    cables: int  # how many there are
+    cable_length: float  # of all cables together [m]
+
+
+def look_over(robot: Robot) -> Findings:
+    """Count what a robot has."""
+    mesh = robot.body.mesh
+    return Findings(
+        nodes=len(mesh.nodes),
+        elements=len(mesh.elements),
+        kind="triangles" if mesh.dim == 2 else "tetrahedra",
+        mass=float(mesh.volumes.sum()) * (robot.body.thickness or 1.0) * robot.body.material.density,
+        cables=len(robot.cables),
+        cable_length=sum(cable.length for cable in robot.cables),
+    )
+
+
+@dataclass(frozen=True)
+class Ruler:
+    """A ruler that is laid on one place, then on another."""
+
+    points: tuple[Point, ...]  # one or two places [m]
+
+    def to(self, at: Point) -> "Ruler":
+        """The same laid on one more place; one that was full begins anew there."""
+        return Ruler((*self.points, at) if len(self.points) < 2 else (at,))
+
+    @property
+    def words(self) -> str:
+        """The straight distance and its parts, such as "50.0 mm (x 30.0, y 40.0)"; "" for one place."""
+        if len(self.points) < 2:
+            return ""
+        ways = 1e3 * np.abs(np.subtract(self.points[1], self.points[0]))
+        parts = ", ".join(f"{axis} {way:.1f}" for axis, way in zip("xyz", ways, strict=False))
+        return f"{np.linalg.norm(ways):.1f} mm ({parts})"
+
+    def things(self) -> list[Thing]:
+        """The line, and its ends."""
+        label = self.words.partition(" (")[0]
+        dots: list[Thing] = [
+            Dot(at=point, look=Look.VIA, colour=INK, label=label if number else "", chosen=bool(number), stuck=False)
+            for number, point in enumerate(self.points)
+        ]
+        if len(self.points) < 2:
+            return dots
+        return [Strand(points=self.points, stroke=Stroke.PATH, colour=INK, loose=-1), *dots]
 
 
 class Tool(StrEnum):

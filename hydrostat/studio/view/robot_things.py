@@ -2,16 +2,39 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
 
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing import DARK, INK, MUTED, winch_colours
 from hydrostat.fabrication import winch_marks_of
-from hydrostat.robot import Cable, Mount, Point, Robot, obstacle_lines
+from hydrostat.geometry import Mesh
+from hydrostat.robot import Cable, Mount, Pin, Point, Robot, obstacle_lines
 from hydrostat.simulation import obstacles_in_pose
-from hydrostat.studio.view.pinned import pinned_points
 from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, Stroke, Thing
+
+PARTS = 4  # a triangle is dotted with so many points along each side
+
+
+def pinned_points(robot: Robot) -> Points:
+    """Points on all that pins hold [m]: on the skin of a body in space; on a flat one, in the boxes of pins."""
+    flat = robot.body.mesh.dim == 2
+    return _points(robot.body.mesh, tuple(pin for pin in robot.pins if not flat or pin.box is not None))
+
+
+@lru_cache(maxsize=8)
+def _points(mesh: Mesh, pins: tuple[Pin, ...]) -> Points:
+    held = np.zeros(len(mesh.nodes), dtype=bool)
+    for pin in pins:
+        held |= pin.holds(mesh)
+    faces = mesh.elements if mesh.dim == 2 else mesh.boundary
+    corners = mesh.nodes[faces[held[faces].all(axis=1)]]
+    steps = [(i, j, PARTS - i - j) for i, j in product(range(PARTS + 1), repeat=2) if i + j <= PARTS]
+    dots = np.einsum("sc,fcd->fsd", np.array(steps) / PARTS, corners).reshape(-1, mesh.dim)
+    return np.unique(np.concatenate([dots, mesh.nodes[held]]).round(7), axis=0)
+
 
 MARKER = "#2b2833"
 PIN = "#5f5a68"

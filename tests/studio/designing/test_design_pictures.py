@@ -12,9 +12,8 @@ from hydrostat.fabrication import demand_of
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio.designing.charts import BOTTOM, FRONT_HEIGHT, LEFT, Chart, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate
-from hydrostat.studio.designing.ease import DURATION, Ease
 from hydrostat.studio.designing.run import DesignRun, ProgressPoint
-from hydrostat.studio.designing.sketch import EDGE, MARGIN, BodySketch
+from hydrostat.studio.designing.sketch import DURATION, EDGE, MARGIN, BodySketch, Ease
 
 
 def parsed(svg: str) -> ElementTree.Element:

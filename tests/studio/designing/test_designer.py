@@ -18,8 +18,8 @@ from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
-from hydrostat.studio.designing.ease import DURATION
 from hydrostat.studio.designing.run import error_at_rest
+from hydrostat.studio.designing.sketch import DURATION
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.session import Session

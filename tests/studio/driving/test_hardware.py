@@ -12,7 +12,7 @@ from hydrostat.control import Bus, LinkState, open_bus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import gallery_folder
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.driving.kit_speed import kit_speed
+from hydrostat.studio.driving.machine import kit_speed
 from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName

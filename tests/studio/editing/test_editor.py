@@ -14,7 +14,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.change import remesh
 from hydrostat.studio.editing.editor import Editor, Tool
-from hydrostat.studio.editing.findings import look_over
+from hydrostat.studio.editing.tools import look_over
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.judge import QUIET
 from hydrostat.studio.stage import Hit

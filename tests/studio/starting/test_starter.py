@@ -13,8 +13,7 @@ from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.starting.draft import new_draft
-from hydrostat.studio.starting.draw_gallery import PICTURES, draw_picture
-from hydrostat.studio.starting.shelf import gallery_cards, robots_in, suggestions
+from hydrostat.studio.starting.shelf import PICTURES, draw_picture, gallery_cards, robots_in, suggestions
 from hydrostat.studio.starting.sketch import make_sketch
 from hydrostat.studio.starting.starter import Starter
 
@@ -58,7 +57,7 @@ def test_each_gallery_robot_has_a_small_picture_and_words() -> None:
     cards = gallery_cards()
     assert sorted(card.name for card in cards) == list_gallery()
     for card in cards:
-        assert card.picture is not None, f"run python -m hydrostat.studio.starting.draw_gallery for {card.name}"
+        assert card.picture is not None, f"run python -m hydrostat.studio.starting.shelf for {card.name}"
         assert 500 < card.picture.stat().st_size <= 15_000
         robot = load_robot(card.folder) if card.name == "starfish" else None
         if robot is not None:

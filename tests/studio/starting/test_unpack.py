@@ -14,8 +14,8 @@ from hydrostat.errors import InputError
 from hydrostat.project import Work
 from hydrostat.robot import gallery_folder, robot_text
 from hydrostat.studio.session import Session
-from hydrostat.studio.starting import unpack
-from hydrostat.studio.starting.unpack import unpack_robot
+from hydrostat.studio.starting import starter
+from hydrostat.studio.starting.starter import unpack_robot
 
 TOML = (gallery_folder("starfish") / "robot.toml").read_bytes()
 
@@ -58,7 +58,7 @@ LINK.external_attr = (stat.S_IFLNK | 0o777) << 16
         ({"a/b/c/d/robot.toml": TOML}, "outside"),
         ({"kit/sheet.html": b"x"}, "no robot.toml"),
         ({"a/robot.toml": TOML, "b/robot.toml": TOML}, "2 robots"),
-        ({f"{k}.txt": b"x" for k in range(unpack.MOST_FILES + 1)}, "201 files"),
+        ({f"{k}.txt": b"x" for k in range(starter.MOST_FILES + 1)}, "201 files"),
         ({"robot/robot.toml": b"\xff"}, "robot"),
         ({"robot/robot.toml": TOML, "robot/studio.json": b"{"}, "studio.json"),
     ],
@@ -71,8 +71,8 @@ def test_what_is_refused(files: dict[str, bytes], why: str, tmp_path: Path, monk
 
 
 def test_a_bomb_is_refused_before_it_is_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unpack, "_write", lambda *_: pytest.fail("it was unpacked"))
-    bomb = packed({"robot/robot.toml": TOML, "robot/outline.svg": bytes(unpack.MOST_BYTES)})
+    monkeypatch.setattr(starter, "_write", lambda *_: pytest.fail("it was unpacked"))
+    bomb = packed({"robot/robot.toml": TOML, "robot/outline.svg": bytes(starter.MOST_BYTES)})
     assert len(bomb) < 1_000_000
     with pytest.raises(InputError, match="200 MB unpacked, at most 200 MB are read"):
         unpack_robot("bomb.zip", bomb)

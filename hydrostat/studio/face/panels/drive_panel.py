@@ -9,8 +9,8 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import Knob, winch_badge
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
-from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
 from hydrostat.studio.face.panels.drive_strip import drive_strip, release_focus
+from hydrostat.studio.face.panels.edit_body import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.stage import StageName
 

@@ -1,18 +1,50 @@
 """`body_card`, `check_card`: what the body is made of, and what the check says of the robot."""
 
+from collections.abc import Callable
 from functools import partial
 
 from nicegui import ui
 
 from hydrostat.robot import DIRECTIONS, MATERIALS, Source, direction_of
+from hydrostat.simulation import describe_contacts
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.editing.findings import Findings
+from hydrostat.studio.editing.tools import Findings
 from hydrostat.studio.face.page import WindowPage
-from hydrostat.studio.face.panels.contact_switch import contact_switch
 from hydrostat.studio.face.panels.edit_part import EditNumber
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
+from hydrostat.studio.view.things import RobotShape
 from hydrostat.units import plural
+
+
+def contact_switch(page: WindowPage, mark: str) -> None:
+    """Build the switch, found under a mark; obstacles are written into robot.toml."""
+    editor, document = page.session.editor, page.session.document
+    switch = ui.switch("Self-contact").mark(mark)
+    switch.tooltip("The body cannot pass through itself. Solving takes longer. Add obstacles in robot.toml.")
+
+    def send() -> None:
+        if switch.value != (document.robot.contact is not None):
+            page.act(editor.set_contact, switch.value)
+
+    def show() -> None:
+        switch.set_value(document.robot.contact is not None)
+
+    switch.on_value_change(send)
+    page.on(Topic.ROBOT, show)
+
+
+def touch_label(page: WindowPage, shape: Callable[[], RobotShape], mark: str) -> None:
+    """Build the line that says what the body touches, and how hard; found under a mark."""
+    label = ui.label().classes("studio-hint").mark(mark)
+
+    def show() -> None:
+        words = describe_contacts(shape().touches)
+        label.set_text(f"{words[:1].upper()}{words[1:]}")
+        label.set_visibility(bool(words))
+
+    page.on((Topic.ROBOT, Topic.SHAPE), show)
+
 
 OWN = "custom"  # what a material is called that is not of the table
 
