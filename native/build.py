@@ -1,6 +1,8 @@
 """Build the compiled core with the wheel, or beside the sources of an editable install."""
 
+import os
 import runpy
+import shlex
 import shutil
 import subprocess
 import sys
@@ -25,7 +27,8 @@ class CompiledCore(BuildHookInterface):
             old.unlink()
         with tempfile.TemporaryDirectory() as folder:
             try:
-                run("cmake", "-S", self.root, "-B", folder, *ninja(), f"-DPython_EXECUTABLE={sys.executable}")
+                more = shlex.split(os.environ.get("CMAKE_ARGS", ""))  # of a cross-build: arm_wheel.py
+                run("cmake", "-S", self.root, "-B", folder, *ninja(), f"-DPython_EXECUTABLE={sys.executable}", *more)
                 run("cmake", "--build", folder, "--config", "Release", "--parallel")
                 run("cmake", "--install", folder, "--config", "Release", "--prefix", self.root)
             except (OSError, subprocess.CalledProcessError) as error:
