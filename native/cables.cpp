@@ -4,23 +4,13 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "bounds.hpp"
 #include "eliminate.hpp"
 #include "spring.hpp"
 
 namespace {
 
 using Int = int64_t;
-
-// The sign bit is set where a number is negative or not below `count`: such bits are gathered without branches.
-uint64_t outside(Int number, Int count) {
-    return (uint64_t)number | ((uint64_t)count - 1 - (uint64_t)number);
-}
-
-void demand_below(const Int* numbers, Int size, Int count, const char* what) {
-    uint64_t wrong = 0;
-    for (Int i = 0; i < size; i++) wrong |= outside(numbers[i], count);
-    demand(wrong >> 63 == 0, what);
-}
 
 // Each block of dim by dim numbers lies within the matrix: one for each pair of corners, its columns a stride apart.
 void demand_blocks(const Counts<2>& stencils, const Counts<3>& slots, const Counts<1>& strides, Int dim, Int size) {

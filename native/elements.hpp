@@ -226,9 +226,32 @@ template <int D> struct Negative {
     }
 };
 
-template <int D>
-void hessian(const Elements& all, const double* displacements, double share, const int64_t* slots,
-             const int64_t* strides, double* data) {
+// Whether the blocks of a group lie within the matrix: first by the longest column, then, only where that leaves doubt,
+// each by its own. The sign bit is set where a number is negative or above the last.
+template <int D> INLINE bool is_inside(const Group<D>& group, const int64_t* slot, const Blocks& to) {
+    constexpr int C = D + 1;
+    const int many = group.count * C * C;
+    const int64_t last = to.size - (D - 1) * to.widest - D;
+    Places unsure{};
+    int at = 0;
+    for (; at + LANES <= many; at += LANES) {
+        Places some;
+        __builtin_memcpy(&some, slot + at, sizeof(some));
+        unsure |= some | ((uint64_t)last - some);
+    }
+    uint64_t left = 0;
+    for (; at < many; at++) left |= (uint64_t)slot[at] | ((uint64_t)last - (uint64_t)slot[at]);
+    if (!any((Bits)unsure < 0) && left >> 63 == 0) return true;
+    for (int lane = 0; lane < group.count; lane++)
+        for (int b = 0; b < C; b++) {
+            const int64_t end = to.size - (D - 1) * to.strides[group.nodes[b * PACK + lane]] - D;
+            for (int a = 0; a < C; a++)
+                if (slot[(lane * C + a) * C + b] < 0 || slot[(lane * C + a) * C + b] > end) return false;
+        }
+    return true;
+}
+
+template <int D> bool hessian(const Elements& all, const double* displacements, double share, const Blocks& to) {
     constexpr int C = D + 1, PAIRS = C * (C + 1) / 2;
     for (int64_t element = 0; element < all.terms; element += LANES) {
         Group<D> group(all, element);
@@ -270,23 +293,25 @@ void hessian(const Elements& all, const double* displacements, double share, con
                     }
             }
         }
+        if (!is_inside<D>(group, to.slots + element * C * C, to)) return false;
         for (int lane = 0; lane < group.count; lane++) {
-            const int64_t* slot = slots + (element + lane) * C * C;
+            const int64_t* slot = to.slots + (element + lane) * C * C;
             for (int a = 0, pair = 0; a < C; a++) {
-                int64_t stride = strides[group.nodes[a * PACK + lane]];
+                int64_t stride = to.strides[group.nodes[a * PACK + lane]];
                 for (int b = 0; b <= a; b++, pair++) {
-                    double* here = data + slot[a * C + b];
-                    int64_t other = strides[group.nodes[b * PACK + lane]];
+                    double* here = to.data + slot[a * C + b];
+                    int64_t other = to.strides[group.nodes[b * PACK + lane]];
                     for (int j = 0; j < D; j++)
                         for (int i = 0; i < D; i++) here[j * other + i] += blocks[pair][i][j][lane];
                     if (a == b) continue;
-                    double* across = data + slot[b * C + a];
+                    double* across = to.data + slot[b * C + a];
                     for (int i = 0; i < D; i++)
                         for (int j = 0; j < D; j++) across[i * stride + j] += blocks[pair][i][j][lane];
                 }
             }
         }
     }
+    return true;
 }
 
 // sin(t) / t - 1 and (1 - cos t) / t^2 from t^2, by their series where t is below 1, else by the library.

@@ -15,10 +15,8 @@ double any_value(const Elements& all, const double* displacements) {
 void any_gradient(const Elements& all, const double* displacements, double* total) {
     all.dim == 2 ? gradient<2>(all, displacements, total) : gradient<3>(all, displacements, total);
 }
-void any_hessian(const Elements& all, const double* displacements, double share, const int64_t* slots,
-                 const int64_t* strides, double* data) {
-    all.dim == 2 ? hessian<2>(all, displacements, share, slots, strides, data)
-                 : hessian<3>(all, displacements, share, slots, strides, data);
+bool any_hessian(const Elements& all, const double* displacements, double share, const Blocks& blocks) {
+    return all.dim == 2 ? hessian<2>(all, displacements, share, blocks) : hessian<3>(all, displacements, share, blocks);
 }
 void any_turn(const Elements& all, const double* nodes, const double* step, double* right) {
     all.dim == 2 ? turn<2>(all, nodes, step, right) : turn<3>(all, nodes, step, right);

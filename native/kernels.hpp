@@ -13,6 +13,15 @@ struct Elements {
     double mu, lame;
 };
 
+// Where the blocks of elements go in a matrix: the first number of each block, by element and its two corners; the
+// distance between two columns of each node, of all nodes the `widest`; the numbers.
+struct Blocks {
+    const int64_t* slots;
+    const int64_t* strides;
+    int64_t widest, size;
+    double* data;
+};
+
 // Where the fronts of a factorisation lie; the columns of `table` are those of `Fronts` in fronts.py.
 struct Fronts {
     int64_t count, dofs;
@@ -56,8 +65,7 @@ struct Kernels {
     int lanes;  // doubles in a vector
     double (*value)(const Elements&, const double* displacements);
     void (*gradient)(const Elements&, const double* displacements, double* total);
-    void (*hessian)(const Elements&, const double* displacements, double share, const int64_t* slots,
-                    const int64_t* strides, double* data);
+    bool (*hessian)(const Elements&, const double* displacements, double share, const Blocks&);  // false: a block lies outside
     void (*turn)(const Elements&, const double* nodes, const double* step, double* right);
     int64_t (*factorise)(const Fronts&, const double* data, double* lower, double* signs, double* first,
                          double* second, double* spare, double tiny);

@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "kernels.hpp"
+#include "bounds.hpp"
+#include "checks.hpp"
 
 namespace {
 
@@ -50,7 +51,7 @@ Kernels kernels = kernels_base;  // those that serve; chosen when the module is 
 struct Packed {
     Elements all;
 
-    Packed(const Array<const int32_t, 3>& stencils, const Array<const double, 4>& gradients, const Reals<2>& volumes,
+    Packed(const Reals<2>& field, const Array<const int32_t, 3>& stencils, const Array<const double, 4>& gradients, const Reals<2>& volumes,
            int64_t terms, double mu, double lame) {
         int64_t groups = (int64_t)stencils.shape(0), corners = (int64_t)stencils.shape(1);
         demand(stencils.shape(2) == 8 && gradients.shape(3) == 8 && volumes.shape(1) == 8, "groups must be of 8");
@@ -59,21 +60,22 @@ struct Packed {
         demand((int64_t)gradients.shape(0) == groups && (int64_t)volumes.shape(0) == groups &&
                    terms <= 8 * groups && terms > 8 * (groups - 1), "as many groups of each");
         all = {groups, terms, (int)corners - 1, stencils.data(), gradients.data(), volumes.data(), mu, lame};
+        demand((int)field.shape(1) == all.dim, "dim of the nodes");
+        demand_corners(all, (int64_t)field.shape(0));
     }
 };
 
 double value(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
              Reals<2> volumes, int64_t terms, double mu, double lame) {
-    Packed packed(stencils, gradients, volumes, terms, mu, lame);
-    demand((int)displacements.shape(1) == packed.all.dim, "dim of the displacements");
+    Packed packed(displacements, stencils, gradients, volumes, terms, mu, lame);
     Free free(9.0 * terms);
     return kernels.value(packed.all, displacements.data());
 }
 
 void gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
               Reals<2> volumes, int64_t terms, double mu, double lame, Array<double, 2> total) {
-    Packed packed(stencils, gradients, volumes, terms, mu, lame);
-    demand((int)displacements.shape(1) == packed.all.dim && total.shape(0) == displacements.shape(0) &&
+    Packed packed(displacements, stencils, gradients, volumes, terms, mu, lame);
+    demand(total.shape(0) == displacements.shape(0) &&
                total.shape(1) == displacements.shape(1), "shape of the total");
     Free free(15.0 * terms);
     kernels.gradient(packed.all, displacements.data(), total.data());
@@ -82,17 +84,23 @@ void gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<co
 void hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
              Reals<2> volumes, int64_t terms, double mu, double lame, double share, Array<const int64_t, 3> slots,
              Array<const int64_t, 1> strides, Array<double, 1> data) {
-    Packed packed(stencils, gradients, volumes, terms, mu, lame);
-    demand((int)displacements.shape(1) == packed.all.dim && (int64_t)slots.shape(0) == terms &&
+    Packed packed(displacements, stencils, gradients, volumes, terms, mu, lame);
+    const size_t corners = stencils.shape(1);
+    demand((int64_t)slots.shape(0) == terms && slots.shape(1) == corners && slots.shape(2) == corners &&
                strides.shape(0) == displacements.shape(0), "shapes of displacements, slots and strides");
-    Free free(120.0 * terms);
-    kernels.hessian(packed.all, displacements.data(), share, slots.data(), strides.data(), data.data());
+    const int64_t size = (int64_t)data.shape(0), widest = demand_strides(strides.data(), (int64_t)strides.shape(0), size);
+    bool inside;
+    {
+        Free free(120.0 * terms);
+        inside = kernels.hessian(packed.all, displacements.data(), share, {slots.data(), strides.data(), widest, size, data.data()});
+    }
+    demand(inside, "a block lies outside the matrix");
 }
 
 void turn(Reals<2> nodes, Reals<2> step, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
           Reals<2> volumes, int64_t terms, Array<double, 2> right) {
-    Packed packed(stencils, gradients, volumes, terms, 0.0, 0.0);
-    demand((int)nodes.shape(1) == packed.all.dim && step.shape(0) == nodes.shape(0) &&
+    Packed packed(nodes, stencils, gradients, volumes, terms, 0.0, 0.0);
+    demand(step.shape(0) == nodes.shape(0) &&
                step.shape(1) == nodes.shape(1) && right.shape(0) == nodes.shape(0) &&
                right.shape(1) == nodes.shape(1), "shapes of nodes, step and right");
     Free free(25.0 * terms);
@@ -103,18 +111,9 @@ void turn(Reals<2> nodes, Reals<2> step, Array<const int32_t, 3> stencils, Array
 Fronts plan(const Array<const int64_t, 2>& table, const Array<const int64_t, 1>& rows,
             const Array<const int64_t, 2>& runs, const Array<const int32_t, 2>& entries,
             const Array<const int64_t, 1>& diagonal) {
-    demand(table.shape(1) == 11 && runs.shape(1) == 3 && entries.shape(1) == 2, "columns of the plan");
+    demand(table.shape(0) > 0 && table.shape(1) == 11 && runs.shape(1) == 3 && entries.shape(1) == 2, "columns of the plan");
     return {(int64_t)table.shape(0) - 1, (int64_t)diagonal.shape(0), table.data(), rows.data(),
             runs.data(), entries.data(), diagonal.data()};
-}
-
-void demand_room(const Fronts& fronts, const Array<double, 1>& lower, const Array<double, 1>& signs, const Reals<1>& data) {
-    int64_t largest = -1;
-    for (int64_t dof = 0; dof < fronts.dofs; dof++)
-        if (fronts.diagonal[dof] > largest) largest = fronts.diagonal[dof];
-    demand((int64_t)signs.shape(0) == fronts.dofs, "as many signs as degrees of freedom");
-    demand((int64_t)lower.shape(0) >= fronts.table[fronts.count * 11 + 3] + 8, "room for the factors");
-    demand((int64_t)data.shape(0) > largest, "as many numbers as the plan was made for");
 }
 
 int64_t factorise(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<const int64_t, 2> runs,
@@ -122,7 +121,9 @@ int64_t factorise(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, A
                   Array<double, 1> lower, Array<double, 1> signs, Array<double, 1> first, Array<double, 1> second,
                   Array<double, 1> spare, double tiny) {
     Fronts fronts = plan(table, rows, runs, entries, diagonal);
-    demand_room(fronts, lower, signs, data);
+    demand((int64_t)signs.shape(0) == fronts.dofs, "as many signs as degrees of freedom");
+    demand_fronts(fronts, {(int64_t)rows.shape(0), (int64_t)runs.shape(0), (int64_t)entries.shape(0), (int64_t)data.shape(0),
+                           (int64_t)lower.shape(0), (int64_t)first.shape(0), (int64_t)second.shape(0), (int64_t)spare.shape(0)});
     Free free(0.3 * (double)lower.shape(0));
     return kernels.factorise(fronts, data.data(), lower.data(), signs.data(), first.data(), second.data(),
                              spare.data(), tiny);
@@ -231,8 +232,9 @@ int64_t factorise_together(Array<const int64_t, 2> table, Array<const int64_t, 1
                            Array<const int32_t, 2> entries, Array<const int64_t, 1> diagonal, Reals<1> data,
                            Array<double, 1> lower, Array<double, 1> signs, int64_t widest, double tiny, int threads) {
     Fronts fronts = plan(table, rows, runs, entries, diagonal);
-    demand(threads > 0, "threads");
-    demand_room(fronts, lower, signs, data);
+    demand(threads > 0 && (int64_t)signs.shape(0) == fronts.dofs, "threads, and as many signs as degrees of freedom");
+    demand_fronts(fronts, {(int64_t)rows.shape(0), (int64_t)runs.shape(0), (int64_t)entries.shape(0), (int64_t)data.shape(0),
+                           (int64_t)lower.shape(0), -1, -1, widest});
     nb::gil_scoped_release free;
     double largest = kernels.largest(fronts, data.data());
     if (!(largest < __builtin_inf())) return -1;
@@ -279,9 +281,11 @@ void solve(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<co
            Reals<1> lower, Reals<1> signs, Reals<2> right, Array<double, 2> found, int way, int64_t height) {
     int64_t dofs = (int64_t)place.shape(0), sides = (int64_t)right.shape(1), count = (int64_t)table.shape(0) - 1;
     demand((int64_t)right.shape(0) == dofs && (int64_t)found.shape(0) == dofs && (int64_t)found.shape(1) == sides &&
-               (int64_t)signs.shape(0) == dofs && table.shape(1) == 11, "shapes of the right-hand sides");
+               (int64_t)signs.shape(0) == dofs && count >= 0 && table.shape(1) == 11,
+           "shapes of the right-hand sides");
     Fronts fronts{count, dofs, table.data(), rows.data(), nullptr, nullptr, nullptr};
-    const int64_t* at = place.data();
+    demand(height >= demand_panels(fronts, (int64_t)rows.shape(0), (int64_t)lower.shape(0)), "room for the highest front");
+    const int64_t* at = demand_below(place, dofs, "a degree of freedom has no such place");
     const double* given = right.data();
     const double* sign = signs.data();
     double* out = found.data();
@@ -321,12 +325,13 @@ NB_MODULE(_native, module) {
     module.attr("instructions") = kernels.name;
     module.attr("interface") = 6;  // kernel.py asks for it: raise both where the arguments of a function change
     module.def("value", &value);
-    module.def("gradient", &gradient);
-    module.def("hessian", &hessian);
-    module.def("turn", &turn);
-    module.def("factorise", &factorise);
-    module.def("factorise_together", &factorise_together);
-    module.def("solve", &solve);
+    module.def("gradient", &gradient, given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("hessian", &hessian, given(), given(), given(), given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("turn", &turn, given(), given(), given(), given(), given(), given(), filled());
+    module.def("factorise", &factorise, given(), given(), given(), given(), given(), given(), filled(), filled(), filled(), filled(), filled(), given());
+    module.def("factorise_together", &factorise_together, given(), given(), given(), given(), given(), given(), filled(), filled(),
+               given(), given(), given());
+    module.def("solve", &solve, given(), given(), given(), given(), given(), given(), filled(), given(), given());
     add_ordering(module);
     add_symbolic(module);
     add_cables(module);

@@ -2,7 +2,7 @@
 #include <limits>
 #include <vector>
 
-#include "arrays.hpp"
+#include "bounds.hpp"
 
 namespace {
 
@@ -12,6 +12,12 @@ using Int = int64_t;
 
 struct Graph {
     const Int *starts, *neighbours;
+
+    Graph(const Counts<1>& begins, const Counts<1>& others, Int nodes) {
+        demand((Int)begins.shape(0) == nodes + 1, "sizes of the graph");
+        starts = demand_starts(begins, (Int)others.shape(0), "a node has no such neighbors");
+        neighbours = demand_below(others, nodes, "a neighbor is no node");
+    }
 };
 
 // Fill `starts` and `neighbours`; `seen` is -1 for every node.
@@ -20,7 +26,8 @@ void block_graph(Counts<1> indptr, Counts<1> indices, Int dim, Array<Int, 1> sta
     Int nodes = (Int)seen.shape(0), filled = 0;
     demand(dim > 0 && (Int)indptr.shape(0) > nodes * dim && (Int)starts.shape(0) == nodes + 1 &&
                neighbours.shape(0) >= indices.shape(0), "sizes of the graph");
-    const Int *begin = indptr.data(), *entries = indices.data();
+    const Int* begin = demand_starts(indptr, (Int)indices.shape(0), "a column has no such entries");
+    const Int* entries = demand_below(indices, nodes * dim, "an entry is in no row");
     Int *mark = seen.data(), *out = neighbours.data(), *ends = starts.data();
     for (Int node = 0; node < nodes; node++) {
         mark[node] = node;
@@ -37,10 +44,11 @@ void block_graph(Counts<1> indptr, Counts<1> indices, Int dim, Array<Int, 1> sta
 
 // Edges between each node and `root`; left as they are, the number of nodes, where no path leads.
 void distances(Counts<1> starts, Counts<1> neighbours, Int root, Array<double, 1> found, Array<Int, 1> queue) {
-    demand(starts.shape(0) == found.shape(0) + 1 && queue.shape(0) == found.shape(0) && root >= 0 &&
-               root < (Int)found.shape(0), "sizes of the graph");
-    Graph graph{starts.data(), neighbours.data()};
+    Int nodes = (Int)found.shape(0);
+    demand((Int)queue.shape(0) == nodes && root >= 0 && root < nodes, "sizes of the graph");
+    const Graph graph(starts, neighbours, nodes);
     double* far = found.data();
+    demand(far[root] >= (double)nodes, "a distance is the number of nodes before");
     Int *waiting = queue.data(), head = 0, tail = 1;
     double unseen = far[root];
     far[root] = 0.0;
@@ -262,17 +270,32 @@ struct Dissection {
     }
 };
 
+// Each node once.
+void demand_permutation(const Int* line, Int nodes) {
+    std::vector<bool> seen(nodes, false);
+    demand_below(line, nodes, nodes, "a line has no such node");
+    for (Int rank = 0; rank < nodes; rank++) {
+        demand(!seen[line[rank]], "a line has a node twice");
+        seen[line[rank]] = true;
+    }
+}
+
 // Fill `order`. `lines` are the nodes sorted by each coordinate, at first all of them, in the end part by part.
 //
 // `work` is -1, `sides` 0 everywhere; `todo` and `room` hold anything.
 void dissect(Counts<1> starts, Counts<1> neighbours, Reals<2> points, Array<Int, 2> lines, Int leaf, Reals<1> shares,
              Array<Int, 1> order, Array<Int, 2> work, Array<Int, 2> sides, Array<Int, 2> todo, Array<Int, 2> room) {
     Int nodes = (Int)order.shape(0);
-    demand((Int)starts.shape(0) == nodes + 1 && points.shape(0) == lines.shape(0) && (Int)points.shape(1) == nodes &&
+    demand(points.shape(0) == lines.shape(0) && (Int)points.shape(1) == nodes &&
                (Int)lines.shape(1) == nodes && (Int)work.size() >= 2 * nodes && (Int)sides.size() == 3 * nodes &&
                (Int)todo.size() == 2 * nodes + 2 && (Int)room.size() == 3 * nodes, "sizes of the graph");
     Int *spare = work.data(), *side = sides.data(), *free = room.data();
-    Dissection all{{starts.data(), neighbours.data()}, nodes, (Int)lines.shape(0), points.data(), lines.data(),
+    for (Int axis = 0; axis < (Int)lines.shape(0); axis++) demand_permutation(lines.data() + axis * nodes, nodes);
+    for (size_t which = 0; which < shares.size(); which++)
+        demand(shares.data()[which] >= 0.0 && shares.data()[which] <= 1.0, "a share is from 0 to 1");
+    demand_range(work, -1, 0, "work is -1 before");
+    demand_below(sides, 1, "sides are 0 before");
+    Dissection all{Graph(starts, neighbours, nodes), nodes, (Int)lines.shape(0), points.data(), lines.data(),
                    order.data(), spare, spare + nodes, side, side + nodes, side + 2 * nodes,
                    free, free + nodes, free + 2 * nodes};
     Free others(1e3 * nodes);

@@ -18,6 +18,7 @@ constexpr int LANES = 2;
 
 typedef double Lanes __attribute__((vector_size(8 * LANES)));
 typedef int64_t Bits __attribute__((vector_size(8 * LANES)));
+typedef uint64_t Places __attribute__((vector_size(8 * LANES)));
 
 // Vectors of 4 doubles at most, for rows of 4 right-hand sides.
 constexpr int FEW = LANES < 4 ? LANES : 4;

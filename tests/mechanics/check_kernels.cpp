@@ -1,6 +1,7 @@
 // Prints what the kernels of native/ make of a small random body and of two fronts, for comparison between processors.
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 #include "kernels.hpp"
@@ -45,7 +46,8 @@ static void elements(int dim) {
             for (int64_t b = 0; b < corners; b++)
                 slots[(term * corners + a) * corners + b] = term * size * size + b * dim * size + a * dim;
     kernels_base.gradient(all, field.data(), forces.data());
-    kernels_base.hessian(all, field.data(), 0.7, slots.data(), strides.data(), data.data());
+    if (!kernels_base.hessian(all, field.data(), 0.7, {slots.data(), strides.data(), size, (int64_t)data.size(), data.data()}))
+        std::abort();
     kernels_base.turn(all, place.data(), step.data(), bent.data());
     print("value", {kernels_base.value(all, field.data())});
     print("gradient", forces);
