@@ -45,6 +45,7 @@ void add_improve(nb::module_& module);
 void add_contact(nb::module_& module);
 void add_pictures(nb::module_& module);
 void add_release(nb::module_& module);
+void add_limits(nb::module_& module);
 void add_paths(nb::module_& module);
 void add_perceptrons(nb::module_& module);
 void add_chains(nb::module_& module);

@@ -339,6 +339,7 @@ NB_MODULE(_native, module) {
     add_contact(module);
     add_pictures(module);
     add_release(module);
+    add_limits(module);
     add_paths(module);
     add_perceptrons(module);
     add_chains(module);

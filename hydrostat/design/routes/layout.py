@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Points, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.robot import LARGEST_STEP, Cable, Mount, Robot, Winch
 
@@ -33,6 +34,28 @@ class CableRoute:
     make: Cable | None = None  # a cable whose stiffness, smoothing and friction it has; None: the usual ones
     kept: Cable | None = None  # a cable that stays just as it is
     twin: int | None = None  # number of the line that it mirrors; None: of no other
+
+
+class Chains(NamedTuple):
+    """Lines as lists of places, in the order in which the compiled core takes them."""
+
+    begins: Int[np.ndarray, " _"]  # of each line in `members`, and their end
+    members: Int[np.ndarray, " members"]  # places that the lines run through, one line after the other
+    pulled: Int[np.ndarray, " lines"]  # winch of each line
+    kept: Bool[np.ndarray, " lines"]  # whether a line stays as it is
+    world: Bool[np.ndarray, " winches"]  # whether a winch stands in the world
+    fixed: Bool[np.ndarray, " winches"]  # whether a winch stays where it is
+    beside: Float[np.ndarray, " winches"]  # two spool radii [m]
+
+
+class FreeRuns(NamedTuple):
+    """Straight runs of lines from place to place."""
+
+    first: Int[np.ndarray, " runs"]
+    last: Int[np.ndarray, " runs"]
+    number: Int[np.ndarray, " runs"]  # of the run in its line
+    lead: Int[np.ndarray, " runs"]  # so many of the first runs of its line are sheathed
+    entry: Float[np.ndarray, " runs"]  # so far from its beginning it may be as near the edge as it likes [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +116,47 @@ class Layout:
         """Count of the numbers."""
         return self.starts[-1] + len(self.routes)
 
+    @property
+    def places(self) -> Points:
+        """Places of the winches, then of the points of each line after its first [m]."""
+        return self.numbers[: self.starts[-2]].reshape(-1, self.dim)
+
+    @cached_property
+    def chains(self) -> Chains:
+        """Which of the `places` the lines run through, and what is known of lines and winches."""
+        counts = [len(route.points) - 1 for route in self.routes]
+        begins = np.concatenate([[0], np.cumsum(np.array(counts, dtype=np.int64) + 1)])
+        members = [
+            np.append(route.winch, start // self.dim + np.arange(count))
+            for route, start, count in zip(self.routes, self.starts, counts, strict=False)
+        ]
+        winches = [site.winch for site in self.sites]
+        return Chains(
+            begins.astype(np.int64),
+            np.concatenate([np.zeros(0, dtype=np.int64), *members]),
+            np.array([route.winch for route in self.routes], dtype=np.int64),
+            np.array([route.kept is not None for route in self.routes], dtype=bool),
+            np.array([winch.mount is Mount.WORLD for winch in winches], dtype=bool),
+            np.array([site.fixed for site in self.sites], dtype=bool),
+            np.array([2 * winch.spool_radius for winch in winches], dtype=float),
+        )
+
+    @cached_property
+    def free_runs(self) -> FreeRuns:
+        """The straight runs of the lines that may move."""
+        chain = self.chains
+        parts = [np.zeros((0, 5))]
+        for index, route in enumerate(self.routes):
+            if route.kept is None:
+                points = chain.members[chain.begins[index] : chain.begins[index + 1]]
+                number = np.arange(len(points) - 1)
+                site = self.sites[route.winch]
+                entry = np.inf if site.winch.mount is Mount.WORLD else self.constraints.clearance if site.fixed else 0.0
+                lead = np.full(len(number), route.lead)
+                parts.append(np.column_stack([points[:-1], points[1:], number, lead, np.where(number, 0.0, entry)]))
+        first, last, number, lead, entry = np.concatenate(parts).T
+        return FreeRuns(*(part.astype(np.int64) for part in (first, last, number, lead)), entry)
+
     def place_of(self, route: int, point: int) -> slice:
         """The numbers of a point of a line."""
         begin = self.dim * self.routes[route].winch if point == 0 else self.starts[route] + self.dim * (point - 1)
@@ -125,7 +189,9 @@ class Layout:
                     ratio=float(np.clip(numbers[ratios + index], 1 / LARGEST_STEP, LARGEST_STEP)),
                 )
             )
-        return replace(self, sites=sites, routes=tuple(routes))
+        moved = replace(self, sites=sites, routes=tuple(routes))
+        moved.__dict__.update({name: getattr(self, name) for name in _SHARED})
+        return moved
 
     @cached_property
     def ties(self) -> Float[np.ndarray, "numbers free"]:
@@ -177,3 +243,6 @@ def _follow(full: np.ndarray, drop: np.ndarray, rows: slice, twin: slice, flip: 
 def _point(coordinates: Vector | tuple[float, ...], digits: int | None) -> tuple[float, ...]:
     values = (float(value) for value in coordinates)
     return tuple(value if digits is None else round(value, digits) for value in values)
+
+
+_SHARED = ("starts", "chains", "free_runs", "ties")  # what does not depend on the numbers
