@@ -9,7 +9,7 @@ from typing import Any
 
 from hydrostat.errors import InputError
 
-INTERFACE = 6
+INTERFACE = 7
 """Version of the functions that are called here; `interface` in native/module.cpp is the same."""
 
 

@@ -39,6 +39,7 @@ inline auto given() { return nb::arg(); }
 inline auto filled() { return nb::arg().noconvert(); }
 
 void add_ordering(nb::module_& module);
+void add_sketches(nb::module_& module);
 void add_symbolic(nb::module_& module);
 void add_cables(nb::module_& module);
 void add_improve(nb::module_& module);

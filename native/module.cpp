@@ -323,7 +323,7 @@ NB_MODULE(_native, module) {
     for (const Kernels* found : levels()) names.append(found->name);
     module.attr("levels") = names;
     module.attr("instructions") = kernels.name;
-    module.attr("interface") = 6;  // kernel.py asks for it: raise both where the arguments of a function change
+    module.attr("interface") = 7;  // kernel.py asks for it: raise both where the arguments of a function change
     module.def("value", &value);
     module.def("gradient", &gradient, given(), given(), given(), given(), given(), given(), given(), filled());
     module.def("hessian", &hessian, given(), given(), given(), given(), given(), given(), given(), given(), given(), given(), filled());
@@ -333,6 +333,7 @@ NB_MODULE(_native, module) {
                given(), given(), given());
     module.def("solve", &solve, given(), given(), given(), given(), given(), given(), filled(), given(), given());
     add_ordering(module);
+    add_sketches(module);
     add_symbolic(module);
     add_cables(module);
     add_improve(module);

@@ -16,7 +16,7 @@ from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.route_graph import route_graph
-from hydrostat.design.routes.sketch import _Choice, _lines, sketches
+from hydrostat.design.routes.sketch import LineChoice, _lines, sketches
 from hydrostat.robot import Cable, PoseTarget, load_robot
 from hydrostat.simulation import Simulation
 
@@ -38,7 +38,7 @@ def test_what_a_sketch_promises_is_what_small_contractions_do(unchecked: None) -
         strip_robot(columns=12, rows=4), constraints, [PoseTarget(name="up", targets={"tip": (0.2, 0.03)})]
     )
     lines = list(_lines(proposals, bare))
-    choice = _Choice(proposals, bare, lines, 1, 1)
+    choice = LineChoice(proposals, bare, lines, 1, 1)
     index = min(range(len(lines)), key=lambda one: choice.cost([one]))
     simulation = Simulation(proposals.with_line(bare.layout, lines[index].place, lines[index].points).robot())
     weak, strong = (simulation.solve(np.array([pulled])) for pulled in (2e-4, 4e-4))

@@ -143,9 +143,11 @@ class RouteSearch:
             raise HydrostatError("the network to begin with has no equilibrium in reach of its poses; start without it")
         if begun.layout.routes:
             self._noted("as it was", begun)
-        grown = growth.grown(begun, winches=self.winches, cables=self.cables)
-        if not any(growth.enough(trial, self.winches) for trial in grown):
-            grown += [*(self._sketched(growth, begun) or self._by_force(growth, begun)), *self._hinted(growth)]
+        grown = self._sketched(growth, begun)
+        if not grown:
+            grown = growth.grown([begun], winches=self.winches, cables=self.cables)
+            if not any(growth.enough(trial, self.winches) for trial in grown):
+                grown += [*self._by_force(growth, begun), *self._hinted(growth)]
         grown.sort(key=lambda trial: trial.cost)
         whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
         self.found = [growth.truly(trial) for trial in whole[: _REFINED + 1]]
@@ -180,18 +182,21 @@ class RouteSearch:
         """Networks drawn along the limbs, the best of them with the further cables that help."""
         count = self.options.starts + 1
         drawn = sketches(self.proposals, bare, winches=self.winches, cables=self.cables, count=_DRAWN * count)
-        trials = [growth.short(trial) for layout in drawn if (trial := self.bench.reached(layout, None)) is not None]
-        found = []
-        helpful = [trial for trial in trials if trial.cost < (1 - _HELPS) * bare.cost]
-        for trial in sorted(helpful, key=lambda trial: trial.cost)[:count]:
-            self._noted("drawn along the limbs", trial)
-            found += growth.grown(trial, winches=self.winches, cables=self.cables)[:1]
-        return found
+        trials = [self.bench.reached(layout, None, iterations=_GLANCE) for layout in drawn]
+        rough = [growth.short(trial, directions=0) for trial in trials if trial is not None]
+        rough.sort(key=lambda trial: trial.cost)
+        helpful: list[Trial] = []
+        for trial in map(growth.short, rough[: _LIKELY * count]):
+            if trial.cost < (1 - _HELPS) * bare.cost:
+                helpful.append(trial)
+                self._noted("drawn along the limbs", trial)
+        helpful.sort(key=lambda trial: trial.cost)
+        return growth.grown(helpful[:count], winches=self.winches, cables=self.cables)
 
     def _by_force(self, growth: Growth, begun: Trial) -> list[Trial]:
         """Networks grown along stronger paths, where none can be drawn."""
         strong = Growth(replace(growth.proposals, effort=_STRONG), self._noted)
-        return strong.grown(begun, winches=self.winches, cables=self.cables)
+        return strong.grown([begun], winches=self.winches, cables=self.cables)
 
     def _hinted(self, growth: Growth) -> list[Trial]:
         """Networks that others found, moved to where they can be built, and refined."""
@@ -375,5 +380,7 @@ _WORSE = 0.05  # a simpler network is told of where those that are simpler still
 _HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
 _STRONG = 0.1  # what the effort of stronger paths counts
 _DRAWN = 6  # sketches that are solved for each that is grown
+_LIKELY = 2  # of them, that are refined with what differs as built
+_GLANCE = 5  # steps of inverse kinematics that tell how good a sketch is
 _LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
 _REFINED = 2  # networks that are refined to the end

@@ -1,6 +1,6 @@
 """`Growth`: a network grown cable by cable, each the best of those that promise most."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,25 +35,27 @@ class Growth:
         simulation = Simulation(layout.robot(), body=self.bench.body)
         return self.bench.trial(layout, simulation, [simulation.rest] * len(self.bench.targets))
 
-    def grown(self, begun: Trial, *, winches: int, cables: int) -> list[Trial]:
-        """Networks with one cable more, and more again, the best first (beam search).
+    def grown(self, begun: Sequence[Trial], *, winches: int, cables: int) -> list[Trial]:
+        """Networks with one cable more than those to begin with, and more again, the best first (beam search).
 
         Of all networks with a cable more than those that are kept the best few are refined, and the best of these kept.
         It ends with as many cables as there may be, or when enough is reached, or cables no longer help.
         """
         options = self.proposals.options
         width = options.starts
-        front, found = [begun], [begun] if begun.layout.routes else []
+        front, found = list(begun), [trial for trial in begun if trial.layout.routes]
         idle = 0
         while front and idle < _PATIENCE:
             first = not front[0].layout.routes
-            count, best = (max(options.trials, _SEEDS * width), _SEEDS * width) if first else (options.trials, width)
+            best = _SEEDS * width if first else _LIKELY * width
+            count = max(options.trials, best)
             more: list[Trial] = []
             for trial in front:
                 needed = cables - len(trial.layout.routes)
                 if needed > 0:
                     more += self._tried(trial, winches, needed, count=count, best=best)
-            front = self._unlike([self.short(one) for one in self._unlike(more, _SEEDS * width)], width)
+            rough = [self.short(one, directions=0) for one in self._unlike(more, len(front) * best)]
+            front = self._unlike([self.short(one) for one in self._unlike(rough, _LIKELY * width)], width)
             for trial in front:
                 self.noted(_words(trial), trial)
             least = min((trial.cost for trial in found), default=np.inf)
@@ -226,9 +228,10 @@ class Growth:
         turned = np.mean([turns(route.points).sum() for route in layout.routes])
         return 1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned)
 
-    def short(self, trial: Trial) -> Trial:
+    def short(self, trial: Trial, *, directions: int = 2) -> Trial:
         """The network after a few steps of refinement."""
-        return refine(self.bench, self.proposals.graph.region, trial, self._options(self.proposals.options.steps))
+        options = replace(self._options(self.proposals.options.steps), directions=directions)
+        return refine(self.bench, self.proposals.graph.region, trial, options)
 
     def _options(self, steps: int) -> RefineOptions:
         enough = self.proposals.options.enough * self.proposals.graph.size
@@ -269,6 +272,7 @@ def _words(trial: Trial) -> str:
 _FURTHER = 4  # times as many paths are looked at where none of the best can be built
 _PATIENCE = 2  # so many rounds of cables that do not help end the growth
 _HELPS = 0.02  # a cable that lowers the cost by less than this share does not help
+_LIKELY = 2  # cables that are refined for each that a network is grown from
 _SEEDS = 3  # first cables that are refined for each that a network is grown from
 _GLANCE = 5  # steps of inverse kinematics that tell which of several networks is the best
 _ROUND = 8  # steps of refinement before the poses are found from rest again

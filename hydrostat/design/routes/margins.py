@@ -44,7 +44,9 @@ class _MarginRows:
     def _depths(self) -> None:
         """Winches and cables deep enough in the body, winches in their zones, cables outside theirs."""
         layout, dim = self.layout, self.layout.dim
-        inner = np.array([i for i, site in enumerate(layout.sites) if site.winch.mount is Mount.BODY and not site.fixed])
+        inner = np.array(
+            [i for i, site in enumerate(layout.sites) if site.winch.mount is Mount.BODY and not site.fixed]
+        )
         spots = _spots(layout, 0.5 * self.constraints.clearance)
         winches = layout.places[inner] if len(inner) else np.zeros((0, dim))
         places = spots.places(layout.numbers, dim)

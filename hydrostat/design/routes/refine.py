@@ -24,6 +24,7 @@ class RefineOptions:
     straightness: float = 0.1
     progress: float = 3e-3  # it ends after steps that lower the cost by less than this share
     enough: float = 0.0  # error [m] at which it ends
+    directions: int = 2  # singular vectors of the tolerances that are followed; 0: the spread is left out of slopes
 
 
 def refine(bench: Bench, region: Region, trial: Trial, options: RefineOptions) -> Trial:
@@ -83,7 +84,10 @@ class _Refinement:
 
     def _step(self, trial: Trial, effort: float, bend: float) -> Trial | None:
         """The first damped step that lowers the merit; None if none does. The damping follows what steps keep."""
-        model = linear_model(self.bench, self.region, trial, effort=effort, bend=bend, reach=self.reach)
+        model = linear_model(
+            self.bench, self.region, trial, effort=effort, bend=bend, reach=self.reach,
+            directions=self.options.directions,
+        )  # fmt: skip
         before = self._merit(trial, effort, bend)
         for _ in range(_TRIES):
             step = self._damped(model)
@@ -134,7 +138,14 @@ class _Refinement:
 
 
 def linear_model(
-    bench: Bench, region: Region, trial: Trial, *, effort: float, reach: float, bend: float = 0.0
+    bench: Bench,
+    region: Region,
+    trial: Trial,
+    *,
+    effort: float,
+    reach: float,
+    bend: float = 0.0,
+    directions: int = 2,
 ) -> Model:
     """A trial to first order, with limits within `reach` [m]; effort weighs tensions [m/N], bend turns of 1 rad [m]."""
     layout, limit = trial.layout, bench.constraints.tension_limit
@@ -150,7 +161,7 @@ def linear_model(
         markers = len(own) - len(layout.routes)
         matrix += [-bench.weights[index][:, None] * own[:markers], effort * own[markers:]]
         right += [bench.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
-        for moved, changed in _scattered(bench, trial, index):
+        for moved, changed in _scattered(bench, trial, index, directions):
             scattered = np.zeros((markers, count))
             scattered[:, :free] = changed[:, winches:] @ layout.ties
             scattered[:, begin : begin + winches] = changed[:, :winches]
@@ -187,7 +198,7 @@ def linear_model(
     )  # fmt: skip
 
 
-def _scattered(bench: Bench, trial: Trial, index: int) -> Iterator[tuple[Vector, np.ndarray]]:
+def _scattered(bench: Bench, trial: Trial, index: int, most_directions: int) -> Iterator[tuple[Vector, np.ndarray]]:
     """Moves of the markers of a pose as built otherwise, and their slopes by contractions, then numbers of the layout.
 
     The variance is the sum of squares of the singular values of the tolerances' columns. Its slope is exact where each
@@ -197,10 +208,12 @@ def _scattered(bench: Bench, trial: Trial, index: int) -> Iterator[tuple[Vector,
     layout, pose, weight = trial.layout, trial.poses[index], bench.weights[index]
     places, cables, winches = layout.starts[-2], len(layout.routes), len(layout.sites)
     which = np.r_[0:places, places + cables : places + cables + winches]
+    if not most_directions:
+        return
     columns = weight[:, None] * trial.columns[index][:, which]
     _, values, right = np.linalg.svd(columns, full_matrices=False)
     most = _SCATTERED * trial.built
-    for direction in range(min(_DIRECTIONS, int((values > most).sum()))):
+    for direction in range(min(most_directions, int((values > most).sum()))):
         numbers = layout.numbers.copy()
         numbers[:places] += bench.uncertainty.sewing * right[direction, :places]
         scale = 1.0 + bench.uncertainty.spool * right[direction, places:]
@@ -307,7 +320,6 @@ _OVER = 30.0  # how much more the part of a tension beyond its limit weighs
 
 _PUSHES = 8
 
-_DIRECTIONS = 2  # so many singular vectors of the tolerances are followed
 _SCATTERED = 0.1  # those that add less than this share of the error are not
 
 _CLOSE = 2e-5  # what may be left of a limit [m]

@@ -1,0 +1,182 @@
+"""`LineChoice`: sets of lines that could be cables, judged on a linear body."""
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+from jaxtyping import Bool
+from scipy.sparse import csc_array, hstack
+from scipy.spatial import cKDTree
+
+from hydrostat.arrays import Vector
+from hydrostat.design.polyline import Route, resample
+from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.propose import Proposals
+from hydrostat.geometry import locate
+from hydrostat.kernel import native
+from hydrostat.robot import Cable
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A cable that a person might draw: from a winch along a limb to a marker, on one side of it."""
+
+    place: int  # graph point of its winch
+    points: Route  # [m]
+
+
+class LineChoice:
+    """Sets of lines, judged by what they would do at rest if the body were linear."""
+
+    def __init__(self, proposals: Proposals, bare: Trial, lines: Sequence[Line], winches: int, cables: int) -> None:
+        """Find what each line does: `bare` is the trial of a layout without winches and cables."""
+        self.proposals, self.lines, self.winches, self.cables = proposals, lines, winches, cables
+        bench, simulation = proposals.bench, bare.simulation
+        slopes = csc_array(hstack([csc_array(self._pull(line)[:, None]) for line in lines]))
+        self._gives = np.eye(len(lines)) / Cable.stiffness
+        for first in range(0, len(lines), _AT_ONCE):
+            some = slice(first, first + _AT_ONCE)
+            self._gives[:, some] += slopes.T @ simulation.response(bare.poses[0], slopes[:, some].toarray())
+        missed = [bench.residual(simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
+        moves = []
+        for index in range(len(missed)):
+            rows = len(bench.markers[index]) * bare.layout.dim
+            fields = bare.slopes[index].fields[:rows].reshape(rows, -1)
+            moves.append(-bench.weights[index][:, None] * (slopes.T @ fields.T).T)
+        self._grams = np.array([move.T @ move for move in moves])
+        self._aims = np.array([move.T @ miss for move, miss in zip(moves, missed, strict=True)])
+        self._squares = np.array([float(miss @ miss) for miss in missed])
+        self._ridges = _EFFORT * np.sqrt(self._squares) / bench.constraints.tension_limit
+        self._places = np.array([line.place for line in lines], dtype=np.int64)
+
+    def _pull(self, line: Line) -> Vector:
+        """Slope of its length by the nodes."""
+        mesh = self.proposals.bench.source.body.mesh
+        world = bool(self.proposals.graph.world[line.place])
+        spans = np.diff(line.points, axis=0)
+        units = spans / np.linalg.norm(spans, axis=1)[:, None]
+        ways = np.vstack([np.zeros(mesh.dim), units]) - np.vstack([units, np.zeros(mesh.dim)])
+        anchors = locate(mesh, line.points[int(world) :])
+        slope = np.zeros(mesh.nodes.shape)
+        for corner, weights in zip(anchors.stencils.T, anchors.weights.T, strict=True):
+            np.add.at(slope, corner, weights[:, None] * ways[int(world) :])
+        return slope.ravel()
+
+    def cost(self, chosen: Sequence[int]) -> float:
+        """Error of a set of lines, with its effort [m]; lines that would have to push are left slack."""
+        return float(self._costs(np.array([chosen], dtype=np.int64).reshape(1, -1))[0])
+
+    def _costs(self, sets: np.ndarray) -> Vector:
+        """The same of several sets of as many lines."""
+        errors = np.empty(len(sets))
+        model = (self._gives, self._grams, self._aims, self._squares, self._ridges, self._places)
+        native.line_errors(*model, np.ascontiguousarray(sets), _SLACK, errors)
+        return errors * (1.0 + _SIMPLE * sets.shape[1])
+
+    def place_sets(self) -> list[tuple[int, ...]]:
+        """Sets of places of winches: all of them, or many at random."""
+        known = sorted({line.place for line in self.lines})
+        chance = np.random.default_rng(0)
+        count = min(self.winches, len(known))
+        if math.comb(len(known), count) <= _SETS:
+            return list(combinations(known, count))
+        return [tuple(chance.choice(known, count, replace=False).tolist()) for _ in range(_SETS)]
+
+    def filled(self, chosen: list[int], places: Collection[int] | None = None) -> list[int]:
+        """With one line more after the other, of winches at some places, while that helps."""
+        cost = self.cost(chosen)
+        while len(chosen) < self.cables:
+            best, least = self._best_added(chosen, places)
+            if not least < cost:
+                break
+            chosen, cost = best, least
+        return chosen
+
+    def exchanged(self, chosen: list[int]) -> list[int]:
+        """With lines exchanged for others, while that helps."""
+        cost = self.cost(chosen)
+        for _ in range(_EXCHANGES):
+            before = cost
+            for number in range(len(chosen)):
+                rest = [index for index in chosen if index != chosen[number]] if number < len(chosen) else chosen
+                best, least = self._best_added(rest)
+                if least < cost:
+                    chosen, cost = best, least
+            chosen = self.filled(chosen)
+            cost = self.cost(chosen)
+            if cost >= before:
+                break
+        return chosen
+
+    def _best_added(self, chosen: list[int], places: Collection[int] | None = None) -> tuple[list[int], float]:
+        """The best set with one line more that can be built, and its cost; infinite where there is none."""
+        fits = self._fitting(chosen)
+        if places is not None:
+            fits &= np.isin(self._places, list(places))
+        added = np.flatnonzero(fits)
+        if not len(added):
+            return chosen, math.inf
+        sets = np.column_stack([np.tile(np.array(chosen, dtype=np.int64), (len(added), 1)), added])
+        costs = self._costs(sets)
+        return [*chosen, int(added[costs.argmin()])], float(costs.min())
+
+    def _fitting(self, chosen: Sequence[int]) -> Bool[np.ndarray, " lines"]:
+        """True for lines that can be built beside others."""
+        own, most = list(chosen), self.proposals.bench.constraints.cables_per_winch
+        fits = ~self._meets[own].any(axis=0)
+        fits[own] = False
+        places, counts = np.unique(self._places[own], return_counts=True)
+        there = np.isin(self._places, places)
+        fits &= ~np.isin(self._places, places[counts >= most])
+        if len(places) >= self.winches:
+            return fits & there
+        return fits & (there | ~self._crowded[:, self._places[own]].any(axis=1)[self._places])
+
+    @cached_property
+    def _crowded(self) -> Bool[np.ndarray, "points points"]:
+        """Graph points too near to one another for two winches."""
+        graph = self.proposals.graph
+        used = np.unique(self._places)
+        gaps = np.where(graph.world[used], 1e-6, self.proposals.bench.constraints.winch_gap)
+        away = np.linalg.norm(graph.points[used, None] - graph.points[None, used], axis=2)
+        crowded = np.zeros((len(graph.points),) * 2, dtype=bool)
+        crowded[np.ix_(used, used)] = away < gaps[:, None]
+        return crowded
+
+    @cached_property
+    def _meets(self) -> Bool[np.ndarray, "lines lines"]:
+        """Lines that come too near to one another, but about a winch that both have."""
+        constraints, graph = self.proposals.bench.constraints, self.proposals.graph
+        near = _MEETS * constraints.cable_gap
+        meets = np.zeros((len(self.lines),) * 2, dtype=bool)
+        if near == 0.0:
+            return meets
+        fine = [resample(line.points[int(graph.world[line.place]) :], max(near, 1e-3)) for line in self.lines]
+        owners = np.repeat(np.arange(len(fine)), [len(points) for points in fine])
+        points, places = np.concatenate(fine), self._places[owners]
+        away = np.linalg.norm(points - graph.points[places], axis=1)
+        tree = cKDTree(points)
+        one, other = tree.query_pairs(np.nextafter(near, 0.0), output_type="ndarray").T
+        beside = _ROOM * constraints.spool_radius
+        both = (places[one] == places[other]) & ((away[one] < beside) | (away[other] < beside))
+        meets[owners[one[~both]], owners[other[~both]]] = True
+        for place in np.unique(self._places[~graph.world[self._places]]):  # a winch needs room
+            close = tree.query_ball_point(graph.points[place], np.nextafter(2 * constraints.spool_radius, 0.0))
+            foreign = np.array(close, dtype=np.int64)[places[close] != place]
+            meets[np.ix_(self._places == place, np.isin(np.arange(len(fine)), owners[foreign]))] = True
+        meets |= meets.T
+        np.fill_diagonal(meets, val=False)
+        return meets
+
+
+_SETS = 100  # sets of winch places that are tried
+_EFFORT = 0.5  # share of the residual that the tension limit is worth
+_SIMPLE = 0.01  # what each line more must gain
+_SLACK = 6  # rounds in which slack cables are left out
+_EXCHANGES = 3  # rounds
+_AT_ONCE = 64  # lines whose response is found at a time, so that large bodies need little memory
+_MEETS = 0.6  # share of the gap between cables at which they meet; what is nearer than the gap is pushed apart
+_ROOM = 2.5  # within so many spool radii of a winch its cables may meet
