@@ -1,5 +1,7 @@
 """`hydrostat design`."""
 
+import math
+import signal
 import sys
 import time
 from pathlib import Path
@@ -17,10 +19,14 @@ from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from hydrostat.design import DesignRequest, Network
+    from collections.abc import Callable
+
+    from hydrostat.design import DesignRequest, DesignStage, Network
     from hydrostat.fabrication import Kit
     from hydrostat.robot import Robot
 
+_ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+_CLEARLY = 0.95  # a network with so many times the error of the last that was told is told
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
 
@@ -101,6 +107,16 @@ Tolerance = Annotated[
         show_default="1 % of the body size",
     ),
 ]
+Time = Annotated[
+    str | None,
+    typer.Option(
+        "--time",
+        "--within",
+        metavar="TIME",
+        help="Maximum search time. Keeps the best network so far.",
+        show_default="none",
+    ),
+]
 Fibres = Annotated[
     str | None, _option("edges|elements", "Location of muscles for --method trees.", "TreeOptions.fibres")
 ]
@@ -137,6 +153,7 @@ def design(
     reach: Reach = None,
     as_modelled: AsModelled = False,
     filled: Filled = False,
+    time_limit: Time = None,
     fibres: Fibres = None,
     knob: Knobs = None,
     kit: WithKit = False,
@@ -144,7 +161,7 @@ def design(
     """Design the winches and cable routes that reach given poses.
 
     Writes a robot folder, report.html with pictures of every stage, score.json, and alternatives as robot folders.
-    Ctrl-C ends the search and keeps the best network so far. A constraints file has lines such as
+    Ctrl-C, SIGTERM and --time end the search and keep the best network so far. A constraints file has lines such as
     clearance = "4 mm", tension = "15 N", locked_cables = ["left 1"], and tables [[keep_out]], [[still]] and
     [[winch_zone]] with at and radius, box, or outline.
 
@@ -162,6 +179,7 @@ def design(
         reach=reach,
         as_modelled=as_modelled,
         filled=filled,
+        time=time_limit,
         fibres=fibres,
         knobs=knob or [],
         file=constraints,
@@ -186,7 +204,9 @@ def design(
     if made is not None:
         print_kit(made)
     _tell_next(network, out, kit=kit)
-    if not network.complete:
+    if network.timed_out:
+        print(f"time limit of {time_limit} reached: best network so far")
+    elif not network.complete:
         print("interrupted: best network so far")
         raise typer.Exit(130)
 
@@ -196,9 +216,9 @@ def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) 
     from hydrostat.design import find_network
     from hydrostat.fabrication import forget_files
 
-    with progress_bar() as progress, one_interrupt(STOPPING) as pass_over:
+    with progress_bar() as progress, one_interrupt(STOPPING, signals=_ENDING, interrupt=True) as pass_over:
         try:
-            network = find_network(source, request, progress=progress)
+            network = find_network(source, request, progress=progress, watch=_tell_better())
         except KeyboardInterrupt:
             print("hydrostat: interrupted before the first network; no files written", file=sys.stderr)
             raise typer.Exit(130) from None
@@ -210,6 +230,22 @@ def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) 
         made = write_kit(network, out / "kit") if kit else None
         progress("Writing results", 1, 1)
     return network, made
+
+
+def _tell_better() -> "Callable[[DesignStage], None]":
+    """A function that prints each network that is clearly better than those before."""
+    began, least = time.perf_counter(), math.inf
+
+    def tell(stage: "DesignStage") -> None:
+        nonlocal least
+        if stage.error > _CLEARLY * least:
+            return
+        least = stage.error
+        counts = f"{plural(len(stage.robot.winches), 'winch')}, {plural(len(stage.robot.cables), 'cable')}"
+        seconds = time.perf_counter() - began
+        print(f"{seconds:5.1f} s: {1e3 * least:.3g} mm expected as built ({counts})", file=sys.stderr, flush=True)
+
+    return tell
 
 
 def _tell_count(network: "Network", request: "DesignRequest") -> None:

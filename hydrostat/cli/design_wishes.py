@@ -28,6 +28,7 @@ class DesignArguments:
     reach: float | None = None
     as_modelled: bool = False
     filled: bool = False
+    time: str | None = None
     fibres: str | None = None
     knobs: Sequence[str] = ()
     file: Path | None = None  # of constraints; what follows comes before it
@@ -41,6 +42,7 @@ class DesignArguments:
 def parse_request(robot: "Robot", typed: DesignArguments) -> "DesignRequest":
     """The request that was typed, for a robot (InputError: what cannot be asked, of anyone or of this robot)."""
     from hydrostat.design import DesignMethod, DesignRequest
+    from hydrostat.units import TIME
 
     winches = _winch_count(typed.winches)
     method = None if typed.method is None else parse_choice(DesignMethod, typed.method, what="method")
@@ -54,6 +56,7 @@ def parse_request(robot: "Robot", typed: DesignArguments) -> "DesignRequest":
         options=_options(typed, trees=trees, open_winches=isinstance(winches, str)),
         improve=typed.improve,
         filled=typed.filled,
+        seconds=None if typed.time is None else positive("--time", typed.time, TIME),
         uncertainty=_uncertainty(robot, typed),
         **given,
     )

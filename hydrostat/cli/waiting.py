@@ -141,12 +141,14 @@ def _lines() -> Progress:
 
 
 @contextmanager
-def one_interrupt(words: str, *, signals: Sequence[int] = (signal.SIGINT,)) -> Iterator[Callable[[], None]]:
+def one_interrupt(
+    words: str, *, signals: Sequence[int] = (signal.SIGINT,), interrupt: bool = False
+) -> Iterator[Callable[[], None]]:
     """Let the first Ctrl-C stop the work, and no later one spoil how it ends; some words, if any, are printed then.
 
-    The first signal raises KeyboardInterrupt, or SystemExit for another signal than SIGINT; every later one is passed
-    over until the block ends. Then signals do again what they did before, whatever that was. A handler that was not set
-    from Python cannot be put back by it, so where there is such a one it stays, and answers.
+    The first signal raises KeyboardInterrupt, or SystemExit for another signal than SIGINT unless `interrupt`; every
+    later one is passed over until the block ends. Then signals do again what they did before, whatever that was. A
+    handler that was not set from Python cannot be put back by it, so where there is such a one it stays, and answers.
 
     Gives what to call where the work is over: from there on every signal is passed over, so that results are whole.
     """
@@ -164,7 +166,7 @@ def one_interrupt(words: str, *, signals: Sequence[int] = (signal.SIGINT,)) -> I
         pass_over()
         if words:
             print(words, file=sys.stderr, flush=True)
-        raise KeyboardInterrupt if number == signal.SIGINT else SystemExit(128 + number)
+        raise KeyboardInterrupt if interrupt or number == signal.SIGINT else SystemExit(128 + number)
 
     try:
         for number in ours:

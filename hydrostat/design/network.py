@@ -96,7 +96,8 @@ class Network:
         trace: trace of the search.
         tried: number of networks with solved poses.
         seconds: CPU time of the design [s].
-        complete: True if the search came to its end; False if it was interrupted.
+        complete: True if the search came to its end; False if it was interrupted or its time was up.
+        timed_out: True if its time was up.
         filled: results on the filled body; None if not requested.
     """
 
@@ -110,6 +111,7 @@ class Network:
     tried: int
     seconds: float
     complete: bool = True
+    timed_out: bool = False
     filled: FilledReach | None = None
 
     def __repr__(self) -> str:

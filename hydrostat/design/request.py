@@ -72,6 +72,9 @@ class RouteOptions:
                 raise InputError(f"RouteOptions.{name} must be {allowed}, not {getattr(self, name)!r}")
 
 
+SECONDS = Range(above=True, unit="s")
+"""Allowed time of a search."""
+
 ROUTE_RANGES = {
     "enough": Range(),
     "tolerance": Range(above=True, most=1.0, optional=True, unit="m"),
@@ -206,6 +209,8 @@ class DesignRequest:
     # begin with the robot's own winches and cables, and move and exchange those that are not locked; what travel,
     # release, slack and spools these have is allowed
     improve: bool = False
+    # wall time [s] after which the search ends with the best network so far, once there is one; None: it ends by itself
+    seconds: float | None = None
     # finalists of a flat robot are compared on the filled body, their cables on its skin, by commands found there
     filled: bool = False
 
@@ -216,6 +221,8 @@ class DesignRequest:
         for pose in self.poses:
             if not isinstance(pose, PoseTarget):
                 raise InputError(f"poses must be Pose records, such as robot.poses.values(), not {pose!r}")
+        if self.seconds is not None and not SECONDS.holds(self.seconds):
+            raise InputError(f"seconds must be {SECONDS}, or None for no limit, not {self.seconds!r:.60}")
         self._check_counts()
         make_member(self, "method", DesignMethod)
         kind = _OPTIONS[self.method]
@@ -287,6 +294,8 @@ class DesignRequest:
 
     def _check_trees(self) -> None:
         """Refuse what the thesis's way does not know."""
+        if self.seconds is not None:
+            raise InputError('method "trees" has no time limit. Use method "routes".')
         if self.improve or self.winches == AUTO:
             raise InputError(
                 'method "trees" needs a number of winches and cannot improve a network. Use method "routes".'

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.parts.board import BOARDS, BoardKind, board_for
     from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
     from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
-    from hydrostat.fabrication.parts.winch_unit import unit_room
+    from hydrostat.fabrication.parts.winch_unit import choose_robot_motor, unit_room
     from hydrostat.fabrication.patches.sewable import Sewing, find_sewing, sewing_of
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
     from hydrostat.fabrication.patches.space_pattern import space_pattern
@@ -80,6 +80,7 @@ __all__ = [
     "board_for",
     "build_kit",
     "choose_motor",
+    "choose_robot_motor",
     "control_needs",
     "demand_of",
     "depth_table",

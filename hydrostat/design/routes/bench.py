@@ -1,6 +1,6 @@
 """`Bench`: what a network in the making does to every pose."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -55,6 +55,7 @@ class Bench:
     body: BodyPhysics | None = None  # physics of the body, which all layouts share; each has its own if left out
     reach: float = 0.0  # what reach beyond the poses is worth: see `RouteOptions`
     solves: int = field(default=0)  # layouts tried
+    look: Callable[[], None] = lambda: None  # called before each layout is solved; what it raises ends the search
 
     @cached_property
     def markers(self) -> list[list[int]]:
@@ -104,6 +105,7 @@ class Bench:
         Where a pose misses more than in a trial `hoped` for, it is sought from other beginnings too.
         None: no equilibrium, or an error above `worst` [m]; poses that are left when it is sure of that are not solved.
         """
+        self.look()
         self.solves += 1
         simulation = Simulation(layout.robot(), body=self.body)
         options = IKOptions(restarts=0, min_tension=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
@@ -134,6 +136,7 @@ class Bench:
 
         None where Newton does not find an equilibrium at once, or the error is above `worst` [m].
         """
+        self.look()
         self.solves += 1
         simulation = Simulation(layout.robot(), body=self.body)
         found = []

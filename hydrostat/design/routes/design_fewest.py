@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from hydrostat.design.network import Alternative, Network, Size, size_of
 from hydrostat.design.request import COUNTS, DesignRequest
-from hydrostat.design.routes.design_routes import Hints, RouteSearch, kit_fits
+from hydrostat.design.routes.design_routes import Hints, RouteSearch, deadline_of, kit_fits
 from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
@@ -34,13 +34,13 @@ def design_fewest(
     found: list[Network] = []
     body, better = BodyPhysics(robot), Better(watch)
     front: dict[Size, Alternative] = {}
-    interrupted = False
+    interrupted, deadline = False, deadline_of(request)
     least = _fewest(robot, request)
     largest = min(cables, int(COUNTS["winches"].most))
     for winches in range(least, largest + 1):
         most = min(cables, winches * constraints.cables_per_winch)
         asked = replace(request, winches=winches, cables=most, options=sought)
-        search = RouteSearch(robot, asked, body, progress, watch=better, hints=hints)
+        search = RouteSearch(robot, asked, body, progress, watch=better, hints=hints, deadline=deadline)
         try:
             found.append(search.run())
         except KeyboardInterrupt:
@@ -68,6 +68,7 @@ def design_fewest(
         tried=sum(network.tried for network in found),
         seconds=sum(network.seconds for network in found),
         complete=not interrupted and all(network.complete for network in found),
+        timed_out=found[-1].timed_out,
     )
 
 

@@ -1,5 +1,6 @@
 """`design_routes`: routes priced by the pose error, added one by one, and moved to where it is least (F1, F2)."""
 
+import math
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -28,7 +29,7 @@ from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import IKOptions, Limits
 from hydrostat.progress import Progress
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Mount, Robot, safe_travels
 from hydrostat.simulation import BodyPhysics, Simulation, cable_sensitivities
 
 Hints = Callable[[BodyPhysics], Iterable[Robot]]
@@ -58,7 +59,7 @@ def design_routes(
         InputError: a body too thin for the constraints.
         HydrostatError: no network can be built.
     """
-    return RouteSearch(robot, request, BodyPhysics(robot), progress, watch, hints).run()
+    return RouteSearch(robot, request, BodyPhysics(robot), progress, watch, hints, deadline_of(request)).run()
 
 
 class RouteSearch:
@@ -79,6 +80,7 @@ class RouteSearch:
         progress: Progress,
         watch: Watch = unseen,
         hints: Hints = lambda _: (),
+        deadline: float = math.inf,
     ) -> None:
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
         self.hints, self.physics = hints, body
@@ -94,6 +96,7 @@ class RouteSearch:
             body,
             self.options.reach,
         )
+        self.deadline, self.bench.look = deadline, self._look
         self.stages: list[DesignStage] = []
         self.passed: list[tuple[float, Layout]] = []
         self.found: list[Trial] = []
@@ -103,14 +106,16 @@ class RouteSearch:
 
     def run(self) -> Network:
         """Search, judge, and tell how it came about."""
-        began = time.process_time()
+        began, deadline = time.process_time(), self.deadline
         complete = True
         try:
             self._search()
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, _TimeUpError):
             complete = False
             if self.best is None:
                 raise
+        self.deadline = math.inf
+        timed_out = not complete and time.monotonic() >= deadline
         try:
             network, alternatives = self._finished(complete)
             certificate = self._certificate(network) if complete else None
@@ -128,7 +133,13 @@ class RouteSearch:
             tried=self.bench.solves,
             seconds=time.process_time() - began,
             complete=complete,
+            timed_out=timed_out,
         )
+
+    def _look(self) -> None:
+        """End the search when its time is up and there is a network."""
+        if self.best is not None and time.monotonic() >= self.deadline:
+            raise _TimeUpError
 
     def _search(self) -> None:
         if self.constraints.mirror is not None and self.cables < 2:
@@ -183,7 +194,14 @@ class RouteSearch:
         count = self.options.starts + 1
         drawn = sketches(self.proposals, bare, winches=self.winches, cables=self.cables, count=_DRAWN * count)
         trials = [self.bench.reached(layout, None, iterations=_GLANCE) for layout in drawn]
-        rough = [growth.short(trial, directions=0) for trial in trials if trial is not None]
+        rough: list[Trial] = []
+        for number, trial in enumerate(trials):
+            self.progress("Drawing networks", number, len(trials))
+            if trial is not None:
+                rough.append(growth.short(trial, directions=0))
+                if rough[-1].cost < (1 - _HELPS) * bare.cost and rough[-1].cost <= min(one.cost for one in rough):
+                    self._noted("drawn along the limbs", rough[-1])
+        self.progress("Drawing networks", len(trials), len(trials))
         rough.sort(key=lambda trial: trial.cost)
         helpful: list[Trial] = []
         for trial in map(growth.short, rough[: _LIKELY * count]):
@@ -284,10 +302,10 @@ class RouteSearch:
 
     def _finished(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
         """The networks found, judged as their user will find them, the best first."""
-        judged = self._all_judged(self.found)
-        if complete and not any(kit_fits(network) for network in judged):
-            judged += self._first_to_fit()
-        judged += self._all_judged(self._simpler() if complete else [self.best])
+        judged = self._all_judged(self.found if complete else [self.best])
+        if not any(kit_fits(network) for network in judged):
+            judged += self._first_to_fit(_LOOKED_AT if complete else _LOOKED_AT_LATE)
+        judged += self._all_judged(self._simpler() if complete else [])
         if not judged:
             raise HydrostatError(
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
@@ -299,11 +317,11 @@ class RouteSearch:
     def _all_judged(self, trials: Iterable[Trial | None]) -> list[Alternative]:
         return [judged for trial in trials if trial is not None and (judged := self.judge(trial.layout)) is not None]
 
-    def _first_to_fit(self) -> list[Alternative]:
+    def _first_to_fit(self, most: int) -> list[Alternative]:
         """The best of the networks on the way that a kit can be made of, for when none of the refined ones can."""
         known = [trial.layout for trial in self.found]
         others = [(cost, layout) for cost, layout in self.passed if not any(layout is other for other in known)]
-        for _, layout in sorted(others, key=lambda passed: passed[0])[:_LOOKED_AT]:
+        for _, layout in sorted(others, key=lambda passed: passed[0])[:most]:
             judged = self.judge(layout)
             if judged is not None and kit_fits(judged):
                 return [judged]
@@ -327,7 +345,7 @@ class RouteSearch:
 
     def judge(self, layout: Layout) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
-        robot = self._numbered(layout).robot(digits=_DIGITS)
+        robot = self._safe(self._numbered(layout).robot(digits=_DIGITS))
         if violations(robot, self.constraints, self.region):
             return None
         simulation = Simulation(robot, body=self.bench.body)
@@ -340,6 +358,17 @@ class RouteSearch:
             return None
         built = expected_error(simulation, reached, self.bench.uncertainty)
         return Alternative(robot=robot, reached=tuple(reached), built=built)
+
+    def _safe(self, robot: Robot) -> Robot:
+        """The robot with new winches that neither use up a cable nor squeeze the body too far, to a millimetre."""
+        locked, most = {winch.name for winch in self.constraints.staying(self.robot)[0]}, safe_travels(robot)
+        winches = [
+            winch
+            if winch.name in locked or most[winch.name] >= winch.travel
+            else replace(winch, travel=max(1e-3 * int(1e3 * most[winch.name]), 1e-3))
+            for winch in robot.winches
+        ]
+        return robot.with_network(winches, robot.cables)
 
     def _cost(self, network: Alternative) -> float:
         """The error as built, more where little else is in reach [m]."""
@@ -368,6 +397,15 @@ class RouteSearch:
         return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot, body=self.bench.body), poses))
 
 
+class _TimeUpError(Exception):
+    """The time of a search is up."""
+
+
+def deadline_of(request: DesignRequest) -> float:
+    """The monotonic time at which a search that begins now should end [s]; infinite where it has no limit."""
+    return math.inf if request.seconds is None else time.monotonic() + request.seconds
+
+
 def kit_fits(network: Alternative | Network) -> bool:
     """True if the kit of a network would not be refused."""
     return not find_refusals(network.robot, demand_of(network.robot, network.reached))
@@ -383,4 +421,5 @@ _DRAWN = 6  # sketches that are solved for each that is grown
 _LIKELY = 2  # of them, that are refined with what differs as built
 _GLANCE = 5  # steps of inverse kinematics that tell how good a sketch is
 _LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
+_LOOKED_AT_LATE = 4  # where the search was ended before
 _REFINED = 2  # networks that are refined to the end

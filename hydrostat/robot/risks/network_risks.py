@@ -168,6 +168,21 @@ def _length_inside(robot: Robot, cable: Cable) -> float:
     return length - float(cable.segments[0]) * float((robot.body.distances(way) > 0).mean())
 
 
+def safe_travels(robot: Robot) -> dict[str, float]:
+    """Largest travel of each winch that neither uses up a cable nor squeezes the body too far [m]."""
+    found = {winch.name: winch.travel for winch in robot.winches}
+    for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
+        most = _squeezing_travel(robot, cable, float(ratio))
+        found[cable.winch] = min(found[cable.winch], most)
+    return found
+
+
+def _squeezing_travel(robot: Robot, cable: Cable, ratio: float) -> float:
+    """Travel at which a cable has squeezed the body as far as the material is known, or is used up [m]."""
+    share = robot.body.material.largest_squeeze
+    return ((1.0 if share is None else share) * _length_inside(robot, cable) + cable.slack) / ratio
+
+
 def _squeezing(robot: Robot) -> Iterator[Risk]:
     """Estimate compression from lengths alone: the body along a cable must shorten by the winch's contraction."""
     material = robot.body.material
@@ -178,7 +193,7 @@ def _squeezing(robot: Robot) -> Iterator[Risk]:
         length = _length_inside(robot, cable)
         squeeze = (ratio * winch.travel - cable.slack) / length
         if ratio * winch.travel <= length and squeeze > material.largest_squeeze:
-            most = (material.largest_squeeze * length + cable.slack) / ratio
+            most = _squeezing_travel(robot, cable, ratio)
             limit = known_up_to(material, f"{100 * material.largest_squeeze:.0f} %")
             text = (
                 f"the full travel of {mm(winch.travel)} would squeeze the body along the cable by "
