@@ -45,7 +45,11 @@ Poses = Annotated[
 ]
 Method = Annotated[
     str | None,
-    _option("routes|trees", "Search method: routes (adjoint-based) or trees (Chang 2018).", "DesignRequest.method"),
+    _option(
+        "routes|trees|chang2018",
+        "Search method: routes (adjoint-based), trees (muscle fibers, many settings) or chang2018 (one setting).",
+        "DesignRequest.method",
+    ),
 ]
 ConstraintsFile = Annotated[
     Path | None, typer.Option(metavar="FILE.toml", help="Constraints file. Options below override it.")
@@ -124,7 +128,7 @@ Knobs = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME=VALUE",
-        help="Setting for --method trees: threshold, distance, steps or phi (Chang 2018). Repeatable.",
+        help="Setting for --method chang2018: threshold, distance, steps or phi (Chang 2018). Repeatable.",
     ),
 ]
 WithKit = Annotated[bool, typer.Option("--kit", help="Also write the build kit.")]

@@ -10,7 +10,7 @@ from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.design import BuildTolerances, Constraints, DesignRequest, RouteOptions, TreeOptions
+    from hydrostat.design import BuildTolerances, Constraints, DesignMethod, DesignRequest, RouteOptions, TreeOptions
     from hydrostat.robot import Robot
 
 
@@ -49,11 +49,10 @@ def parse_request(robot: "Robot", typed: DesignArguments) -> "DesignRequest":
     given = {"winches": winches, "cables": typed.cables, "method": method}
     given = {name: value for name, value in given.items() if value is not None}
     poses = [robot.pose(name) for name in typed.poses] or list(robot.poses.values())
-    trees = method is DesignMethod.TREES
     request = DesignRequest(
         poses=tuple(poses),
         constraints=_constraints(robot, typed),
-        options=_options(typed, trees=trees, open_winches=isinstance(winches, str)),
+        options=_options(typed, method=method or DesignMethod.ROUTES, open_winches=isinstance(winches, str)),
         improve=typed.improve,
         filled=typed.filled,
         seconds=None if typed.time is None else positive("--time", typed.time, TIME),
@@ -107,22 +106,27 @@ def _limit(name: str, value: str | int | None) -> float | int | None:
     return positive(f"--{name.replace('_', '-')}", value, dimension, zero=allowed.holds(0.0))
 
 
-def _options(typed: DesignArguments, *, trees: bool, open_winches: bool) -> "RouteOptions | TreeOptions | None":
+def _options(
+    typed: DesignArguments, *, method: "DesignMethod", open_winches: bool
+) -> "RouteOptions | TreeOptions | None":
     """Options of the method; None for its usual ones."""
-    from hydrostat.design import FibreKind, RouteOptions, TreeOptions
+    from hydrostat.design import DesignMethod, FibreKind, RouteOptions, TreeOptions
     from hydrostat.units import LENGTH
+
+    trees = method.grows_trees
 
     if typed.tolerance is not None and not open_winches:
         raise InputError("--tolerance: needs --winches auto. Add it.")
     fibres = None if typed.fibres is None else parse_choice(FibreKind, typed.fibres, what="--fibres")
     for name, given in (("fibres", typed.fibres), ("knob", typed.knobs)):
         if given and not trees:
-            raise InputError(f"--{name}: needs --method trees. Add it.")
+            raise InputError(f"--{name}: needs --method trees or chang2018. Add it.")
     for name, given in (("simplicity", typed.simplicity), ("reach", typed.reach)):
         if given is not None and trees:
-            raise InputError(f"--{name}: not available with --method trees. Use --method routes.")
+            raise InputError(f"--{name}: not available with --method {method}. Use --method routes.")
     if trees:
-        options = TreeOptions.single(**dict(map(_knob, typed.knobs))) if typed.knobs else TreeOptions()
+        one = typed.knobs or method is DesignMethod.CHANG2018
+        options = TreeOptions.single(**dict(map(_knob, typed.knobs))) if one else TreeOptions()
         return replace(options, fibres=fibres or options.fibres)
     tolerance = None if typed.tolerance is None else positive("--tolerance", typed.tolerance, LENGTH)
     simplicity = RouteOptions.simplicity if typed.simplicity is None else typed.simplicity

@@ -96,7 +96,7 @@ def find_network(
 
 def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -> Network:
     """The network of the method that is asked for."""
-    if request.method is DesignMethod.TREES:
+    if request.method.grows_trees:
         return design_trees(robot, request, progress=told, watch=seen)
     if not isinstance(request.winches, int):
         return design_fewest(robot, request, progress=told, watch=seen)

@@ -22,10 +22,19 @@ COUNTS = {"winches": Range(whole=True, least=1, most=20), "cables": Range(whole=
 
 
 class DesignMethod(StrEnum):
-    """Search method: priced routes (adjoint-based) or winch trees (of the thesis)."""
+    """Search method: priced routes (adjoint-based), winch trees, or the search of Chang (2018) just as it is.
+
+    Winch trees are that search with many settings, whose networks are compared by their pose error.
+    """
 
     ROUTES = "routes"
     TREES = "trees"
+    CHANG2018 = "chang2018"
+
+    @property
+    def grows_trees(self) -> bool:
+        """True for winch trees, with many settings or one."""
+        return self is not DesignMethod.ROUTES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -226,11 +235,12 @@ class DesignRequest:
         self._check_counts()
         make_member(self, "method", DesignMethod)
         kind = _OPTIONS[self.method]
-        object.__setattr__(self, "options", self.options or kind())
+        usual = TreeOptions.single() if self.method is DesignMethod.CHANG2018 else kind()
+        object.__setattr__(self, "options", self.options or usual)
         if not isinstance(self.options, kind):
             told = type(self.options).__name__
             raise InputError(f'options of method "{self.method}" must be {kind.__name__}, not {told}')
-        if self.method is DesignMethod.TREES:
+        if self.method.grows_trees:
             self._check_trees()
         if self.improve and self.winches == AUTO:
             raise InputError('winches: cannot improve a network ("auto"). Give a number of winches.')
@@ -295,20 +305,23 @@ class DesignRequest:
     def _check_trees(self) -> None:
         """Refuse what the thesis's way does not know."""
         if self.seconds is not None:
-            raise InputError('method "trees" has no time limit. Use method "routes".')
+            raise InputError(f'method "{self.method}" has no time limit. Use method "routes".')
         if self.improve or self.winches == AUTO:
             raise InputError(
-                'method "trees" needs a number of winches and cannot improve a network. Use method "routes".'
+                f'method "{self.method}" needs a number of winches and cannot improve a network. Use method "routes".'
             )
         usual = Constraints()
         asked = [name for name in ROUTES_ONLY if getattr(self.constraints, name) != getattr(usual, name)]
         if asked:
-            raise InputError(f'method "trees" does not keep {", ".join(asked)}. Use method "routes", which does.')
+            raise InputError(
+                f'method "{self.method}" does not keep {", ".join(asked)}. Use method "routes", which does.'
+            )
 
 
 _OPTIONS: dict[str, type[RouteOptions] | type[TreeOptions]] = {
     DesignMethod.ROUTES: RouteOptions,
     DesignMethod.TREES: TreeOptions,
+    DesignMethod.CHANG2018: TreeOptions,
 }
 
 

@@ -7,7 +7,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design.network import rms_error
-from hydrostat.design.trees.design_trees import cost, judge, prune
+from hydrostat.design.trees.judge_robots import cost, judge, prune
 from hydrostat.ik import IKResult, solve_ik
 from hydrostat.progress import no_progress
 from hydrostat.robot import Cable, PoseTarget, Robot

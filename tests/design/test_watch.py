@@ -8,7 +8,7 @@ from test_design_routes import DOWN, SMALL, UP, bare
 from test_judge import POSES, shifted
 
 from hydrostat.design import DesignStage, RouteTrace, design_cables
-from hydrostat.design.trees.design_trees import judge
+from hydrostat.design.trees.judge_robots import judge
 from hydrostat.design.watch import Better
 from hydrostat.progress import no_progress
 

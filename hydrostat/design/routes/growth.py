@@ -84,8 +84,8 @@ class Growth:
         steps = self.proposals.options.polish
         best = trial if trial.from_rest else self.truly(trial)
         effort, round_size = 1.0, _ROUND
-        done = 0
-        while done < steps and best.cost > self._options(0).enough:
+        done = failed = 0
+        while done < steps and failed < _FAILURES and best.cost > self._options(0).enough:
             size = min(round_size, steps - done)
             options = replace(self._options(size), effort=effort * self._options(size).effort)
             found = self.truly(refine(self.bench, self.proposals.graph.region, best, options), worst=best.cost)
@@ -96,7 +96,7 @@ class Growth:
                 if gain < _IDLE or best.built <= options.enough:
                     break
             else:
-                effort, round_size = 4.0 * effort, max(round_size // 2, 1)
+                effort, round_size, failed = 4.0 * effort, max(round_size // 2, 1), failed + 1
         return best
 
     def truly(self, trial: Trial, *, worst: float = np.inf) -> Trial:
@@ -276,6 +276,7 @@ _LIKELY = 2  # cables that are refined for each that a network is grown from
 _SEEDS = 3  # first cables that are refined for each that a network is grown from
 _GLANCE = 5  # steps of inverse kinematics that tell which of several networks is the best
 _ROUND = 8  # steps of refinement before the poses are found from rest again
+_FAILURES = 2  # rounds that do not hold from rest end the refinement
 _IDLE = 0.02  # a round that gains less ends the refinement
 _SHALLOW = 0.5  # how much more a network costs whose winches are at the edge
 _TURNED = 0.2  # how much more a network costs whose cables turn by 1 rad

@@ -1,6 +1,7 @@
 """`design_trees`: from poses to winches and cables as in the thesis, judged by the pose error (R35 to R46, E24)."""
 
 import time
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, islice, product
@@ -20,20 +21,21 @@ from hydrostat.design.muscles.activation import (
     element_fibres,
     wanted_directions,
 )
-from hydrostat.design.network import DesignStage, Network, TreeTrace, rms_error
+from hydrostat.design.network import Network, TreeTrace
 from hydrostat.design.polyline import Route, length, sharpest_turn
 from hydrostat.design.region import body_region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
+from hydrostat.design.trees.judge_robots import judge, prune
 from hydrostat.design.trees.lead_ways import lead_ways
 from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
 from hydrostat.design.uncertainty import BuildTolerances
-from hydrostat.design.watch import Better, Watch, unseen
+from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import Cable, Mount, PoseTarget, Robot, Winch
 from hydrostat.simulation import BodyPhysics, Simulation
+from hydrostat.units import plural
 
 
 def design_trees(
@@ -102,6 +104,7 @@ class _TreeDesign:
         self.region = body_region(robot.body, self.constraints.clearance)
         self.ways = lead_ways(robot, self.region, self.constraints)
         self.spacing = float(self.mesh.edge_lengths.mean())
+        self.rejected: Counter[str] = Counter()  # routes and networks that cannot be built, by the limit in the way
 
     def run(self) -> Network:
         began = time.process_time()
@@ -109,9 +112,9 @@ class _TreeDesign:
         built = self._build_all(_shortlist(self._plans(activations)))
         if not built:
             raise HydrostatError(
-                f"no network of {self.winches} winches and up to {self.cables} cables could be built: too few "
-                "routes of strong muscles keep clear of one another and of the edge of the body; ask for fewer "
-                "winches, lower the clearance, or choose a pose that bends the body more"
+                f"no network of {plural(self.winches, 'winch')} and up to {plural(self.cables, 'cable')} can be built. "
+                f"Rejected: {self._reasons}. "
+                "Ask for fewer winches, lower that limit, or choose a pose that bends the body more."
             )
         best, reached = judge(
             [robot for _, robot in built],
@@ -149,6 +152,12 @@ class _TreeDesign:
         return next(((plan, robot) for plan, robot in robots if robot is not None), None)
 
     @property
+    def _reasons(self) -> str:
+        """What was rejected, the most frequent first."""
+        found = [f"{words} ({count})" for words, count in self.rejected.most_common() if count]
+        return ", ".join(found) or "no route grew from the strongest muscles"
+
+    @property
     def _uncertainty(self) -> BuildTolerances:
         return self.request.uncertainty or BuildTolerances.of(self.robot.body)
 
@@ -171,7 +180,9 @@ class _TreeDesign:
             trees = WinchTrees(self.mesh, routes, posed, self.ways, self.constraints, self.options)
             for phi in self.options.phis:
                 plans = (_TreePlan(candidates, trees, self._plant(trees, share, phi)) for share in shares)
-                groups.append([plan for plan in plans if len(plan.chosen) == self.winches])
+                whole = [plan for plan in plans if len(plan.chosen) == self.winches]
+                self.rejected["networks with too few routes for their winches"] += len(shares) - len(whole)
+                groups.append(whole)
         self.progress("Growing winch trees", len(variants), len(variants))
         return groups
 
@@ -211,7 +222,11 @@ class _TreeDesign:
             laid += [lay_route(route, self.region, 2 * self.spacing) for route in grown]
             candidates.append(kept)
         shortest = self.options.shortest * self.spacing
-        routes = [route for route in laid if route is not None and length(route) >= shortest]
+        inside = [route for route in laid if route is not None]
+        routes = [route for route in inside if length(route) >= shortest]
+        clearance = 1e3 * self.constraints.clearance
+        self.rejected[f"routes within the clearance of {clearance:g} mm"] += len(laid) - len(inside)
+        self.rejected[f"routes shorter than {1e3 * shortest:.3g} mm"] += len(inside) - len(routes)
         return tuple(candidates), _apart(routes, self.spacing)
 
     def _plant(self, trees: WinchTrees, share: tuple[int, ...], phi: float) -> list[WinchTree]:
@@ -239,13 +254,18 @@ class _TreeDesign:
             winch_gap=2 * self.constraints.spool_radius,
         )
         if laid is None:
+            self.rejected[f"networks with holes nearer than {1e3 * self.constraints.hole_gap:g} mm"] += 1
             return None
         # Where a cable comes from the world its tube hangs as it likes.
         bodily = [
             points[int(self.ways.outside(chosen[index].place)) :]
             for (index, _, _), points in zip(pulled, laid, strict=True)
         ]
-        if not all(map(self.region.holds, bodily)) or max(map(sharpest_turn, bodily)) > self.options.turn:
+        if not all(map(self.region.holds, bodily)):
+            self.rejected[f"networks within the clearance of {1e3 * self.constraints.clearance:g} mm"] += 1
+            return None
+        if max(map(sharpest_turn, bodily)) > self.options.turn:
+            self.rejected[f"networks that turn by more than {self.options.turn:g} degrees"] += 1
             return None
         winches = [self._winch(index, tree) for index, tree in enumerate(chosen)]
         cables = []
@@ -253,7 +273,9 @@ class _TreeDesign:
             sheathed = ((0, lead),) if lead and self.constraints.leads else ()
             cables.append(Cable(winch=winches[index].name, points=tuple(map(_point, points)), sheathed=sheathed))
         robot = self.robot.with_network(winches, cables)
-        return None if violations(robot, self.constraints, self.region) else robot
+        broken = violations(robot, self.constraints, self.region)
+        self.rejected["networks that break a limit of winches or holes"] += bool(broken)
+        return None if broken else robot
 
     def _winch(self, index: int, tree: WinchTree) -> Winch:
         return Winch(
@@ -298,83 +320,3 @@ def _apart(routes: list[Route], spacing: float) -> list[Route]:
         if not any(close.mean() > 0.6 for close in near):
             kept.append(route)
     return kept
-
-
-_ROUNDS = tuple(IKOptions(iterations=steps, restarts=0, min_tension=False) for steps in (3, 4, 100))
-"""Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
-
-_KEPT = 4  # one in so many robots goes on to the next round
-_FEWEST = 4  # at least so many robots go on
-
-
-def judge(
-    robots: Sequence[Robot],
-    poses: Sequence[PoseTarget],
-    *,
-    tension: float,
-    progress: Progress,
-    watch: Watch = unseen,
-    body: BodyPhysics | None = None,
-) -> tuple[int, tuple[IKResult, ...]]:
-    """The index of the robot of least cost, and what it reaches of each pose.
-
-    In rounds of inverse kinematics, each of which takes up where the last one ended, for ever fewer robots. Cables
-    should bear at most the tension [N], see `cost`; `watch` is told each robot that is better than all before and keeps
-    to it.
-    """
-    simulations = [Simulation(robot, body=body) for robot in robots]
-    reached: dict[int, tuple[IKResult, ...]] = {}
-    chosen = list(range(len(robots)))
-    better = Better(watch)
-    for number, options in enumerate(_ROUNDS):
-        for done, index in enumerate(chosen):
-            if number == 0:
-                progress("Judging networks", done, len(robots))
-            starts = [pose.pose for pose in reached[index]] if index in reached else [None] * len(poses)
-            pairs = zip(poses, starts, strict=True)
-            reached[index] = tuple(
-                solve_ik(simulations[index], pose, start=start, options=options) for pose, start in pairs
-            )
-            error = rms_error(reached[index])
-            if cost(reached[index], tension) <= error:
-                better(DesignStage(words="a network judged", robot=robots[index], error=error))
-        chosen.sort(key=lambda index: cost(reached[index], tension))
-        if number < len(_ROUNDS) - 1:
-            chosen = chosen[: max(_FEWEST, len(chosen) // _KEPT)]
-    progress("Judging networks", len(robots), len(robots))
-    return chosen[0], reached[chosen[0]]
-
-
-def cost(reached: Sequence[IKResult], tension: float) -> float:
-    """Pose error [m], times how often the largest tension exceeds `tension` [N] if it does."""
-    largest = max(float(pose.pose.tensions.max(initial=0.0)) for pose in reached)
-    return rms_error(reached) * max(largest / tension, 1.0)
-
-
-def prune(
-    robot: Robot,
-    poses: Sequence[PoseTarget],
-    reached: tuple[IKResult, ...],
-    *,
-    tension: float,
-    loss: float,
-    body: BodyPhysics | None = None,
-) -> tuple[Robot, tuple[IKResult, ...]]:
-    """Leave out cables, the shortest first, while the cost stays within 1 + `loss` of what it was.
-
-    All omissions together may add that share. Every winch keeps a cable. Cables should bear at most the tension [N].
-    """
-    allowed = (1.0 + loss) * cost(reached, tension)
-    for cable in sorted(robot.cables, key=lambda cable: float(cable.segments[cable.bare].sum())):
-        others = [other for other in robot.cables if other is not cable]
-        if not any(other.winch == cable.winch for other in others):
-            continue
-        trial = robot.with_network(robot.winches, others)
-        simulation = Simulation(trial, body=body)
-        found = tuple(solve_ik(simulation, pose, options=_OPTIONS) for pose in poses)
-        if cost(found, tension) <= allowed:
-            robot, reached = trial, found
-    return robot, reached
-
-
-_OPTIONS = IKOptions(restarts=0, min_tension=False)  # one descent tells enough
