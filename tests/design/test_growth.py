@@ -28,7 +28,7 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
     growth = Growth(Proposals(bench, graph, RouteOptions(hops=2, trials=6, steps=0, starts=1), 0.06), lambda *_: None)
     start = growth.bare(Layout(robot, LIMITS, (), ()))
     assert start is not None
-    (grown, *_) = growth.grown(start, winches=1, cables=1)
+    (grown, *_) = growth.grown([start], winches=1, cables=1)
     joined = {tuple(pair) for pair in graph.edges.tolist()}
     errors = []
     for first, last in permutations(range(len(graph.points)), 2):
@@ -56,7 +56,7 @@ def test_growth_stops_at_the_count(cables: int, unchecked: None) -> None:
     )
     start = growth.bare(Layout(robot, LIMITS, (), ()))
     assert start is not None
-    networks = growth.grown(start, winches=1, cables=cables)
+    networks = growth.grown([start], winches=1, cables=cables)
     assert {len(grown.layout.sites) for grown in networks} == {1}
     assert sorted({len(grown.layout.routes) for grown in networks}) == list(range(1, cables + 1))
     assert noted == list(range(1, cables + 1))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from builders import strip_robot
 from robustness import EXAMPLES
+from scipy.optimize import nnls
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import nearest_shares, resample
@@ -50,6 +51,40 @@ def test_what_a_sketch_promises_is_what_small_contractions_do(unchecked: None) -
     short, long = (simulation.cables.elongations(pose.nodes, pose.contractions)[0] for pose in (weak, strong))
     body = choice.gives[index, index] - 1 / Cable.stiffness
     assert 2e-4 - (long - short) == pytest.approx(body * more, rel=0.05)
+
+
+def test_the_error_of_a_set_of_lines_is_that_of_nonnegative_least_squares(
+    starfish: tuple[Proposals, Trial], unchecked: None
+) -> None:
+    """Oracle: SciPy's `nnls` on the moves of the markers, lines that would push left out round by round."""
+    proposals, bare = starfish
+    lines = list(_lines(proposals, bare))
+    choice = LineChoice(proposals, bare, lines, 3, 5)
+    missed = [proposals.bench.residual(bare.simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
+    chance = np.random.default_rng(5)
+    for count in (1, 2, 3, 5, 5, 5):
+        chosen = chance.choice(len(lines), count, replace=False).tolist()
+        squares = [_left(choice, chosen, index, miss) ** 2 for index, miss in enumerate(missed)]
+        assert choice.cost(chosen) == pytest.approx(np.sqrt(sum(squares)) * (1 + 0.01 * count), rel=1e-7)
+
+
+def _left(choice: LineChoice, chosen: list[int], pose: int, missed: np.ndarray) -> float:
+    places = np.array([choice.lines[index].place for index in chosen])
+    by_winch = np.equal.outer(places, np.unique(places)).astype(float)
+    ridge = 0.5 * np.linalg.norm(missed) / choice.proposals.bench.constraints.tension_limit
+    taut = np.ones(len(chosen), dtype=bool)
+    for _ in range(6):
+        own = np.array(chosen)[taut]
+        tensions = np.linalg.solve(choice.gives[np.ix_(own, own)], by_winch[taut])
+        matrix = np.vstack([choice.moves[pose][:, own] @ tensions, ridge * tensions])
+        pulled, found = nnls(matrix, np.append(missed, np.zeros(len(own))))
+        pushes = tensions @ pulled < -1e-6 * max((tensions @ pulled).max(), 0.0)
+        if not pushes.any():
+            return float(found)
+        if pushes.all():
+            break
+        taut[np.flatnonzero(taut)[pushes]] = False
+    return float(np.linalg.norm(missed))
 
 
 @pytest.fixture(scope="module")

@@ -145,17 +145,20 @@ class Layout:
     def free_runs(self) -> FreeRuns:
         """The straight runs of the lines that may move."""
         chain = self.chains
-        parts = [np.zeros((0, 5))]
+        first, last, number, lead, entry = [], [], [], [], []
         for index, route in enumerate(self.routes):
-            if route.kept is None:
-                points = chain.members[chain.begins[index] : chain.begins[index + 1]]
-                number = np.arange(len(points) - 1)
-                site = self.sites[route.winch]
-                entry = np.inf if site.winch.mount is Mount.WORLD else self.constraints.clearance if site.fixed else 0.0
-                lead = np.full(len(number), route.lead)
-                parts.append(np.column_stack([points[:-1], points[1:], number, lead, np.where(number, 0.0, entry)]))
-        first, last, number, lead, entry = np.concatenate(parts).T
-        return FreeRuns(*(part.astype(np.int64) for part in (first, last, number, lead)), entry)
+            if route.kept is not None:
+                continue
+            points = chain.members[chain.begins[index] : chain.begins[index + 1]].tolist()
+            site, count = self.sites[route.winch], len(points) - 1
+            free = np.inf if site.winch.mount is Mount.WORLD else self.constraints.clearance if site.fixed else 0.0
+            first += points[:-1]
+            last += points[1:]
+            number += range(count)
+            lead += [route.lead] * count
+            entry += [free] + [0.0] * (count - 1)
+        places = (np.array(part, dtype=np.int64) for part in (first, last, number, lead))
+        return FreeRuns(*places, entry=np.array(entry, dtype=float))
 
     def place_of(self, route: int, point: int) -> slice:
         """The numbers of a point of a line."""

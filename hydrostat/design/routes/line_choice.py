@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 from jaxtyping import Bool
 from scipy.sparse import csc_array, hstack
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from hydrostat.arrays import Vector
 from hydrostat.design.polyline import Route, resample
@@ -36,18 +36,18 @@ class LineChoice:
         self.proposals, self.lines, self.winches, self.cables = proposals, lines, winches, cables
         bench, simulation = proposals.bench, bare.simulation
         slopes = csc_array(hstack([csc_array(self._pull(line)[:, None]) for line in lines]))
-        self._gives = np.eye(len(lines)) / Cable.stiffness
+        self.gives = np.eye(len(lines)) / Cable.stiffness  # contraction of each line by the tension of each [m/N]
         for first in range(0, len(lines), _AT_ONCE):
             some = slice(first, first + _AT_ONCE)
-            self._gives[:, some] += slopes.T @ simulation.response(bare.poses[0], slopes[:, some].toarray())
+            self.gives[:, some] += slopes.T @ simulation.response(bare.poses[0], slopes[:, some].toarray())
         missed = [bench.residual(simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
-        moves = []
+        self.moves: list[np.ndarray] = []  # of the markers by the tension of each line, of each pose [m/N]
         for index in range(len(missed)):
             rows = len(bench.markers[index]) * bare.layout.dim
             fields = bare.slopes[index].fields[:rows].reshape(rows, -1)
-            moves.append(-bench.weights[index][:, None] * (slopes.T @ fields.T).T)
-        self._grams = np.array([move.T @ move for move in moves])
-        self._aims = np.array([move.T @ miss for move, miss in zip(moves, missed, strict=True)])
+            self.moves.append(-bench.weights[index][:, None] * (slopes.T @ fields.T).T)
+        self._grams = np.array([move.T @ move for move in self.moves])
+        self._aims = np.array([move.T @ miss for move, miss in zip(self.moves, missed, strict=True)])
         self._squares = np.array([float(miss @ miss) for miss in missed])
         self._ridges = _EFFORT * np.sqrt(self._squares) / bench.constraints.tension_limit
         self._places = np.array([line.place for line in lines], dtype=np.int64)
@@ -72,7 +72,7 @@ class LineChoice:
     def _costs(self, sets: np.ndarray) -> Vector:
         """The same of several sets of as many lines."""
         errors = np.empty(len(sets))
-        model = (self._gives, self._grams, self._aims, self._squares, self._ridges, self._places)
+        model = (self.gives, self._grams, self._aims, self._squares, self._ridges, self._places)
         native.line_errors(*model, np.ascontiguousarray(sets), _SLACK, errors)
         return errors * (1.0 + _SIMPLE * sets.shape[1])
 
@@ -126,14 +126,15 @@ class LineChoice:
     def _fitting(self, chosen: Sequence[int]) -> Bool[np.ndarray, " lines"]:
         """True for lines that can be built beside others."""
         own, most = list(chosen), self.proposals.bench.constraints.cables_per_winch
-        fits = ~self._meets[own].any(axis=0)
+        fits: np.ndarray = np.logical_not(self._meets[own].any(axis=0))
         fits[own] = False
         places, counts = np.unique(self._places[own], return_counts=True)
         there = np.isin(self._places, places)
         fits &= ~np.isin(self._places, places[counts >= most])
         if len(places) >= self.winches:
             return fits & there
-        return fits & (there | ~self._crowded[:, self._places[own]].any(axis=1)[self._places])
+        crowded: np.ndarray = np.any(self._crowded[:, self._places[own]], axis=1)
+        return fits & (there | ~crowded[self._places])
 
     @cached_property
     def _crowded(self) -> Bool[np.ndarray, "points points"]:
@@ -158,7 +159,7 @@ class LineChoice:
         owners = np.repeat(np.arange(len(fine)), [len(points) for points in fine])
         points, places = np.concatenate(fine), self._places[owners]
         away = np.linalg.norm(points - graph.points[places], axis=1)
-        tree = cKDTree(points)
+        tree = KDTree(points)
         one, other = tree.query_pairs(np.nextafter(near, 0.0), output_type="ndarray").T
         beside = _ROOM * constraints.spool_radius
         both = (places[one] == places[other]) & ((away[one] < beside) | (away[other] < beside))
