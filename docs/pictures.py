@@ -37,7 +37,18 @@ PORTRAIT = 3.2
 
 
 def main() -> None:
-    """Design the starfish and draw its stages, then all of the gallery and the hand."""
+    """Draw all of them."""
+    draw_demo()
+    draw_dance()
+    draw_gallery()
+    draw_bodies()
+    draw_hand()
+    draw_dirt()
+    draw_kits()
+
+
+def draw_demo() -> None:
+    """The stages of the design of `make demo`."""
     robot = hs.load_robot(gallery_folder("starfish"))
     wave = robot.poses["wave"]
     activation = activate(robot, wave, edge_fibres(robot.body.mesh))
@@ -45,12 +56,6 @@ def main() -> None:
     network = hs.design_cables(robot, [wave], winches=2, cables=6)
     save_png(draw_network(network.robot, title=""), HERE / "network.png", dpi=110)
     save_png(draw_reached(network.robot, network.reached[0], title=""), HERE / "reached.png", dpi=110)
-    draw_dance()
-    draw_gallery()
-    draw_bodies()
-    draw_hand()
-    draw_dirt()
-    draw_kits()
 
 
 def draw_dance() -> None:

@@ -8,9 +8,10 @@ from hydrostat.fabrication.body_work import channel_problems, stuffing_problems
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.line import check_line, line_for
-from hydrostat.fabrication.parts.winch_unit import choose_robot_motor, unit_problems
+from hydrostat.fabrication.parts.motor import choose_motor
+from hydrostat.fabrication.parts.winch_unit import unit_problems
 from hydrostat.fabrication.patterns.pattern import pattern_problems
-from hydrostat.robot import Robot, sewn_robot
+from hydrostat.robot import Mount, Robot, sewn_robot
 
 
 def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOptions | None = None) -> tuple[str, ...]:
@@ -24,8 +25,9 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
     """
     options = options or KitOptions()
     sewn = sewn_robot(robot) if options.method_for(robot.body) is Method.PLUSH else robot
+    inside = any(winch.mount is Mount.BODY for winch in robot.winches)
     torques = () if demand is None else demand.torques
-    motor = choose_robot_motor(sewn, options.motor, torques, options.parts)
+    motor = choose_motor(options.motor, torques, inside=inside, winches=len(robot.winches))
     found = [*unit_problems(sewn, options.parts, motor), *_of_body(robot, options)]
     if demand is not None:
         found += check_line(sewn, _shared(demand.tensions, sewn), line_for(options.parts.cable)).problems

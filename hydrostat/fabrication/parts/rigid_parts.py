@@ -8,12 +8,12 @@ from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
 from hydrostat.fabrication.parts.body_seat import BodySeat, body_seat
 from hydrostat.fabrication.parts.grommet import grommet
-from hydrostat.fabrication.parts.motor import Motor
+from hydrostat.fabrication.parts.motor import Motor, choose_motor
 from hydrostat.fabrication.parts.stopper import Stopper, stopper
-from hydrostat.fabrication.parts.winch_unit import WinchUnit, choose_robot_motor, find_crowded_units, winch_units
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, find_crowded_units, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Robot
+from hydrostat.robot import Mount, Robot
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -146,7 +146,8 @@ def rigid_parts(
     [mm]; so many pinholes of the diameter `hole` [mm] get a grommet. Raises InputError: there is no such motor, or a
     pinhole is too small for a grommet.
     """
-    chosen = choose_robot_motor(robot, motor, demand.torques, options)
+    inside = any(winch.mount is Mount.BODY for winch in robot.winches)
+    chosen = choose_motor(motor, demand.torques, inside=inside, winches=len(robot.winches))
     units = winch_units(robot, options, chosen)
     seat = body_seat(robot, options, bed)
     return RigidParts(

@@ -10,7 +10,7 @@ from manifold3d import Manifold
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.arrangement import LaidUnit, arrange_units
 from hydrostat.fabrication.parts.housing import Housing, drive_of, roof_of
-from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
+from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.places import UnitBox, UnitPlace, seam_of
 from hydrostat.fabrication.parts.spool import Groove, Spool, capacity, spool_turns, width_for
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
@@ -247,22 +247,6 @@ def unit_problems(robot: Robot, options: PartOptions, motor: Motor) -> tuple[str
         for draft, laid in _drafts(robot, options, motor)
         for problem in (*draft.problems, *(laid.problems if laid else ()))
     )
-
-
-def choose_robot_motor(robot: Robot, key: str, torques: Iterable[float], options: PartOptions) -> Motor:
-    """The motor of a key; "auto": the weakest that carries the torques [N m] of a robot's winches for long and fits.
-
-    Where none that fits in the body does, it is the weakest that carries them for seconds (`choose_motor`). Raises
-    InputError if no motor has this key.
-    """
-    needed = tuple(torques)
-    inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-    if key == "auto" and inside:
-        largest = max(needed, default=0.0) - 1e-12
-        for motor in MOTORS:
-            if largest_torque(motor) >= largest and not unit_problems(robot, options, motor):
-                return motor
-    return choose_motor(key, needed, inside=inside, winches=len(robot.winches))
 
 
 def _drafts(robot: Robot, options: PartOptions, motor: Motor) -> list[tuple["_UnitDraft", LaidUnit | None]]:
