@@ -56,7 +56,7 @@ def test_a_tolerance_out_of_reach_gives_the_best(unchecked: None) -> None:
     network = design_cables(bare(), [UP, DOWN], winches="auto", cables=2, options=options(1e-9))
     assert network.complete
     fitting = [one for one in network.alternatives if not find_refusals(one.robot, demand_of(one.robot, one.reached))]
-    assert network.rms_error == pytest.approx(min(one.rms_error for one in fitting))
+    assert network.built == pytest.approx(min(one.built for one in fitting))
 
 
 def test_locked_winches_count(unchecked: None) -> None:

@@ -81,7 +81,7 @@ def test_methods_and_muscles_are_of_closed_sets(unchecked: None) -> None:
     for wrong in ({"threshold": 0}, {"distance": 0.0}, {"steps": 1.5}, {"phi": 1.1}):
         with pytest.raises(InputError, match=r"TreeOptions\.\w+ must be"):
             TreeOptions.single(**wrong)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match=r'^method must be one of routes, trees, not "magic"$'):
+    with pytest.raises(InputError, match=r'^method must be one of routes, trees, chang2018, not "magic"$'):
         DesignRequest(poses=(UP,), method="magic")  # type: ignore[arg-type]
 
 

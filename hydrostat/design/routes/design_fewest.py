@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from hydrostat.design.network import Alternative, Network, Size, size_of
 from hydrostat.design.request import COUNTS, DesignRequest
-from hydrostat.design.routes.design_routes import Hints, RouteSearch, deadline_of, kit_fits
+from hydrostat.design.routes.design_routes import Hints, RouteSearch, deadline_of
+from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
@@ -54,7 +55,7 @@ def design_fewest(
             if winches == largest and not found:
                 raise
             continue
-        judged = (search.judge(trial.layout) for trial in search.sizes.values())
+        judged = (search.finalists.judge(trial.layout) for trial in search.sizes.values())
         _keep_best(front, [*(network for network in judged if network is not None), *_all(found[-1])])
         if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
             break

@@ -6,15 +6,15 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
 
-from hydrostat.design.buildable import pulls, violations
-from hydrostat.design.built_error import expected_error
+from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
-from hydrostat.design.routes.bench import Bench, Trial, reached_from_rest
+from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certificate import certify
+from hydrostat.design.routes.finalists import DIGITS, Finalists, kit_fits
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
@@ -25,12 +25,10 @@ from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.watch import Watch, unseen
 from hydrostat.design.winch_room import built_in
-from hydrostat.errors import HydrostatError, InputError, NotConvergedError
-from hydrostat.fabrication import demand_of, find_refusals
-from hydrostat.ik import IKOptions, Limits
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
-from hydrostat.robot import Mount, Robot, safe_travels
-from hydrostat.simulation import BodyPhysics, Simulation, cable_sensitivities
+from hydrostat.robot import Mount, Robot
+from hydrostat.simulation import BodyPhysics, Simulation
 
 Hints = Callable[[BodyPhysics], Iterable[Robot]]
 """Finds networks to begin with, when it is their turn, by the physics of the body."""
@@ -147,7 +145,7 @@ class RouteSearch:
         spacing = float(self.robot.body.mesh.edge_lengths.mean())
         graph = route_graph(self.robot, self.region, self.constraints, spacing=spacing)
         self.proposals = Proposals(self.bench, graph, self.options, self.options.spacing * spacing)
-        growth = Growth(self.proposals, self._noted)
+        self.growth = growth = Growth(self.proposals, self._noted)
         self.progress("Growing networks", 0, self._total)
         begun = growth.bare(self._beginning())
         if begun is None:
@@ -226,7 +224,7 @@ class RouteSearch:
         ):
             pushed = pushed_back(layout_of(hint, self.constraints), self.region, 0.03 * self.robot.body.mesh.size)
             fits = len(hint.winches) <= self.winches and len(hint.cables) <= self.cables
-            if not fits or pushed is None or violations(pushed.robot(digits=_DIGITS), self.constraints, self.region):
+            if not fits or pushed is None or violations(pushed.robot(digits=DIGITS), self.constraints, self.region):
                 continue
             trial = self.bench.reached(pushed, None)
             if trial is not None:
@@ -242,6 +240,11 @@ class RouteSearch:
             return trial
         thinner = growth.polished(growth.truly(thinner))
         return thinner if thinner.cost < (1 + _LOOSER) * trial.cost else trial
+
+    @cached_property
+    def finalists(self) -> Finalists:
+        """Judges networks as their user will find them."""
+        return Finalists(self.robot, self.request, self.constraints, self.bench, self.region)
 
     @cached_property
     def region(self) -> Region:
@@ -260,7 +263,7 @@ class RouteSearch:
         if self.request.improve:
             self._check_counts("to be improved", len(whole.sites), len(whole.routes))
             pushed = pushed_back(whole, self.region, 0.03 * self.robot.body.mesh.size)
-            told = None if pushed is None else violations(pushed.robot(digits=_DIGITS), self.constraints, self.region)
+            told = None if pushed is None else violations(pushed.robot(digits=DIGITS), self.constraints, self.region)
             if pushed is None or told:
                 raise InputError(
                     "the robot's own network cannot be moved into what the constraints allow"
@@ -293,7 +296,7 @@ class RouteSearch:
         size = len(trial.layout.sites), len(trial.layout.routes)
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
-        stage = DesignStage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.built)
+        stage = DesignStage(words=words, robot=trial.layout.robot(digits=DIGITS), error=trial.built)
         self.stages.append(stage)
         self.passed.append((trial.cost, trial.layout))
         if self.best is None or trial.cost < self.best.cost:
@@ -302,30 +305,20 @@ class RouteSearch:
 
     def _finished(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
         """The networks found, judged as their user will find them, the best first."""
-        judged = self._all_judged(self.found if complete else [self.best])
+        judged = self.finalists.judged(self.found if complete else [self.best])
         if not any(kit_fits(network) for network in judged):
-            judged += self._first_to_fit(_LOOKED_AT if complete else _LOOKED_AT_LATE)
-        judged += self._all_judged(self._simpler() if complete else [])
+            judged += self.finalists.with_room(self.found if complete else [self.best], self.growth)
+            known = [trial.layout for trial in self.found]
+            others = [pair for pair in self.passed if not any(pair[1] is layout for layout in known)]
+            judged += self.finalists.first_to_fit(others, _LOOKED_AT if complete else _LOOKED_AT_LATE)
+        judged += self.finalists.judged(self._simpler() if complete else [])
         if not judged:
             raise HydrostatError(
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
             )
-        judged.sort(key=self._cost)
+        judged.sort(key=self.finalists.cost)
         first = next((place for place, network in enumerate(judged) if kit_fits(network)), 0)
         return judged[first], [*judged[:first], *judged[first + 1 :]]
-
-    def _all_judged(self, trials: Iterable[Trial | None]) -> list[Alternative]:
-        return [judged for trial in trials if trial is not None and (judged := self.judge(trial.layout)) is not None]
-
-    def _first_to_fit(self, most: int) -> list[Alternative]:
-        """The best of the networks on the way that a kit can be made of, for when none of the refined ones can."""
-        known = [trial.layout for trial in self.found]
-        others = [(cost, layout) for cost, layout in self.passed if not any(layout is other for other in known)]
-        for _, layout in sorted(others, key=lambda passed: passed[0])[:most]:
-            judged = self.judge(layout)
-            if judged is not None and kit_fits(judged):
-                return [judged]
-        return []
 
     @property
     def _kept(self) -> Constraints:
@@ -343,54 +336,6 @@ class RouteSearch:
                 kept.append(trial)
         return kept
 
-    def judge(self, layout: Layout) -> Alternative | None:
-        """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
-        robot = self._safe(self._numbered(layout).robot(digits=_DIGITS))
-        if violations(robot, self.constraints, self.region):
-            return None
-        simulation = Simulation(robot, body=self.bench.body)
-        limits = Limits(tension=self.constraints.tension_limit)
-        try:
-            reached = [reached_from_rest(simulation, pose, limits, IKOptions()) for pose in self.request.poses]
-        except NotConvergedError:
-            return None
-        if pulls(robot, reached, self.constraints):
-            return None
-        built = expected_error(simulation, reached, self.bench.uncertainty)
-        return Alternative(robot=robot, reached=tuple(reached), built=built)
-
-    def _safe(self, robot: Robot) -> Robot:
-        """The robot with new winches that neither use up a cable nor squeeze the body too far, to a millimetre."""
-        locked, most = {winch.name for winch in self.constraints.staying(self.robot)[0]}, safe_travels(robot)
-        winches = [
-            winch
-            if winch.name in locked or most[winch.name] >= winch.travel
-            else replace(winch, travel=max(1e-3 * int(1e3 * most[winch.name]), 1e-3))
-            for winch in robot.winches
-        ]
-        return robot.with_network(winches, robot.cables)
-
-    def _cost(self, network: Alternative) -> float:
-        """The error as built, more where little else is in reach [m]."""
-        if not self.options.reach:
-            return network.built
-        simulation = Simulation(network.robot, body=self.bench.body)
-        slopes = [
-            cable_sensitivities(simulation, one.pose, own)
-            for one, own in zip(network.reached, self.bench.markers, strict=True)
-        ]
-        return network.built * self.bench.nearness(network.robot, slopes)
-
-    def _numbered(self, layout: Layout) -> Layout:
-        """The layout with its new winches numbered in their order; those of the robot keep their names."""
-        own = {winch.name for winch in self.robot.winches}
-        free = (name for number in range(1, 99) if (name := f"winch_{number}") not in own)
-        sites = tuple(
-            site if site.winch.name in own else replace(site, winch=replace(site.winch, name=next(free)))
-            for site in layout.sites
-        )
-        return replace(layout, sites=sites)
-
     def _certificate(self, network: Alternative) -> Certificate | None:
         layout = layout_of(network.robot, self.constraints)
         poses = [reached.pose for reached in network.reached]
@@ -406,12 +351,6 @@ def deadline_of(request: DesignRequest) -> float:
     return math.inf if request.seconds is None else time.monotonic() + request.seconds
 
 
-def kit_fits(network: Alternative | Network) -> bool:
-    """True if the kit of a network would not be refused."""
-    return not find_refusals(network.robot, demand_of(network.robot, network.reached))
-
-
-_DIGITS = 5  # coordinates to a hundredth of a millimetre, as nobody places a cable finer
 _ANOTHER = 0.2  # a round of exchanges that gains so much is followed by another
 _LOOSER = 0.02  # fewer holes may cost so much
 _WORSE = 0.05  # a simpler network is told of where those that are simpler still have so much larger errors

@@ -1,0 +1,115 @@
+"""`Finalists`: networks judged as their user will find them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from hydrostat.design.buildable import pulls, violations
+from hydrostat.design.built_error import expected_error
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.network import Alternative, Network
+from hydrostat.design.region import Region
+from hydrostat.design.request import DesignRequest
+from hydrostat.design.routes.bench import Bench, Trial, reached_from_rest
+from hydrostat.design.routes.growth import Growth
+from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.refine import pushed_back
+from hydrostat.errors import NotConvergedError
+from hydrostat.fabrication import demand_of, find_refusals
+from hydrostat.ik import IKOptions, Limits
+from hydrostat.robot import Robot, safe_travels
+from hydrostat.simulation import Simulation, cable_sensitivities
+
+DIGITS = 5
+"""Coordinates are rounded to a hundredth of a millimetre [digits of a metre]: nobody places a cable finer."""
+
+
+@dataclass(frozen=True, eq=False)
+class Finalists:
+    """Judges layouts by rounded coordinates, poses from rest, and what a kit needs."""
+
+    robot: Robot  # that is designed for
+    request: DesignRequest
+    constraints: Constraints  # of the search
+    bench: Bench
+    region: Region
+
+    def judge(self, layout: Layout) -> Alternative | None:
+        """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
+        robot = self._safe(self._numbered(layout).robot(digits=DIGITS))
+        if violations(robot, self.constraints, self.region):
+            return None
+        simulation = Simulation(robot, body=self.bench.body)
+        limits = Limits(tension=self.constraints.tension_limit)
+        try:
+            reached = [reached_from_rest(simulation, pose, limits, IKOptions()) for pose in self.request.poses]
+        except NotConvergedError:
+            return None
+        if pulls(robot, reached, self.constraints):
+            return None
+        built = expected_error(simulation, reached, self.bench.uncertainty)
+        return Alternative(robot=robot, reached=tuple(reached), built=built)
+
+    def _safe(self, robot: Robot) -> Robot:
+        """The robot with new winches that neither use up a cable nor squeeze the body too far, to a millimetre."""
+        locked, most = {winch.name for winch in self.constraints.staying(self.robot)[0]}, safe_travels(robot)
+        winches = [
+            winch
+            if winch.name in locked or most[winch.name] >= winch.travel
+            else replace(winch, travel=max(1e-3 * int(1e3 * most[winch.name]), 1e-3))
+            for winch in robot.winches
+        ]
+        return robot.with_network(winches, robot.cables)
+
+    def cost(self, network: Alternative) -> float:
+        """The error as built, more where little else is in reach [m]."""
+        if not self.bench.reach:
+            return network.built
+        simulation = Simulation(network.robot, body=self.bench.body)
+        slopes = [
+            cable_sensitivities(simulation, one.pose, own)
+            for one, own in zip(network.reached, self.bench.markers, strict=True)
+        ]
+        return network.built * self.bench.nearness(network.robot, slopes)
+
+    def _numbered(self, layout: Layout) -> Layout:
+        """The layout with its new winches numbered in their order; those of the robot keep their names."""
+        own = {winch.name for winch in self.robot.winches}
+        free = (name for number in range(1, 99) if (name := f"winch_{number}") not in own)
+        sites = tuple(
+            site if site.winch.name in own else replace(site, winch=replace(site.winch, name=next(free)))
+            for site in layout.sites
+        )
+        return replace(layout, sites=sites)
+
+    def judged(self, trials: Iterable[Trial | None]) -> list[Alternative]:
+        """The networks of some trials that keep all constraints."""
+        return [judged for trial in trials if trial is not None and (judged := self.judge(trial.layout)) is not None]
+
+    def with_room(self, trials: Iterable[Trial | None], growth: Growth) -> list[Alternative]:
+        """The first of some networks that a kit can be made of once its winches stand farther apart."""
+        for times in _APART:
+            limits = replace(self.constraints, winch_gap=times * self.constraints.winch_gap)
+            for trial in trials:
+                layout = None if trial is None else replace(trial.layout, constraints=limits)
+                pushed = layout and pushed_back(layout, self.region, 0.03 * self.robot.body.mesh.size)
+                moved = self.bench.reached(pushed, trial) if pushed else None
+                judged = None if moved is None else self.judge(growth.polished(moved).layout)
+                if judged is not None and kit_fits(judged):
+                    return [judged]
+        return []
+
+    def first_to_fit(self, passed: Iterable[tuple[float, Layout]], most: int) -> list[Alternative]:
+        """The best of the networks on the way, with their costs, that a kit can be made of; so many are looked at."""
+        for _, layout in sorted(passed, key=lambda pair: pair[0])[:most]:
+            judged = self.judge(layout)
+            if judged is not None and kit_fits(judged):
+                return [judged]
+        return []
+
+
+def kit_fits(network: Alternative | Network) -> bool:
+    """True if the kit of a network would not be refused."""
+    return not find_refusals(network.robot, demand_of(network.robot, network.reached))
+
+
+_APART = (1.4, 1.8)  # so many times the gap of winches is asked for where their units meet
