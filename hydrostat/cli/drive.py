@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from hydrostat.simulation import Simulation
     from hydrostat.teleop import CommandMapper, DriveLoop, DriveSource
 
-SHOWN, LISTED = 0.1, 2.0  # time from one word on the motors to the next [s]: on a terminal, and where lines are kept
 BAR = 24  # letters of a full bar
 
 
@@ -151,7 +150,9 @@ class _Shown:
     def tell(self, driven: "DriveLoop") -> None:
         """Show where the motors are, if it is time to."""
         now = time.monotonic()
-        if now - self._last < (SHOWN if self._terminal else LISTED) and driven.silent == self._silent:
+        # time from one word on the motors to the next [s]: on a terminal, and where lines are kept
+        shown, listed = 0.1, 2.0
+        if now - self._last < (shown if self._terminal else listed) and driven.silent == self._silent:
             return
         self._last, self._silent = now, driven.silent
         state = "input lost: motors holding" if driven.silent else "hold" if driven.wish.hold else ""

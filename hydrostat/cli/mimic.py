@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 PAIRS, MAP, RECORDING, PICTURE = "poses.csv", "map.json", "poses.mcap", "pose.png"
 TIPS = 150  # poses to choose from where each has to be solved first
-TICK = 1 / 60  # motors are told again after so long [s]
 
 
 def mimic(
@@ -195,9 +194,10 @@ class _Session:
     def _key(self, number: int) -> str:
         """Return the key that the person types; motors are commanded to hold meanwhile."""
         self.say(f"pose {number + 1}: copy it, hold still, press Enter (q: quit)")
+        tick = 1 / 60  # motors are told again after so long [s]
         while not select.select([sys.stdin], [], [], 0.0)[0]:
             self.beat()
-            time.sleep(TICK)
+            time.sleep(tick)
         line = sys.stdin.readline()
         return "q" if not line else line.strip().lower()
 

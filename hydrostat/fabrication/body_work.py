@@ -26,7 +26,6 @@ from hydrostat.robot import Face, Mount, Robot
 from hydrostat.units import plural
 
 MANY_PIECES = 40  # more pieces of a mould than that are a warning: a judgement, each is some hours on a printer
-MUCH_PLASTIC = 5e3  # more plastic for a mould than that is a warning [g]: five of the usual spools, a judgement too
 
 
 def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
@@ -79,7 +78,9 @@ def _inside(robot: Robot) -> tuple[str, ...]:
 def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
     """Return a warning if a mold takes much printing."""
     pieces, mass = sum(part.count for part in printed), sum(part.count * part.mass for part in printed)
-    if pieces <= MANY_PIECES and mass <= MUCH_PLASTIC:
+    # more plastic for a mould than that is a warning [g]: five of the usual spools, a judgement too
+    much_plastic = 5e3
+    if pieces <= MANY_PIECES and mass <= much_plastic:
         return ()
     return (
         f"the mould needs {plural(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic. Make the body smaller, use "
@@ -88,7 +89,6 @@ def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
 
 
 SKIN = 1.0  # Least foam between a tube and the skin [mm]: thinner, it tears when the tube is pulled. Measured on none.
-_STEP = 1e-3  # distance of the places that are looked at [m]
 
 
 def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:
@@ -125,8 +125,9 @@ def _between(depths: Float[np.ndarray, " places"], needed: float) -> int | None:
 def _along(points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "places 3"]:
     """Places along a line through points [m]."""
     pieces = []
+    step = 1e-3  # distance of the places that are looked at [m]
     for one, other in pairwise(points):
-        count = max(int(np.ceil(np.linalg.norm(other - one) / _STEP)), 1)
+        count = max(int(np.ceil(np.linalg.norm(other - one) / step)), 1)
         pieces.append(one + np.linspace(0.0, 1.0, count, endpoint=False)[:, None] * (other - one))
     return np.concatenate([*pieces, points[-1:]])
 

@@ -10,7 +10,6 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Body, check_number
 
 STUFFINGS = ("polyester fibre",)  # materials that are stuffed into cloth: a body of them is plush, in space too
-_SHORTEST = 50.0  # a piece of the gusset that is still worth sewing [mm]
 
 
 class Corner(StrEnum):
@@ -92,8 +91,9 @@ class PatternOptions:
     def __post_init__(self) -> None:
         make_member(self, "corner", Corner)
         _check_sizes(self, above_zero=("pinhole",))
-        if self.gusset_piece < _SHORTEST:
-            raise InputError(f"gusset_piece must be at least {_SHORTEST:g} mm, not {self.gusset_piece:g} mm")
+        shortest = 50.0  # a piece of the gusset that is still worth sewing [mm]
+        if self.gusset_piece < shortest:
+            raise InputError(f"gusset_piece must be at least {shortest:g} mm, not {self.gusset_piece:g} mm")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -72,7 +72,8 @@ def exact_steps(
         return pose, 0
     goals = dict(named_targets(target)) if not isinstance(target, PoseTarget) else target.targets
     tracker, taken, tried = Tracker(simulation, start=pose), 0, 0
-    while taken < steps and tried < _TRIES and _mean_error(pose, goals) > enough:
+    tries = 3  # So many updates in a row may find nothing better; each tries shorter steps than the one before
+    while taken < steps and tried < tries and _mean_error(pose, goals) > enough:
         reached = tracker.update(target, seconds=1.0)
         moved = not np.array_equal(reached.pose.contractions, pose.contractions)
         pose, taken, tried = reached.pose, taken + moved, 0 if moved else tried + 1
@@ -127,7 +128,3 @@ def _residual(answer: LearnedPose, pose: Equilibrium) -> np.ndarray:
 def _missed(answer: LearnedPose, pose: Equilibrium) -> dict[str, float]:
     distances = np.linalg.norm(_residual(answer, pose), axis=1).tolist()
     return dict(zip(answer.target.targets, distances, strict=True))
-
-
-_TRIES = 3
-"""So many updates in a row may find nothing better; each tries shorter steps than the one before."""

@@ -204,7 +204,8 @@ class LearnedModel:
         weights[:count] = asked * self.unit[:count]  # what is left is then in metres
         wanted = np.zeros(len(self.unit))
         wanted[:count] = (goal - self.middle[:count]) / self.unit[:count]
-        enough = asked.sum() / self.card.dim * (_USUAL * self.card.error) ** 2
+        usual = 3.0  # Ratio of a target's error to the mean error of the networks, above which it is unusual
+        enough = asked.sum() / self.card.dim * (usual * self.card.error) ** 2
         starts = [] if self.inverse is None else [self._apply_inverse(goal)]
         best, least = np.zeros(len(self.low)), np.inf
         for start in [*starts, *self._nearest(goal, asked, _STARTS)[0]]:
@@ -312,6 +313,3 @@ _BEYOND = 1.02
 
 _STARTS = 3
 """Samples that a search begins from where the inverse network's answer is not near enough."""
-
-_USUAL = 3.0
-"""Ratio of a target's error to the mean error of the networks, above which it is unusual."""

@@ -108,9 +108,11 @@ def _by_ray(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampled]
     if not ray.is_initialized():
         here = "RAY_ADDRESS" not in os.environ
         ray.init(num_cpus=(os.cpu_count() if jobs < 0 else jobs) if here else None, log_to_driver=False)
-    work = ray.remote(num_cpus=1, max_retries=_RETRIES)(_numbered)
+    retries = 5  # So often Ray gives a file to another worker
+    work = ray.remote(num_cpus=1, max_retries=retries)(_numbered)
     shared, waiting, running = ray.put(plan), list(reversed(shards)), []
-    most = _AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
+    ahead = 2  # Files for each worker that Ray knows of at a time
+    most = ahead * max(1, int(ray.cluster_resources().get("CPU", 1)))
     try:
         while waiting or running:
             while waiting and len(running) < most:
@@ -142,9 +144,3 @@ _BY = {"loky": _by_joblib, "ray": _by_ray}
 
 BACKENDS = tuple(_BY)
 """Ways to work in many processes: of this machine, or of a Ray cluster."""
-
-_RETRIES = 5
-"""So often Ray gives a file to another worker."""
-
-_AHEAD = 2
-"""Files for each worker that Ray knows of at a time."""

@@ -221,7 +221,8 @@ def _train(
     optimiser = torch.optim.Adam(numbers, lr=rate, betas=(0.9, 0.99))
     schedule = torch.optim.lr_scheduler.LambdaLR(optimiser, lambda step: _rate(step / steps))
     best, least = [part.detach().clone() for part in numbers], torch.full((len(numbers[0]),), math.inf)
-    often = max(1, steps // _LOOKS)
+    looks = 60  # So often held-out samples are looked at
+    often = max(1, steps // looks)
     try:
         for step in range(steps):
             optimiser.zero_grad(set_to_none=True)
@@ -242,7 +243,8 @@ def _train(
 
 def _rate(share: float) -> float:
     """Learning rate as a share of the largest: a short rise, then a cosine."""
-    return share / _RISE if share < _RISE else 0.5 * (1.0 + math.cos(math.pi * (share - _RISE) / (1.0 - _RISE)))
+    rise = 0.05  # Share of the steps in which the learning rate rises
+    return share / rise if share < rise else 0.5 * (1.0 + math.cos(math.pi * (share - rise) / (1.0 - rise)))
 
 
 def _begin(sizes: list[int], members: int, linear: np.ndarray, draw: torch.Generator) -> list[Tensor]:
@@ -292,9 +294,3 @@ BEYOND = 1.02
 
 _BETWEEN = 0.5
 """Goals of the inverse network lie up to so far on the way from one sample to another."""
-
-_LOOKS = 60
-"""So often held-out samples are looked at."""
-
-_RISE = 0.05
-"""Share of the steps in which the learning rate rises."""

@@ -78,7 +78,8 @@ def make_training_set(samples: Samples, like: LearnedModel | None = None) -> Tra
 def linear_map(inputs: np.ndarray, outputs: np.ndarray) -> np.ndarray:
     """Ridge regression; the constant is the last row."""
     rows = np.hstack([inputs, np.ones((len(inputs), 1))])
-    return np.linalg.solve(rows.T @ rows + _RIDGE * len(rows) * np.eye(rows.shape[1]), rows.T @ outputs)
+    ridge = 1e-3
+    return np.linalg.solve(rows.T @ rows + ridge * len(rows) * np.eye(rows.shape[1]), rows.T @ outputs)
 
 
 def _spread(part: np.ndarray) -> float:
@@ -91,5 +92,3 @@ LEAST = 20
 
 FEWEST = 5
 """So many correct a model."""
-
-_RIDGE = 1e-3

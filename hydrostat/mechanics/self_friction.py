@@ -40,7 +40,9 @@ class SelfFrictionEnergy(Energy):
             friction: Coulomb's coefficient mu.
         """
         skin = SelfContactSurface.of(mesh, contact.skin.distance)
-        springs = _STICKS * contact.skin.stiffness / contact.skin.distance * contact.skin.areas[skin.own]
+        # Stiffness of each side along the surface per area, in units of Young's modulus / distance
+        sticks = 5.0
+        springs = sticks * contact.skin.stiffness / contact.skin.distance * contact.skin.areas[skin.own]
         return cls(contact, SelfContactFriction.at_rest(skin, contact.skin.rest, 0.5 * friction, springs))
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
@@ -121,7 +123,8 @@ class SelfFrictionEnergy(Energy):
         self.contact.add_gradient(nodes, np.zeros(0), forces)
         forces = -forces[self.clasp.skin.own]
         pushes = np.linalg.norm(forces, axis=1)
-        pushes[pushes < _FAINT * self.clasp.grip.springs * self.contact.skin.distance] = 0.0
+        faint = 1e-10  # Forces below this share of the modulus x area are none
+        pushes[pushes < faint * self.clasp.grip.springs * self.contact.skin.distance] = 0.0
         return pushes, np.where(pushes > 0, 1.0 / np.where(pushes > 0, pushes, 1.0), 0.0)[:, None] * forces
 
     def _active_pairs(self, nodes: Nodes) -> Pairs:
@@ -155,10 +158,3 @@ def _drags(
     for corner in range(clasp.stencils.shape[1]):
         columns[clasp.stencils[rows, corner], :, np.arange(len(some))] += blocks[:, corner]
     return columns.reshape(nodes.size, len(some))
-
-
-_STICKS = 5.0
-"""Stiffness of each side along the surface per area, in units of Young's modulus / distance."""
-
-_FAINT = 1e-10
-"""Forces below this share of the modulus x area are none."""

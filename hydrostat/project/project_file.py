@@ -18,8 +18,6 @@ from hydrostat.robot import replace_file
 
 PROJECT_FILE = "studio.json"
 
-LARGEST = 20_000_000  # maximum size of the file [bytes]
-
 
 KEYS = (
     "winches", "cables", "poses", "zones", "mirror", "tension", "clearance", "depth", "tolerance", "simplicity",
@@ -67,7 +65,8 @@ def read_project_file(folder: Path, cables: Sequence[str] = ()) -> tuple[Timelin
     file = folder / PROJECT_FILE
     if not file.exists():
         return Timeline(), Wishes()
-    content = read_stranger(file, name=PROJECT_FILE, most=LARGEST)
+    largest = 20_000_000  # maximum size of the file [bytes]
+    content = read_stranger(file, name=PROJECT_FILE, most=largest)
     try:
         read: Any = _FILE.model_validate_json(_with_names(content, cables))
         return read.timeline, Wishes.of(**vars(read.wishes))

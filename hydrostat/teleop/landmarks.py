@@ -16,8 +16,6 @@ from hydrostat.teleop.source import HandReading, HandSource
 COUNT = 21
 """Landmarks: the wrist, then from root to tip those of thumb, index, middle, ring and little finger (MediaPipe)."""
 FINGERS = ("thumb", "index", "middle", "ring", "little")
-WAIT = 0.2
-"""So long is waited for a picture with a hand [s]."""
 
 
 class HandLandmarks(HandSource):
@@ -44,8 +42,9 @@ class HandLandmarks(HandSource):
 
     def read(self) -> HandReading:
         """The newest landmarks (HydrostatError: none come, or what comes is none)."""
+        wait = 0.2  # So long is waited for a picture with a hand [s]
         try:
-            self._socket.settimeout(WAIT)
+            self._socket.settimeout(wait)
             data = self._socket.recv(65536)
             self._socket.setblocking(False)
             with suppress(BlockingIOError):

@@ -12,8 +12,6 @@ from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
 USUAL = 1
 """Controller number of the first knob unless told otherwise."""
-LOOK = 1.0
-"""Interval between checks that the port still exists [s]."""
 
 
 class MidiKnobs(DriveSource):
@@ -54,9 +52,10 @@ class MidiKnobs(DriveSource):
     def read(self) -> DriveWish:
         """Return the positions of the knobs turned since the previous read."""
         now, places = self._clock(), dict[str, float]()
+        look = 1.0  # Interval between checks that the port still exists [s]
         try:
             messages = list(self._port.iter_pending())
-            gone = self._port.closed or (self._named and now - self._looked > LOOK and not self._there(now))
+            gone = self._port.closed or (self._named and now - self._looked > look and not self._there(now))
         except OSError as error:
             raise HydrostatError(f"MIDI port lost ({error}); motors holding") from None
         if gone:
@@ -103,10 +102,6 @@ def _open(name: str) -> Any:
 
 HERE, PORT = "127.0.0.1", 9000
 """Only this computer is heard unless told otherwise."""
-ALIVE = 0.5
-"""Who once said /alive must say something so often [s]."""
-_MOST = 500
-"""Datagrams that are heard in one look, at most."""
 
 
 class Osc(DriveSource):
@@ -144,7 +139,8 @@ class Osc(DriveSource):
     def read(self) -> DriveWish:
         """Return the commands received since the previous read."""
         places, over = dict[str, float](), False
-        for _ in range(_MOST):
+        most = 500  # Datagrams that are heard in one look, at most
+        for _ in range(most):
             try:
                 data = self._socket.recv(65536)
             except BlockingIOError:
@@ -167,8 +163,9 @@ class Osc(DriveSource):
     def _take(self, address: str, values: Sequence[Any], places: dict[str, float]) -> bool:
         """Hear a message; tell whether it ends."""
         kind, _, name = address.strip("/").partition("/")
+        alive = 0.5  # Who once said /alive must say something so often [s]
         if kind == "alive":
-            self.silence = ALIVE
+            self.silence = alive
         elif kind == "hold":
             self._hold = bool(values[0]) if values else True
         elif kind == "rest":

@@ -17,9 +17,6 @@ from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, Worl
 BEYOND = 1.02
 """An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
 
-PACE = 1.0
-"""From an action to the next, where motors play what was done at rest [s]."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class ReachOptions:
@@ -145,7 +142,8 @@ class ReachEnv(GoalEnv):
         reached = self.world.reach(taken)
         if reached is not None:  # where no equilibrium is found the robot stays
             self._taken, self._at = taken, reached
-        self.moves.append((PACE * self.taken_steps, self._taken))
+        pace = 1.0  # From an action to the next, where motors play what was done at rest [s]
+        self.moves.append((pace * self.taken_steps, self._taken))
         self.show()
         observation, info = self._observation(), self._info()
         reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))

@@ -92,7 +92,9 @@ class ThingWorld:
         along = self._physics.hold * np.eye(len(self.start))
         guide = GuideEnergy(self._carriage, place=self.start, axes=self._begun, along=along, turning=0.0)
         held = [guide] if self._physics.hold else []
-        self.simulation = Simulation(self.robot, body=physics, energies=held, options=NewtonOptions(tolerance=_FORCE))
+        # Share of the largest force that a time step may leave: turns of a disc change by less than 0.1 degrees
+        force = 1e-5
+        self.simulation = Simulation(self.robot, body=physics, energies=held, options=NewtonOptions(tolerance=force))
         self.motion: Motion = self.simulation.motion_at_rest()
         self.turned = 0.0
 
@@ -175,7 +177,3 @@ def angle_about(axes: Points, begun: Points, axis: Vector) -> float:
 
     x, y, z, w = Rotation.from_matrix(turn).as_quat()
     return float((2 * np.arctan2(np.array([x, y, z]) @ axis, w) + np.pi) % (2 * np.pi) - np.pi)
-
-
-_FORCE = 1e-5
-"""Share of the largest force that a time step may leave: turns of a disc change by less than 0.1 degrees."""

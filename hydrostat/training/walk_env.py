@@ -181,7 +181,8 @@ class WalkEnv(GoalEnv):
         mesh, by_gait = self.robot.body.mesh, self.options.actions is WalkActions.GAIT
         self.unit, self.tolerance = mesh.size, self.options.tolerance
         self.beat = BEATS[WalkActions(self.options.actions)]
-        self.steps = self.options.steps or round(_SECONDS / (self.beat * STEP))
+        seconds = 5.0  # Default duration of an episode [s]
+        self.steps = self.options.steps or round(seconds / (self.beat * STEP))
         self.action_space = spaces.Box(-1.0, 1.0, (3 if by_gait else count,), np.float32)
         seen = count + 2 * marks * mesh.dim + (4 if by_gait else 0)
         goal = spaces.Box(-_FAR, _FAR, (2,), np.float64)
@@ -326,9 +327,6 @@ class WalkEnv(GoalEnv):
             "friction": self._given,
         }
 
-
-_SECONDS = 5.0
-"""Default duration of an episode [s]."""
 
 _FAR = 100.0
 """Bound of what is observed."""

@@ -7,8 +7,6 @@ from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.robot import Robot
 
-LEFT_OVER = 1e-6  # share of the block whose whereabouts may be unknown: what booleans round
-_ROUNDING = 1e-9  # less than this share is the rounding of sums
 MESH = 0.05  # share of its volume by which the body that is cast may differ from the mesh that was simulated
 _VOIDS = ("sprue", "vents", "bolts", "slots", "keys")  # openings in a printed block: neither plastic nor body
 
@@ -30,11 +28,13 @@ def _account(mould: Mould) -> Check:
         what = "pieces of the positive and silicone of both pours add up to the room in the frames"
         parts = _pieces(mould, "positive") + sum(volumes[pour] for pour in _POURS)
     lost = abs((parts + volumes["cutting"]) / math.prod(mould.box) - 1)
+    left_over = 1e-6  # share of the block whose whereabouts may be unknown: what booleans round
+    rounding = 1e-9  # less than this share is the rounding of sums
     return Check(
         what=what,
-        measured=f"{lost:.0e} of it left over" if lost > _ROUNDING else "nothing left over",
-        allowed=f"{LEFT_OVER:.0e}",
-        passed=lost <= LEFT_OVER,
+        measured=f"{lost:.0e} of it left over" if lost > rounding else "nothing left over",
+        allowed=f"{left_over:.0e}",
+        passed=lost <= left_over,
     )
 
 

@@ -18,11 +18,7 @@ from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart
 from hydrostat.robot import Mount, Robot, sewn_sides
 
-SCALE = 0.1  # maximum error of the bar of 100 mm [mm]
-
 _SVG = "{http://www.w3.org/2000/svg}"
-
-_MILLIMETRES = 4  # value of $INSUNITS in a DXF in millimetres
 
 
 class SeenSvg:
@@ -68,7 +64,8 @@ class SeenDxf:
     @property
     def millimetres(self) -> bool:
         """True if the drawing is in millimetres."""
-        return self._document.header.get("$INSUNITS") == _MILLIMETRES
+        millimetres = 4  # value of $INSUNITS in a DXF in millimetres
+        return self._document.header.get("$INSUNITS") == millimetres
 
     @cached_property
     def pinholes(self) -> Float[np.ndarray, "circles 3"]:
@@ -117,11 +114,12 @@ def _bar(svg: SeenSvg, dxf: SeenDxf) -> Check:
     drawn = max((float(np.ptp(points[:, 0])) for points in svg.paths(PatternPart.RULER)), default=0.0)
     near = dxf.level_lines[np.argmin(np.abs(dxf.level_lines - 100.0))] if len(dxf.level_lines) else 0.0
     unit = "" if dxf.millimetres else ", but the DXF does not count millimetres"
+    scale = 0.1  # maximum error of the bar of 100 mm [mm]
     return Check(
         what="the check bar of the pattern is as long as it says",
         measured=f"{drawn:.3f} mm in the SVG, {near:.3f} mm in the DXF{unit}",
-        allowed=f"100 mm, {SCALE:g} mm more or less",
-        passed=max(abs(drawn - 100.0), abs(float(near) - 100.0)) <= SCALE and dxf.millimetres,
+        allowed=f"100 mm, {scale:g} mm more or less",
+        passed=max(abs(drawn - 100.0), abs(float(near) - 100.0)) <= scale and dxf.millimetres,
     )
 
 

@@ -13,10 +13,6 @@ from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed, loose_edges, number_groups
 from hydrostat.robot import Robot
 
-_ON_BED = 1e-4  # maximum distance of the lowest point from the bed [mm]
-_CRUMB = 1e-3  # volume below which a body of its own is no piece of a part, only a leftover of rounding [mm^3]
-_CHANGE = 1e-4  # by how much of itself a volume may change when a part is written
-
 
 def watertight_problems(printed: Printed) -> tuple[str, ...]:
     """A sentence for each thing that is wrong with a part; none if it can be sliced.
@@ -34,14 +30,16 @@ def watertight_problems(printed: Printed) -> tuple[str, ...]:
     if loose := loose_edges(triangles):
         problems.append(f"{printed.name}: {loose} edges do not have exactly one triangle on either side")
     volume = compute_volume(vertices, triangles)
+    change = 1e-4  # by how much of itself a volume may change when a part is written
     if not volume > 0:
         problems.append(f"{printed.name}: its triangles enclose no volume, or are inside out")
-    elif abs(volume - printed.volume) > _CHANGE * volume:
+    elif abs(volume - printed.volume) > change * volume:
         problems.append(f"{printed.name}: {printed.volume:.6g} mm^3 became {volume:.6g} mm^3 in its files")
     if (pieces := _pieces(vertices, triangles)) > 1:
         problems.append(f"{printed.name}: falls into {pieces} pieces")
     lowest = float(vertices[:, 2].min())
-    if abs(lowest) > _ON_BED:
+    on_bed = 1e-4  # maximum distance of the lowest point from the bed [mm]
+    if abs(lowest) > on_bed:
         problems.append(f"{printed.name}: its lowest point is at z = {lowest:.4f} mm, not on the bed")
     return tuple(problems)
 
@@ -62,7 +60,9 @@ def _pieces(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray
     links = np.stack([triangles, np.roll(triangles, 1, axis=1)], axis=2).reshape(-1, 2)
     body = number_groups(links, len(vertices))
     volumes = np.bincount(body[triangles[:, 0]], _wedges(vertices[triangles] - vertices.mean(axis=0)))
-    return int(np.count_nonzero(volumes > _CRUMB))
+    # volume below which a body of its own is no piece of a part, only a leftover of rounding [mm^3]
+    crumb = 1e-3
+    return int(np.count_nonzero(volumes > crumb))
 
 
 def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly]) -> tuple[Check, ...]:
@@ -101,21 +101,19 @@ def too_large(printed: Iterable[Printed], bed: tuple[float, float, float]) -> tu
     )
 
 
-RADIUS = 0.1  # maximum error of the radius at which a cable is wound [mm]
-
-
 def spool_checks(robot: Robot, units: Iterable[WinchUnit]) -> tuple[Check, ...]:
     """Each groove cut across its middle: the floor that is measured there, and half a cable, against the robot file."""
     gaps = [gap for unit in units for gap in _gaps(robot, unit)]
     if not gaps:
         return ()
     worst = max(gaps)
+    radius = 0.1  # maximum error of the radius at which a cable is wound [mm]
     return (
         Check(
             what=f"the {len(gaps)} grooves of the printed spools have the radius that was simulated",
             measured=f"at most {worst:.3f} mm off",
-            allowed=f"{RADIUS:g} mm",
-            passed=worst <= RADIUS,
+            allowed=f"{radius:g} mm",
+            passed=worst <= radius,
         ),
     )
 

@@ -154,10 +154,6 @@ def check_lengths(table: Table[CableRow], simulation: Simulation) -> Check:
     )
 
 
-SPARE = 20.0
-"""Most that a tube takes from a side of a housing that looks away from it [mm]. Assumed, measured on none."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class SheathCut:
     """One piece of tube, in millimetres."""
@@ -261,9 +257,11 @@ def _sheath_notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
     ]
     if any(cut.start is None for cut in cuts):
         found.append("A tube from the base has to reach wherever the body stands in front of it, in gentle bends.")
+    # Most that a tube takes from a side of a housing that looks away from it [mm]. Assumed, measured on none
+    spare = 20.0
     if any(cut.start == 0 for cut in cuts):
         found.append(
-            f"At a winch in the body the run counts from its shaft: cut {SPARE:g} mm more where it is turned away "
+            f"At a winch in the body the run counts from its shaft: cut {spare:g} mm more where it is turned away "
             "from its cable, and trim the tube in place."
         )
     return tuple(found)

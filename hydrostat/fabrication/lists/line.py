@@ -8,8 +8,6 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.robot import Robot
 
-POUND = 4.448222  # newtons in a pound of force: lines are sold by these
-
 KNOT = 0.5
 """Share of its strength that a line keeps at a knot. Tests of braided lines ("Braid knots: some clear winners and
 losers", Sport Fishing, August 2006): common knots cost up to half and more, a doubled Palomar almost nothing."""
@@ -18,7 +16,6 @@ SAFETY = 0.5
 """Share of the strength at the knot that is used: the rest is for wear at pinholes and edges, and because polyethylene
 creeps under lasting loads. Assumed; no source."""
 
-_TOLERANCE = 0.01  # a line may be so much thicker than asked for [mm]: labels are no more precise
 
 SOURCE = (
     "Diameters and strengths of modern braided lines by their PE number: line diameter chart of Tasline (Australia); "
@@ -37,7 +34,8 @@ class FishingLine:
     @property
     def strength(self) -> float:
         """Load at which it breaks without a knot [N]."""
-        return POUND * self.pounds
+        pound = 4.448222  # newtons in a pound of force: lines are sold by these
+        return pound * self.pounds
 
     @property
     def at_knot(self) -> float:
@@ -69,7 +67,8 @@ LINES = tuple(
 
 def line_for(diameter: float) -> FishingLine:
     """The thickest line that is not thicker than a diameter [mm]; the thinnest if all are."""
-    fitting = [line for line in LINES if line.diameter <= diameter + _TOLERANCE]
+    tolerance = 0.01  # a line may be so much thicker than asked for [mm]: labels are no more precise
+    fitting = [line for line in LINES if line.diameter <= diameter + tolerance]
     return fitting[-1] if fitting else LINES[0]
 
 

@@ -190,7 +190,6 @@ SPARE = 1.5
 """Ratio of a supply's current to the current of all motors at their largest torque at once: bodies are stiffer than
 assumed, and supplies sag at their limit."""
 
-SUPPLIES = (2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0)  # currents of available supplies [A]
 FUSES = (1.0, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0)  # blade fuses, ISO 8820-3 [A]
 WIRES = ((3.0, 0.5, 20), (7.5, 0.75, 18), (10.0, 1.0, 17), (15.0, 1.5, 16), (25.0, 2.5, 14), (40.0, 6.0, 10))
 """Fuse [A] at most, copper [mm^2], gauge (AWG) at least: short leads in free air. Our own table, thicker than what
@@ -237,7 +236,8 @@ class PowerPlan:
     def supply(self) -> float:
         """Current of the supply [A]: with what is spare, and never below two motors that stall."""
         needed = max(SPARE * self.largest, min(2, len(self.winches)) * self.motor.stall_current)
-        return next((size for size in SUPPLIES if size >= needed), SUPPLIES[-1])
+        supplies = (2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0)  # currents of available supplies [A]
+        return next((size for size in supplies if size >= needed), supplies[-1])
 
     @property
     def fuse(self) -> float:

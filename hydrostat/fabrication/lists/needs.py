@@ -10,11 +10,7 @@ from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.solids.printed import Printed
 
-POLYETHYLENE = 0.97e-3  # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
-PTFE = 2.15e-3  # density of the tube [g/mm^3]; ASTM D792, in data sheets of PTFE tube
-SPOOL = 100e3  # thread on a spool [mm]
 THREAD = 4.0  # Thread for a length of seam: two threads of a lock stitch, sewn twice. Assumed.
-DOWEL = 15.0  # length of a dowel [mm]: a little less than the holes in both pieces are deep
 
 _SILICONES = ("ecoflex", "dragon skin")  # beginnings of names of materials that are poured and are no foam
 
@@ -63,6 +59,7 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
     felt = "that a laser may cut: wool, polyester or acrylic, no PVC; 1 to 2 mm"
     filling = plan.robot.body.material.name or "as the robot file says"
     zipper = f"{math.ceil(cloth.zipper / 10) * 10:g} mm or longer"
+    spool = 100e3  # thread on a spool [mm]
     return [
         _item(BillGroup.BODY, "felt", felt, 1e-6 * cloth.felt, "felt"),
         _item(BillGroup.BODY, "fibre filling", filling, 1e-3 * mass, "filling", mass),
@@ -70,7 +67,7 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
             BillGroup.BODY,
             "all-purpose thread",
             f"polyester, {1e-3 * thread:.0f} m",
-            math.ceil(thread / SPOOL),
+            math.ceil(thread / spool),
             "thread",
         ),
         _item(BillGroup.BODY, "zipper", zipper, float(cloth.zipper > 0), "zipper"),
@@ -94,9 +91,12 @@ def _foam(plan: KitPlan, foam: FoamNeeds) -> list[Item]:
 
 def _cables(plan: KitPlan, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]) -> list[Item]:
     length, tube = sum(cut.cut for cut in cuts), sum(cut.length for cut in tubes)
-    thread = POLYETHYLENE * math.pi / 4 * line.diameter**2 * length
+    # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
+    polyethylene = 0.97e-3
+    thread = polyethylene * math.pi / 4 * line.diameter**2 * length
     ring = math.pi / 4 * (plan.options.parts.tube**2 - plan.options.parts.bore**2)
     sizes = f"{plan.options.parts.bore:g} mm inside, {plan.options.parts.tube:g} mm outside"
+    ptfe = 2.15e-3  # density of the tube [g/mm^3]; ASTM D792, in data sheets of PTFE tube
     return [
         _item(
             BillGroup.CABLES,
@@ -106,7 +106,7 @@ def _cables(plan: KitPlan, line: FishingLine, cuts: tuple[CableCut, ...], tubes:
             "line",
             thread,
         ),
-        _item(BillGroup.CABLES, "PTFE tube", sizes, 1e-3 * tube, "tube", PTFE * ring * tube),
+        _item(BillGroup.CABLES, "PTFE tube", sizes, 1e-3 * tube, "tube", ptfe * ring * tube),
     ]
 
 
@@ -173,14 +173,15 @@ def _mould(plan: KitPlan) -> list[Item]:
     poured = foam.silicone_mass
     litres = f"for moulds, Mold Max 30 or alike, both parts, {1e-6 * foam.silicone:.2f} l"
     nut = "and two washers, longer than the closed mould is thick; or threaded rod"
-    rod = f"wood or steel, for {foam.dowels} dowels of {DOWEL:g} mm"
+    dowel = 15.0  # length of a dowel [mm]: a little less than the holes in both pieces are deep
+    rod = f"wood or steel, for {foam.dowels} dowels of {dowel:g} mm"
     varnish = "shellac or acrylic varnish, two coats on the printed mould"
     sealed = bool(plan.work.printed) and not poured > 0
     return [
         _item(BillGroup.MOULD, "silicone", litres, 1e-3 * poured, "silicone", poured),
         _plastic(BillGroup.MOULD, "PLA for the mould", plan.work.printed),
         _item(BillGroup.MOULD, "bolt M4 with nut", nut, float(foam.bolts), "bolts"),
-        _item(BillGroup.MOULD, "rod of 3 mm", rod, 1e-3 * DOWEL * foam.dowels, "rod"),
+        _item(BillGroup.MOULD, "rod of 3 mm", rod, 1e-3 * dowel * foam.dowels, "rod"),
         _item(
             BillGroup.MOULD,
             "glue for plastic",

@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 from hydrostat.robot import MATERIALS, Material
 
-SPARE = 0.10  # mixed more than is needed: some stays in the cup and in the sprue
-_LIQUID_FOAM = 1.1e3  # density of mixed polyurethane before it rises [kg/m^3]: assumed
 SILICONE_PRICE = 40.0  # price of a kilogram of Mold Max 30 [USD]: not measured, check yours
 _EQUAL = ("flexfoam-it", "ecoflex", "dragon skin")  # beginnings of names of castable materials that come as two parts
 _PLATINUM = ("ecoflex", "dragon skin")  # silicones that are cured by platinum
@@ -62,9 +60,10 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
         )
         for pour in pours
     )
+    liquid_foam = 1.1e3  # density of mixed polyurethane before it rises [kg/m^3]: assumed
     casting = Casting(
         body=body,
-        expansion=_LIQUID_FOAM / cast.density if foams else 1.0,
+        expansion=liquid_foam / cast.density if foams else 1.0,
         silicone=silicone,
         silicone_cost=SILICONE_PRICE * sum(mix.mass for mix in silicone) / 1e3,
         times=_times(cast, silicone=bool(pours)),
@@ -105,7 +104,8 @@ def _is_foam(material: Material) -> bool:
 def _mix(name: str, volume: float, density: float, share: float, ratio: str) -> Mix:
     """Amounts with what is spare; density in kg/m^3, share of part A by mass."""
     grams = 1e-6 * density
-    mass = (1 + SPARE) * grams * volume
+    spare = 0.10  # mixed more than is needed: some stays in the cup and in the sprue
+    mass = (1 + spare) * grams * volume
     return Mix(material=name, volume=volume, density=grams, part_a=share * mass, part_b=(1 - share) * mass, ratio=ratio)
 
 

@@ -16,15 +16,9 @@ from hydrostat.fabrication.solids.construct import Cuboid
 RIM = 13.0  # least width of the rim round the cavity [mm]: a key or a bolt with walls on both sides
 INSET = 6.5  # from the outer side of the rim to the middle of keys and bolts [mm]
 BOLT = 2.25  # radius of a hole for an M4 bolt or threaded rod [mm]
-_PITCH = 110.0  # bolts are no further apart [mm]
 
-_KEY = 4.0
-_ODD_KEY = 3.0
-_KEY_HEIGHT = 4.0
-_TAPER = 0.8
 _ROOT = 1.0
 _GAP = 2.0
-_SLOT = (6.0, 16.0, 2.5)
 
 Spot = tuple[float, float]  # a place in the parting plane [mm]
 
@@ -62,7 +56,9 @@ def make_closing(block: MouldBlock, *, sprue: Sprue | None, vents: tuple[float, 
     """
     (left, bottom, low), (right, top, high) = block.low, block.high
     xs, ys = (left + INSET, right - INSET), (bottom + INSET, top - INSET)
-    keys = tuple(((x, y), _ODD_KEY if (x, y) == (xs[1], ys[1]) else _KEY) for x in xs for y in ys)
+    key = 4.0
+    odd_key = 3.0
+    keys = tuple(((x, y), odd_key if (x, y) == (xs[1], ys[1]) else key) for x in xs for y in ys)
     rows = [(x, y) for y in _bolt_places(bottom, top, block.y_cuts) for x in xs]
     taken = [(vent, BOLT) for vent in vents] + ([] if sprue is None else [(sprue.x, sprue.funnel)])
     free = [_beside(x, taken) for x in _bolt_places(left, right, block.x_cuts)]
@@ -82,8 +78,9 @@ def make_closing(block: MouldBlock, *, sprue: Sprue | None, vents: tuple[float, 
 def _bolt_places(low: float, high: float, cuts: tuple[float, ...]) -> list[float]:
     """Places along a side, evenly within each piece between two cuts."""
     found = []
+    pitch = 110.0  # bolts are no further apart [mm]
     for start, end in pairwise((low, *cuts, high)):
-        count = max(int(np.ceil((end - start) / _PITCH)), 1)
+        count = max(int(np.ceil((end - start) / pitch)), 1)
         found += [start + (end - start) * (step + 0.5) / count for step in range(count)]
     return found
 
@@ -99,14 +96,17 @@ def _beside(x: float, taken: list[tuple[float, float]]) -> float:
 
 def _key(spot: Spot, radius: float, clearance: float) -> Manifold:
     """A key, or with a clearance its socket, as high as it is above the plane and rooted below it."""
-    wide, height = radius + clearance, _KEY_HEIGHT + clearance
+    key_height = 4.0
+    wide, height = radius + clearance, key_height + clearance
     root = rod(np.array([*spot, -_ROOT]), np.array([*spot, 0.0]), wide)
-    return root + rod(np.array([*spot, 0.0]), np.array([*spot, height]), wide, _TAPER * radius + clearance)
+    taper = 0.8
+    return root + rod(np.array([*spot, 0.0]), np.array([*spot, height]), wide, taper * radius + clearance)
 
 
 def _slot(block: MouldBlock, side: int, bolts: list[float]) -> Manifold:
     """Slot for a screwdriver at a side, half way between two bolts or a bolt and a key."""
-    depth, length, height = _SLOT
+    slot = (6.0, 16.0, 2.5)
+    depth, length, height = slot
     marks = sorted([block.low[1] + INSET, *bolts, block.high[1] - INSET])
     gaps = [(end - start, (start + end) / 2) for start, end in pairwise(marks)]
     clear = [

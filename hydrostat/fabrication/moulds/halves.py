@@ -12,8 +12,6 @@ from hydrostat.fabrication.moulds.solids import join_solids
 from hydrostat.fabrication.moulds.split import Pieces, grid, split
 from hydrostat.fabrication.solids.printed import Printed
 
-_FAR = 1e4
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Halves:
@@ -92,7 +90,8 @@ def _taken(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> tupl
 
 def _upper_side(pockets: tuple[Pocket, ...]) -> Manifold:
     """All that belongs to the upper half: what is above the parting plane, less cores of the lower half, and so on."""
-    side = Manifold.cube((2 * _FAR, 2 * _FAR, _FAR)).translate((-_FAR, -_FAR, 0.0))
+    far = 1e4
+    side = Manifold.cube((2 * far, 2 * far, far)).translate((-far, -far, 0.0))
     for pocket in pockets:
         side = side + pocket.reach if pocket.upper else side - pocket.reach
     return side

@@ -194,8 +194,6 @@ TOLERATED = 0.3
 """Share of undercut beyond which a rigid mould is a problem. A judgement, measured on none: soft foam is squeezed to
 less than half its thickness as it is drawn out, and comes back; but what grips all round tears it."""
 
-STIFF = 1e6  # Young's modulus from which on a body is not squeezed past an undercut by hand [Pa]
-
 
 def set_upright(stance: MouldOrientation, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
     """Return the sentences on how to set up the mold for pouring."""
@@ -238,7 +236,8 @@ def mould_problems(
             f"{'that hole' if sum(links) == 1 else 'these holes'} in the surface and cut the foam out afterwards, or "
             "choose a mould of silicone, which is cut open there"
         )
-    if rigid and (pull.share > TOLERATED or (pull.share > UNNOTICED and material.young > STIFF)):
+    stiff = 1e6  # Young's modulus from which on a body is not squeezed past an undercut by hand [Pa]
+    if rigid and (pull.share > TOLERATED or (pull.share > UNNOTICED and material.young > stiff)):
         found.append(
             f"{100 * pull.share:.0f} % of the surface is undercut along the best of {len(pull.shares)} pulls: the body "
             "would tear as a rigid mould comes off. Choose a mould of silicone, which yields"

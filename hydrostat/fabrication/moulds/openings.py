@@ -14,17 +14,12 @@ from hydrostat.fabrication.moulds.solids import rod
 from hydrostat.fabrication.moulds.stance import SMALLEST_TRAP, high_points
 from hydrostat.fabrication.solids.printed import triangles_of
 
-VENT = 1.5  # radius of a vent [mm]: a printer does not close it, foam does
-
 NECKS = (12.0, 10.0, 8.0, 6.0, 5.0)
 """Radii of a sprue [mm]: foam that rises is poured quickly, so 10 mm across at least."""
 
 FUNNEL = 8.0  # excess of the funnel's radius over the neck's [mm], if there is room
 
-_FUNNEL_DEPTH = 12.0
 _SUNK = 2.0
-_BEHIND = 3.0
-_DROP = 6.0
 _STEP = 1.0
 
 
@@ -58,14 +53,16 @@ def make_sprue(body: Manifold, *, top: float, room: tuple[float, float], deep: f
     if not len(across):
         return None
     best = float(tops.max())
-    necks = [radius for radius in NECKS if radius <= deep - _BEHIND] or [NECKS[-1]]
-    widest = deep - _BEHIND
+    behind = 3.0
+    necks = [radius for radius in NECKS if radius <= deep - behind] or [NECKS[-1]]
+    widest = deep - behind
+    drop = 6.0
     for radius in necks:
         window = int(np.ceil(radius / _STEP))
         levels = np.array([tops[max(place - window, 0) : place + window + 1].min() for place in range(len(across))])
         inside = (across - radius >= across[0] - _STEP) & (across + radius <= across[-1] + _STEP)
         levels = np.where(inside, levels, -np.inf)
-        if not (levels.max() >= best - _DROP or radius == necks[-1]) or not np.isfinite(levels.max()):
+        if not (levels.max() >= best - drop or radius == necks[-1]) or not np.isfinite(levels.max()):
             continue
         level = float(levels.max())
         flat = np.flatnonzero(levels > level - 0.25)
@@ -79,7 +76,8 @@ def _sprue(x: float, mouth: float, radius: float, top: float, room: tuple[float,
     funnel = max(min(radius + FUNNEL, x - room[0], room[1] - x, widest), radius)
     low = mouth - _SUNK
     neck = rod(np.array([x, low, 0.0]), np.array([x, top + 1.0, 0.0]), radius)
-    wide = rod(np.array([x, top - _FUNNEL_DEPTH, 0.0]), np.array([x, top, 0.0]), radius, funnel)
+    funnel_depth = 12.0
+    wide = rod(np.array([x, top - funnel_depth, 0.0]), np.array([x, top, 0.0]), radius, funnel)
     brim = rod(np.array([x, top - 0.01, 0.0]), np.array([x, top + 1.0, 0.0]), funnel)
     return Sprue(x=x, mouth=mouth, radius=radius, funnel=funnel, solid=neck + wide + brim)
 
@@ -112,14 +110,15 @@ def _leaves_by_sprue(at: Float[np.ndarray, "3"], across: Vector, tops: Vector, s
 
 def _vent(at: np.ndarray, across: Vector, tops: Vector, *, low: float, high: float, top: float) -> Vent:
     near = float(np.interp(at[0], across, tops, left=-np.inf, right=-np.inf)) if len(across) else -np.inf
+    vent = 1.5  # radius of a vent [mm]: a printer does not close it, foam does
     if abs(at[1] - near) <= SMALLEST_TRAP:
-        start = np.array([at[0], near - VENT, 0.0])
-        return Vent(at=at, upward=True, solid=rod(start, np.array([at[0], top + 1.0, 0.0]), VENT))
+        start = np.array([at[0], near - vent, 0.0])
+        return Vent(at=at, upward=True, solid=rod(start, np.array([at[0], top + 1.0, 0.0]), vent))
     side = 1.0 if at[2] > 0 else -1.0
     back = high + 1.0 if side > 0 else low - 1.0
-    level = at[1] - VENT + SMALLEST_TRAP / 4
-    start = np.array([at[0], level, at[2] - side * VENT])
-    return Vent(at=at, upward=False, solid=rod(start, np.array([at[0], level, back]), VENT))
+    level = at[1] - vent + SMALLEST_TRAP / 4
+    start = np.array([at[0], level, at[2] - side * vent])
+    return Vent(at=at, upward=False, solid=rod(start, np.array([at[0], level, back]), vent))
 
 
 def roof(body: Manifold) -> tuple[Vector, Vector]:

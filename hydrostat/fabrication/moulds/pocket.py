@@ -41,12 +41,8 @@ _LEAST_SKIN = 2.0  # foam between a pocket and the next surface [mm]
 _WIRES = (8.0, 4.0)  # width and depth of the groove for the wires of a motor, beside it [mm]
 
 _OUTSIDE = 0.02
-_BARE = 0.1
 _SHARED = 0.01
-_ROUNDING = 1e-6
-_SWEEPS = 5
 
-_DENT = 1.0
 _DENT_RADIUS = 1.5
 
 
@@ -92,7 +88,8 @@ def make_pockets(
 def _together(ways: list[list[Pocket]]) -> tuple[Pocket, ...]:
     """One way to lay each winch, so that they are least in each other's way: each in turn, until none changes."""
     chosen = [min(tried, key=lambda pocket: _worth(pocket, [])) for tried in ways]
-    for _ in range(_SWEEPS):
+    sweeps = 5
+    for _ in range(sweeps):
         before = list(chosen)
         for place, tried in enumerate(ways):
             others = chosen[:place] + chosen[place + 1 :]
@@ -144,7 +141,8 @@ def _pockets_for(
 
 def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[_Lying]:
     """All ways to lay a winch; those that differ in no length only once."""
-    off = np.where(np.abs(room.off) > _ROUNDING, room.off, 0.0)
+    rounding = 1e-6
+    off = np.where(np.abs(room.off) > rounding, room.off, 0.0)
     found = []
     orders = sorted(permutations(range(3)), key=lambda order: (room.size[order[2]], room.size[order[0]], order))
     for order, x, y in product(orders, (1, -1), (1, -1)):
@@ -172,12 +170,13 @@ def _pocket(name: str, body: Manifold, way: _Lying, upper: bool, clearance: floa
     out = _part_outside(_cuboid(way, clearance), body)
     side = sides_text(sorted((a, b, c), reverse=True))
     problem = ""
+    bare = 0.1
     if core.is_empty() or out > _OUTSIDE:
         problem = (
             f'winch "{name}": the pocket of {side} mm does not fit into the body at its place ({100 * out:.0f} % '
             "outside). Move the winch to a thicker part of the body or choose a smaller motor"
         )
-    elif float((skin - body).volume()) > _BARE * float(skin.volume()):
+    elif float((skin - body).volume()) > bare * float(skin.volume()):
         problem = (
             f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left next to the pocket of {side} mm. '
             "Move the winch to a thicker part of the body or choose a smaller motor"
@@ -265,5 +264,6 @@ def cable_dents(robot: Robot, surface: FineSurface, stance: MouldOrientation, *,
 
 def _dent(spot: Float[np.ndarray, "3"], inward: Float[np.ndarray, "3"]) -> Manifold:
     """A blunt cone that stands on the wall with its root in it."""
-    upright = rod(np.array([0.0, 0.0, -_DENT]), np.array([0.0, 0.0, _DENT]), 2 * _DENT_RADIUS - 0.4, 0.4)
+    dent = 1.0
+    upright = rod(np.array([0.0, 0.0, -dent]), np.array([0.0, 0.0, dent]), 2 * _DENT_RADIUS - 0.4, 0.4)
     return upright.transform(np.column_stack([axes_along(inward).T, spot]))

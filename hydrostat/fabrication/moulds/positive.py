@@ -17,8 +17,6 @@ from hydrostat.fabrication.moulds.split import dowels_across
 from hydrostat.fabrication.solids.construct import segments
 
 SILICONE_WALL = 12.0  # silicone round the body [mm]: it keeps its shape and is not wasted
-FRAME_WALL = 5.0  # thickness of a frame [mm]
-DOME = 6.0  # radius of a key dome [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -78,10 +76,11 @@ def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:
     lower, upper = (_ring(inside, *span) for span in ((inside.low[2], 0.0), (0.0, inside.high[2])))
     silicone = inside.solid - whole
     above, below = silicone.split_by_plane((0.0, 0.0, 1.0), 0.0)
+    dome = 6.0  # radius of a key dome [mm]
     return Frames(
         lower=lower,
         upper=upper,
-        dome=Manifold.sphere(DOME, segments(DOME)).trim_by_plane((0.0, 0.0, 1.0), 0.0),
+        dome=Manifold.sphere(dome, segments(dome)).trim_by_plane((0.0, 0.0, 1.0), 0.0),
         inside=inside,
         pours=(float(below.volume()), float(above.volume())),
     )
@@ -90,6 +89,7 @@ def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:
 def _ring(inside: MouldBlock, low: float, high: float) -> Manifold:
     """A wall round the silicone between two heights."""
     width, length, _ = inside.size
-    outer = Manifold.cube((width + 2 * FRAME_WALL, length + 2 * FRAME_WALL, high - low))
-    inner = Manifold.cube((width, length, high - low + 2)).translate((FRAME_WALL, FRAME_WALL, -1.0))
-    return (outer - inner).translate((inside.low[0] - FRAME_WALL, inside.low[1] - FRAME_WALL, low))
+    frame_wall = 5.0  # thickness of a frame [mm]
+    outer = Manifold.cube((width + 2 * frame_wall, length + 2 * frame_wall, high - low))
+    inner = Manifold.cube((width, length, high - low + 2)).translate((frame_wall, frame_wall, -1.0))
+    return (outer - inner).translate((inside.low[0] - frame_wall, inside.low[1] - frame_wall, low))

@@ -14,18 +14,8 @@ _DEPTH = 0.05
 """Share of undercut that a mould may have more for being flat instead of as deep as the body is long: deep moulds are
 hard to print and to fill."""
 
-_LEVEL = 2e-3  # shares that differ by less are the same: then the parting is nearest to the middle of the body
-_RINGS = (9.0, 4.5, 2.2, 1.1, 0.5)  # angles at which neighbours of the best direction are tried [degrees]
-
-_APART = 1e-7
 
 _FLATS = 6  # flat faces whose normals are tried: along walls that are flat the good directions are few and sharp
-
-_FLAT_SHARE = 0.02
-_CROSSED = 0.2
-
-_AROUND = 6
-_BEST = 3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -61,8 +51,11 @@ def best_height(surface: FineSurface, freed: Release) -> tuple[float, float]:
     planes = (sorted_heights[1:] + sorted_heights[:-1]) / 2
     held = held[1:-1]
     middle = (sorted_heights[0] + sorted_heights[-1]) / 2
-    held = np.where(np.diff(sorted_heights) > _APART * surface.size, held, np.inf)  # no plane within a level face
-    good = np.flatnonzero(held <= held.min() + _LEVEL)
+    apart = 1e-7
+    held = np.where(np.diff(sorted_heights) > apart * surface.size, held, np.inf)  # no plane within a level face
+    # shares that differ by less are the same: then the parting is nearest to the middle of the body
+    level = 2e-3
+    good = np.flatnonzero(held <= held.min() + level)
     chosen = good[int(np.argmin(np.abs(planes[good] - middle)))]
     return float(planes[chosen]), float(held[chosen])
 
@@ -72,8 +65,10 @@ def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
     surface = fine_surface(solid)
     tried = np.vstack([_own_axes(surface), np.eye(3), _flat_directions(surface), half_sphere(count)])
     shares, costs = _rated(surface, tried)
-    leaders = tried[np.argsort(costs, kind="stable")[:_BEST]]
-    for angle in np.radians(_RINGS):
+    best = 3
+    leaders = tried[np.argsort(costs, kind="stable")[:best]]
+    rings = (9.0, 4.5, 2.2, 1.1, 0.5)  # angles at which neighbours of the best direction are tried [degrees]
+    for angle in np.radians(rings):
         near = np.vstack([_ring(leader, angle) for leader in leaders])
         more_shares, more_costs = _rated(surface, near)
         tried = np.vstack([tried, near])
@@ -116,17 +111,20 @@ def _flat_directions(surface: FineSurface) -> Float[np.ndarray, "tried 3"]:
     areas = np.bincount(groups, weights=surface.areas)
     largest = np.argsort(-areas, kind="stable")[:_FLATS]
     flats = [np.average(normals[groups == group], axis=0, weights=surface.areas[groups == group]) for group in largest]
-    kept = [flat for flat, group in zip(flats, largest, strict=True) if areas[group] > _FLAT_SHARE * areas.sum()]
+    flat_share = 0.02
+    kept = [flat for flat, group in zip(flats, largest, strict=True) if areas[group] > flat_share * areas.sum()]
     found = [*kept, *(np.cross(one, other) for one, other in combinations(kept, 2))]
     lengths = [float(np.linalg.norm(direction)) for direction in found]
-    along = [direction / length for direction, length in zip(found, lengths, strict=True) if length > _CROSSED]
+    crossed = 0.2
+    along = [direction / length for direction, length in zip(found, lengths, strict=True) if length > crossed]
     return np.array(along).reshape(-1, 3)
 
 
 def _ring(direction: Float[np.ndarray, "3"], angle: float) -> Float[np.ndarray, "around 3"]:
     """Directions at an angle [radians] to one, all round."""
     one, two, _ = axes_along(direction)
-    turns = 2 * np.pi * np.arange(_AROUND)[:, None] / _AROUND
+    around = 6
+    turns = 2 * np.pi * np.arange(around)[:, None] / around
     return np.cos(angle) * direction + np.sin(angle) * (np.cos(turns) * one + np.sin(turns) * two)
 
 

@@ -15,11 +15,8 @@ from hydrostat.arrays import Vector
 from hydrostat.fabrication.solids.printed import TriangleMesh, triangles_of
 from hydrostat.kernel import native
 
-_OUT = 5e-4  # distance of a test point from its triangle, in sizes of the body: shallower overhangs do not count
-_STEEP = 1e-3  # a wall may lean by this cosine and still count as parallel to the pull: rounding, not an overhang
 _EDGE = 1 / 30  # longest edge of a triangle, in sizes of the body
 _COARSE = 4e-4  # maximum error of the simplified surface, in sizes of the body
-_MOST = 16_000  # triangles that are looked at, about
 
 
 class FineSurface(TriangleMesh):
@@ -47,7 +44,8 @@ def fine_surface(solid: Manifold) -> FineSurface:
     size = float((high - low).max())
     coarse, edge = _COARSE, _EDGE
     fine = solid.simplify(coarse * size).refine_to_length(edge * size)
-    while fine.num_tri() > _MOST and edge < 1:
+    most = 16_000  # triangles that are looked at, about
+    while fine.num_tri() > most and edge < 1:
         coarse, edge = 2 * coarse, 1.5 * edge
         fine = solid.simplify(coarse * size).refine_to_length(edge * size)
     return FineSurface(*triangles_of(fine))
@@ -70,11 +68,15 @@ def release(surface: FineSurface, direction: Float[np.ndarray, "3"]) -> Release:
     """Find what comes out when the mould of a body is drawn off along a unit vector."""
     turned = axes_along(direction).T
     facing = surface.normals @ direction
-    asked = (surface.middles + _OUT * surface.size * surface.normals) @ turned
+    # distance of a test point from its triangle, in sizes of the body: shallower overhangs do not count
+    out = 5e-4
+    asked = (surface.middles + out * surface.size * surface.normals) @ turned
     above, below = np.empty(len(asked), dtype=bool), np.empty(len(asked), dtype=bool)
     native.find_covered(np.ascontiguousarray(asked), np.ascontiguousarray(surface.corners @ turned), above, below)
+    # a wall may lean by this cosine and still count as parallel to the pull: rounding, not an overhang
+    steep = 1e-3
     return Release(
-        heights=surface.middles @ direction, upward=(facing > -_STEEP) & ~above, downward=(facing < _STEEP) & ~below
+        heights=surface.middles @ direction, upward=(facing > -steep) & ~above, downward=(facing < steep) & ~below
     )
 
 

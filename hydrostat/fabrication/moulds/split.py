@@ -13,11 +13,7 @@ DOWEL = 1.6  # radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm
 DOWEL_DEPTH = 8.0  # depth of the hole in each of two pieces [mm]
 
 _WALL = 2.0
-_CRUMB = 20.0
-_JOINT = 3.0
 _DEPTHS = (DOWEL + _WALL, 6.0, 9.0, 13.0)
-_TRIED = 80
-_THIN = 1.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -81,7 +77,9 @@ def _bodies(piece: Manifold) -> list[Manifold]:
 def _printable(part: Manifold) -> bool:
     """Return True if a part is larger than a crumb that a cut leaves."""
     low, high = np.reshape(part.bounding_box(), (2, 3))
-    return bool((high - low).min() > _THIN) and part.volume() > _CRUMB
+    crumb = 20.0
+    thin = 1.0
+    return bool((high - low).min() > thin) and part.volume() > crumb
 
 
 def _corner(piece: Manifold) -> tuple[float, float]:
@@ -121,13 +119,15 @@ def _spots(section: CrossSection) -> Float[np.ndarray, "spots 2"]:
     if not rings:
         return np.empty((0, 2))
     spots = np.unique(np.concatenate(rings).astype(float).round(4), axis=0)
-    return spots[:: max(len(spots) // _TRIED, 1)]
+    tried = 80
+    return spots[:: max(len(spots) // tried, 1)]
 
 
 def _strip(section: CrossSection, axis: int, span: tuple[float, float]) -> CrossSection:
     """The part of a section between two other cuts, less a margin; the section's first axis follows the cut one."""
     low_x, low_y, high_x, high_y = section.bounds() if not section.is_empty() else (0.0, 0.0, 1.0, 1.0)
-    start, end = span[0] + _JOINT, span[1] - _JOINT
+    joint = 3.0
+    start, end = span[0] + joint, span[1] - joint
     if axis == 0:  # of y and z
         return CrossSection.square((end - start, high_y - low_y + 2)).translate((start, low_y - 1))
     return CrossSection.square((high_x - low_x + 2, end - start)).translate((low_x - 1, start))  # of z and x

@@ -15,9 +15,6 @@ from hydrostat.fabrication.solids.printed import TriangleMesh, root_of
 SMALLEST_TRAP = 1.0  # a bubble no higher than that is left to the foam, which pushes it into its cells [mm]
 _HELD_UPWARDS = 3.0  # a held end at the top is worth so many vents: nobody sees there where the sprue was cut off
 _TALL = 0.5  # vents that a mould may have more for being once less as tall as it is wide
-_LARGE = 10.0  # vents that a box may need less for being twice as large
-_ACROSS = 0.7  # sine of the angle between an axis of the robot and the pull, above which it gives the box its sides
-_AT_THE_TOP = 0.85  # from which part of the height on something is at the top
 _TOP = 0.5  # maximum depth below a high point of points that belong to it [mm]
 
 
@@ -52,14 +49,17 @@ def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> MouldOrientati
     """
     first, second, along = axes_along(pull.direction)
     flat = pull.surface.vertices @ np.column_stack([first, second])
-    main = np.eye(3)[int(np.argmax(np.linalg.norm(np.cross(np.eye(3), along), axis=1) > _ACROSS))]
+    # sine of the angle between an axis of the robot and the pull, above which it gives the box its sides
+    across = 0.7
+    main = np.eye(3)[int(np.argmax(np.linalg.norm(np.cross(np.eye(3), along), axis=1) > across))]
     sides = {_smallest_side(flat), float(np.arctan2(main @ second, main @ first)) % (np.pi / 2)}
     found = []
     for angle in sorted(side + turn * np.pi / 2 for side in sides for turn in range(4)):
         up = np.cos(angle) * first + np.sin(angle) * second
         found.append(_rated_stance(pull, np.array([np.cross(up, along), up, along]), held))
     least = min(area for _, area, _ in found)
-    return min(found, key=lambda one: (round(one[0] + _LARGE * (one[1] / least - 1), 6), _order(one[2])))[2]
+    large = 10.0  # vents that a box may need less for being twice as large
+    return min(found, key=lambda one: (round(one[0] + large * (one[1] / least - 1), 6), _order(one[2])))[2]
 
 
 def _rated_stance(
@@ -69,7 +69,8 @@ def _rated_stance(
     places = pull.surface.vertices @ axes.T
     width, tall, depth = np.ptp(places, axis=0)
     level = (held @ axes[1] - places[:, 1].min()) / tall
-    held_upwards = len(held) > 0 and float(level.mean()) > _AT_THE_TOP
+    at_the_top = 0.85  # from which part of the height on something is at the top
+    held_upwards = len(held) > 0 and float(level.mean()) > at_the_top
     vents = len(high_points(pull.surface.vertices, pull.surface.triangles, axes[1], rise=SMALLEST_TRAP))
     against = vents - _HELD_UPWARDS * held_upwards + _TALL * tall / min(width, 3 * depth)
     return float(against), float(width * tall), MouldOrientation(axes, pull.height, held_upwards)

@@ -16,14 +16,7 @@ from hydrostat.fabrication.patches.patch import Disc, Patch
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
 from hydrostat.fabrication.solids.printed import number_groups
 
-_DIRECTIONS = 12
 _SHIFTS = (0.0, -0.06, 0.06)  # offsets beside the worst place that are tried, as shares of the root of the patch's area
-_FINER = (-0.03, -0.015, 0.0, 0.015, 0.03)  # offsets beside the best of those that are tried then
-
-_LENGTH = 0.25
-"""Penalty of a chord as long as the root of the patch's area: a shorter seam is less work."""
-
-_LEAST = 0.03  # a piece of less than this share of the patch is not worth cutting off
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,6 +61,8 @@ def best_chord(patch: Patch, limit: float) -> Chord | None:
     middle, size = _worst_place(patch, limit), float(np.sqrt(patch.disc.areas.sum()))
     outline, judge = patch.outline.buffer(0), _Judge(patch.disc)
 
+    length = 0.25  # Penalty of a chord as long as the root of the patch's area: a shorter seam is less work
+
     def best(angles: Iterable[float], shifts: Iterable[float]) -> tuple[bool, float, float, float, Chord] | None:
         found = []
         for angle in angles:
@@ -75,17 +70,19 @@ def best_chord(patch: Patch, limit: float) -> Chord | None:
             for shift in shifts:
                 chord = _chord(outline, middle + shift * size * np.array([-along[1], along[0]]), along)
                 if chord is not None:
-                    score = judge.score(patch, chord) * (1 + _LENGTH * (chord.high - chord.low) / size)
+                    score = judge.score(patch, chord) * (1 + length * (chord.high - chord.low) / size)
                     narrow = any(is_narrow(piece) for piece in _pieces(outline, chord))
                     found.append((narrow, round(score, 9), angle, shift, chord))
         return min(found, key=lambda one: one[:4], default=None)
 
-    rough = best((np.pi / _DIRECTIONS * np.arange(_DIRECTIONS)).tolist(), _SHIFTS)
+    directions = 12
+    rough = best((np.pi / directions * np.arange(directions)).tolist(), _SHIFTS)
     if rough is None:
         return None
     narrow, _, angle, shift, chord = rough
-    step = np.pi / _DIRECTIONS / 3
-    fine = best((angle - step, angle, angle + step), [shift + part for part in _FINER])
+    step = np.pi / directions / 3
+    finer = (-0.03, -0.015, 0.0, 0.015, 0.03)  # offsets beside the best of those that are tried then
+    fine = best((angle - step, angle, angle + step), [shift + part for part in finer])
     return fine[-1] if fine and fine[0] <= narrow else chord
 
 
@@ -145,7 +142,8 @@ def _chord(outline: BaseGeometry, through: np.ndarray, along: np.ndarray) -> Cho
     place, direction = through.tolist(), along.tolist()
     chord = Chord(through=(place[0], place[1]), along=(direction[0], direction[1]), low=low, high=high)
     pieces = _pieces(outline, chord)
-    return None if len(pieces) < 2 or min(piece.area for piece in pieces) < _LEAST * outline.area else chord
+    least = 0.03  # a piece of less than this share of the patch is not worth cutting off
+    return None if len(pieces) < 2 or min(piece.area for piece in pieces) < least * outline.area else chord
 
 
 def _pieces(outline: BaseGeometry, chord: Chord) -> list[BaseGeometry]:

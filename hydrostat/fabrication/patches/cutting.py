@@ -15,9 +15,6 @@ from hydrostat.fabrication.patches.seams import Seam, find_seams
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
 from hydrostat.fabrication.patterns.skin import Skin
 
-_SMOOTH = 0.02  # smoothing length of the normals before the silhouette is drawn, as a share of the body's diagonal
-_ALONG_AXIS = 0.94  # a direction so near to an axis (its cosine) is the axis: 20 degrees
-
 
 def thin_direction(mesh: SkinMesh) -> Float[np.ndarray, " 3"]:
     """The direction towards which, there and back, most of the skin looks; the axis where it is near one."""
@@ -25,7 +22,8 @@ def thin_direction(mesh: SkinMesh) -> Float[np.ndarray, " 3"]:
     normals = mesh.crosses / (2 * areas)
     direction = np.linalg.eigh((normals * areas).T @ normals)[1][:, -1]
     main = int(np.abs(direction).argmax())
-    if abs(direction[main]) > _ALONG_AXIS:
+    along_axis = 0.94  # a direction so near to an axis (its cosine) is the axis: 20 degrees
+    if abs(direction[main]) > along_axis:
         direction = np.eye(3)[main]
     return direction * np.sign(direction[main])
 
@@ -64,7 +62,9 @@ def _smoothed(mesh: SkinMesh, values: Float[np.ndarray, " vertices"]) -> Float[n
     """One implicit step of diffusion over the skin."""
     import igl
 
-    reach = _SMOOTH * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    # smoothing length of the normals before the silhouette is drawn, as a share of the body's diagonal
+    smooth = 0.02
+    reach = smooth * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
     spread = csc_array(igl.intrinsic_delaunay_cotmatrix(mesh.vertices, mesh.triangles)[0])
     mass = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas / 3, 3), len(mesh.vertices))
     return splu(csc_array(diags_array(mass) - reach**2 * spread)).solve(mass * values)
@@ -75,7 +75,6 @@ MOST_GIVE = 0.12
 measured."""
 
 MOST_EASE = 0.05  # How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed.
-MOST_PATCHES = 6  # a person loses track of more
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -107,13 +106,14 @@ def cut_skin(mesh: SkinMesh) -> Cutting:
     plain = [flatten(disc_of(mesh, number)) for number in (0, 1)]
     patches = [_laid(patch) for patch in plain]
     given_up: set[int] = set()
+    most_patches = 6  # a person loses track of more
     while True:
         wanting = {number: _excess(patch) for number, patch in enumerate(patches) if number not in given_up}
         worst = max(wanting, key=lambda number: wanting[number], default=-1)
         if worst < 0 or wanting[worst] <= 0:
             patches = _eased(mesh, patches)
             worst = _uneasy(mesh, patches)
-        if worst < 0 or worst in given_up or len(patches) == MOST_PATCHES:
+        if worst < 0 or worst in given_up or len(patches) == most_patches:
             break
         chord = best_chord(plain[worst], min(MOST_GIVE, distortion(plain[worst]).give(0.9)))
         if chord is None:
@@ -171,10 +171,6 @@ def _on(mesh: SkinMesh, number: int, patch: Patch) -> Patch:
     return patch if len(disc.vertices) == len(patch.disc.vertices) else flatten(disc)
 
 
-GIVES_LITTLE = 0.06
-"""Stretch of any cloth: above that a pattern requires a stretch fabric. Assumed, not measured."""
-
-
 def patch_problems(
     names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
 ) -> tuple[str, ...]:
@@ -213,7 +209,9 @@ def patch_warnings(
     warnings = []
     gives = {name: distortion(patch).give(0.95) for name, patch in zip(names, patches, strict=True)}
     most = max(gives, key=lambda name: gives[name])
-    if gives[most] > GIVES_LITTLE:
+    # Stretch of any cloth: above that a pattern requires a stretch fabric. Assumed, not measured
+    gives_little = 0.06
+    if gives[most] > gives_little:
         warnings.append(
             f"the cloth must stretch by up to {gives[most]:.0%} (patch {most}, 95 % of its area). Choose a cloth that "
             "stretches, such as knitted plush or soft felt"

@@ -7,13 +7,10 @@ from jaxtyping import Float
 
 from hydrostat.fabrication.patches.patch import Patch
 
-_GIVE = 0.12  # unit of the cloth's stretch
-
 LOOSE, HELD = 0.1, 0.03
 """The unit in which edges of the rim are counted that are longer or shorter than on the body: where only the cloth
 matters, and where the two sides of a seam differ too much."""
 _SPARED = 4.0  # a place whose square is so many times more counts less than by its third power: corners may give more
-_STEPS = 300
 
 
 def relax_patch(patch: Patch, *, ease: float = LOOSE) -> Patch:
@@ -27,7 +24,8 @@ def relax_patch(patch: Patch, *, ease: float = LOOSE) -> Patch:
     energy = PatchEnergy(patch, ease)
     from scipy.optimize import minimize  # Imported here: only what is sewn in space needs it.
 
-    found = minimize(energy, patch.flat.ravel(), jac=True, method="L-BFGS-B", options={"maxiter": _STEPS, "maxcor": 20})
+    steps = 300
+    found = minimize(energy, patch.flat.ravel(), jac=True, method="L-BFGS-B", options={"maxiter": steps, "maxcor": 20})
     flat = found.x.reshape(-1, 2)
     return replace(patch, flat=flat) if np.isfinite(found.fun) and found.fun < _NOWHERE else patch
 
@@ -62,9 +60,10 @@ class PatchEnergy:
         area, square = a * d - b * c, (jacobian**2).sum(axis=(1, 2))
         if area.min() <= 1e-6:
             return _NOWHERE, np.zeros_like(flat)
-        bent = np.maximum(square * (1 + area**-2) / 4 - 1, 0.0) / _GIVE**2
+        give = 0.12  # unit of the cloth's stretch
+        bent = np.maximum(square * (1 + area**-2) / 4 - 1, 0.0) / give**2
         spared = 1 + (bent / _SPARED) ** 2
-        steep = self._weights * (3 * bent**2 * spared - 2 * bent**4 / _SPARED**2) / spared**2 / (4 * _GIVE**2)
+        steep = self._weights * (3 * bent**2 * spared - 2 * bent**4 / _SPARED**2) / spared**2 / (4 * give**2)
         turned = np.stack([np.stack([d, -c], axis=1), np.stack([-b, a], axis=1)], axis=1)
         push = 2 * jacobian * (1 + area**-2)[:, None, None] - (2 * square / area**3)[:, None, None] * turned
         forces = steep[:, None, None] * (push @ np.swapaxes(self._back, 1, 2))

@@ -51,9 +51,6 @@ def distortion(patch: Patch) -> Distortion:
     return Distortion(longest=stretches[:, 0], shortest=stretches[:, 1], areas=patch.disc.areas)
 
 
-_STEPS = 5  # solves at a time
-_MOST = 40  # maximum number of rounds of such solves
-
 SETTLED = 5e-4
 """Relative change of the energy in one such time below which it has settled: it moves seams by less than cloth does."""
 
@@ -79,8 +76,10 @@ def flatten(disc: Disc, *, settled: float = SETTLED) -> Patch:
     solid, start = np.asfortranarray(toothed.vertices), np.asfortranarray(_tutte(toothed))
     data = igl.slim_precompute(solid, triangles, start, energy, none, np.zeros((0, 2), order="F"), 0.0)
     flat, before = start, np.inf
-    for _ in range(_MOST):
-        flat = np.array(igl.slim_solve(data, _STEPS))[:, :2]
+    steps = 5  # solves at a time
+    most = 40  # maximum number of rounds of such solves
+    for _ in range(most):
+        flat = np.array(igl.slim_solve(data, steps))[:, :2]
         now = _energy(Patch(disc=toothed, flat=flat))
         if before - now < settled * now:
             break

@@ -108,10 +108,6 @@ def _seam(
 
 SEEN = 0.5
 """A difference of lengths [mm] that nobody who cuts and sews cloth sees: that of a line of a pen. Assumed."""
-_SPACING = 60.0  # about how far apart notches are along a seam [mm]
-_SHORTEST = 10.0  # a seam shorter than that [mm] needs no notch
-_PAIR = 5.0  # distance of the strokes of a double notch [mm]
-_STUFFING = 80.0  # length of seam left open for turning and stuffing where there is no zipper [mm], about
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,13 +120,16 @@ class PatchNotch:
 
 def _notch_places(seam: Seam) -> list[tuple[float, bool]]:
     """Return the distance of each notch along a seam [mm], and True if it has a letter."""
-    if seam.length < _SHORTEST:
+    shortest = 10.0  # a seam shorter than that [mm] needs no notch
+    if seam.length < shortest:
         return []
+    spacing = 60.0  # about how far apart notches are along a seam [mm]
     if not seam.closed:
-        count = max(1, round(seam.length / _SPACING) - 1)
+        count = max(1, round(seam.length / spacing) - 1)
         return [(seam.length * (step + 1) / (count + 1), True) for step in range(count)]
-    count = max(4, round(seam.length / _SPACING))
-    return [(0.0, True), (_PAIR, False), *((seam.length * step / count, True) for step in range(1, count))]
+    count = max(4, round(seam.length / spacing))
+    pair = 5.0  # distance of the strokes of a double notch [mm]
+    return [(0.0, True), (pair, False), *((seam.length * step / count, True) for step in range(1, count))]
 
 
 def _named(seams: tuple[Seam, ...]) -> list[list[tuple[str, float]]]:
@@ -155,7 +154,8 @@ def stuffing_gap(seams: tuple[Seam, ...], names: tuple[str, ...]) -> tuple[str, 
     seam, named = seams[longest], [notch for notch in _named(seams)[longest] if notch[0]]
     if len(named) < 2:
         return ("no seam is long enough to turn the body through: close the last one by hand",)
-    first, second = min(pairwise(named), key=lambda pair: (abs(pair[1][1] - pair[0][1] - _STUFFING), pair[0][1]))
+    stuffing = 80.0  # length of seam left open for turning and stuffing where there is no zipper [mm], about
+    first, second = min(pairwise(named), key=lambda pair: (abs(pair[1][1] - pair[0][1] - stuffing), pair[0][1]))
     one, other = (names[number] for number in seam.patches)
     return (
         f"leave the seam between {one} and {other} open from notch {first[0]} to notch {second[0]} "

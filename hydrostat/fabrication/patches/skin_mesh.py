@@ -11,12 +11,6 @@ from hydrostat.fabrication.solids.printed import TriangleMesh, number_groups
 from hydrostat.geometry import Surface
 from hydrostat.robot import Body
 
-_SIDES = ((0, 1), (1, 2), (2, 0))
-
-_MOST, _ENOUGH = 6000, 5000  # a surface of more triangles than the first is made coarser, to the second
-
-_SHARE = 0.03  # longest edge, as a share of the diagonal of the body: fine enough for smooth seams
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SkinMesh(TriangleMesh):
@@ -27,7 +21,8 @@ class SkinMesh(TriangleMesh):
     @cached_property
     def edges(self) -> tuple[Int[np.ndarray, "edges 2"], Int[np.ndarray, "triangles 3"]]:
         """Every edge once, and the edges of each triangle: from its first corner to its second, and so on."""
-        ends = np.sort(self.triangles[:, _SIDES], axis=2).reshape(-1, 2)
+        sides = ((0, 1), (1, 2), (2, 0))
+        ends = np.sort(self.triangles[:, sides], axis=2).reshape(-1, 2)
         edges, index = np.unique(ends, axis=0, return_inverse=True)
         return edges, index.reshape(-1, 3)
 
@@ -113,7 +108,8 @@ def skin_of_surface(surface: Surface) -> SkinMesh:
         raise InputError(
             "a hole goes through the body, so its skin cannot be cut into flat patches. Cast it in a mould"
         )
-    return _fine(_coarse(mesh), _SHARE * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))))
+    share = 0.03  # longest edge, as a share of the diagonal of the body: fine enough for smooth seams
+    return _fine(_coarse(mesh), share * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))))
 
 
 def _boundary(body: Body) -> Surface:
@@ -126,9 +122,10 @@ def _coarse(mesh: SkinMesh) -> SkinMesh:
     """The surface with fewer triangles if it has very many; by quadric errors (Garland, Heckbert 1997)."""
     import igl
 
-    if len(mesh.triangles) <= _MOST:
+    most, enough = 6000, 5000  # a surface of more triangles than the first is made coarser, to the second
+    if len(mesh.triangles) <= most:
         return mesh
-    found = igl.qslim(np.asfortranarray(mesh.vertices), np.asfortranarray(mesh.triangles), _ENOUGH)
+    found = igl.qslim(np.asfortranarray(mesh.vertices), np.asfortranarray(mesh.triangles), enough)
     triangles = np.asarray(found[1]).astype(np.int64)
     fewer = SkinMesh(vertices=np.array(found[0]), triangles=triangles, patch=np.zeros(len(triangles), dtype=np.int64))
     closed = len(fewer.vertices) - len(fewer.edges[0]) + len(fewer.triangles) == 2
@@ -143,9 +140,6 @@ def _fine(mesh: SkinMesh, longest: float) -> SkinMesh:
         if not long.any():
             return mesh
         mesh, _ = mesh.divide_edges(long, np.full(len(long), 0.5))
-
-
-_NEAR = 0.05  # a line that passes a corner nearer than this share of an edge goes through the corner: no slivers
 
 
 def cut_at_zero(
@@ -180,7 +174,9 @@ def _snapped(
     field = field.copy()
     least = 1e-9 * max(float(np.abs(field).max()), 1e-300)
     exact = np.where(field == 0, least, field)
-    field[edges[crossing][share < _NEAR]] = 0.0
+    # a line that passes a corner nearer than this share of an edge goes through the corner: no slivers
+    near = 0.05
+    field[edges[crossing][share < near]] = 0.0
     while True:
         flat = inside & (field[mesh.triangles] == 0).all(axis=1)
         if not flat.any():

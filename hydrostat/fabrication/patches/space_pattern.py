@@ -39,7 +39,6 @@ from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.robot import Mount, Robot
 
 _CLEAR = 0.8
-_CROSS = 2.0
 
 
 def patch_skin(patch: Patch, options: PatternOptions) -> Skin:
@@ -97,9 +96,10 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
     x, y = place
     if not hole.in_seam:
         return (Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, centre=place, radius=options.pinhole / 2),)
+    cross = 2.0
     return tuple(
         LaserLine(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
-        for dx, dy in ((_CROSS, _CROSS), (_CROSS, -_CROSS))
+        for dx, dy in ((cross, cross), (cross, -cross))
     )
 
 

@@ -17,9 +17,6 @@ from hydrostat.fabrication.winch_marks import marked_name
 from hydrostat.robot import Robot
 
 _CLEARANCE = 1.2  # empty cloth kept round whatever is placed [mm]
-_TIGHT = 1.05  # empty cloth kept round the small figures at holes [mm]
-_OVER_TEXT = 10  # a label over another is as bad as one over so many more lines
-_THROUGH_TEXT = 3  # so is a line to a label through another, for so many
 _ROOMY = 6.0  # empty cloth beyond which more is no better [mm]
 
 
@@ -39,14 +36,16 @@ class FreeSpace:
         centres = _round(at, width, height, gap + np.arange(0, 14, 1.5))
         crossings = self._crossings(centres, _boxes(centres, width, height))
         leaders = np.array([shapely.LineString([at, centre]) for centre in centres])
-        crossings += _THROUGH_TEXT * _hits(self._texts, leaders)
+        through_text = 3  # so is a line to a label through another, for so many
+        crossings += through_text * _hits(self._texts, leaders)
         x, y = centres[np.argmin(crossings)].tolist()
         return x, y
 
     def clear_beside(self, at: Place, width: float, height: float, *, gap: float) -> Place | None:
         """Middle of a box near to a place that crosses nothing [mm]; None if there is none."""
         centres = _round(at, width, height, gap + np.arange(0, 2.5, 0.5))
-        crossings = self._crossings(centres, _boxes(centres, width, height, _TIGHT))
+        tight = 1.05  # empty cloth kept round the small figures at holes [mm]
+        crossings = self._crossings(centres, _boxes(centres, width, height, tight))
         if crossings.min():
             return None
         x, y = centres[np.argmin(crossings)].tolist()
@@ -79,7 +78,8 @@ class FreeSpace:
     def _crossings(self, centres: np.ndarray, boxes: np.ndarray) -> np.ndarray:
         """Weighted number of objects that each box overlaps; another label weighs more, and a box outside most."""
         outside = ~shapely.contains_xy(self._inside, centres)
-        return _hits(self._taken, boxes) + _OVER_TEXT * _hits(self._texts, boxes) + 1000 * outside
+        over_text = 10  # a label over another is as bad as one over so many more lines
+        return _hits(self._taken, boxes) + over_text * _hits(self._texts, boxes) + 1000 * outside
 
     def _room(self, boxes: np.ndarray) -> np.ndarray:
         """Distance from each box to what is next to it, up to `_ROOMY` [mm]."""
@@ -113,11 +113,7 @@ def _boxes(centres: np.ndarray, width: float, height: float, clearance: float = 
 
 _NAMES = (4.0, 3.0)
 _TITLES = (8.0, 6.0, 5.0, 4.0)  # heights of letters, the best first [mm]
-_GRAINS = (40.0, 25.0, 15.0)  # lengths of the arrow, the best first [mm]
-_FIGURE = 2.5  # height of the figure at a hole [mm], the least that a laser writes on felt
-_FIGURE_GAP = 2.2  # from the middle of a hole to its figure [mm]
 _LETTER = 3.0  # height of the letter at a notch [mm]
-_ALONG = 15.0  # distance of a cable's number from its winch [mm]
 _NEAR = 4.0  # maximum distance of a label without a line to its place [mm]
 
 
@@ -142,10 +138,11 @@ class PanelLabels:
         """Label cables C1, C2, ... from the first on, next to their stoppers and their exits from the winches."""
         for number, cable in enumerate(robot.cables, start=first):
             self.cable_name(number, place(cable.points[-1]))
+        along = 15.0  # distance of a cable's number from its winch [mm]
         for number, cable in enumerate(robot.cables, start=first):
             begin = LineString([place(point) for point in cable.points[:2]]).intersection(self._seam)
             if not begin.is_empty:
-                near = begin.interpolate(min(_ALONG, begin.length / 2))
+                near = begin.interpolate(min(along, begin.length / 2))
                 self._beside(f"C{number}", (near.x, near.y), gap=2.5)
 
     def cable_name(self, cable: int, at: Place) -> None:
@@ -170,8 +167,10 @@ class PanelLabels:
     def figure(self, text: str, at: Place) -> None:
         """Put a small number next to a hole if there is room."""
         at = (-at[0], at[1]) if self._mirrored else at
-        letters = Lettering(text, _FIGURE)
-        middle = self._space.clear_beside(at, letters.width, _FIGURE, gap=_FIGURE_GAP)
+        figure = 2.5  # height of the figure at a hole [mm], the least that a laser writes on felt
+        letters = Lettering(text, figure)
+        figure_gap = 2.2  # from the middle of a hole to its figure [mm]
+        middle = self._space.clear_beside(at, letters.width, figure, gap=figure_gap)
         if middle is not None:
             self._write(letters, middle)
 
@@ -227,7 +226,8 @@ class PanelLabels:
 
     def grain(self) -> None:
         """An arrow along the grain of the cloth, parallel to the y axis of the drawing."""
-        for length in _GRAINS:
+        grains = (40.0, 25.0, 15.0)  # lengths of the arrow, the best first [mm]
+        for length in grains:
             middle = self._space.anywhere(4.0, length)
             if middle is not None:
                 self._shapes.extend(_arrow(middle, length))

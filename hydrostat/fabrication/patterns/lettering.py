@@ -6,9 +6,6 @@ from types import MappingProxyType
 
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, Place
 
-_SPACE = 3.0
-_BETWEEN = 2.0
-
 
 @dataclass(frozen=True)
 class Lettering:
@@ -43,15 +40,17 @@ class Lettering:
         """Strokes in units of the font, the first letter at x = 0."""
         strokes: list[list[Place]] = []
         pen = 0.0
+        space = 3.0
+        between = 2.0
         for letter in _plain(self.text):
             if letter == " ":
-                pen += _SPACE
+                pen += space
                 continue
             glyph = [_points(stroke) for stroke in GLYPHS.get(letter, UNKNOWN).split()]
             left = min(x for stroke in glyph for x, _ in stroke)
             right = max(x for stroke in glyph for x, _ in stroke)
             strokes.extend([(pen + x - left, y) for x, y in stroke] for stroke in glyph)
-            pen += right - left + _BETWEEN
+            pen += right - left + between
         return strokes
 
 

@@ -14,8 +14,6 @@ from hydrostat.fabrication.patterns.skin import Notch, Skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, runs_of
 from hydrostat.robot import Robot
 
-_SHEATH = 3.0  # width of the drawn sheath [mm]
-_STOPPER = 3.0  # radius of the ring round the hole at a stopper [mm]
 _DASH = 2.0  # length of a dash, and about that of the gap after it [mm]
 _CLEAR = 0.8  # gap between lines and a hole [mm], so that none is engraved into it
 
@@ -39,11 +37,13 @@ def cable_marks(
     marks: list[Shape] = []
     pinholes = tuple(pinholes)
     holes = shapely.union_all([shapely.Point(hole.centre).buffer(hole.radius + _CLEAR) for hole in pinholes])
+    sheath = 3.0  # width of the drawn sheath [mm]
+    stopper = 3.0  # radius of the ring round the hole at a stopper [mm]
     for cable, sewn in zip(robot.cables, stitches, strict=True):
         for bare, points in runs_of(cable):
             if not bare:
                 run = LineString([place(cable.points[point]) for point in points])
-                tube = run.buffer(_SHEATH / 2, cap_style="flat", join_style="mitre").boundary
+                tube = run.buffer(sheath / 2, cap_style="flat", join_style="mitre").boundary
                 marks.extend(trace(tube.intersection(seam).difference(holes), Layer.MARK, PatternPart.SHEATH))
         for index in np.flatnonzero(cable.bare):
             run = LineString([place(point) for point in cable.points[index : index + 2]])
@@ -51,9 +51,7 @@ def cable_marks(
             if sewn.stitches[index].after is Side.INSIDE:
                 drawn = dash_lines(drawn)
             marks.extend(trace(drawn, Layer.MARK, PatternPart.CABLE))
-        marks.append(
-            Circle(layer=Layer.MARK, part=PatternPart.STOPPER, centre=place(cable.points[-1]), radius=_STOPPER)
-        )
+        marks.append(Circle(layer=Layer.MARK, part=PatternPart.STOPPER, centre=place(cable.points[-1]), radius=stopper))
     return tuple(marks)
 
 

@@ -18,12 +18,6 @@ ZIPPERS = (100, 150, 200, 250, 300, 350, 400, 450, 500)
 
 _PLACKET = 4.0  # from the slit to the line along which the tape is sewn [mm]
 
-_TURNS = (0, 90, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75)
-"""Directions that are tried, from the row of winches [degrees], the best first."""
-
-_SHIFTS = (0, 6, -6, 12, -12, 18, -18)
-"""Offsets of a slit from the winches that keep it off pinholes [mm], the best first."""
-
 
 @dataclass(frozen=True)
 class Opening:
@@ -104,8 +98,12 @@ def opening_at(
     row = np.linalg.svd(winches - winches.mean(axis=0))[2][0] if len(winches) > 1 else np.array([1.0, 0.0])
     wanted = 2 * (np.abs((winches - winches.mean(axis=0)) @ row).max() + reach)
     slits = []
-    for shift in _SHIFTS if narrow else _SHIFTS[:1]:
-        for angle in _TURNS:
+    # Directions that are tried, from the row of winches [degrees], the best first
+    turns = (0, 90, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75)
+    # Offsets of a slit from the winches that keep it off pinholes [mm], the best first
+    shifts = (0, 6, -6, 12, -12, 18, -18)
+    for shift in shifts if narrow else shifts[:1]:
+        for angle in turns:
             direction = row @ _turn(np.radians(angle))
             middle = np.array(centre.coords[0]) + shift * np.array([-direction[1], direction[0]])
             slits.append(_slit(room, middle, direction, wanted))

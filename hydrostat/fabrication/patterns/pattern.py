@@ -208,12 +208,10 @@ def _over_zipper(draft: _PatternDraft) -> list[str]:
     return [f"the zipper crosses {', '.join(crossed)} on the back. Route them inside there, under its tape"]
 
 
-_GAP = 10.0  # round the plate [mm]
-
-
 def cut_sheet(name: str, rings: Iterable[tuple[Place, ...]]) -> Pattern:
     """A plate with its holes [mm], above the bar of 100 mm."""
     lines = tuple(LaserLine(layer=Layer.CUT, part=PatternPart.EDGE, points=ring, closed=True) for ring in rings)
-    sheet = lay_out((Panel(name="plate", origin=(0.0, 0.0), mirrored=False, shapes=lines),), (), _GAP)
+    gap = 10.0  # round the plate [mm]
+    sheet = lay_out((Panel(name="plate", origin=(0.0, 0.0), mirrored=False, shapes=lines),), (), gap)
     ruler = tuple(line for line in sheet.ruler if line.part is PatternPart.RULER)
     return Pattern(name=name, panels=sheet.panels, shapes=ruler, width=sheet.width, height=sheet.height)

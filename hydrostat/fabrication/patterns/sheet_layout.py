@@ -10,7 +10,6 @@ from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, PatternPart, Place
 
 _RULER = 100.0  # length of the bar that shows whether the sheet was cut at its true scale [mm]
-_RULER_HEIGHT = 12.0  # room for the bar and its text below the panels [mm]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +36,8 @@ def lay_out(panels: tuple[Panel, ...], strips: tuple[Panel, ...], gap: float) ->
     width = max(
         sum(box.size[0] + gap for box in row) + gap, _RULER + 30 + 2 * gap, *(box.size[0] + 2 * gap for box in others)
     )
-    floor = gap + _RULER_HEIGHT
+    ruler_height = 12.0  # room for the bar and its text below the panels [mm]
+    floor = gap + ruler_height
     laid: dict[str, Panel] = {}
     for shelf in (*reversed(_shelves(others, width - gap, gap)), row):
         left = gap

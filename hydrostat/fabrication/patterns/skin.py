@@ -13,9 +13,6 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.robot import Body
 
-_STEPS = 24  # straight pieces of a quarter turn: 0.004 mm from the arc of an 8 mm allowance
-_TOLERANCE = 0.01  # maximum deviation of a straightened offset line [mm], a tenth of a laser's kerf
-
 
 @dataclass(frozen=True)
 class Skin:
@@ -68,9 +65,11 @@ def _silhouette(body: Body) -> Polygon:
 
 def _offset(polygon: Polygon, distance: float, options: PatternOptions) -> Polygon:
     """The parallel of a polygon; the largest piece where it falls apart."""
-    grown = polygon.buffer(distance, quad_segs=_STEPS, join_style=options.corner.value, mitre_limit=2.0)
+    steps = 24  # straight pieces of a quarter turn: 0.004 mm from the arc of an 8 mm allowance
+    grown = polygon.buffer(distance, quad_segs=steps, join_style=options.corner.value, mitre_limit=2.0)
     largest = max(_polygons(grown), key=lambda piece: piece.area, default=Polygon())
-    straight = largest.simplify(_TOLERANCE)
+    tolerance = 0.01  # maximum deviation of a straightened offset line [mm], a tenth of a laser's kerf
+    straight = largest.simplify(tolerance)
     return straight if isinstance(straight, Polygon) else largest
 
 
@@ -117,10 +116,6 @@ def _at(geometry: Polygon | shapely.Point) -> str:
     return f"[{place.x:.4g}, {place.y:.4g}] mm"
 
 
-_SPACING = 80.0  # about how far apart notches are along the seam [mm]
-_PAIR = 5.0  # distance of the two notches of the double notch [mm], which marks the top
-
-
 @dataclass(frozen=True)
 class Notch:
     """One stroke."""
@@ -136,13 +131,15 @@ def find_notches(skin: Skin) -> tuple[Notch, ...]:
     notches: list[Notch] = []
     allowance = skin.seam.boundary.distance(skin.cut.boundary)
     names = notch_letters()
+    spacing = 80.0  # about how far apart notches are along the seam [mm]
+    pair = 5.0  # distance of the two notches of the double notch [mm], which marks the top
     for ring, seam, cut in _allowances(skin):
         top = seam_top(seam)
-        count = max(4, round(seam.length / _SPACING))
-        for along in sorted([_PAIR, *(seam.length * index / count for index in range(count))]):
+        count = max(4, round(seam.length / spacing))
+        for along in sorted([pair, *(seam.length * index / count for index in range(count))]):
             stroke = shapely.shortest_line(seam.interpolate((top + along) % seam.length), cut)
             if isinstance(stroke, LineString) and stroke.length < 1.5 * allowance and not stroke.intersects(skin.slits):
-                notches.append(Notch(ring, along, "" if along == _PAIR else next(names), stroke))
+                notches.append(Notch(ring, along, "" if along == pair else next(names), stroke))
     return tuple(notches)
 
 

@@ -11,7 +11,6 @@ from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 COLOURS = {Layer.MARK: "#000000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"}
 """Stroke of each layer: LightBurn and its like tell operations apart by these."""
 
-_HAIRLINE = 0.1
 
 _DIGITS = 3  # micrometres are enough
 
@@ -35,9 +34,10 @@ def pattern_svg(pattern: Pattern) -> bytes:
 
 
 def _layer(pattern: Pattern, layer: Layer) -> Iterable[str]:
+    hairline = 0.1
     yield (
         f'<g id="{layer}" inkscape:groupmode="layer" inkscape:label="{layer.upper()}" fill="none"'
-        f' stroke="{COLOURS[layer]}" stroke-width="{_HAIRLINE}" stroke-linecap="round" stroke-linejoin="round">'
+        f' stroke="{COLOURS[layer]}" stroke-width="{hairline}" stroke-linecap="round" stroke-linejoin="round">'
     )
     groups = [(panel.name, panel.shapes) for panel in pattern.panels] + [("sheet", pattern.shapes)]
     for name, shapes in groups:

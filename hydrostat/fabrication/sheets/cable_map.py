@@ -36,13 +36,7 @@ from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Point, Robot
 
 _MARGIN = 7.0  # room round the body for labels [mm]
-_DRAWN = 0.45  # grey of what is drawn on the body
 _HOLE = 0.65  # radius of a drawn hole [mm]
-_NEAR = 3.2  # a number further than this from its hole is led to it by a line [mm]
-_SOFT = 0.008  # share of the picture over which the light on a body is blurred
-
-
-_MANY = 6  # more winches than this have smaller marks
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +69,8 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     frame = CanvasFrame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
     canvas.fill([frame.way(ring) for ring in rings], grey=0.95)
     canvas.line([frame.way(ring) for ring in rings], width=THICK, closed=True)
-    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN, grey=_DRAWN)
+    drawn = 0.45  # grey of what is drawn on the body
+    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN, grey=drawn)
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
     for ring in rings:
         labels.take_line(frame.way([*ring, ring[0]]), weight=3)
@@ -124,7 +119,8 @@ def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Came
 def pane_of(robot: Robot, camera: Camera, pixels: int) -> SightedBody:
     """A body in space and its cables and winches [mm], as a camera sees them."""
     body = body_solid(robot)
-    drawing = line_drawing([body], camera, soft=_SOFT, pixels=pixels)
+    soft = 0.008  # share of the picture over which the light on a body is blurred
+    drawing = line_drawing([body], camera, soft=soft, pixels=pixels)
     cables = [camera.see(1e3 * np.array(cable.points)) for cable in robot.cables]
     winches = [camera.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
     places = np.concatenate([drawing.box, *(way[:, :2] for way in cables)])
@@ -217,7 +213,8 @@ def put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str) -> No
 def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Mapping[str, Spot]) -> None:
     """Mark each winch; a mark on another winch is moved and led to its place by a line."""
     taken: list[Spot] = []
-    size = 9.0 if len(stands) <= _MANY else 7.5
+    many = 6  # more winches than this have smaller marks
+    size = 9.0 if len(stands) <= many else 7.5
     for letter, stand in stands.items():
         radius, at = balloon_radius(letter, size), stand
         if any(np.hypot(*np.subtract(stand, other)) < 2 * radius for other in taken):
@@ -251,7 +248,8 @@ def _put_number(
     middle = labels.beside(spot, size, gap=0.75, most=40 if led else 3, rings=4 if led else 2)
     if middle is None:
         return
-    if np.hypot(*np.subtract(middle, spot)) > _NEAR:
+    near = 3.2  # a number further than this from its hole is led to it by a line [mm]
+    if np.hypot(*np.subtract(middle, spot)) > near:
         canvas.line([[middle, spot]], width=0.12, grey=0.35)
     canvas.text(middle, words, size=7.5, halo=led, colour=run.colour)
 
@@ -277,10 +275,6 @@ def _put_stopper(canvas: Canvas, run: CableRun) -> None:
     canvas.fill([[(float(x), float(y)) for x, y in corners]], grey=0.0)
 
 
-FEWEST = 3
-"""With fewer cables one map shows them all."""
-
-_COLUMNS, _ROWS = 3, 4  # maps on a page
 _CELL_HEAD, _CELL_MARGIN = 5.0, 4.0  # room for a title, and round the body [mm]
 _PALE = 0.72  # grey of what does not stand out
 
@@ -306,19 +300,21 @@ def single_maps(
         height: maximum page height [mm].
         view: camera for a body in space; None for a flat one.
     """
-    if len(robot.cables) < FEWEST:
+    fewest = 3  # With fewer cables one map shows them all
+    if len(robot.cables) < fewest:
         return []
     scene = _flat_scene(robot, stitches) if view is None else _space_scene(robot, view)
-    room = width / _COLUMNS
-    tall = min(height / _ROWS, _CELL_HEAD + 2 * _CELL_MARGIN + fit_height(scene.box, room - 2 * _CELL_MARGIN, 1e3))
+    columns, rows = 3, 4  # maps on a page
+    room = width / columns
+    tall = min(height / rows, _CELL_HEAD + 2 * _CELL_MARGIN + fit_height(scene.box, room - 2 * _CELL_MARGIN, 1e3))
     count = len(scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0))))
-    each = _COLUMNS * max(int(height / tall), 1)
+    each = columns * max(int(height / tall), 1)
     pages = []
     for start in range(0, count, each):
         shown = range(start, min(start + each, count))
-        canvas = Canvas(width, tall * -(-len(shown) // _COLUMNS))
+        canvas = Canvas(width, tall * -(-len(shown) // columns))
         for place, number in enumerate(shown):
-            left, top = room * (place % _COLUMNS), tall * (place // _COLUMNS)
+            left, top = room * (place % columns), tall * (place // columns)
             _put_cell(canvas, robot, scene, number, (left, top, left + room, top + tall))
         pages.append(canvas)
     return pages

@@ -5,7 +5,6 @@ from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 
 _CLOTH = 1.5  # thickness of drawn cloth [mm]
-_MAX_HOLES = 7  # holes that are drawn; of a longer cable the last are left out but for the stopper's
 
 
 def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float) -> Canvas:
@@ -13,7 +12,8 @@ def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float
     canvas = Canvas(width, height)
     front, back = 0.36 * height, height - 4.5
     stitches = [stitch for stitch in sewn.stitches if stitch.passes or stitch is sewn.stitches[-1]]
-    chosen = [*stitches] if len(stitches) <= _MAX_HOLES else [*stitches[: _MAX_HOLES - 2], stitches[-1]]
+    max_holes = 7  # holes that are drawn; of a longer cable the last are left out but for the stopper's
+    chosen = [*stitches] if len(stitches) <= max_holes else [*stitches[: max_holes - 2], stitches[-1]]
     skipped = len(chosen) < len(stitches)
     left, right = 13.0, width - 9.0
     step = (right - left) / max(len(chosen) - 1, 1)
@@ -152,13 +152,11 @@ def _dimension(canvas: Canvas, left: float, right: float, at: float, foot: float
     canvas.text((middle, beside), words, size=8, halo=False)
 
 
-_MAX_MOTORS = 6  # largest number of motors drawn; a sentence states the rest
-
-
 def wiring_scheme(plan: PowerPlan, marks: tuple[str, ...], *, width: float) -> Canvas:
     """Supply, fuse, switch, board and motors [mm of paper]; `marks` are those of the winches, as on the map."""
     canvas = Canvas(width, 74.0)
-    shown = marks[:_MAX_MOTORS]
+    max_motors = 6  # largest number of motors drawn; a sentence states the rest
+    shown = marks[:max_motors]
     _put_power(canvas, plan)
     left, right, top = 50.0, width, 46.0
     step = (right - left) / len(shown)
@@ -166,7 +164,7 @@ def wiring_scheme(plan: PowerPlan, marks: tuple[str, ...], *, width: float) -> C
     (_put_chain if plan.servos else _put_drivers)(canvas, plan, places, step, top)
     for place, mark in zip(places, shown, strict=True):
         canvas.balloon((place, top + 20.0), mark, dark=True)
-    if len(marks) > _MAX_MOTORS:
+    if len(marks) > max_motors:
         canvas.text((right, top + 26.5), f"and so on to {marks[-1]}", size=8, anchor="end", grey=0.25)
     return canvas
 

@@ -12,9 +12,7 @@ from jaxtyping import Bool, Float
 from hydrostat.drawing import Box, Camera, DepthBuffer, DrawnSolid, Spot
 from hydrostat.robot import Robot
 
-_COARSE = 160  # pixels along a body: enough to know its near and its far side
 _TURNS = tuple(range(0, 360, 30))  # compass directions that are tried [degrees]
-_RISES = (15.0, 40.0)  # heights over the horizon that are tried [degrees]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +28,8 @@ class Visibility:
         seen = camera.see(body.vertices)[body.triangles]
         nothing = np.empty((len(seen), 3, 0))
         turned = seen * np.array([1.0, 1.0, -1.0])
-        return cls(*(DepthBuffer.of(corners, nothing, pixels=_COARSE) for corners in (seen, turned)))
+        coarse = 160  # pixels along a body: enough to know its near and its far side
+        return cls(*(DepthBuffer.of(corners, nothing, pixels=coarse) for corners in (seen, turned)))
 
     def in_front(self, seen: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, " points"]:
         """Return True for each point in the near half of the body, in front of it, or next to it."""
@@ -43,7 +42,8 @@ def best_views(robot: Robot, body: DrawnSolid) -> tuple[Camera, ...]:
     """Three views: from where most of the cables lie in front, and then from where most of the others do."""
     cables = [1e3 * np.array(cable.points)[1:] for cable in robot.cables]
     points = np.concatenate([(way[:-1] + way[1:]) / 2 for way in cables if len(way) > 1] or [np.zeros((1, 3))])
-    views = [Camera.at(float(turn), rise) for rise in _RISES for turn in _TURNS]
+    rises = (15.0, 40.0)  # heights over the horizon that are tried [degrees]
+    views = [Camera.at(float(turn), rise) for rise in rises for turn in _TURNS]
     seen = np.array([Visibility.of(body, view).in_front(view.see(points)) for view in views], dtype=float)
     # Of views that are as good, the one that shows most of the body, then the first.
     areas = np.array([np.prod(np.ptp(view.see(body.vertices)[:, :2], axis=0)) for view in views])
@@ -60,9 +60,6 @@ def best_views(robot: Robot, body: DrawnSolid) -> tuple[Camera, ...]:
 def _apart(views: list[Camera], one: Camera) -> Float[np.ndarray, " views"]:
     """Distance of views from one of them: 0 for itself, 1 for a right angle, 2 for the opposite."""
     return np.array([1 - float(view.axes[2] @ one.axes[2]) for view in views])
-
-
-_SHARP = 70.0  # on a body, edges are drawn that are sharper than this [degrees]: scans are rough
 
 
 def flat_marks(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
@@ -82,21 +79,21 @@ def flat_rings(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
 
 def body_solid(robot: Robot) -> DrawnSolid:
     """The surface of a body in space [mm]."""
+    sharp = 70.0  # on a body, edges are drawn that are sharper than this [degrees]: scans are rough
     if robot.body.healing is not None:
         surface = robot.body.healing.surface
-        return DrawnSolid(vertices=1e3 * surface.vertices, triangles=surface.triangles, sharp=_SHARP)
+        return DrawnSolid(vertices=1e3 * surface.vertices, triangles=surface.triangles, sharp=sharp)
     mesh = robot.body.mesh
     # Not `mesh.boundary`, whose order of corners would move the last digits of written sheets.
     faces = mesh.elements[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
     _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return DrawnSolid(vertices=1e3 * mesh.nodes, triangles=faces[np.sort(first[counts == 1])], sharp=_SHARP)
+    return DrawnSolid(vertices=1e3 * mesh.nodes, triangles=faces[np.sort(first[counts == 1])], sharp=sharp)
 
 
 _WAYS = [(np.cos(turn), np.sin(turn)) for turn in np.radians(np.arange(0, 360, 30))]
 """Directions that are tried, to the right first."""
 
 _RINGS = (0.0, 1.5, 3.5, 6.0)  # additional distances of a label, tried in turn [mm]
-_STEP = 0.5  # between points that stand for a line [mm]
 
 
 @dataclass
@@ -110,8 +107,9 @@ class LabelPlaces:
     def take_line(self, way: Sequence[Spot], *, weight: int = 1) -> None:
         """A line is there: labels avoid it where they can, the more the heavier it is."""
         spots = np.array(way, dtype=float)
+        step = 0.5  # between points that stand for a line [mm]
         for start, end in pairwise(spots):
-            count = max(int(np.hypot(*(end - start)) / _STEP), 1) + 1
+            count = max(int(np.hypot(*(end - start)) / step), 1) + 1
             self._points += weight * [start + np.linspace(0, 1, count)[:, None] * (end - start)]
 
     def take_box(self, box: Box) -> None:

@@ -111,7 +111,6 @@ def spread(wished: Sequence[float], step: float, low: float, high: float) -> lis
 
 
 _TURNS = tuple(range(0, 360, 30))  # compass directions round the pull that are tried [degrees]
-_HATCH = 0.8  # between the lines of a hatch on paper [mm]
 
 
 def undercut_picture(
@@ -131,7 +130,8 @@ def undercut_picture(
     frame = CanvasFrame.fit(drawing.box, (0.6, 9.0, width - 0.6, height - 0.6))
     canvas.drawing(drawing, frame)
     rings = drawing.rings_of(0, held)
-    canvas.line([frame.way(line) for line in _hatch(rings, _HATCH / frame.scale)], width=THIN)
+    hatch = 0.8  # between the lines of a hatch on paper [mm]
+    canvas.line([frame.way(line) for line in _hatch(rings, hatch / frame.scale)], width=THIN)
     canvas.line([frame.way(ring) for ring in rings], width=THIN)
     top = frame.on(((drawing.box[0, 0] + drawing.box[1, 0]) / 2, drawing.box[1, 1]))
     canvas.arrow((top[0], top[1] - 1.2), (top[0], max(top[1] - 8.2, 0.4)), width=MIDDLE)
@@ -163,7 +163,6 @@ def _hatch(rings: list[Polyline], gap: float) -> list[np.ndarray]:
     return [shapely.get_coordinates(part) for part in parts if isinstance(part, shapely.LineString)]
 
 
-_PIXELS = 300  # along the longer side of a flat body
 _SHADES = ((0.60, 0.93), (0.42, 0.84))  # below which light a puffed body is grey, and how bright that grey is
 
 
@@ -190,7 +189,8 @@ def portrait(robot: Robot, view: Camera | None, *, width: float, height: float) 
 
 def _puffed(rings: list[np.ndarray], box: np.ndarray, radius: float) -> list[tuple[float, list[np.ndarray]]]:
     """Rings round the darker sides of a stuffed body: its section is a half circle of a radius [mm] at the rim."""
-    pixel = float((box[1] - box[0]).max()) / _PIXELS
+    pixels = 300  # along the longer side of a flat body
+    pixel = float((box[1] - box[0]).max()) / pixels
     low = box[0] - 4 * pixel
     columns, rows = (np.ceil((box[1] - low) / pixel).astype(int) + 5).tolist()
     x, y = np.meshgrid(low[0] + pixel * np.arange(columns), low[1] + pixel * np.arange(rows))

@@ -125,8 +125,6 @@ def _letters(index: int) -> str:
 _WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
 """Widths of the lines [mm]: the width too shows the operation where the printer knows no colour."""
 
-_NAMED = 12  # so many empty tiles are named; more would fill the page
-_BAR = 100.0  # length of the bar that shows whether a page was printed at its true scale [mm]
 
 _Box = tuple[float, float, float, float]
 _Widths = Mapping[Layer, float]
@@ -188,9 +186,10 @@ def _foot(pattern: Pattern, grid: TileGrid, name: str) -> list[str]:
     y = MARGIN + grid.height + FOOTER - 5
     label = f'#text(size: 13pt, weight: "bold")[#{_text(name)}]'
     title = f"#text(size: 8pt)[#{_text(f'{legible(pattern.name)} - pattern')}]"
+    bar = 100.0  # length of the bar that shows whether a page was printed at its true scale [mm]
     return [
         f"#bar({MARGIN}, {y})",
-        f"#at({MARGIN + _BAR + 5}, {y - 5}, box(width: {grid.width - _BAR - 5}mm, height: 10mm, clip: true,"
+        f"#at({MARGIN + bar + 5}, {y - 5}, box(width: {grid.width - bar - 5}mm, height: 10mm, clip: true,"
         f" align(right + horizon)[{label} \\ {title}]))",
     ]
 
@@ -219,7 +218,8 @@ def _left_out(empty: list[str]) -> str:
     """Return a sentence on the tiles without a page."""
     if not empty:
         return ""
-    if len(empty) > _NAMED:
+    named = 12  # so many empty tiles are named; more would fill the page
+    if len(empty) > named:
         return f" Nothing is on the {len(empty)} crossed out below: they are not printed."
     return f" Nothing is on {', '.join(empty)}: {'they are' if len(empty) > 1 else 'it is'} not printed."
 

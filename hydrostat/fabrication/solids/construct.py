@@ -15,7 +15,6 @@ from manifold3d import CrossSection, Manifold
 Corner = tuple[float, float]  # a corner of a profile [mm]
 
 Sides = tuple[float, float, float]  # lengths along three axes [mm]
-_SAG = 0.02  # maximum error of a round side [mm]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,7 +144,8 @@ def _check_turns(profile: tuple[Corner, ...]) -> None:
 
 def segments(radius: float) -> int:
     """Sides of a polygon for a circle [mm] that is nowhere further than 0.02 mm from it; a multiple of 8."""
-    half_angle = np.arccos(max(1 - _SAG / max(radius, 1e-9), 0.0))
+    sag = 0.02  # maximum error of a round side [mm]
+    half_angle = np.arccos(max(1 - sag / max(radius, 1e-9), 0.0))
     return int(8 * np.ceil(max(np.pi / half_angle, 16.0) / 8))
 
 

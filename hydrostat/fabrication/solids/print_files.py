@@ -26,9 +26,6 @@ def stl_bytes(printed: Printed) -> bytes:
     return header + np.uint32(len(triangles)).astype("<u4").tobytes() + records.tobytes()
 
 
-_GAP = 5.0  # between parts on the bed [mm]
-
-
 @dataclass(frozen=True)
 class PartOnBed:
     """One part on a bed."""
@@ -56,15 +53,16 @@ def lay_plates(parts: Iterable[Printed], bed: tuple[float, float]) -> tuple[tupl
     pieces.sort(key=lambda piece: (-piece.size[1], piece.part))
     plates: list[list[PartOnBed]] = [[]]
     x = y = row = 0.0
+    gap = 5.0  # between parts on the bed [mm]
     for piece in pieces:
         wide, deep = piece.size
         if x > 0 and x + wide > bed[0]:
-            x, y, row = 0.0, y + row + _GAP, 0.0
+            x, y, row = 0.0, y + row + gap, 0.0
         if y > 0 and y + deep > bed[1]:
             plates.append([])
             x = y = row = 0.0
         plates[-1].append(PartOnBed(piece.part, x - piece.low[0], y - piece.low[1], piece.turned))
-        x, row = x + wide + _GAP, max(row, deep)
+        x, row = x + wide + gap, max(row, deep)
     return tuple(tuple(plate) for plate in plates if plate)
 
 

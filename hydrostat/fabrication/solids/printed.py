@@ -12,7 +12,6 @@ from scipy.sparse.csgraph import connected_components
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.solids.construct import Construction, solid_of
 
-_DECIMALS = 5  # decimals of a coordinate [mm]: the limit of 32-bit numbers for parts up to 128 mm
 _STEP = 2e-5  # minimum distance of vertices that would otherwise coincide [mm]
 
 FileMesh = tuple[Float[np.ndarray, "kept 3"], Int[np.ndarray, "faces 3"]]
@@ -47,7 +46,8 @@ def loose_edges(triangles: Int[np.ndarray, "triangles 3"]) -> int:
 
 def _rounded(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corners 3"]:
     """The nearest numbers that 32 bits hold, with few decimals; no -0."""
-    return np.round(corners, _DECIMALS).astype(np.float32).astype(float) + 0.0
+    decimals = 5  # decimals of a coordinate [mm]: the limit of 32-bit numbers for parts up to 128 mm
+    return np.round(corners, decimals).astype(np.float32).astype(float) + 0.0
 
 
 def _merged(corners: Float[np.ndarray, "corners 3"], triangles: Int[np.ndarray, "triangles 3"]) -> FileMesh:
@@ -89,9 +89,7 @@ def _apart(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corner
     return corners
 
 
-PLA = 1.24e-3  # density of PLA [g/mm^3]
 SHELL = 1.2  # thickness of the shell that slicers print whole by themselves [mm]: three lines of 0.4 mm
-INFILL = 0.15  # share of what is inside the shell that is plastic, as slicers have it by themselves
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -121,7 +119,9 @@ class Printed:
     def mass(self) -> float:
         """Mass of one in PLA [g], estimated: a whole shell under its surface, little inside; at most all plastic."""
         shell = min(SHELL * float(self.solid.surface_area()), self.volume)
-        return PLA * (shell + INFILL * (self.volume - shell))
+        pla = 1.24e-3  # density of PLA [g/mm^3]
+        infill = 0.15  # share of what is inside the shell that is plastic, as slicers have it by themselves
+        return pla * (shell + infill * (self.volume - shell))
 
     @property
     def size(self) -> tuple[float, float, float]:

@@ -13,7 +13,6 @@ _VERTEX = re.compile(
     rb"^[ \t]*vertex[ \t]+(\S{1,40})[ \t]+(\S{1,40})[ \t]+(\S{1,40})[ \t]*$", re.MULTILINE | re.IGNORECASE
 )
 _WORD = re.compile(rb"^[ \t]*vertex\b", re.MULTILINE | re.IGNORECASE)
-_PIECE = 4_000_000  # bytes of text taken apart at once
 
 
 def read_stl(content: bytes, name: str) -> Soup:
@@ -57,8 +56,9 @@ def _text(content: bytes, name: str) -> np.ndarray:
         raise SurfaceError(f"{name}: does not end with endsolid: the file is cut short, export or copy it again")
     check_count(name, "vertices", sum(1 for _ in _WORD.finditer(content)), room=np.inf, most=6_000_000)
     pieces, start = [np.zeros((0, 3))], 0
+    piece = 4_000_000  # bytes of text taken apart at once
     while start < len(content):
-        end = content.find(b"\n", min(start + _PIECE, len(content)))
+        end = content.find(b"\n", min(start + piece, len(content)))
         end = len(content) if end < 0 else end
         pieces.append(_vertices(content[start:end], name, sum(map(len, pieces))))
         start = end + 1

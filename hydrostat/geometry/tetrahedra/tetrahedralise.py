@@ -60,13 +60,10 @@ _STAGES = (
 """From free to firm: first the shapes, then the surface."""
 
 _CRUMB = 0.01  # parts that break off with this share of the volume are no crumbs of a thin tip
-_WHOLE = 0.7  # if a lattice takes less of the volume, then finer elements in some places do not help
 
 _ADVICE = 0.7
 """Largest advised size, as a share of one that was too large; repeated advice then ends at a size that works."""
 
-_FINER = 4  # rounds of finer elements where the boundary is not close
-_BISECTIONS = 2  # of the longest edges, in each round; three halve the elements
 
 _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""
@@ -90,12 +87,15 @@ def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
         solid, *lattice(surface.box, cell, lambda middles: solid.distances(middles) < 2 * cell), cell
     )
     draft = _stuff_lattice(solid, nodes, elements, element_size)
-    if draft.whole < _WHOLE:
+    whole = 0.7  # if a lattice takes less of the volume, then finer elements in some places do not help
+    if draft.whole < whole:
         raise SurfaceError(f"much of the body is thinner than {_advice(surface, element_size)}")
-    for size in element_size / 2.0 ** (np.arange(_FINER) * _BISECTIONS / 3):
+    finer = 4  # rounds of finer elements where the boundary is not close
+    bisections = 2  # of the longest edges, in each round; three halve the elements
+    for size in element_size / 2.0 ** (np.arange(finer) * bisections / 3):
         if not len(draft.places):
             break
-        for _ in range(_BISECTIONS):
+        for _ in range(bisections):
             nodes, elements = bisect(nodes, elements, _too_long_near(nodes, elements, draft.places, size))
         draft = _stuff_lattice(solid, nodes, elements, element_size)
     if draft.lost > _CRUMB:

@@ -115,9 +115,11 @@ class InverseSearch:
         contractions = self.problem.bounds.spread @ values
         result = state.result
         far = (np.abs(values - state.values) > _FAR * self.problem.bounds.span).any()
-        for _ in range(_RELAXATIONS):
+        relaxations = 6  # steps of Newton towards an equilibrium before stronger means are used
+        loose = 0.1  # force left over after these, as a share of the largest tension
+        for _ in range(relaxations):
             before = result.nodes
-            iterations, tolerance = (_ITERATIONS, _LOOSE) if far else (1, None)
+            iterations, tolerance = (_ITERATIONS, loose) if far else (1, None)
             result = self.problem.simulation.solver.relax(
                 before, contractions, result.stiffness, iterations=iterations, tolerance=tolerance
             )
@@ -191,10 +193,8 @@ class InverseSearch:
         return self.problem.idle(self.problem.state(values, result)) if _sound(result) else None
 
 
-_RELAXATIONS = 6  # steps of Newton towards an equilibrium before stronger means are used
 _ITERATIONS = 30  # steps of Newton before an equilibrium is given up
 _FAR = 0.02  # a step of more than this share of a channel's range is far: it takes more than one step of Newton
-_LOOSE = 0.1  # force left over after these, as a share of the largest tension
 _APART = 1e-8  # ways that end within this share of the body's size end in the same pose
 _LEFT = 0.2  # an equilibrium is near enough when what is left is this share of the last step of Newton
 _HARDLY = 1e-3  # a channel whose tautest cable pulls less than this share of the largest tension may as well be slack

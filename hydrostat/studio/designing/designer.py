@@ -44,8 +44,6 @@ from hydrostat.units import plural
 
 TITLE = "Designing cables"
 
-MOST = 60  # so many candidates are kept; the oldest go
-MOST_RINGS = 12  # more targets than these at once say nothing
 MODULE = "hydrostat.studio.designing.design_work"
 
 
@@ -300,7 +298,8 @@ class Designer(Stage):
         if self.painter.busy or not robot.poses:
             return []
         poses, colours = wished_poses(robot, self.wishes), pose_colours(robot.poses)
-        if sum(len(pose.targets) for pose in poses) > MOST_RINGS:
+        most_rings = 12  # more targets than these at once say nothing
+        if sum(len(pose.targets) for pose in poses) > most_rings:
             return []
         return [(pose.targets, colours[pose.name] if len(poses) > 1 else INK) for pose in poses]
 
@@ -342,7 +341,8 @@ class Designer(Stage):
                 )
             )
             self._document.judge.learn(made[-1].robot, demand=solution.demand)
-        self._all = (*made, *self._all)[:MOST]
+        most = 60  # so many candidates are kept; the oldest go
+        self._all = (*made, *self._all)[:most]
         self._keep()
         best = made[0]
         seconds = time.monotonic() - run.began

@@ -43,7 +43,6 @@ _LEAST = 0.1
 """Motors that would stall are shown at this share of their free speed: the kit says that they are too weak."""
 
 
-TICK = 1 / 70  # motors are told and read once in this time [s], however often there is a step: about 60 times a second
 ROUGH = 3e-4  # how far a node may be from equilibrium while it moves, in sizes of the body: less than a pixel
 
 
@@ -154,7 +153,9 @@ class Machine:
 
     def due(self, now: float) -> bool:
         """Tell whether it is time for the next `run`."""
-        return not 0 <= now - self._ran < TICK
+        # motors are told and read once in this time [s], however often there is a step: about 60 times a second
+        tick = 1 / 70
+        return not 0 <= now - self._ran < tick
 
     def fail(self, error: Exception) -> bool:
         """Something went wrong, whatever it was: motors hold, and nothing plays. Whether that is news."""

@@ -13,8 +13,6 @@ from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops
 from hydrostat.studio.starting.photo import Backdrop
 
-SEEN = 0.05  # changes smaller than this are not sent to the screen
-
 
 class Knob(ui.element, component="static/knob.js"):
     """A knob for a number; while a person holds it, it heeds nobody else, so that no answer fights the hand.
@@ -29,7 +27,8 @@ class Knob(ui.element, component="static/knob.js"):
 
     def show(self, wanted: float, reached: float) -> None:
         """Show what is wanted and what is reached."""
-        if abs(wanted - self._props["value"]) > SEEN or abs(reached - self._props["reach"]) > SEEN:
+        seen = 0.05  # changes smaller than this are not sent to the screen
+        if abs(wanted - self._props["value"]) > seen or abs(reached - self._props["reach"]) > seen:
             self._props["value"], self._props["reach"] = wanted, reached
             self.update()
 

@@ -8,7 +8,6 @@ from hydrostat.robot import Mount, Robot, in_words
 from hydrostat.studio.view.things import Dot, Look, Thing
 
 TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: SEAM}  # colour of each weight
-MOST = 24  # rings of one finding: more say no more
 BRIEF = 64  # letters that are written beside a ring
 
 
@@ -16,6 +15,7 @@ def finding_things(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic 
     """A ring at each place of each finding; its words are seen where it is chosen, or its part under the pointer."""
     loose = {f"winch:{winch.name}" for winch in robot.winches if winch.mount is Mount.WORLD}
     things: list[Thing] = []
+    most = 24  # rings of one finding: more say no more
     for finding in said:
         words = in_words(finding.text)
         label = words if len(words) <= BRIEF else words[: BRIEF - 1].rsplit(" ", 1)[0].rstrip(",;:") + " …"
@@ -29,6 +29,6 @@ def finding_things(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic 
                 stuck=place.part not in loose,
                 chosen=finding == chosen,
             )
-            for place in finding.places[:MOST]
+            for place in finding.places[:most]
         ]
     return things

@@ -15,8 +15,6 @@ from hydrostat.robot import Cable, Mount, Pin, Point, Robot, obstacle_lines
 from hydrostat.simulation import obstacles_in_pose
 from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, Stroke, Thing
 
-PARTS = 4  # a triangle is dotted with so many points along each side
-
 
 def pinned_points(robot: Robot) -> Points:
     """Points on all that pins hold [m]: on the skin of a body in space; on a flat one, in the boxes of pins."""
@@ -31,8 +29,9 @@ def _points(mesh: Mesh, pins: tuple[Pin, ...]) -> Points:
         held |= pin.holds(mesh)
     faces = mesh.elements if mesh.dim == 2 else mesh.boundary
     corners = mesh.nodes[faces[held[faces].all(axis=1)]]
-    steps = [(i, j, PARTS - i - j) for i, j in product(range(PARTS + 1), repeat=2) if i + j <= PARTS]
-    dots = np.einsum("sc,fcd->fsd", np.array(steps) / PARTS, corners).reshape(-1, mesh.dim)
+    parts = 4  # a triangle is dotted with so many points along each side
+    steps = [(i, j, parts - i - j) for i, j in product(range(parts + 1), repeat=2) if i + j <= parts]
+    dots = np.einsum("sc,fcd->fsd", np.array(steps) / parts, corners).reshape(-1, mesh.dim)
     return np.unique(np.concatenate([dots, mesh.nodes[held]]).round(7), axis=0)
 
 
