@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.kit import Check, Kit, UnbuildableError, forget_files, write_files
     from hydrostat.fabrication.kit_options import (
         STUFFINGS,
-        Corner,
         KitOptions,
         Method,
         MouldKind,
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.lists.motors import power_plan
     from hydrostat.fabrication.lists.needs import control_needs
     from hydrostat.fabrication.lists.stitching import depth_table
-    from hydrostat.fabrication.moulds.mould import Mould, make_mould
+    from hydrostat.fabrication.moulds.mould import make_mould
     from hydrostat.fabrication.parts.board import BOARDS, BoardKind, board_for
     from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
     from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
@@ -31,11 +30,9 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.patches.sewable import Sewing, find_sewing, sewing_of
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
     from hydrostat.fabrication.patches.space_pattern import space_pattern
-    from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
     from hydrostat.fabrication.patterns.marks import winch_marks
-    from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
-    from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart, Shape
-    from hydrostat.fabrication.patterns.svg_writer import pattern_svg
+    from hydrostat.fabrication.patterns.pattern import plush_pattern
+    from hydrostat.fabrication.patterns.shape import Circle, PatternPart
     from hydrostat.fabrication.refusals import find_refusals
     from hydrostat.fabrication.sheets.solid_pictures import drawn_solid
     from hydrostat.fabrication.solids.construct import Box, Cuboid, Cylinder, solid_of
@@ -53,28 +50,21 @@ __all__ = [
     "Box",
     "Check",
     "Circle",
-    "Corner",
     "Cuboid",
     "Cylinder",
     "Demand",
     "Kit",
     "KitOptions",
-    "LaserLine",
-    "Layer",
     "Method",
     "Motor",
-    "Mould",
     "MouldKind",
     "MouldOptions",
-    "Panel",
     "Paper",
     "PartOptions",
-    "Pattern",
     "PatternOptions",
     "PatternPart",
     "Printed",
     "Sewing",
-    "Shape",
     "UnbuildableError",
     "UnitBox",
     "board_for",
@@ -90,8 +80,6 @@ __all__ = [
     "forget_files",
     "largest_torque",
     "make_mould",
-    "pattern_dxf",
-    "pattern_svg",
     "plush_pattern",
     "power_plan",
     "seam_of",

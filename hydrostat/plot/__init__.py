@@ -5,25 +5,22 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
+    from hydrostat.plot.activation_figures import draw_activation
     from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
     from hydrostat.plot.branch_figure import draw_branches
     from hydrostat.plot.calibration_page import reach, write_calibration_page
     from hydrostat.plot.chart import new_chart, plain_axes, short_number
-    from hydrostat.plot.design_charts import draw_front, draw_growth
     from hydrostat.plot.drawn_body import DrawnBody
     from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, upright, winch_stops
     from hydrostat.plot.frame import Attachments, Frame
     from hydrostat.plot.frame_pictures import FramePictures, Picture
     from hydrostat.plot.grasp_figure import draw_pull, pull_frames
     from hydrostat.plot.healing_figure import draw_healing
-    from hydrostat.plot.labels import shorten
     from hydrostat.plot.learning_curves import draw_curves
     from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion import motion_frames, motion_svg
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
     from hydrostat.plot.picture_file import drawing, inline_svg, save_png
-    from hydrostat.plot.reach_figure import draw_reach
     from hydrostat.plot.report import report_text, write_report
     from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
     from hydrostat.plot.report_tables import Chapter, cable_table, fact, page, section, table
@@ -33,7 +30,6 @@ if TYPE_CHECKING:
         draw_pose,
         draw_reached,
         draw_rest,
-        draw_target,
         reached_title,
     )
     from hydrostat.plot.scene import save_glb
@@ -59,22 +55,16 @@ __all__ = [
     "cable_table",
     "draw_activation",
     "draw_branches",
-    "draw_candidates",
     "draw_curves",
-    "draw_front",
-    "draw_growth",
     "draw_healing",
     "draw_motion",
     "draw_network",
     "draw_portrait",
     "draw_pose",
     "draw_pull",
-    "draw_reach",
     "draw_reached",
     "draw_rest",
-    "draw_target",
     "draw_trajectory",
-    "draw_trees",
     "drawing",
     "fact",
     "film",
@@ -100,7 +90,6 @@ __all__ = [
     "save_png",
     "section",
     "short_number",
-    "shorten",
     "table",
     "target_chapter",
     "trajectory_frames",
