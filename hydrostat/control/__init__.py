@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         write_calibration,
     )
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
-    from hydrostat.control.emulated_line import EmulatedLine
+    from hydrostat.control.emulated_feetech import EmulatedLine
     from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults, LiveChain
     from hydrostat.control.feetech_bus import FeetechBus
     from hydrostat.control.firmware_build import board_kind

@@ -1,14 +1,83 @@
 """`EmulatedFeetechChain`: servos of the STS series that are not there, which behave as badly as real ones."""
 
+import os
+import select
+import threading
+import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import inf, sqrt
+from typing import Self
 
 import numpy as np
 
 from hydrostat.control.dynamixel_packets import ALL, PING, READ, SYNC_READ, SYNC_WRITE, WRITE
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
 from hydrostat.control.feetech_bus import AMPERE, BOUND, FULL, GOAL, RISE, STALL, STATE, TICK, TORQUE, SumReader, pack
+
+
+class EmulatedLine:
+    """A serial line with emulated servos that a program of its own may open; nothing turns but numbers.
+
+    Attributes:
+        chain: the servos.
+        path: what to open in place of a serial port.
+        moved: when each servo last moved, by the time of the chain [s].
+    """
+
+    def __init__(self, chain: EmulatedChain) -> None:
+        """A line that is open until it is closed (OSError: no pseudo-terminals here)."""
+        import tty
+
+        self.chain, self._over = chain, threading.Event()
+        self._inner, self._outer = os.openpty()
+        tty.setraw(self._outer)
+        self.path = os.ttyname(self._outer)
+        self.moved = [0.0] * len(chain.servos)
+        self._angles = [servo.angle for servo in chain.servos]
+        chain.watch = self._look
+        self._thread = threading.Thread(target=self._run, name="emulated servos", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Self:
+        """Give the line itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close it."""
+        self.close()
+
+    def unplug(self) -> None:
+        """Pull the cable out: the servos keep their power."""
+        for end in (self._outer, self._inner):
+            with suppress(OSError):
+                os.close(end)
+
+    def close(self) -> None:
+        """End it."""
+        self._over.set()
+        self._thread.join(5.0)
+        self.unplug()
+
+    def _look(self) -> None:
+        for index, servo in enumerate(self.chain.servos):
+            if servo.angle != self._angles[index]:
+                self._angles[index], self.moved[index] = servo.angle, self.chain.now
+
+    def _run(self) -> None:
+        begin, plugged = time.monotonic() - self.chain.now, True
+        while not self._over.is_set():
+            try:
+                if plugged and select.select([self._inner], [], [], 0.002)[0]:
+                    self.chain.write(os.read(self._inner, 4096))
+                    while waiting := self.chain.in_waiting:
+                        os.write(self._inner, self.chain.read(waiting))
+            except (OSError, ValueError):
+                plugged = False
+            if not plugged:
+                self._over.wait(0.002)
+            self.chain.wait(max(0.0, time.monotonic() - begin - self.chain.now))
 
 
 @dataclass

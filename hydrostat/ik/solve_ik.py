@@ -17,9 +17,8 @@ from hydrostat.ik.objectives.marker_target import MarkerTarget, named_targets
 from hydrostat.ik.objectives.objective import Objective, checked_objectives
 from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
 from hydrostat.ik.search.descend import descend, least_effort
-from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_pose
+from hydrostat.ik.search.inverse_search import Descent, InverseSearch, SearchBudget, SearchProgress, reached_pose
 from hydrostat.ik.search.problem import IKOptions, InverseProblem, InverseState
-from hydrostat.ik.search.search_budget import SearchBudget, SearchProgress
 from hydrostat.mechanics import Reason
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import (

@@ -9,8 +9,7 @@ import pytest
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.teleop import open_hand, open_source
-from hydrostat.teleop.camera_hand import CameraHand
-from hydrostat.teleop.landmarks import COUNT, HandLandmarks, bends
+from hydrostat.teleop.camera_hand import COUNT, CameraHand, HandLandmarks, bends
 from hydrostat.teleop.source import DriveChannels
 
 PLACES = np.random.default_rng(2).normal(size=(COUNT, 3))

@@ -17,10 +17,10 @@ import pytest
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.teleop import HandMap, MappedHand, open_source
+from hydrostat.teleop.camera_hand import COUNT, HandLandmarks, bends
 from hydrostat.teleop.cyber_glove import SENSORS, CyberGlove, EmulatedGlove
 from hydrostat.teleop.gamepad import Gamepad
 from hydrostat.teleop.keys import Keys
-from hydrostat.teleop.landmarks import COUNT, HandLandmarks, bends
 from hydrostat.teleop.midi_osc import MidiKnobs, Osc
 from hydrostat.teleop.ridge import Ridge
 from hydrostat.teleop.source import DriveChannels, HandReading

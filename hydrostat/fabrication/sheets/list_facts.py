@@ -6,7 +6,7 @@ from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.bill import BillRow
 from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.motors import PowerPlan
-from hydrostat.fabrication.parts.board import BOARDS
+from hydrostat.fabrication.parts.motor import BOARDS
 from hydrostat.fabrication.sheets.facts import PieceFacts, PowerFacts, TableFacts
 from hydrostat.fabrication.sheets.legible import shorten_text
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed

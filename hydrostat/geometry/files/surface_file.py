@@ -9,10 +9,16 @@ from pathlib import PurePath
 import numpy as np
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.files.obj_off_file import OFF_HEAD, read_obj, read_off
 from hydrostat.geometry.files.ply_file import read_ply, write_ply
 from hydrostat.geometry.files.soup import MOST_BYTES, Soup, check_count
-from hydrostat.geometry.files.stl_file import fits_binary_stl, is_stl_text, read_stl
+from hydrostat.geometry.files.stl_obj_off_files import (
+    OFF_HEAD,
+    fits_binary_stl,
+    is_stl_text,
+    read_obj,
+    read_off,
+    read_stl,
+)
 from hydrostat.geometry.files.threemf_file import read_3mf
 from hydrostat.geometry.surface import Surface
 

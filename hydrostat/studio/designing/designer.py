@@ -35,10 +35,8 @@ from hydrostat.studio.designing.run import (
 from hydrostat.studio.designing.sketch import BodySketch, Ease
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.told_error import told_error
-from hydrostat.studio.view.finding_things import finding_things
-from hydrostat.studio.view.robot_things import robot_things, target_things
+from hydrostat.studio.stage import Hit, Stage, told_error
+from hydrostat.studio.view.robot_things import finding_things, robot_things, target_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.units import plural
 

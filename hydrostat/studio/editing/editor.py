@@ -21,8 +21,7 @@ from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move,
 from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Findings, Ruler, Tool, look_over
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.view.finding_things import finding_things
-from hydrostat.studio.view.robot_things import robot_things
+from hydrostat.studio.view.robot_things import finding_things, robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.units import plural
 

@@ -14,8 +14,7 @@ from hydrostat.studio.designing.run import wished_poses
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint, number_box
 from hydrostat.studio.face.panels.finding_list import finding_list
-from hydrostat.studio.stage import StageName
-from hydrostat.studio.told_error import told_error
+from hydrostat.studio.stage import StageName, told_error
 from hydrostat.units import plural
 
 METHODS = {DesignMethod.ROUTES: "routes", DesignMethod.TREES: "winch trees"}

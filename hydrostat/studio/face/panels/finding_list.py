@@ -9,7 +9,7 @@ from hydrostat.robot import Robot, in_words
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.skins import SewnSkin
-from hydrostat.studio.view.finding_things import TONES
+from hydrostat.studio.view.robot_things import TONES
 
 GOOD = "#00795f"
 ICONS = {Severity.REFUSED: "block", Severity.LIMIT: "straighten", Severity.MIND: "error_outline"}
