@@ -3,6 +3,7 @@
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
+from math import log
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import BoundaryTree, Mesh, Pairs, facet_areas
 from hydrostat.kernel import native
-from hydrostat.mechanics.energy import Blocks, ContactForces, Energy, HessianBlocks, ScatterMap, Stencils
+from hydrostat.mechanics.energy import Blocks, ContactForces, Energy, Gaps, HessianBlocks, ScatterMap, Stencils
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -186,6 +187,19 @@ class ContactEnergy(Energy):
         weights /= np.where(first, (first * weights).sum(1)[:, None], (~first * weights).sum(1)[:, None])
         places = 0.5 * np.einsum("pc,pcd->pd", weights, nodes[stencils])
         return ContactForces(places, np.einsum("pc,pcd->pd", first, blocks), stencils)
+
+    def gaps(self, nodes: Nodes) -> Gaps | None:
+        if not len(self.stencils):
+            return None
+        stencils, edges, soft, begins, weights = self._law
+        squared = np.maximum(self.skin.compute_squared_distances(nodes, self.pairs), np.finfo(float).tiny)
+        widths, normals = np.sqrt(squared), np.empty((*stencils.shape, nodes.shape[1]))
+        slope = -1.5 * log(4.0) - 2.25  # phi'(1/4)
+        resting = 0.85  # Parts pressed on one another come to rest at about this share of the distance
+        curvature = 10.0  # Stiffness of a barrier there, by its factor
+        native.barrier_forces(nodes, stencils, edges, soft, 4.0 * squared, np.ones(len(squared)), normals)
+        normals /= 2.0 * slope * widths[:, None, None]
+        return Gaps(stencils, widths - resting * np.sqrt(begins), normals, curvature * weights)
 
     @property
     def _reach(self) -> float:

@@ -96,6 +96,22 @@ class ContactForces(NamedTuple):
     stencils: Stencils
 
 
+class Gaps(NamedTuple):
+    """Gaps between parts that may touch, less the width at which they come to rest on one another.
+
+    Attributes:
+        stencils: nodes of each pair, (pairs, corners).
+        widths: gap less that width [m], (pairs,).
+        normals: derivative of each gap by the nodes, (pairs, corners, dim).
+        stiffness: stiffness of each pair below that width [N/m], (pairs,).
+    """
+
+    stencils: Stencils
+    widths: Vector
+    normals: Blocks
+    stiffness: Vector
+
+
 class Energy(ABC):
     """Sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
@@ -195,6 +211,10 @@ class Energy(ABC):
 
     def contact_forces(self, nodes: Nodes) -> ContactForces | None:
         """Return contact points and forces on the body at `nodes`; None for an energy that models no contact."""
+        return None
+
+    def gaps(self, nodes: Nodes) -> Gaps | None:
+        """Gaps of the pairs near one another at `nodes`, by which a step slides along them; None without contact."""
         return None
 
     def with_load(self, share: float) -> "Energy":

@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry import Mesh, Pairs
 from hydrostat.mechanics.contact import ContactEnergy
-from hydrostat.mechanics.energy import Blocks, Compliance, ContactForces, Energy, HessianBlocks, Response
+from hydrostat.mechanics.energy import Blocks, Compliance, ContactForces, Energy, Gaps, HessianBlocks, Response
 from hydrostat.mechanics.self_contact_friction import FacetPoints, SelfContactFriction, SelfContactSurface
 
 
@@ -62,6 +62,9 @@ class SelfFrictionEnergy(Energy):
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         return self.contact.largest_step(nodes, move)
+
+    def gaps(self, nodes: Nodes) -> Gaps | None:
+        return self.contact.gaps(nodes)
 
     def contact_forces(self, nodes: Nodes) -> ContactForces:
         return self.contact.contact_forces(nodes)
