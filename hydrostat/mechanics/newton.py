@@ -11,7 +11,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.newton_result import NewtonOptions, NewtonResult, Reason, RoundOff
 from hydrostat.mechanics.projection import Projection
-from hydrostat.mechanics.sliding_step import Trial, find_sliding_step
+from hydrostat.mechanics.sliding_step import StepTrial, find_sliding_step
 from hydrostat.mechanics.stiffness import Stiffness, find_negative_curvature
 from hydrostat.mechanics.warp import Bend
 
@@ -131,16 +131,19 @@ class _EnergyDescent:
     def _evaluate(self, assembly: Assembly, nodes: Nodes, energy: float, least_volume: float) -> _Iterate:
         return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), least_volume)
 
-    def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> Trial:
+    def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> StepTrial:
         """Take a step as far as all energies admit it; the energy is infinite if the step crushes an element."""
         nodes = self.bend(place.nodes, step) if bent else place.nodes + step.reshape(place.nodes.shape)
+        least = place.assembly.least_volume(nodes)
+        if least < _CRUSHED * place.least_volume:
+            return StepTrial(place.assembly, nodes, np.inf, least, 1.0)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
             nodes = place.nodes + share * (nodes - place.nodes)
+            least = place.assembly.least_volume(nodes)
         assembly = place.assembly.with_active_terms(nodes)
         energy = assembly.value(nodes, self.controls)
-        least = assembly.least_volume(nodes) if np.isfinite(energy) else 0.0
-        return Trial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
+        return StepTrial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
 
     def _advance(self, place: _Iterate, known: Stiffness | None) -> _Iterate | None:
         """Take one step with the factors of the last one if that pays, else with `known` ones, else with new ones.
@@ -172,11 +175,16 @@ class _EnergyDescent:
         """True if the last step was made with the Hessian itself."""
         return not self.projection.any and not self.damping
 
-    def _slide(self, place: _Iterate, step: Vector, stiffness: Stiffness) -> tuple[Vector, Trial]:
+    def _slide(self, place: _Iterate, step: Vector, stiffness: Stiffness) -> tuple[Vector, StepTrial]:
         """Step that slides along the parts that this one meets, with its trial; this one where it meets none."""
         trial = self._try(place, step)
         enough = place.energy + 1e-4 * trial.share * float(place.gradient @ step)
-        if self.whole or (trial.share > _LONG and trial.energy <= enough) or not trial.assembly.projects_first:
+        if (
+            self.whole
+            or trial.energy == np.inf
+            or (trial.share > _LONG and trial.energy <= enough)
+            or not trial.assembly.projects_first
+        ):
             return step, trial
         found = find_sliding_step(partial(self._try, place), place.nodes, step, trial, stiffness)
         slope = float(place.gradient @ found.step)
@@ -189,11 +197,9 @@ class _EnergyDescent:
             return
         square, curvature = float(step @ step), -float(place.gradient @ step) / float(step @ step)
         taken = float(np.linalg.norm(found.nodes - place.nodes)) / square**0.5
-        if eases:
-            self.damping = self.damping / _EASES if self.damping > _FREE * curvature else 0.0
-        elif taken < _SHORT and place.assembly.projects_first:
+        if taken < _SHORT and place.assembly.projects_first and not eases:
             self.damping = max(_DAMPS * self.damping, curvature * (1.0 / max(taken, _LEAST_TAKEN) - 1.0))
-        elif taken > _LONG:
+        elif eases or taken > _LONG:
             self.damping = self.damping / _EASES if self.damping > _FREE * curvature else 0.0
 
     def _within_accuracy(self, place: _Iterate, step: Vector) -> bool:
@@ -218,7 +224,7 @@ class _EnergyDescent:
         None where nothing helps: the Hessian is not finite, or 0.
         """
         first = place.assembly.projects_first
-        self.projection = Projection() if self.fast else self.projection.eased(projects_first=first)
+        self.projection = Projection() if self.fast else self.projection.with_smaller_shares(projects_first=first)
         while True:
             shares = self.projection
             stiffness = place.assembly.stiffness(
@@ -228,14 +234,14 @@ class _EnergyDescent:
                 return stiffness
             if shares.whole:
                 break
-            self.projection = shares.increased(projects_first=first)
+            self.projection = shares.with_larger_shares(projects_first=first)
         for shift in _SHIFTS:
             stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=1.0, shift=shift)
             if stiffness.definite:
                 return stiffness
         return None
 
-    def _search(self, place: _Iterate, step: Vector, trial: Trial) -> _Iterate | None:
+    def _search(self, place: _Iterate, step: Vector, trial: StepTrial) -> _Iterate | None:
         """Next place; None if no length of the step lowers the energy.
 
         Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
@@ -287,7 +293,7 @@ class _EnergyDescent:
                     return step
         return -stiffness.solve(place.gradient)
 
-    def _extrapolate(self, place: _Iterate, step: Vector, trial: Trial) -> Trial:
+    def _extrapolate(self, place: _Iterate, step: Vector, trial: StepTrial) -> StepTrial:
         """Double a step while the energy falls: a projected Hessian is too stiff, so its step is too short."""
         length = 2.0
         while True:

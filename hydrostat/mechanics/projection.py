@@ -32,28 +32,22 @@ class Projection:
         """True if nothing negative is left."""
         return self.late == 1.0
 
-    def eased(self, *, projects_first: bool) -> "Projection":
+    def with_smaller_shares(self, *, projects_first: bool) -> "Projection":
         """Return smaller shares, to begin the next step with."""
-        if self.late > _LEAST_SHARE:
+        if self.late > _LEAST:
             return Projection(float(projects_first), self.late / 16)
         if self.raised and projects_first:
             return Projection(self.early)
-        return Projection(self.early / 4 if projects_first and self.early > _LEAST_EARLY else 0.0)
+        return Projection(self.early / 4 if projects_first and self.early > _LEAST else 0.0)
 
-    def increased(self, *, projects_first: bool) -> "Projection":
+    def with_larger_shares(self, *, projects_first: bool) -> "Projection":
         """Return larger shares, where these did not suffice."""
         if projects_first and self.early < 1.0 and not self.late:
-            return Projection(min(4 * self.early, 1.0) or _FIRST, raised=True)
+            return Projection(min(4 * self.early, 1.0) or 1 / 16, raised=True)
         if projects_first:
-            return Projection(1.0, min(16 * self.late, 1.0) or _LEAST_SHARE, raised=True)
+            return Projection(1.0, min(16 * self.late, 1.0) or _LEAST, raised=True)
         return Projection(0.0, min(16 * self.late, 1.0) or 1.0)
 
 
-_LEAST_SHARE = 1 / 32
-"""Below this share of what is negative, try the full Hessian."""
-
-_LEAST_EARLY = 1 / 64
-"""Below this share of contact's negative part, try the full Hessian."""
-
-_FIRST = 1 / 16
-"""Share of contact's negative part that is tried first."""
+_LEAST = 1 / 32
+"""Below this share of what is negative, the full Hessian is tried."""

@@ -12,7 +12,7 @@ from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.tension_law import TensionLaw
 
 
-class Trial(NamedTuple):
+class StepTrial(NamedTuple):
     """End point of a step, and the admissible share of the step."""
 
     assembly: Assembly
@@ -26,11 +26,11 @@ class SlidingStep(NamedTuple):
     """A step [m], (dofs,), and its trial."""
 
     step: Vector
-    trial: Trial
+    trial: StepTrial
 
 
 def find_sliding_step(
-    attempt: Callable[[Vector], Trial], start: Nodes, step: Vector, blocked: Trial, stiffness: Stiffness
+    attempt: Callable[[Vector], StepTrial], start: Nodes, step: Vector, blocked: StepTrial, stiffness: Stiffness
 ) -> SlidingStep:
     """Return a step that keeps apart the pairs that a step meets, or the step itself if that is no better.
 
@@ -46,7 +46,7 @@ def find_sliding_step(
     """
     best = last = SlidingStep(step, blocked)
     springs: list[tuple[LowRankBasis, Vector, Vector]] = []
-    for _ in range(_ROUNDS):
+    for _ in range(4):  # A step that slides may meet more pairs
         place = last.trial.nodes
         move = start + last.step.reshape(start.shape) - place
         met = [_springs(gaps, start, place, move) for gaps in last.trial.assembly.gaps(place)]
@@ -55,7 +55,8 @@ def find_sliding_step(
             break
         columns, widths, stiff = (np.concatenate(parts, axis=-1) for parts in zip(*springs, strict=True))
         overlaps = -(widths + step @ columns)
-        law = TensionLaw(stiffness=stiff, smoothing=np.full(len(stiff), _SMOOTHING * np.abs(overlaps).max()))
+        smoothing = 1e-3  # Springs begin smoothly, over this share of the largest overlap
+        law = TensionLaw(stiffness=stiff, smoothing=np.full(len(stiff), smoothing * np.abs(overlaps).max()))
         push = stiffness.push(-columns, overlaps, law)
         if push is None:
             break
@@ -69,19 +70,10 @@ def find_sliding_step(
 def _springs(gaps: Gaps, start: Nodes, place: Nodes, move: Nodes) -> tuple[LowRankBasis, Vector, Vector]:
     """Derivatives, widths at `start` and stiffness of the gaps at a place that a further move would close most."""
     ends = gaps.widths + np.einsum("pci,pci->p", gaps.normals, move[gaps.stencils])
-    closed = np.argsort(ends)[: min(_SPRINGS, int((ends < 0.0).sum()))]
+    most = 16  # More springs change little
+    closed = np.argsort(ends)[: min(most, int((ends < 0.0).sum()))]
     columns = np.zeros((*start.shape, len(closed)))
     for column, pair in enumerate(closed):
         np.add.at(columns[:, :, column], gaps.stencils[pair], gaps.normals[pair])
     columns = columns.reshape(start.size, -1)
     return columns, gaps.widths[closed] + (start - place).ravel() @ columns, gaps.stiffness[closed]
-
-
-_ROUNDS = 4
-"""A step that slides may meet more pairs so many times."""
-
-_SPRINGS = 16
-"""Of the pairs that a step meets, so many that it would close most. More change little."""
-
-_SMOOTHING = 1e-3
-"""Springs begin smoothly, over this share of the largest overlap."""

@@ -9,7 +9,7 @@ from scipy.sparse import csc_array
 from hydrostat.mechanics import Analysis, Stiffness
 from hydrostat.mechanics.energy import Gaps, LowRankStiffness
 from hydrostat.mechanics.projection import Projection
-from hydrostat.mechanics.sliding_step import Trial, find_sliding_step
+from hydrostat.mechanics.sliding_step import StepTrial, find_sliding_step
 
 GOAL = np.array([[3.0, 2.0]])
 """Rest of the spring, 1 N/m in each direction, beyond a wall at x = 1."""
@@ -26,11 +26,11 @@ class Wall:
         return [Gaps(np.array([[0]]), np.array([self.at - nodes[0, 0]]), normals, np.array([1e3]))]
 
 
-def attempt(step: np.ndarray) -> Trial:
+def attempt(step: np.ndarray) -> StepTrial:
     share = min(1.0, 1.0 / max(step[0], 1.0))
     nodes = share * step.reshape(1, 2)
     energy = 0.5 * float(((GOAL - nodes) ** 2).sum())
-    return Trial(Wall(1.0), nodes, energy, 1.0, share)  # pyright: ignore[reportArgumentType]
+    return StepTrial(Wall(1.0), nodes, energy, 1.0, share)  # pyright: ignore[reportArgumentType]
 
 
 def spring() -> Stiffness:
@@ -56,7 +56,7 @@ def test_a_step_that_meets_nothing_stays() -> None:
 def test_contact_loses_its_negative_part_first() -> None:
     shares = [Projection()]
     while not shares[-1].whole:
-        shares.append(shares[-1].increased(projects_first=True))
+        shares.append(shares[-1].with_larger_shares(projects_first=True))
     assert [share.early for share in shares] == sorted(share.early for share in shares)
     assert all(share.early == 1.0 for share in shares if share.late)
     assert [share.late for share in shares if share.early < 1.0] == [0.0, 0.0, 0.0]
@@ -65,10 +65,10 @@ def test_contact_loses_its_negative_part_first() -> None:
 def test_shares_fall_to_nothing() -> None:
     share, count = Projection(1.0, 1.0, raised=True), 0
     while share.any:
-        share, count = share.eased(projects_first=True), count + 1
+        share, count = share.with_smaller_shares(projects_first=True), count + 1
     assert 4 < count < 10
 
 
 def test_without_contact_all_of_it_is_taken_first() -> None:
-    assert Projection().increased(projects_first=False) == Projection(0.0, 1.0)
-    assert Projection(1.0).eased(projects_first=False) == Projection()
+    assert Projection().with_larger_shares(projects_first=False) == Projection(0.0, 1.0)
+    assert Projection(1.0).with_smaller_shares(projects_first=False) == Projection()
