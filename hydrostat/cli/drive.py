@@ -12,6 +12,7 @@ import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.learned import read_model
+from hydrostat.cli.options import MotorPort
 from hydrostat.cli.waiting import one_interrupt, prepare_physics, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
@@ -35,15 +36,7 @@ def drive(
             "camera:FILE.task or camera:PORT.",
         ),
     ] = "keys",
-    port: Annotated[
-        str | None,
-        typer.Option(
-            "--motors",
-            metavar="KIND:PORT",
-            help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
-            show_default="simulated motors",
-        ),
-    ] = None,
+    port: MotorPort = None,
     tips: Annotated[bool, typer.Option("--tips", help="Move fingertips (markers) instead of winches.")] = False,
     model: Annotated[
         Path | None, typer.Option(metavar="MODEL", help="Trained model to warm-start each move, with --tips.")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
+from hydrostat.cli.options import MotorPort
 from hydrostat.cli.waiting import one_interrupt, prepare_physics, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
@@ -36,15 +37,7 @@ def mimic(
     ] = 60,
     worn: Annotated[bool, typer.Option("--worn", help="Record without prompts: the robot wears the glove.")] = False,
     tips: Annotated[bool, typer.Option("--tips", help="Learn fingertip positions instead of contractions.")] = False,
-    port: Annotated[
-        str | None,
-        typer.Option(
-            "--motors",
-            metavar="KIND:PORT",
-            help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
-            show_default="simulated motors",
-        ),
-    ] = None,
+    port: MotorPort = None,
 ) -> None:
     """Teach a hand-to-robot map with a glove or camera.
 

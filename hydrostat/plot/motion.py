@@ -46,13 +46,13 @@ def motion_frames(robot: Robot, poses: Iterable[Vector], *, steps: int = STEPS) 
     return frames
 
 
-def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float = STEP) -> Html:
-    """The robot moving through frames [m] a step [s] apart for ever, as an `<svg>` with a label for who cannot see it.
+def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str) -> Html:
+    """The robot moving through frames [m], `STEP` apart, for ever, as an `<svg>` with a label for who cannot see it.
 
     Where nothing moves the first frame is shown. A body in space is an InputError.
     """
     skin = FlatSkin.of(robot.body)
-    seconds = step * (len(frames) - 1)
+    seconds = STEP * (len(frames) - 1)
     shapes = [_outline(skin.shape(nodes)) for nodes in frames]
     seams = [_outline(skin.seam(nodes)) for nodes in frames]
     parts = [
