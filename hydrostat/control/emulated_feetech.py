@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from math import inf, sqrt
 from typing import Self
 
-import numpy as np
-
 from hydrostat.control.dynamixel_packets import ALL, PING, READ, SYNC_READ, SYNC_WRITE, WRITE
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
 from hydrostat.control.feetech_bus import AMPERE, BOUND, FULL, GOAL, RISE, STALL, STATE, TICK, TORQUE, SumReader, pack
@@ -112,8 +110,8 @@ class EmulatedSts(EmulatedServo):
         goal, rise = self.origin + self._number(GOAL) * TICK, (self.table[RISE] or 1000) * 100 * TICK
         limit = int.from_bytes(self.table[GOAL + 4 : GOAL + 6], "little") * TICK or 6.0
         limit = min(limit, 6.0, sqrt(2 * rise * abs(goal - self.angle)))
-        wanted = float(np.clip((goal - self.angle) / dt, -limit, limit))
-        speed = float(np.clip(wanted, self.speed - rise * dt, self.speed + rise * dt))
+        wanted = min(max((goal - self.angle) / dt, -limit), limit)
+        speed = min(max(wanted, self.speed - rise * dt), self.speed + rise * dt)
         if self.ails.stuck or not on or (speed > 0 and self.load(self.angle + speed * dt) > self.most):
             speed = 0.0
         self.speed = speed

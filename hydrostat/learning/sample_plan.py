@@ -8,7 +8,6 @@ from math import ceil, isfinite
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.stats.qmc import Sobol
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
@@ -164,6 +163,8 @@ class SamplePlan:
 
     def _points(self, place: int, first: int, count: int) -> Float[np.ndarray, "samples dims"]:
         """Some scrambled Sobol points of one of the draws."""
+        from scipy.stats.qmc import Sobol  # a fifth of the start of the studio's workers, which draw no samples
+
         size = dimensions(self.draws[place], self.pairs, len(self.robot.winches))
         random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([self.seed, place])))
         points = Sobol(size, scramble=True, rng=random)

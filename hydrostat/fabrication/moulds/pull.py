@@ -1,6 +1,7 @@
 """`find_pull`: the direction along which a mould of two halves comes off with the least undercut."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
@@ -61,8 +62,18 @@ def best_height(surface: FineSurface, freed: Release) -> tuple[float, float]:
 
 
 def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
-    """The best direction and height for a flat parting of a body [mm]: of `count` on half a sphere, and then nearby."""
+    """The best direction and height for a flat parting of a body [mm]: of `count` on half a sphere, and then nearby.
+
+    The results of the last bodies are kept: other options of a mould need no new search.
+    """
     surface = fine_surface(solid)
+    return _find_pull(surface.vertices.tobytes(), surface.triangles.tobytes(), count)
+
+
+@lru_cache(maxsize=8)
+def _find_pull(vertices: bytes, triangles: bytes, count: int) -> Pull:
+    """Search the best pull of a surface, whose arrays are given as bytes."""
+    surface = FineSurface(np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(triangles, int).reshape(-1, 3))
     tried = np.vstack([_own_axes(surface), np.eye(3), _flat_directions(surface), half_sphere(count)])
     shares, costs = _rated(surface, tried)
     best = 3
