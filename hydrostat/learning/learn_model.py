@@ -57,7 +57,7 @@ def learn_model(
         lost=samples.lost,
         error=length * forward.error,
         inverse_error=None if inverse is None or not np.isfinite(inverse.error) else length * inverse.error,
-        displacement=float(_moved(samples.markers).mean()),
+        displacement=float(_marker_distances(samples.markers).mean()),
         stopped=forward.stopped or (inverse is not None and inverse.stopped),
         options=asdict(options),
         seconds=time.process_time() - began,
@@ -87,7 +87,7 @@ def kept_facts(samples: Samples) -> dict[str, Any]:
     }
 
 
-def _moved(markers: np.ndarray) -> np.ndarray:
+def _marker_distances(markers: np.ndarray) -> np.ndarray:
     """Return the distances of markers from their mean."""
     return np.linalg.norm(markers - markers.mean(axis=0), axis=-1)
 

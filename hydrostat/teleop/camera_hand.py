@@ -14,6 +14,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.teleop.source import HandReading, HandSource
+from hydrostat.version import install_command
 
 COUNT = 21
 """Landmarks: the wrist, then from root to tip those of thumb, index, middle, ring and little finger (MediaPipe)."""
@@ -109,7 +110,7 @@ class CameraHand(HandSource):
             import mediapipe  # pyright: ignore[reportMissingImports]
             from mediapipe.tasks.python import BaseOptions, vision  # pyright: ignore[reportMissingImports]
         except (ImportError, OSError) as error:
-            words = f'a camera needs mediapipe ({error}): pip install "hydrostat[camera]"'
+            words = f"a camera needs mediapipe ({error}): {install_command('camera')}"
             raise HydrostatError(words) from None
         self._clock, self._begin, self._told = clock, clock(), -1
         self._cv2, self._mediapipe = cv2, mediapipe

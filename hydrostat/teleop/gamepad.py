@@ -8,6 +8,7 @@ from typing import Any
 
 from hydrostat.errors import HydrostatError
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
+from hydrostat.version import install_command
 
 HELP = "cross: choose   stick: out, in   A: hold   B: rest   start: end"
 
@@ -30,7 +31,7 @@ class Gamepad(DriveSource):
             import pygame
             from pygame._sdl2 import controller
         except ModuleNotFoundError:
-            raise HydrostatError('gamepads need pygame; install it: pip install "hydrostat[teleop]"') from None
+            raise HydrostatError(f"gamepads need pygame; install it: {install_command('teleop')}") from None
         pygame.display.init()
         controller.init()
         if number >= controller.get_count() or not controller.is_controller(number):

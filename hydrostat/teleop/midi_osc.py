@@ -9,6 +9,7 @@ from typing import Any
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
+from hydrostat.version import install_command
 
 USUAL = 1
 """Controller number of the first knob unless told otherwise."""
@@ -91,7 +92,7 @@ def _open(name: str) -> Any:
 
         names = list(mido.get_input_names())  # type: ignore[attr-defined]
     except ModuleNotFoundError:
-        raise HydrostatError('MIDI needs mido and python-rtmidi: pip install "hydrostat[teleop]"') from None
+        raise HydrostatError(f"MIDI needs mido and python-rtmidi: {install_command('teleop')}") from None
     except Exception as error:  # noqa: BLE001 (each system of sound has errors of its own)
         raise HydrostatError(f"MIDI is not to be had here: {error}") from None
     found = [each for each in names if name.lower() in each.lower()]
@@ -123,7 +124,7 @@ class Osc(DriveSource):
         try:
             from pythonosc.osc_packet import OscPacket
         except ModuleNotFoundError:
-            raise HydrostatError('OSC needs python-osc; install it: pip install "hydrostat[teleop]"') from None
+            raise HydrostatError(f"OSC needs python-osc; install it: {install_command('teleop')}") from None
         self._packet: Any = OscPacket
         self._channels, self._clock, self._heard, self._hold, self._wrong = channels, clock, clock(), False, ""
         self._known = {name.replace(" ", "_"): name for name in channels.names}

@@ -132,8 +132,6 @@ def test_words_open_it(model: Path) -> None:
 
 def test_without_the_library_it_is_told_in_a_line(model: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mediapipe", None)
-    with pytest.raises(
-        HydrostatError, match=r"a camera needs mediapipe .*: pip install \"hydrostat\[camera\]\""
-    ) as told:
+    with pytest.raises(HydrostatError, match=r"a camera needs mediapipe .*: pip install -e \"\.\[camera\]\"") as told:
         open_hand(f"camera:{model}")
     assert "\n" not in str(told.value)
