@@ -286,12 +286,14 @@ def element_groups(
     """Elements with their shape gradients [1/m] and volumes [m^3] in groups."""
     count, missing = len(stencils), -len(stencils) % 8
 
-    def grouped(array: np.ndarray, kind: type) -> np.ndarray:
+    def group_terms(array: np.ndarray, kind: type) -> np.ndarray:
         filled = np.concatenate([array, np.zeros((missing, *array.shape[1:]))])
         groups = filled.reshape(-1, 8, *array.shape[1:])
         return np.ascontiguousarray(np.moveaxis(groups, 1, -1), dtype=kind)
 
-    return ElementGroups(grouped(stencils, np.int32), grouped(gradients, float), grouped(volumes, float), count)
+    return ElementGroups(
+        group_terms(stencils, np.int32), group_terms(gradients, float), group_terms(volumes, float), count
+    )
 
 
 def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:

@@ -41,7 +41,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     def maybe(value: float | None) -> float | None:
         return None if value is None else length(value)
 
-    def placed(each: Obstacle) -> Obstacle:
+    def scale_obstacle(each: Obstacle) -> Obstacle:
         return replace(
             each, at=point(each.at), to=None if each.to is None else point(each.to), radius=maybe(each.radius)
         )
@@ -80,7 +80,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
             name: PoseTarget(name=name, targets={key: point(place) for key, place in pose.targets.items()})
             for name, pose in robot.poses.items()
         },
-        obstacles=tuple(map(placed, robot.obstacles)),
+        obstacles=tuple(map(scale_obstacle, robot.obstacles)),
         contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),
     )
 

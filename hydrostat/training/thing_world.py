@@ -123,17 +123,17 @@ class ThingWorld:
     @property
     def place(self) -> Vector:
         """Center of the object [m]."""
-        return self._carried[0]
+        return self._carried_body[0]
 
     @property
     def axes(self) -> Points:
         """Its axes, a row for each."""
-        axes = self._carried[1:] / self._carriage.length
+        axes = self._carried_body[1:] / self._carriage.length
         left, _, right = np.linalg.svd(axes)
         return left @ right
 
     @property
-    def _carried(self) -> Points:
+    def _carried_body(self) -> Points:
         assert self.motion.carried is not None
         return self.motion.carried[0][: len(self._carriage.rows)]
 

@@ -215,7 +215,7 @@ class WalkEnv(GoalEnv):
         """Go on by the time steps of an action; an episode is cut off after its actions."""
         action = finite_numbers(action, int(np.prod(self.action_space.shape or (0,))), *AN_ACTION)
         self.taken_steps += 1
-        for contractions in self._asked(np.clip(action, -1.0, 1.0)):
+        for contractions in self._step_contractions(np.clip(action, -1.0, 1.0)):
             if self._fallen:
                 break
             self._advance(contractions)
@@ -280,7 +280,7 @@ class WalkEnv(GoalEnv):
         assert self.motion is not None, "an episode begins with reset"
         return self.motion
 
-    def _asked(self, action: Vector) -> list[Vector]:
+    def _step_contractions(self, action: Vector) -> list[Vector]:
         """Contractions at the end of each time step of an action [m]."""
         if self.options.actions is WalkActions.GAIT:
             gait = Gait.of_action(action, self.most)

@@ -75,13 +75,13 @@ def _find_pull(vertices: bytes, triangles: bytes, count: int) -> Pull:
     """Search the best pull of a surface, whose arrays are given as bytes."""
     surface = FineSurface(np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(triangles, int).reshape(-1, 3))
     tried = np.vstack([_own_axes(surface), np.eye(3), _flat_directions(surface), half_sphere(count)])
-    shares, costs = _rated(surface, tried)
+    shares, costs = _rate_directions(surface, tried)
     best = 3
     leaders = tried[np.argsort(costs, kind="stable")[:best]]
     rings = (9.0, 4.5, 2.2, 1.1, 0.5)  # angles at which neighbours of the best direction are tried [degrees]
     for angle in np.radians(rings):
         near = np.vstack([_ring(leader, angle) for leader in leaders])
-        more_shares, more_costs = _rated(surface, near)
+        more_shares, more_costs = _rate_directions(surface, near)
         tried = np.vstack([tried, near])
         shares, costs = np.concatenate([shares, more_shares]), np.concatenate([costs, more_costs])
         leaders = tried[np.argsort(costs, kind="stable")[:1]]
@@ -99,7 +99,7 @@ def _find_pull(vertices: bytes, triangles: bytes, count: int) -> Pull:
     )
 
 
-def _rated(surface: FineSurface, directions: Float[np.ndarray, "tried 3"]) -> tuple[Vector, Vector]:
+def _rate_directions(surface: FineSurface, directions: Float[np.ndarray, "tried 3"]) -> tuple[Vector, Vector]:
     """Share of undercut of each direction, and what it costs with the depth of the mould."""
     shares = np.array([best_height(surface, release(surface, direction))[1] for direction in directions])
     depths = np.ptp(surface.vertices @ directions.T, axis=0)

@@ -75,16 +75,16 @@ class PatchEnergy:
         push = 2 * jacobian * (1 + area**-2)[:, None, None] - (2 * square / area**3)[:, None, None] * turned
         forces = steep[:, None, None] * (push @ np.swapaxes(self._back, 1, 2))
         each = np.stack([-forces.sum(axis=2), forces[:, :, 0], forces[:, :, 1]], axis=1)
-        return float(self._weights @ (bent**3 / spared)), self._heaped(self._triangles, each)
+        return float(self._weights @ (bent**3 / spared)), self._sum_corners(self._triangles, each)
 
     def _rim(self, flat: Float[np.ndarray, "vertices 2"]) -> tuple[float, Float[np.ndarray, "vertices 2"]]:
         ways = flat[self._ends[:, 1]] - flat[self._ends[:, 0]]
         lengths = np.linalg.norm(ways, axis=1)
         off = np.log(lengths / self._lengths) / self._ease
         pulls = (2 * self._shares * off / self._ease / lengths**2)[:, None] * ways
-        return float(self._shares @ off**2), self._heaped(self._ends, np.stack([-pulls, pulls], axis=1))
+        return float(self._shares @ off**2), self._sum_corners(self._ends, np.stack([-pulls, pulls], axis=1))
 
-    def _heaped(self, at: np.ndarray, each: np.ndarray) -> Float[np.ndarray, "vertices 2"]:
+    def _sum_corners(self, at: np.ndarray, each: np.ndarray) -> Float[np.ndarray, "vertices 2"]:
         """Sums over the corners at each vertex."""
         return np.stack([np.bincount(at.ravel(), each[..., axis].ravel(), self._count) for axis in (0, 1)], axis=1)
 
@@ -113,7 +113,7 @@ def thin_direction(mesh: SkinMesh) -> Float[np.ndarray, " 3"]:
 def front_and_back(mesh: SkinMesh) -> SkinMesh:
     """The mesh in two discs: patch 0 looks against the thin direction (the front), patch 1 along it."""
     direction = thin_direction(mesh)
-    field = _smoothed(mesh, _looks(mesh, direction))
+    field = _smooth_values(mesh, _looks(mesh, direction))
     cut, _, side = cut_at_zero(mesh, field, np.ones(len(mesh.triangles), dtype=bool))
     return cut.relabel_patches(two_discs(cut, side))
 
@@ -140,7 +140,7 @@ def _looks(mesh: SkinMesh, direction: Float[np.ndarray, " 3"]) -> Float[np.ndarr
     return (normals @ direction) / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
 
 
-def _smoothed(mesh: SkinMesh, values: Float[np.ndarray, " vertices"]) -> Float[np.ndarray, " vertices"]:
+def _smooth_values(mesh: SkinMesh, values: Float[np.ndarray, " vertices"]) -> Float[np.ndarray, " vertices"]:
     """One implicit step of diffusion over the skin."""
     import igl
 
@@ -186,14 +186,14 @@ def cut_skin(mesh: SkinMesh) -> Cutting:
     mesh = front_and_back(mesh)
     back = [False, True]
     plain = [flatten(disc_of(mesh, number)) for number in (0, 1)]
-    patches = [_laid(patch) for patch in plain]
+    patches = [_lay_patch(patch) for patch in plain]
     given_up: set[int] = set()
     most_patches = 6  # a person loses track of more
     while True:
         wanting = {number: _excess(patch) for number, patch in enumerate(patches) if number not in given_up}
         worst = max(wanting, key=lambda number: wanting[number], default=-1)
         if worst < 0 or wanting[worst] <= 0:
-            patches = _eased(mesh, patches)
+            patches = _ease_patches(mesh, patches)
             worst = _uneasy(mesh, patches)
         if worst < 0 or worst in given_up or len(patches) == most_patches:
             break
@@ -205,11 +205,11 @@ def cut_skin(mesh: SkinMesh) -> Cutting:
         back.append(back[worst])
         before, plain = plain, [_on(mesh, number, patch) for number, patch in enumerate([*plain, plain[worst]])]
         kept = [*zip(before, patches, strict=True)]
-        patches = [next((own for old, own in kept if old is patch), None) or _laid(patch) for patch in plain]
-    return Cutting(mesh=mesh, patches=tuple(_eased(mesh, patches)), back=tuple(back))
+        patches = [next((own for old, own in kept if old is patch), None) or _lay_patch(patch) for patch in plain]
+    return Cutting(mesh=mesh, patches=tuple(_ease_patches(mesh, patches)), back=tuple(back))
 
 
-def _laid(patch: Patch) -> Patch:
+def _lay_patch(patch: Patch) -> Patch:
     """A patch as it is where that will do, else evened out where that gives less."""
     if _excess(patch) <= 0:
         return patch
@@ -218,7 +218,7 @@ def _laid(patch: Patch) -> Patch:
     return even if gives[1] < gives[0] else patch
 
 
-def _eased(mesh: SkinMesh, patches: list[Patch]) -> list[Patch]:
+def _ease_patches(mesh: SkinMesh, patches: list[Patch]) -> list[Patch]:
     """The patches, rims held where seams could not be sewn, as far as the cloth of none gives too much for it."""
     eased, tried = list(patches), set()
     while (worst := _uneasy(mesh, eased)) >= 0 and worst not in tried:

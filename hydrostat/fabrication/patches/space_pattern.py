@@ -226,7 +226,7 @@ def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
         ),
         patches=moved,
         seams=find_seams(cutting.mesh, moved, view.up),
-        holes=tuple(_moved(hole, origins) for hole in holes),
+        holes=tuple(_move_hole(hole, origins) for hole in holes),
         skin=float(mesh.areas.sum()),
     )
 
@@ -253,7 +253,7 @@ def _on_sheet(opening: Opening, origin: Place) -> Opening:
     return replace(opening, slit=translate(opening.slit, *origin))
 
 
-def _moved(hole: SkinHole, origins: list[Place]) -> SkinHole:
+def _move_hole(hole: SkinHole, origins: list[Place]) -> SkinHole:
     """The hole in places of the sheet."""
     places = tuple((number, (x + origins[number][0], y + origins[number][1])) for number, (x, y) in hole.places)
     return replace(hole, places=places)

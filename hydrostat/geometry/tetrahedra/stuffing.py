@@ -192,7 +192,7 @@ def _cut_tetrahedra(
     count = len(nodes)
     keys = edges[:, 0] * count + edges[:, 1]
 
-    def cut(inner: Numbers, outer: Numbers) -> Numbers:
+    def find_cut_node(inner: Numbers, outer: Numbers) -> Numbers:
         """Node of the cut between two nodes; a node that is on the surface is its own."""
         low, high = np.minimum(inner, outer), np.maximum(inner, outer)
         found = count + np.searchsorted(keys, low * count + high)
@@ -205,11 +205,19 @@ def _cut_tetrahedra(
     flat = elements[(inside == 0) & (outside == 0)]
     parts = [elements[(inside > 0) & (outside == 0)], flat[_deep(solid, nodes[flat])]]
     a, b, c, d = elements[(inside == 1) & (outside > 0)].T
-    parts.append(np.column_stack([a, cut(a, b), cut(a, c), cut(a, d)]))
+    parts.append(np.column_stack([a, find_cut_node(a, b), find_cut_node(a, c), find_cut_node(a, d)]))
     a, b, c, d = elements[(inside == 2) & (outside > 0)].T
-    parts += _wedge(np.concatenate([nodes, cuts]), a, cut(a, c), cut(a, d), b, cut(b, c), cut(b, d))
+    parts += _wedge(
+        np.concatenate([nodes, cuts]),
+        a,
+        find_cut_node(a, c),
+        find_cut_node(a, d),
+        b,
+        find_cut_node(b, c),
+        find_cut_node(b, d),
+    )
     a, b, c, d = elements[(inside == 3) & (outside > 0)].T
-    lower, upper, top = cut(a, d), cut(b, d), cut(c, d)
+    lower, upper, top = find_cut_node(a, d), find_cut_node(b, d), find_cut_node(c, d)
     parts += [np.column_stack(part) for part in ((a, b, c, top), (a, b, upper, top), (a, lower, upper, top))]
     filled, places = np.concatenate(parts), np.concatenate([nodes, cuts])
     filled = filled[_four_corners(filled)]

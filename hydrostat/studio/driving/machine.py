@@ -175,11 +175,11 @@ class Machine:
         """Motors of a robot; winches of the same name keep what they have taken in, and what they shall take in."""
         names = [winch.name for winch in robot.winches]
 
-        def kept(values: Vector) -> Vector:
+        def carry_over(values: Vector) -> Vector:
             known = dict(zip(before.names, values.tolist(), strict=True))
             return np.array([known.get(name, 0.0) for name in names], dtype=float)
 
-        places, link = kept(before.places), before.link
+        places, link = carry_over(before.places), before.link
         if names != list(before.names):
             places = np.clip(
                 places, [-winch.release for winch in robot.winches], [winch.travel for winch in robot.winches]
@@ -190,7 +190,7 @@ class Machine:
         if names == list(before.names):
             fastest = before.fastest
         motors = Motors(robot.winches, link, places=places, fastest=fastest, patience=inf)
-        motors.ask(kept(before.command))
+        motors.ask(carry_over(before.command))
         return motors
 
     def _play(self, now: float) -> None:

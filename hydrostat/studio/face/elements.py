@@ -35,12 +35,12 @@ class Knob(ui.element, component="static/knob.js"):
     def on_turn(self, turn: Callable[[float], Any], let_go: Callable[[], Any]) -> None:
         """Call `turn` with the number that a person turns it to, and `let_go` after that."""
 
-        def heed(event: events.GenericEventArguments) -> None:
+        def handle_event(event: events.GenericEventArguments) -> None:
             number = sent_number(event.args)
             if number is not None:
                 turn(number)
 
-        self.on("turn", heed)
+        self.on("turn", handle_event)
         self.on("letgo", lambda: let_go())
 
 

@@ -71,7 +71,7 @@ class Stream:
             if received["type"] == "websocket.disconnect":
                 return
             try:
-                self._heed(name, screen, received.get("text") or "")
+                self._handle_event(name, screen, received.get("text") or "")
             except InputError:
                 mistakes += 1
             except Exception:
@@ -80,7 +80,7 @@ class Stream:
             await asyncio.sleep(0)  # messages that wait in a row must not keep other screens waiting
         await screen.socket.close(1008)
 
-    def _heed(self, name: str, screen: "_Screen", text: str) -> None:
+    def _handle_event(self, name: str, screen: "_Screen", text: str) -> None:
         message = read_message(text)
         if isinstance(message, Seen):
             screen.saw(message.count)

@@ -77,14 +77,14 @@ def _poses(page: WindowPage) -> None:
     room = ui.column().classes("w-full gap-2")
 
     def state() -> tuple[object, ...]:
-        return tuple(document.robot.poses), wanted()
+        return tuple(document.robot.poses), find_wished()
 
-    def wanted() -> frozenset[str]:
+    def find_wished() -> frozenset[str]:
         robot = document.robot
         return frozenset(pose.name for pose in wished_poses(robot, designer.wishes)) if robot.poses else frozenset()
 
     def build() -> None:
-        names, on = document.robot.poses, wanted()
+        names, on = document.robot.poses, find_wished()
         colours = pose_colours(names)
         if not names:
             _no_pose(page)
