@@ -209,7 +209,7 @@ MEASURES: dict[str, Callable[[int], Any]] = {
 """What a row is measured by; it takes how often or how many."""
 
 
-if __name__ == "__main__":
+if __name__ == "__main__" and len(sys.argv) > 1:  # speed.py starts it, a row at a time
     with contextlib.redirect_stdout(io.StringIO()):
         measured = MEASURES[sys.argv[1]](int(sys.argv[2]))
     print(json.dumps(measured))

@@ -9,9 +9,6 @@ from typing import Any
 
 from hydrostat.errors import InputError
 
-INTERFACE = 7
-"""Version of the functions that are called here; `interface` in native/module.cpp is the same."""
-
 
 def _load() -> Any:
     """Load the compiled core (InputError: it is missing, of another version, or HYDROSTAT_LEVEL is wrong)."""
@@ -21,7 +18,8 @@ def _load() -> Any:
         raise InputError("hydrostat's compiled core is missing; run pip install --editable . in its folder") from None
     except ImportError as error:
         raise InputError(str(error.__cause__ or error)) from None
-    if getattr(core, "interface", 1) != INTERFACE:
+    interface = 7  # Version of the functions that are called here; `interface` in native/module.cpp is the same
+    if getattr(core, "interface", 1) != interface:
         raise InputError("hydrostat's compiled core is of another version; install hydrostat again")
     return core
 

@@ -1,35 +1,44 @@
 """Shapes and types of the package's public functions are checked while the tests run, in the first calls of each test.
 
-jaxtyping's import hook decorates every function and class. Checking each call made the tests four times as slow, nearly
-all of it in inner loops and private functions, whose arrays come from public ones. So only what is public is wrapped;
-its check is made when it is first called, and each test checks the first `CALLS` calls of each function anew, so that
-what a test catches does not depend on the tests before it.
+An import hook decorates public functions and classes. Checking each call made the tests four times as slow, nearly all
+of it in inner loops and private functions, whose arrays come from public ones. So only public ones are wrapped. The
+check is made when a function is first called, and each test checks the first `CALLS` calls of each function again:
+the errors that a test catches do not depend on the tests before it. jaxtyping has such a hook: it decorates private
+functions too and imports JAX, which takes three times as long.
 """
 
+import ast
 import inspect
-from collections.abc import Callable
-from functools import wraps
+import sys
+from collections.abc import Callable, Sequence
+from functools import partial, wraps
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from importlib.util import cache_from_source, decode_source
+from types import ModuleType
 from typing import Any
+from unittest.mock import patch
 
-import jaxtyping
+import jaxtyping._decorator
 from beartype import BeartypeConf, beartype
 from beartype.roar import BeartypeDecorHintPep673Exception
-from jaxtyping import config, install_import_hook, jaxtyped
+from jaxtyping import config, jaxtyped
 
 CALLS = 10
 """Calls of each function that a test checks."""
+
+jaxtyping._decorator._tb_flag = False  # otherwise jaxtyped imports JAX to shorten JAX's tracebacks
 
 _beartype = beartype(conf=BeartypeConf(is_pep484_tower=True))
 """An int is a float, as PEP 484 says."""
 
 _tests = 0
-"""How many tests have begun."""
+"""Number of tests that have begun."""
 
 
 def install(package: str) -> None:
     """Check a package that is imported from now on."""
-    jaxtyping.jaxtyped = _decorator  # the name that the import hook writes above every function
-    install_import_hook(package, "beartype.beartype")
+    sys.meta_path.insert(0, _Finder(package))
 
 
 def begin_test() -> None:
@@ -58,32 +67,74 @@ def checked(function: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
-def is_public(qualified_name: str) -> bool:
-    """Tell whether a function or class, with all that it stands in, may be used from outside its file."""
-    return all(part.strip("_") and (part[0] != "_" or part.endswith("__")) for part in qualified_name.split("."))
+def checked_public(made: Any) -> Any:
+    """Check a public function, or the fields of a public record: the decorator that the import hook writes."""
+    if not inspect.isclass(made):
+        return checked(made)
+    if "__dataclass_fields__" in vars(made) and "__init__" in vars(made) and not hasattr(made.__init__, "__wrapped__"):
+        made.__init__ = checked(made.__init__)
+    return made
 
 
-def _decorator(*, typechecker: object) -> Callable[[Any], Any]:
-    """Stand where `jaxtyped` stands in what the import hook writes."""
+def is_public(name: str) -> bool:
+    """Tell whether the name of a function or class allows its use from outside its file."""
+    return bool(name.strip("_")) and (name[0] != "_" or name.endswith("__"))
 
-    def decorate(made: Any) -> Any:
-        if "<locals>" in made.__qualname__ or not is_public(made.__qualname__) or hasattr(made, "__no_type_check__"):
-            return made
-        if not inspect.isclass(made):
-            return checked(made)
-        if (
-            "__dataclass_fields__" in vars(made)
-            and "__init__" in vars(made)
-            and not hasattr(made.__init__, "__wrapped__")
-        ):
-            made.__init__ = checked(made.__init__)
-        return made
 
-    return decorate
+class _Finder(MetaPathFinder):
+    """Finds the files of a package, to be loaded with checks."""
+
+    def __init__(self, package: str) -> None:
+        self._package = package
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if name.partition(".")[0] != self._package:
+            return None
+        spec = PathFinder.find_spec(name, path, target)
+        if spec is not None and isinstance(spec.loader, SourceFileLoader):
+            spec.loader = _Loader(spec.loader.name, spec.loader.path)
+        return spec
+
+
+class _Loader(SourceFileLoader):
+    """Loads a file with checks; keeps its bytecode apart from the plain one."""
+
+    def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> Any:
+        tree = ast.parse(decode_source(data), path)
+        decorate(tree.body)
+        after = int(ast.get_docstring(tree, clean=False) is not None)
+        after += sum(isinstance(node, ast.ImportFrom) and node.module == "__future__" for node in tree.body)
+        tree.body.insert(after, ast.Import([ast.alias("shape_checks")], lineno=1, col_offset=0))
+        return compile(ast.fix_missing_locations(tree), path, "exec", dont_inherit=True, optimize=_optimize)
+
+    def exec_module(self, module: ModuleType) -> None:
+        place = partial(cache_from_source, optimization="shapes1")
+        with patch("importlib._bootstrap_external.cache_from_source", place):  # under the lock of imports
+            super().exec_module(module)
+
+
+def decorate(body: list[ast.stmt]) -> None:
+    """Decorate public functions and classes of a module, and methods of such classes."""
+    for node in body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            if not is_public(node.name):
+                continue
+            is_class = isinstance(node, ast.ClassDef)
+            mark = ast.Attribute(ast.Name("shape_checks", ast.Load()), "checked_public", ast.Load())
+            ast.copy_location(mark, node)
+            ast.copy_location(mark.value, node)
+            node.decorator_list.insert(0 if is_class else len(node.decorator_list), mark)
+            if is_class:
+                decorate(node.body)
+        else:
+            for part in ("body", "orelse", "handlers", "finalbody"):
+                decorate(getattr(node, part, []))
 
 
 def _typechecker(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Check a function's arguments and what it returns; one that returns Self cannot be checked outside its class."""
+    """Check a function's arguments and result; one that returns Self cannot be checked outside its class."""
     try:
         return _beartype(function)
     except BeartypeDecorHintPep673Exception:

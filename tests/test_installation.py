@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat import version
+
 ROOT = Path(__file__).parents[1]
 TOOLS = str(ROOT / "native" / "check_tools.py")
 
@@ -52,3 +54,9 @@ def test_make_stops_with_that_line(tmp_path: Path) -> None:
 @pytest.mark.skipif(shutil.which("c++") is None, reason="no compiler")
 def test_nothing_is_said_where_nothing_is_missing() -> None:
     assert check(sys.executable, TOOLS).stdout == ""
+
+
+def test_the_command_for_an_extra_fits_the_installation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert version.install_command("cad") == 'pip install -e ".[cad]"'
+    monkeypatch.setattr(version, "__file__", str(tmp_path / "site-packages" / "hydrostat" / "version.py"))
+    assert version.install_command("cad") == 'pip install "hydrostat[cad]"'

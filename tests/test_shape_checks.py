@@ -1,5 +1,6 @@
 """Checks of shapes and types bite where they are meant to; oracle: calls that are plainly wrong, and a count."""
 
+import ast
 from inspect import isfunction
 from typing import Any
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from builders import strip_mesh
 from jaxtyping import Float, TypeCheckError
-from shape_checks import CALLS, begin_test, checked, is_public
+from shape_checks import CALLS, begin_test, checked, decorate, is_public
 
 from hydrostat.geometry import Mesh, anchors
 
@@ -63,16 +64,16 @@ def test_what_is_private_is_called_as_it_is() -> None:
     assert not any(hasattr(made, "__wrapped__") for made in private)
 
 
-@pytest.mark.parametrize(
-    ("name", "public"),
-    [
-        ("solve", True),
-        ("Mesh.__init__", True),
-        ("Mesh.dim", True),
-        ("_solve", False),
-        ("Mesh._solve", False),
-        ("_A.b", False),
-    ],
-)
-def test_what_is_public(name: str, public: bool) -> None:
+def test_methods_of_private_classes_are_called_as_they_are() -> None:
+    source = "class _A:\n    def b(self): ...\n\nclass C:\n    def d(self): ...\n    def _e(self): ...\n"
+    code = ast.parse(source)
+    decorate(code.body)
+    assert ast.unparse(code).split("@shape_checks.checked_public\n")[1:] == [
+        "class C:\n\n    ",
+        "    def d(self):\n        ...\n\n    def _e(self):\n        ...",
+    ]
+
+
+@pytest.mark.parametrize(("name", "public"), [("solve", True), ("__init__", True), ("_solve", False), ("_", False)])
+def test_public_names(name: str, public: bool) -> None:
     assert is_public(name) == public

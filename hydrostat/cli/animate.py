@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from hydrostat.plot import Film, Stop
     from hydrostat.simulation import Simulation
 
-LONGEST = 60.0  # longest film [s]
-EACH_WAY, USUAL, LEAST_WAY = 2.0, 12.0, 0.5  # time of a way, most of a whole film, least of a way [s]
-
 
 class Format(StrEnum):
     """Kind of file that a film is written to."""
@@ -61,8 +58,9 @@ def animate(
     formats = list(dict.fromkeys(format or (Format.GIF, Format.GLB)))
     if Format.MP4 in formats:
         find_ffmpeg()
-    if seconds is not None and not 0 < seconds <= LONGEST:
-        raise InputError(f"--seconds {seconds:g}: must be above 0 and at most {LONGEST:g}")
+    longest = 60.0  # longest film [s]
+    if seconds is not None and not 0 < seconds <= longest:
+        raise InputError(f"--seconds {seconds:g}: must be above 0 and at most {longest:g}")
     check_width(width)
     loaded = read_robot(robot)
     for pose in name or []:
@@ -70,10 +68,11 @@ def animate(
     if not loaded.cables:
         raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
     simulation = prepare_physics(loaded)
+    each_way, usual, least_way = 2.0, 12.0, 0.5  # time of a way, most of a whole film, least of a way [s]
     with progress_bar() as progress:
         stops = _stops(simulation, name or list(loaded.poses), progress)
         ways = len(stops) + 1
-        length = max(min(EACH_WAY * ways, USUAL), LEAST_WAY * ways) if seconds is None else seconds
+        length = max(min(each_way * ways, usual), least_way * ways) if seconds is None else seconds
         made = film(simulation, stops, seconds=length, progress=progress)
         with result_folder(out) as folder:
             files = [out / _write(simulation, made, folder, kind, width, progress).name for kind in formats]

@@ -84,8 +84,9 @@ def _read_child(child: int, reader: int, file: str, words: str, seconds: float, 
     parts: list[bytes] = []
     began = told = time.monotonic()
     usage = Path(f"/proc/{child}")
+    look, again = 0.05, 5.0  # seconds between looks, and between words
     while True:
-        ready, _, _ = select.select([reader], [], [], _LOOK)
+        ready, _, _ = select.select([reader], [], [], look)
         if ready:
             part = os.read(reader, 1 << 20)
             if not part:
@@ -100,7 +101,7 @@ def _read_child(child: int, reader: int, file: str, words: str, seconds: float, 
             )
         if taken > memory:
             raise InputError(f"{file}: memory limit reached ({1e-9 * memory:.2g} GB). Simplify the file.")
-        if now - told > (PATIENCE if told == began else _AGAIN):
+        if now - told > (PATIENCE if told == began else again):
             told = now
             print(words if now - began < 2 * PATIENCE else f"{words} {now - began:.0f} s", flush=True)
 
@@ -118,6 +119,3 @@ def _usage_of(usage: Path, waited: float) -> tuple[float, int]:
 def _describe_exit(status: int) -> str:
     code = os.waitstatus_to_exitcode(status)
     return f"signal {-code}" if code < 0 else f"code {code}"
-
-
-_LOOK, _AGAIN = 0.05, 5.0  # seconds between looks, and between words

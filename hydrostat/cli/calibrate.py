@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from hydrostat.robot import Robot
 
 PAGE = "calibration.html"
-SOFT, HARD = 0.5, 2.0  # cables that feel so much softer or stiffer than the model are told
 
 
 def calibrate(
@@ -191,10 +190,11 @@ def _tell(
     from hydrostat.plot import reach, write_calibration_page
 
     notes = []
+    soft, hard = 0.5, 2.0  # cables that feel so much softer or stiffer than the model are told
     for taken, pull, constant in zip(found, model, constants.tolist(), strict=True):
         wanted = pull.stiffness(reach(taken))
         felt = wanted * taken.gain * constant / taken.motor.radius
-        if felt < SOFT * wanted or felt > HARD * wanted:
+        if felt < soft * wanted or felt > hard * wanted:
             notes.append(
                 f"{taken.motor.winch}: measured stiffness {felt:.0f} N/m, expected {wanted:.0f} N/m. "
                 "Check that motor, cable and material match robot.toml"

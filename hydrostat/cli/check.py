@@ -104,7 +104,9 @@ def _print_reach(robot: "Robot") -> None:
     if nodes > _LARGE:
         print(f"workspace: skipped ({nodes} nodes, maximum {_LARGE}). Use larger elements")
         return
-    tension, count = Constraints().tension_limit, int(min(max(_SOLVED / nodes, _LEAST), _MOST))
+    # nodes of all poses that are tried for the reach; fewest and most poses
+    solved, least, most = 30_000, 9, 64
+    tension, count = Constraints().tension_limit, int(min(max(solved / nodes, least), most))
     try:
         reaches = find_reach(Simulation(robot), tension=tension, count=count)
     except (InputError, NotConvergedError) as error:
@@ -115,7 +117,6 @@ def _print_reach(robot: "Robot") -> None:
         print(f"  {reach.marker}: {reach}")
 
 
-_SOLVED, _LEAST, _MOST = 30_000, 9, 64  # nodes of all poses that are tried for the reach; fewest and most poses
 _LARGE = 5000  # nodes of a body from which on even the fewest poses take long
 
 

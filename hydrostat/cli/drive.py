@@ -12,6 +12,7 @@ import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.learned import read_model
+from hydrostat.cli.options import MotorPort
 from hydrostat.cli.waiting import one_interrupt, prepare_physics, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from hydrostat.simulation import Simulation
     from hydrostat.teleop import CommandMapper, DriveLoop, DriveSource
 
-SHOWN, LISTED = 0.1, 2.0  # time from one word on the motors to the next [s]: on a terminal, and where lines are kept
 BAR = 24  # letters of a full bar
 
 
@@ -36,15 +36,7 @@ def drive(
             "camera:FILE.task or camera:PORT.",
         ),
     ] = "keys",
-    port: Annotated[
-        str | None,
-        typer.Option(
-            "--motors",
-            metavar="KIND:PORT",
-            help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
-            show_default="simulated motors",
-        ),
-    ] = None,
+    port: MotorPort = None,
     tips: Annotated[bool, typer.Option("--tips", help="Move fingertips (markers) instead of winches.")] = False,
     model: Annotated[
         Path | None, typer.Option(metavar="MODEL", help="Trained model to warm-start each move, with --tips.")
@@ -151,7 +143,9 @@ class _Shown:
     def tell(self, driven: "DriveLoop") -> None:
         """Show where the motors are, if it is time to."""
         now = time.monotonic()
-        if now - self._last < (SHOWN if self._terminal else LISTED) and driven.silent == self._silent:
+        # time from one word on the motors to the next [s]: on a terminal, and where lines are kept
+        shown, listed = 0.1, 2.0
+        if now - self._last < (shown if self._terminal else listed) and driven.silent == self._silent:
             return
         self._last, self._silent = now, driven.silent
         state = "input lost: motors holding" if driven.silent else "hold" if driven.wish.hold else ""

@@ -59,9 +59,7 @@ def fabricate(
     clearance: Annotated[
         str, typer.Option("--print-clearance", metavar="LENGTH", help="Print clearance per side between moving parts.")
     ] = "0.3 mm",
-    step: Annotated[
-        bool, typer.Option("--cad", help='Also write printed parts as STEP. Needs pip install "hydrostat[cad]".')
-    ] = False,
+    step: Annotated[bool, typer.Option("--cad", help="Also write printed parts as STEP. Needs the extra cad.")] = False,
     force: Force = False,
 ) -> None:
     """Write a build kit: patterns, parts, lists and assembly sheet.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
+from hydrostat.cli.options import MotorPort
 from hydrostat.cli.waiting import one_interrupt, prepare_physics, read_robot
 from hydrostat.errors import HydrostatError, InputError
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 PAIRS, MAP, RECORDING, PICTURE = "poses.csv", "map.json", "poses.mcap", "pose.png"
 TIPS = 150  # poses to choose from where each has to be solved first
-TICK = 1 / 60  # motors are told again after so long [s]
 
 
 def mimic(
@@ -37,15 +37,7 @@ def mimic(
     ] = 60,
     worn: Annotated[bool, typer.Option("--worn", help="Record without prompts: the robot wears the glove.")] = False,
     tips: Annotated[bool, typer.Option("--tips", help="Learn fingertip positions instead of contractions.")] = False,
-    port: Annotated[
-        str | None,
-        typer.Option(
-            "--motors",
-            metavar="KIND:PORT",
-            help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
-            show_default="simulated motors",
-        ),
-    ] = None,
+    port: MotorPort = None,
 ) -> None:
     """Teach a hand-to-robot map with a glove or camera.
 
@@ -195,9 +187,10 @@ class _Session:
     def _key(self, number: int) -> str:
         """Return the key that the person types; motors are commanded to hold meanwhile."""
         self.say(f"pose {number + 1}: copy it, hold still, press Enter (q: quit)")
+        tick = 1 / 60  # motors are told again after so long [s]
         while not select.select([sys.stdin], [], [], 0.0)[0]:
             self.beat()
-            time.sleep(TICK)
+            time.sleep(tick)
         line = sys.stdin.readline()
         return "q" if not line else line.strip().lower()
 

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 SECONDS, SECONDS_A_NODE = 10.0, 0.02
 """Processor time that a file may take to be read, healed and meshed [s], and so much more for each node asked for."""
 
-LONGEST = 20.0  # no length that is asked for is longer [m]
-
 
 def new(
     name: Annotated[Path, typer.Argument(metavar="NAME", help="New robot folder.")],
@@ -125,8 +123,9 @@ def _length(key: str, text: str | None) -> float | None:
         return None
     option = f"--{key.replace('_', '-')}"
     value = positive(option, text, LENGTH)
-    if value > LONGEST:
-        raise InputError(f"{option} {text}: must be above 0 and at most {LONGEST:g} m")
+    longest = 20.0  # no length that is asked for is longer [m]
+    if value > longest:
+        raise InputError(f"{option} {text}: must be above 0 and at most {longest:g} m")
     return value
 
 

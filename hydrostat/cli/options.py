@@ -74,6 +74,15 @@ class DefaultText(str):
         return format(f"{scale * value:g} {unit}".rstrip(), spec)
 
 
+MotorPort = Annotated[
+    str | None,
+    typer.Option(
+        "--motors",
+        metavar="KIND:PORT",
+        help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
+        show_default="simulated motors",
+    ),
+]
 PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the animation [pixels].")]
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of
+from hydrostat.cli.options import MotorPort
 from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.units import plural
@@ -32,15 +33,7 @@ def play(
         int, typer.Option("--repeat", metavar="N", help="Number of repetitions. 0 = until you stop it.")
     ] = 1,
     speed: Annotated[float, typer.Option(metavar="TIMES", help="Playback speed factor.")] = 1.0,
-    port: Annotated[
-        str | None,
-        typer.Option(
-            "--motors",
-            metavar="KIND:PORT",
-            help="Motor connection, e.g. dynamixel:/dev/ttyUSB0, or emulated.",
-            show_default="simulated motors",
-        ),
-    ] = None,
+    port: MotorPort = None,
 ) -> None:
     """Play a table of contractions on the motors in real time.
 

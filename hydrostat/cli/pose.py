@@ -148,7 +148,8 @@ def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: fl
         print(f"  friction: hysteresis after 10 % overshoot: {band}")
     for words in reached.active_limits:
         print(f"  limit: {words}")
-    if reached.active_limits or reached.optimality > _STEEP:
+    steep = 1e-3  # an optimality above this is told: there was more to gain
+    if reached.active_limits or reached.optimality > steep:
         print(f"  optimality: {reached.optimality:.1g} (0 = optimum within these limits)")
 
 
@@ -158,7 +159,8 @@ def _note_other_pose(simulation: "Simulation", reached: "IKResult") -> None:
 
     pose = simulation.solve(reached.pose.contractions, strict=False)
     away = largest_distance(pose.nodes, reached.pose.nodes)
-    if pose.result.converged and away > _APART * simulation.robot.body.mesh.size:
+    apart = 1e-3  # poses that differ by more than this share of the body's size are different
+    if pose.result.converged and away > apart * simulation.robot.body.mesh.size:
         print(
             f"  warning: in one step from rest, these contractions lead to another pose, up to {1e3 * away:.1f} mm away"
         )
@@ -175,7 +177,3 @@ def _note_crossings(loaded: "Robot", pose: "Equilibrium") -> None:
 
 def _contraction_facts(loaded: "Robot", reached: "IKResult") -> dict[str, float]:
     return {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
-
-
-_APART = 1e-3  # poses that differ by more than this share of the body's size are different
-_STEEP = 1e-3  # an optimality above this is told: there was more to gain

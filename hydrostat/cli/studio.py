@@ -7,6 +7,7 @@ import typer
 
 from hydrostat.cli.folders import found_folder
 from hydrostat.errors import InputError
+from hydrostat.version import install_command
 
 
 def studio(
@@ -41,7 +42,7 @@ def studio(
     except ModuleNotFoundError as error:
         if error.name != "nicegui":
             raise
-        raise InputError('studio: package nicegui not found. Install it: pip install "hydrostat[studio]"') from None
+        raise InputError(f"studio: package nicegui not found. Install it: {install_command('studio')}") from None
     from hydrostat.studio import Session, state_folder
 
     if model is not None and (robot is None or rooms):

@@ -10,6 +10,7 @@ import typer
 from hydrostat.cli.folders import RobotFolder, require_folder
 from hydrostat.cli.waiting import one_interrupt, read_robot, report_progress
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.version import install_command
 
 if TYPE_CHECKING:
     from hydrostat.robot import Obstacle, Robot
@@ -99,7 +100,7 @@ def train(
 
     Without --model, each action is one equilibrium of the simulator. Evaluation always runs in the simulator, on unseen
     goals. The learning curve is in curve.json and curve.png, and in DIR/tensorboard if TensorBoard is installed. Needs
-    pip install "hydrostat[rl]". For static poses, inverse kinematics and `hydrostat learn` are better and cheaper. Use
+    the extra rl. For static poses, inverse kinematics and `hydrostat learn` are better and cheaper. Use
     this command for comparison, and for tasks they cannot solve.
 
     Task reach-with-hysteresis: cables have friction, and the pose depends on the loading path. A --model here is one
@@ -120,9 +121,7 @@ def train(
     try:
         from hydrostat import training
     except ModuleNotFoundError as error:
-        raise HydrostatError(
-            f'train: package {error.name} not found. Install it: pip install "hydrostat[rl]"'
-        ) from None
+        raise HydrostatError(f"train: package {error.name} not found. Install it: {install_command('rl')}") from None
     from hydrostat.learning import load_model, save_model
     from hydrostat.simulation import write_profile
     from hydrostat.units import LENGTH, parse_quantity, plural

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
 PATIENCE = 3.0  # seconds after which a person is told what takes so long
 
-_OFTEN, _SELDOM = 0.5, 20.0  # so often progress is told on a terminal, and in a log [s]
-
 
 @contextmanager
 def patiently(words: str) -> Iterator[None]:
@@ -79,6 +77,8 @@ def report_progress() -> Progress:
     seen: dict[str, int] = {}
     last = [0.0]
 
+    often, seldom = 0.5, 20.0  # so often progress is told on a terminal, and in a log [s]
+
     def tell(stage: str, done: int, total: int) -> None:
         now = time.monotonic()
         if done < seen.get(stage, 0):
@@ -86,7 +86,7 @@ def report_progress() -> Progress:
         seen[stage] = done
         since, first = begin.setdefault(stage, (now, done))
         terminal = sys.stderr.isatty()
-        if done < total and now - last[0] < (_OFTEN if terminal else _SELDOM):
+        if done < total and now - last[0] < (often if terminal else seldom):
             return
         last[0] = now
         seconds, made = now - since, done - first

@@ -6,7 +6,7 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.control.arm_motors import arm_motors
-    from hydrostat.control.bus import Bus, MotorFacts, Port, Reading, steady
+    from hydrostat.control.bus import Bus, Port, steady
     from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
     from hydrostat.control.calibration import (
         CALIBRATION,
@@ -19,14 +19,12 @@ if TYPE_CHECKING:
         write_calibration,
     )
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
-    from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
-    from hydrostat.control.emulated_line import EmulatedLine
+    from hydrostat.control.emulated_feetech import EmulatedLine
     from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults, LiveChain
     from hydrostat.control.feetech_bus import FeetechBus
     from hydrostat.control.firmware_build import board_kind
-    from hydrostat.control.firmware_bus import FirmwareBus
-    from hydrostat.control.guard import GuardLimits, TensionGuard, not_judged
-    from hydrostat.control.link import SILENCE, Link, SimulatedLink
+    from hydrostat.control.guard import TensionGuard, not_judged
+    from hydrostat.control.link import Link, SimulatedLink
     from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_pulls, winch_tensions
     from hydrostat.control.motors import FASTEST, Motors
     from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line
@@ -42,31 +40,24 @@ __all__ = [
     "FASTEST",
     "GOAL",
     "LONGEST",
-    "SILENCE",
     "TICK",
     "Bus",
     "BusLink",
     "Calibration",
     "DynamixelBus",
     "EmulatedChain",
-    "EmulatedFeetechChain",
     "EmulatedLine",
     "EmulatedServo",
-    "EmulatedSts",
     "FeetechBus",
-    "FirmwareBus",
-    "GuardLimits",
     "InjectedFaults",
     "Key",
     "Link",
     "LinkLimits",
     "LinkState",
     "LiveChain",
-    "MotorFacts",
     "Motors",
     "Player",
     "Port",
-    "Reading",
     "SimulatedLink",
     "SlackCalibration",
     "SpoolCurve",

@@ -56,15 +56,15 @@ class JoinedBus(Bus):
         """Return the latest reading of all motors."""
         told = self._each(lambda bus, _: bus.read())
 
-        def joined(name: str) -> Vector:
+        def join_readings(name: str) -> Vector:
             return np.array(self._whole([getattr(reading, name) for reading in told]))
 
         return Reading(
-            angles=joined("angles"),
-            currents=joined("currents"),
-            temperatures=joined("temperatures"),
-            volts=joined("volts"),
-            stamps=joined("stamps"),
+            angles=join_readings("angles"),
+            currents=join_readings("currents"),
+            temperatures=join_readings("temperatures"),
+            volts=join_readings("volts"),
+            stamps=join_readings("stamps"),
             faults=self._whole([reading.faults for reading in told]),
         )
 

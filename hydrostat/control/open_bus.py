@@ -18,6 +18,7 @@ from hydrostat.control.joined_bus import JoinedBus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
 from hydrostat.units import plural
+from hydrostat.version import install_command
 
 EMULATED = "emulated"
 """Port name that selects emulated servos instead of hardware."""
@@ -127,7 +128,7 @@ def open_line(name: str, baud: int) -> Port:
     try:
         import serial
     except ModuleNotFoundError:
-        raise HydrostatError('serial lines need pyserial; install it: pip install "hydrostat[motors]"') from None
+        raise HydrostatError(f"serial lines need pyserial; install it: {install_command('motors')}") from None
     try:
         return cast(Port, serial.Serial(name, baud, timeout=0.02, write_timeout=0.1, exclusive=True))
     except (OSError, ValueError) as error:

@@ -134,7 +134,7 @@ def _times(timeline: Timeline) -> np.ndarray:
     return rows[np.append(True, np.diff(rows) > 1e-4)]
 
 
-def _essential_rows(times: np.ndarray, values: np.ndarray, *, off: float = 2e-5) -> list[int]:
+def _essential_rows(times: np.ndarray, values: np.ndarray) -> list[int]:
     """Rows that lines between cannot do without, to 0.02 mm: the row that is off most is kept, then again each side."""
     kept, spans = {0, len(times) - 1}, [(0, len(times) - 1)]
     while spans:
@@ -145,7 +145,7 @@ def _essential_rows(times: np.ndarray, values: np.ndarray, *, off: float = 2e-5)
         line = (1 - share) * values[start] + share * values[end]
         misses = np.abs(values[start + 1 : end] - line).max(axis=1, initial=0.0)
         worst = start + 1 + int(misses.argmax())
-        if misses.max() > off:
+        if misses.max() > 2e-5:
             kept.add(worst)
             spans += [(start, worst), (worst, end)]
     return sorted(kept)

@@ -7,12 +7,9 @@ import numpy as np
 from jaxtyping import Float
 
 Spots = Float[np.ndarray, "_ 3"]  # points in space, or as a camera sees them: to the right, up and towards the eye
-ELEVATION = 22.0  # angle of the eye of a three-quarter view above the horizon [degree]; more for a body that lies flat
 TURN = 58.0
 """Angle from the long axis of a body to the eye of a three-quarter view, from above [degree]: its sine is what is left
 of the length, its cosine shows that there is depth."""
-
-FROM_ABOVE = 0.97  # worth of a view from above beside one from the side that shows as much: there, up is not seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +80,9 @@ def three_quarter(
     middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
     sides = np.ptp(shape, axis=0)
     flat = np.clip(1 - 2 * sides[2] / max(min(sides[0], sides[1]), 1e-12), 0, 1)
-    height = np.radians(ELEVATION + 20 * flat)
+    # angle of the eye of a three-quarter view above the horizon [degree]; more for a body that lies flat
+    elevation = 22.0
+    height = np.radians(elevation + 20 * flat)
     long_way = _long_way(shape[:, :2])
     turns = np.radians([-TURN, TURN, 180 - TURN, 180 + TURN]) + long_way
     eyes = np.column_stack([np.cos(height) * np.cos(turns), np.cos(height) * np.sin(turns), np.full(4, np.sin(height))])
@@ -106,10 +105,12 @@ def along_an_axis(shape: Spots, shown: Spots, ways: Spots, up: Float[np.ndarray,
     sides = np.ptp(shape, axis=0)
     moved = (ways**2).sum(axis=0)
     scores = []
+    # worth of a view from above beside one from the side that shows as much: there, up is not seen
+    from_above = 0.97
     for axis in range(3):
         others = [other for other in range(3) if other != axis]
         share = moved[others].sum() / moved.sum() if moved.sum() > 0 else 1.0
-        scores.append(share * np.sqrt(np.prod(sides[others])) * (FROM_ABOVE if axis == 2 else 1.0))
+        scores.append(share * np.sqrt(np.prod(sides[others])) * (from_above if axis == 2 else 1.0))
     axis = int(np.argmax(np.round(np.array(scores) / max(scores), 4)))
     middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
     lean = float((shown - middle).mean(axis=0)[axis]) if len(shown) else 0.0

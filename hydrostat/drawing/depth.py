@@ -11,7 +11,6 @@ from jaxtyping import Float, Int
 from hydrostat.kernel import native
 
 Polyline = Float[np.ndarray, "_ 2"]  # a line on a picture: to the right, up [mm]
-_RIM = 4  # pixels of nothing round the picture
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -35,8 +34,9 @@ class DepthBuffer:
         """Buffer of triangles seen [mm] from both sides, with room round it and pixels along its longer side."""
         low, high = corners[:, :, :2].min(axis=(0, 1)), corners[:, :, :2].max(axis=(0, 1))
         pixel = max(float((high - low).max()) / pixels, 1e-9)
-        low = low - _RIM * pixel
-        columns, rows = (np.ceil((high - low) / pixel).astype(int) + 1 + _RIM).tolist()
+        rim = 4  # pixels of nothing round the picture
+        low = low - rim * pixel
+        columns, rows = (np.ceil((high - low) / pixel).astype(int) + 1 + rim).tolist()
         return cls.within(corners, values, low, pixel, (rows, columns), inside=True)
 
     @classmethod

@@ -15,7 +15,6 @@ from hydrostat.drawing.depth import DepthBuffer, Polyline
 _LAMP = np.array([-0.40, 0.75, 0.55]) / np.linalg.norm([-0.40, 0.75, 0.55])
 """Direction of the light in the view: from above, from the left, from behind the viewer's shoulder."""
 
-_SHADES = ((0.6, 0.93), (0.05, 0.84))  # below which light a side is grey, and how bright: pale enough to write on
 _JUMP = 0.02  # a line is thick where what lies behind it is so much deeper, as a share of the picture
 _SMOOTH = 0.6  # how far rings may pass beside what they enclose [pixels]
 
@@ -145,4 +144,6 @@ def _tones(buffer: DepthBuffer, soft: float) -> tuple[tuple[float, tuple[Polylin
         solid, reach = np.isfinite(buffer.depth), soft * max(buffer.depth.shape)
         weight = np.maximum(gaussian_filter(solid.astype(float), reach, truncate=2.5), 1e-9)
         dark = np.where(solid, gaussian_filter(np.where(solid, dark, 0.0), reach, truncate=2.5) / weight, 0.0)
-    return tuple((grey, tuple(buffer.rings(dark, 1.0 - light, tolerance=_SMOOTH))) for light, grey in _SHADES)
+    # below which light a side is grey, and how bright: pale enough to write on
+    shades = ((0.6, 0.93), (0.05, 0.84))
+    return tuple((grey, tuple(buffer.rings(dark, 1.0 - light, tolerance=_SMOOTH))) for light, grey in shades)

@@ -23,13 +23,19 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.lists.needs import control_needs
     from hydrostat.fabrication.lists.stitching import depth_table
     from hydrostat.fabrication.moulds.mould import make_mould
-    from hydrostat.fabrication.parts.board import BOARDS, BoardKind, board_for
-    from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
+    from hydrostat.fabrication.parts.motor import (
+        BOARDS,
+        MOTORS,
+        BoardKind,
+        Motor,
+        board_for,
+        choose_motor,
+        largest_torque,
+    )
     from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
     from hydrostat.fabrication.parts.winch_unit import unit_room
-    from hydrostat.fabrication.patches.sewable import Sewing, find_sewing, sewing_of
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
-    from hydrostat.fabrication.patches.space_pattern import space_pattern
+    from hydrostat.fabrication.patches.space_pattern import Sewing, find_sewing, sewing_of, space_pattern
     from hydrostat.fabrication.patterns.marks import winch_marks
     from hydrostat.fabrication.patterns.pattern import plush_pattern
     from hydrostat.fabrication.patterns.shape import Circle, PatternPart

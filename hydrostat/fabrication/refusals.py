@@ -30,11 +30,11 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
     motor = choose_motor(options.motor, torques, inside=inside, winches=len(robot.winches))
     found = [*unit_problems(sewn, options.parts, motor), *_of_body(robot, options)]
     if demand is not None:
-        found += check_line(sewn, _shared(demand.tensions, sewn), line_for(options.parts.cable)).problems
+        found += check_line(sewn, _share_tensions(demand.tensions, sewn), line_for(options.parts.cable)).problems
     return tuple(found)
 
 
-def _shared(tensions: Vector, sewn: Robot) -> Vector:
+def _share_tensions(tensions: Vector, sewn: Robot) -> Vector:
     """Tensions of all cables that are sewn [N]: those of a drawn one are shared evenly by its pair."""
     times = max(len(sewn.cables) // max(len(tensions), 1), 1)
     return np.tile(tensions / times, times)

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.geometry.anchors import Anchors, anchor_nodes, clearance, locate, nearest_shares
     from hydrostat.geometry.boundary_tree import BoundaryTree, Pairs, facet_areas
     from hydrostat.geometry.contour import contour
-    from hydrostat.geometry.crossings import Crossings, find_crossings
+    from hydrostat.geometry.crossings import find_crossings
     from hydrostat.geometry.distance_field import (
         DistanceField,
         Distances,
@@ -51,7 +51,6 @@ __all__ = [
     "SURFACE_SUFFIXES",
     "Anchors",
     "BoundaryTree",
-    "Crossings",
     "Curve",
     "DistanceField",
     "Distances",

@@ -15,7 +15,6 @@ from hydrostat.geometry.mesh import Mesh
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-_HAIR = 1e-9  # a point this little outside counts as inside, in heights of its element
 _AT_ONCE = 3_000_000  # pairs of point and facet whose distances are looked at together
 
 
@@ -92,7 +91,8 @@ def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Fl
     weights = np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1)
     depth = weights.min(axis=1)
     order = np.lexsort((elements, -depth, asked))
-    order = order[depth[order] >= -_HAIR]
+    hair = 1e-9  # a point this little outside counts as inside, in heights of its element
+    order = order[depth[order] >= -hair]
     first = _firsts(asked[order])
     found, order = asked[order][first], order[first]
     held, shares = np.full(len(points), -1), np.zeros((len(points), mesh.dim + 1))

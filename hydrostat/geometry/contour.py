@@ -14,8 +14,6 @@ MOST_GRID_POINTS = 4_000_000  # a grid with more points than this is refused
 Field = Callable[[Points], Vector]
 """A number for each point, negative inside: a signed distance [m], or 0.5 minus a winding number."""
 
-_OFFSET = 0.37  # of the spacing: faces that lie at multiples of it from the sides of the box meet no grid point
-_CLEARANCE = 1e-3  # of the spacing: how near to a grid point a crossing may come, so that no triangle has zero area
 _CHUNK = 200_000  # points in one call of the field
 _BLOCK = 8  # cells along the side of a block that is settled as a whole
 
@@ -79,7 +77,9 @@ class _Grid:
             )
         self.shape = shape.astype(np.int64)
         self.points = int(self.shape.prod())
-        self.origin = box[0] - (1.0 + _OFFSET) * spacing
+        # of the spacing: faces that lie at multiples of it from the sides of the box meet no grid point
+        offset = 0.37
+        self.origin = box[0] - (1.0 + offset) * spacing
 
     def indices(self, numbers: Int[np.ndarray, " some"]) -> Int[np.ndarray, "some 3"]:
         """Places on the grid of some of its points."""
@@ -170,7 +170,9 @@ def _crossings(
         below = values < 0.0
         low[active[below]], low_value[active[below]] = guess[below], values[below]
         high[active[~below]], high_value[active[~below]] = guess[~below], values[~below]
-    return np.clip(share, _CLEARANCE, 1.0 - _CLEARANCE)
+    # of the spacing: how near to a grid point a crossing may come, so that no triangle has zero area
+    clearance = 1e-3
+    return np.clip(share, clearance, 1.0 - clearance)
 
 
 def _zero(low: Vector, high: Vector) -> Vector:

@@ -88,7 +88,8 @@ def _intersect_triangles(
     normal = np.cross(along, two)
     scale = np.einsum("pi,pi->p", one, normal)
     lengths = np.linalg.norm([along, one, two], axis=2).prod(axis=0)
-    across = np.abs(scale) > _PARALLEL * lengths
+    parallel = 1e-9  # of the volume of three edges: what spans less lies in one plane, and cuts nothing
+    across = np.abs(scale) > parallel * lengths
     safe = np.where(across, scale, 1.0)
     gap = ends[:, 0] - corners[:, 0]
     u = np.einsum("pi,pi->p", gap, normal) / safe
@@ -97,9 +98,6 @@ def _intersect_triangles(
     share = np.einsum("pi,pi->p", two, turned) / safe
     inside = across & (u >= 0) & (v >= 0) & (u + v <= 1) & (share >= 0) & (share <= 1)
     return inside, ends[:, 0] + share[:, None] * along
-
-
-_PARALLEL = 1e-9  # of the volume of three edges: what spans less lies in one plane, and cuts nothing
 
 
 def _share(one: Int[np.ndarray, "pairs _"], other: Int[np.ndarray, "pairs _"]) -> Bool[np.ndarray, " pairs"]:

@@ -14,7 +14,6 @@ from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.triangles.triangulate import triangulate
 
 _STEPS = 4
-_STOUT = 1.5  # times as thick as wide is no plush any more
 
 
 def inflate(outline: Outline, height: float, *, spacing: float) -> Surface:
@@ -39,10 +38,11 @@ def inflate(outline: Outline, height: float, *, spacing: float) -> Surface:
     if not 0.0 < height < np.inf:
         raise InputError(f"the height must be positive, not {height} m")
     widest = 2 * float(maximum_inscribed_circle(outline.polygon).length)
-    if height > _STOUT * widest:
+    stout = 1.5  # times as thick as wide is no plush any more
+    if height > stout * widest:
         raise InputError(
             f"the height of {1e3 * height:.4g} mm is too much for an outline {1e3 * widest:.3g} mm wide at its widest: "
-            f"take {1e3 * _STOUT * widest:.3g} mm or less"
+            f"take {1e3 * stout * widest:.3g} mm or less"
         )
     try:
         mesh = _without_bridges(triangulate(outline, spacing))

@@ -153,7 +153,8 @@ def shell_field(shell: Shell) -> DistanceField:
 def _box_about(shell: Shell) -> tuple[DistanceField, float]:
     """Distance from the box about a shell, and up to which distance from it those from the shell are exact [m]."""
     low, high = shell.nodes.min(axis=0), shell.nodes.max(axis=0)
-    return box_field(low, high), _ROOM * float(np.linalg.norm(high - low))
+    room = 0.25  # Distances below this share of the diagonal of the box about a shell are exact
+    return box_field(low, high), room * float(np.linalg.norm(high - low))
 
 
 def _shell_values(shell: Shell, points: Points) -> Vector:
@@ -193,9 +194,6 @@ def _curvatures(shell: Shell, found: Nearest) -> Float[np.ndarray, "points dim d
     return np.where(beside, 1.0 / np.where(beside, found.distances, 1.0), 0.0)[:, None, None] * round_
 
 
-_ROOM = 0.25
-"""Distances below this share of the diagonal of the box about a shell are exact."""
-
 _TOUCHING = 1e-12
 """A point this near, as a fraction of the coordinates, has no direction to its nearest place but the normal there."""
 
@@ -232,11 +230,9 @@ def _shares(
         pairs = ((offsets, second), (first, offsets))
         weights = [np.einsum("pd,pd->p", np.cross(one, two), normals) / square for one, two in pairs]
     shares = np.column_stack([1.0 - sum(weights), *weights])
-    shares[shares < _NONE] = 0.0
+    none = 1e-9
+    shares[shares < none] = 0.0
     return shares / shares.sum(axis=1, keepdims=True)
-
-
-_NONE = 1e-9
 
 
 def _angles(corners: Float[np.ndarray, "facets dim dim"]) -> Float[np.ndarray, "facets dim"]:

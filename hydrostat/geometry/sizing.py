@@ -10,10 +10,6 @@ from hydrostat.geometry.mesh import Mesh
 FEWEST, MOST = 10, 200_000  # nodes that may be asked for
 CLOSE = 0.1  # how far the number may be off, as a fraction of it
 
-_TRIES = 8
-
-_THIN = 4.0  # so many times fewer nodes than elements as large as the body is thick would have, are not looked for
-_FINE = 0.01  # a size refused whose element has less than this share of the body is too fine, others are too coarse
 
 _DENSITY = {2: (1.2, 0.6), 3: (1.6, 1.2)}
 """Nodes in a square or cube of the element size, and on a piece of the boundary as long or large, in 2D and 3D."""
@@ -41,7 +37,10 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: 
     size, low, high = _guess(nodes, content, rim, dim), 0.0, np.inf
     refused: InputError | None = None
     tried: dict[float, int] = {}
-    for _ in range(_TRIES):
+    tries = 8
+    # a size refused whose element has less than this share of the body is too fine, others are too coarse
+    fine = 0.01
+    for _ in range(tries):
         size = _three_digits(size)
         if size in tried or size in (low, high):
             break
@@ -49,7 +48,7 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: 
             tried[size] = count = len(make(size).nodes)
         except InputError as error:
             refused = error
-            count = 0 if isinstance(error, SurfaceError) or size**dim > _FINE * content else 10 * MOST
+            count = 0 if isinstance(error, SurfaceError) or size**dim > fine * content else 10 * MOST
         if abs(count / nodes - 1) <= CLOSE:
             return size
         low, high = (size, high) if count > nodes else (low, size)
@@ -68,7 +67,9 @@ def _check_thin(nodes: int, content: float, rim: float, dim: int) -> None:
     inside, outside = _DENSITY[dim]
     thick = 2 * content / rim  # of a plate, or half as thick as a rod
     least = inside * content / thick**dim + outside * rim / thick ** (dim - 1)
-    if nodes < least / _THIN:
+    # so many times fewer nodes than elements as large as the body is thick would have, are not looked for
+    thin = 4.0
+    if nodes < least / thin:
         raise InputError(
             f"a body so thin ({1e3 * thick:.3g} mm on average) needs about {_two_digits(least)} nodes, not {nodes}: "
             f'ask for as many, or for an element size of "{1e3 * thick:.2g} mm"'

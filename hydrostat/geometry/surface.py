@@ -67,10 +67,6 @@ class Surface:
         return float(np.einsum("td,td->", self.vertices[self.triangles[:, 0]] - middle, self.crosses) / 6)
 
 
-_PLASTIC = 1.32471795724474602596  # its powers spread points evenly over a square (Roberts 2018)
-_MOST_POINTS = 2_000_000  # no more points than this, and one for each triangle
-
-
 def covering_points(surface: Surface, spacing: float) -> Float[np.ndarray, "points 3"]:
     """Vertices of a surface, and points spread evenly over its triangles, one for each `spacing` squared [m]."""
     return np.concatenate([surface.vertices[np.unique(surface.triangles)], spread_points(surface, spacing)[0]])
@@ -79,11 +75,13 @@ def covering_points(surface: Surface, spacing: float) -> Float[np.ndarray, "poin
 def spread_points(surface: Surface, spacing: float) -> tuple[Float[np.ndarray, "points 3"], Int[np.ndarray, " points"]]:
     """Points spread evenly, about one for each square of the spacing [m], one at least on each triangle; and which."""
     areas = np.linalg.norm(surface.crosses, axis=1) / 2
-    square = max(spacing**2, float(areas.sum()) / _MOST_POINTS)
+    most_points = 2_000_000  # no more points than this, and one for each triangle
+    square = max(spacing**2, float(areas.sum()) / most_points)
     counts = np.maximum(np.ceil(areas / square).astype(np.int64), 1)
     owner = np.repeat(np.arange(len(counts)), counts)
     number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
-    one, two = ((0.5 + (1 + number) / _PLASTIC**power) % 1 for power in (1, 2))
+    plastic = 1.32471795724474602596  # its powers spread points evenly over a square (Roberts 2018)
+    one, two = ((0.5 + (1 + number) / plastic**power) % 1 for power in (1, 2))
     over = one + two > 1
     one, two = np.where(over, 1 - one, one), np.where(over, 1 - two, two)
     weights = np.column_stack([1 - one - two, one, two])

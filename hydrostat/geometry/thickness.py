@@ -13,10 +13,8 @@ _REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}  # (Edge of a regular simplex)^dim ove
 _ASIDE = (0.011, -0.007, -0.004)
 """Offset of a ray's start from the center of its facet, as weights: from there it hits edges in regular meshes."""
 
-_MOST_STEPS = 10_000
 
 _NEAR = 1.5  # middles of thin places this many elements apart are of one part
-_NEIGHBOURS = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
 _SLENDER = 1.5  # a part is a limb if it is this many times as long as thick
 
 
@@ -90,7 +88,8 @@ def _march(
     slopes = np.linalg.inv(spans)
     run, here, rays = np.zeros(len(starts)), elements.copy(), np.arange(len(starts))
     came = np.full(len(starts), -2)
-    for _ in range(_MOST_STEPS):
+    most_steps = 10_000
+    for _ in range(most_steps):
         if not len(rays):
             break
         inverse = slopes[here[rays]]
@@ -144,7 +143,8 @@ def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
         return []
     middles = thickness.middles[thin]
     reach = _NEAR * float(np.median(thickness.spacing[thin]))
-    gaps, near = KDTree(middles).query(middles, k=min(_NEIGHBOURS, len(thin)), distance_upper_bound=reach)
+    neighbours = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
+    gaps, near = KDTree(middles).query(middles, k=min(neighbours, len(thin)), distance_upper_bound=reach)
     gaps, near = gaps.reshape(len(thin), -1), near.reshape(len(thin), -1)
     one, two = np.nonzero(np.isfinite(gaps))[0], near[np.isfinite(gaps)]
     labels = joined_groups(np.stack([one, two]), len(thin))

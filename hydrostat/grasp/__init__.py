@@ -6,10 +6,9 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.grasp.pull_out import PullCase, PullOptions, PullOut, pull_bands, pull_out
-    from hydrostat.grasp.thing import FORMS, moved_thing, place_thing, read_thing
+    from hydrostat.grasp.thing import moved_thing, place_thing, read_thing
 
 __all__ = [
-    "FORMS",
     "PullCase",
     "PullOptions",
     "PullOut",

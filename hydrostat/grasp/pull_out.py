@@ -185,15 +185,17 @@ def _find_settled(simulation: Simulation, contractions: Contractions, pose: Equi
     Masses tell what a balance of forces alone leaves open: which way a thing slips that could slip either way.
     """
     motion = simulation.motion_at_rest(pose)
-    for _ in range(_STEPS):
+    # Steps in time [s] in search of rest, the most of them, and what counts as rest [m/s]
+    step, steps, slow = 0.01, 150, 1e-3
+    for _ in range(steps):
         try:
-            motion = simulation.step(motion, contractions, _STEP, options=StepOptions(scheme="euler"))
+            motion = simulation.step(motion, contractions, step, options=StepOptions(scheme="euler"))
         except NotConvergedError:
             return None
         fastest = float(np.abs(motion.velocities).max())
         if motion.carried is not None:
             fastest = max(fastest, float(np.abs(motion.carried[1]).max()))
-        if fastest < _SLOW:
+        if fastest < slow:
             still = simulation.solve(contractions, start=motion.pose, strict=False)
             return still if still.result.converged else motion.pose
     return None
@@ -202,10 +204,6 @@ def _find_settled(simulation: Simulation, contractions: Contractions, pose: Equi
 def _size(thing: Obstacle) -> float:
     """Approximate size of an object [m]."""
     return float(np.sqrt(12 * thing.second_moments().max()))
-
-
-_STEP, _STEPS, _SLOW = 0.01, 150, 1e-3
-"""Steps in time [s] in search of rest, the most of them, and what counts as rest [m/s]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

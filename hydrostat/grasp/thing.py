@@ -81,7 +81,9 @@ def place_thing(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
     """
     mesh, room = robot.body.mesh, 2.0 * robot.contact_distance
     skin, place = mesh.nodes[np.unique(mesh.boundary)], closed.mean(axis=0)
-    for _ in range(_TRIALS):
+    trials = 400
+    some = 0.25  # Moves in search of a place, and how far each goes, as a share of what is needed
+    for _ in range(trials):
         tried = moved_thing(thing, place)
         found = tried.field()(skin)
         lacks = np.maximum(room - found.values, 0.0)
@@ -91,10 +93,5 @@ def place_thing(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
         way = -(lacks[:, None] * found.normals).sum(axis=0)
         if inside or not way.any():
             way = place - mesh.nodes.mean(axis=0)
-        place = place + (lacks.max() * _SOME + 0.1 * room) * way / max(float(np.linalg.norm(way)), 1e-12)
+        place = place + (lacks.max() * some + 0.1 * room) * way / max(float(np.linalg.norm(way)), 1e-12)
     raise InputError("no place for the thing was found near the markers of the pose; say where by --at")
-
-
-_TRIALS = 400
-_SOME = 0.25
-"""Moves in search of a place, and how far each goes, as a share of what is needed."""

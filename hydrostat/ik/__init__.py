@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.ik.linearized_pose import LinearizedPose, unconstrained_motion
     from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, begin_robot, new_robot
     from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
-    from hydrostat.ik.objectives.effort import Effort, EffortKind
+    from hydrostat.ik.objectives.effort import Effort
     from hydrostat.ik.objectives.marker_target import MarkerTarget, PointTarget, named_targets
     from hydrostat.ik.objectives.objective import (
         EquilibriumState,
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
         state_at,
         state_jacobian_at,
     )
-    from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
+    from hydrostat.ik.objectives.pose_regularizer import PoseRegularizer
     from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
     from hydrostat.ik.reach import FoundReach, find_reach, reach_extent, usable_spans
     from hydrostat.ik.search.linear_model import least_squares
     from hydrostat.ik.search.problem import IKOptions
     from hydrostat.ik.solve_ik import Targets, solve_ik
     from hydrostat.ik.tracker import Tracker
-    from hydrostat.ik.trajectory.keys import Key, Keyframe
+    from hydrostat.ik.trajectory.keys import Keyframe
     from hydrostat.ik.trajectory.poses import BranchJump
     from hydrostat.ik.trajectory.solve_ik_trajectory import TrajectoryOptions, solve_ik_trajectory
     from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory
@@ -37,15 +37,12 @@ __all__ = [
     "BegunRobot",
     "BranchJump",
     "CenterOfMassTarget",
-    "ClosenessKind",
     "Effort",
-    "EffortKind",
     "EquilibriumState",
     "FoundReach",
     "IKOptions",
     "IKResult",
     "IKStatus",
-    "Key",
     "KeyPose",
     "Keyframe",
     "Limits",

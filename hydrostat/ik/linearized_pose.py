@@ -68,10 +68,10 @@ def unconstrained_motion(reached: IKResult) -> str:
     )
     if not named or not far:
         return ""
-    goes = ", ".join(f"{name} by {1e3 * moved[name]:.0f} mm" for name in far[:_MOST])
-    more = f" and {len(far) - _MOST} more" if len(far) > _MOST else ""
+    most = 3
+    goes = ", ".join(f"{name} by {1e3 * moved[name]:.0f} mm" for name in far[:most])
+    more = f" and {len(far) - most} more" if len(far) > most else ""
     return f"free markers move: {goes}{more}. Give them targets at rest to hold them"
 
 
 _FAR = 0.1  # of the size of the body
-_MOST = 3

@@ -24,7 +24,6 @@ from hydrostat.robot import (
 )
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
-LONGEST = 20.0  # nothing of a robot is longer [m]
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
 
@@ -42,12 +41,13 @@ class NewRobotWish:
     inner: Inner | str | None = None  # shapes in a drawn body: holes, or lines drawn on it
 
     def __post_init__(self) -> None:
+        longest = 20.0  # nothing of a robot is longer [m]
         for key in ("size", "element_size", "thickness", "inflate"):
             value = getattr(self, key)
             if value is not None:
                 check_number(key, value, "m")
-                if value > LONGEST:
-                    raise InputError(f"{key} must be at most {LONGEST:g} m, not {value:g}; in metres: 200 mm is 0.2")
+                if value > longest:
+                    raise InputError(f"{key} must be at most {longest:g} m, not {value:g}; in metres: 200 mm is 0.2")
         check_type(self.nodes, (int, type(None)), "nodes must be a whole number")
         check_type(self.material, (str, type(None)), "material must be a name of the table")
         if self.nodes is not None and self.element_size is not None:
@@ -194,16 +194,13 @@ def _add_first_pose(begun: BegunRobot) -> BegunRobot:
     mesh = begun.robot.body.mesh
     if mesh.dim == 2:
         return begun
-    if len(mesh.nodes) > MOST_POSED:
+    most_posed = 10_000  # Nodes of a body from which on no first pose is looked for
+    if len(mesh.nodes) > most_posed:
         note = f"no first pose was looked for, as {len(mesh.nodes)} nodes take long: hydrostat pose finds yours"
         return replace(begun, notes=(*begun.notes, note))
     from hydrostat.ik.first_pose import with_first_pose  # Imported here: most new robots are not posed.
 
     return replace(begun, robot=with_first_pose(begun.robot))
-
-
-MOST_POSED = 10_000
-"""Nodes of a body from which on no first pose is looked for."""
 
 
 def _robot_name(path: Path, wish: NewRobotWish) -> str:

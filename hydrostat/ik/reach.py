@@ -134,11 +134,14 @@ def _limits(robot: Robot) -> tuple[Vector, Vector]:
 
 def _tiles(winches: int, count: int) -> tuple[Float[np.ndarray, "poses winches"], float]:
     """Sample points in the ranges of all winches, and half the width of each point's tile, as shares of these."""
-    if winches > _TILED:
+    tiled = 3  # the ranges of so many winches are tiled evenly; of more, places in them are drawn
+    # then each stands for what is so near on either side, as a share of the range: rather too little
+    near = 0.1
+    if winches > tiled:
         from scipy.stats import qmc
 
         drawn = qmc.Sobol(winches, rng=SEED).random_base2(max(ceil(log2(count)), 1))[:count]
-        return drawn, _NEAR
+        return drawn, near
     steps = max(round(count ** (1.0 / winches)), 1)
     middles = (np.arange(steps) + 0.5) / steps
     return np.array(list(product(middles, repeat=winches))), 0.5 / steps
@@ -171,11 +174,12 @@ def _reach(
 
 def _ways(dim: int) -> Float[np.ndarray, "ways dim"]:
     """Directions all around."""
+    around = 32  # directions in the plane, and half as many as in space
     if dim == 2:
-        angles = 2 * np.pi * np.arange(_AROUND) / _AROUND
+        angles = 2 * np.pi * np.arange(around) / around
         return np.column_stack([np.cos(angles), np.sin(angles)])
-    heights = (np.arange(2 * _AROUND) + 0.5) / _AROUND - 1.0
-    angles, radii = np.pi * (1 + 5**0.5) * np.arange(2 * _AROUND), np.sqrt(1 - heights**2)
+    heights = (np.arange(2 * around) + 0.5) / around - 1.0
+    angles, radii = np.pi * (1 + 5**0.5) * np.arange(2 * around), np.sqrt(1 - heights**2)
     return np.column_stack([radii * np.cos(angles), radii * np.sin(angles), heights])
 
 
@@ -205,7 +209,4 @@ def _covered_volume(cells: Float[np.ndarray, "poses corners dim"]) -> float:
 
 
 SEED = 8
-_TILED = 3  # the ranges of so many winches are tiled evenly; of more, places in them are drawn
-_NEAR = 0.1  # then each stands for what is so near on either side, as a share of the range: rather too little
-_AROUND = 32  # directions in the plane, and half as many as in space
 _POINTS = 20_000  # by which a volume is measured: to some per cent

@@ -17,9 +17,8 @@ from hydrostat.ik.objectives.marker_target import MarkerTarget, named_targets
 from hydrostat.ik.objectives.objective import Objective, checked_objectives
 from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
 from hydrostat.ik.search.descend import descend, least_effort
-from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_pose
+from hydrostat.ik.search.inverse_search import Descent, InverseSearch, SearchBudget, SearchProgress, reached_pose
 from hydrostat.ik.search.problem import IKOptions, InverseProblem, InverseState
-from hydrostat.ik.search.search_budget import SearchBudget, SearchProgress
 from hydrostat.mechanics import Reason
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import (
@@ -47,7 +46,8 @@ def anchor_untargeted_markers(
     rows = len(found.state.residual)
     if not problem.options.hold_free_markers or not names or found.state.error <= _MISSED * size:
         return search, found
-    for _ in range(_ROUNDS):
+    rounds = 3
+    for _ in range(rounds):
         if search.patience.over:
             break
         missed = float(np.linalg.norm(found.state.residual[:rows]))
@@ -67,7 +67,6 @@ def anchor_untargeted_markers(
 
 
 _MISSED = 1e-3  # missed by more than this, in sizes of the body, a target is out of reach
-_ROUNDS = 3
 
 
 Targets = PoseTarget | Mapping[str, Sequence[float] | Vector]  # where markers should go [m]: a pose, or points by name
@@ -143,8 +142,10 @@ def solve_ik(
         if given.rate is None and (start is not None or problem.options.restarts):
             begun, aside = begun if start is None else search.begin(None), begun
     found = _best(search, seek(search, begun), seek)
+    # The answer does not depend on where it begins, unless squares are less than this share from there
+    plainly = 0.98
     if aside is not None and found.reason not in _ENDS:  # none is worse than where it began, or than a plain descent
-        found = _better(search, found, descend(search, aside), share=_PLAINLY)
+        found = _better(search, found, descend(search, aside), share=plainly)
     search, found = anchor_untargeted_markers(search, found, target, start)
     reached = reached_pose(search, found, target)
     if not simulation.assembly.has_history:
@@ -220,13 +221,6 @@ def _better(search: InverseSearch, found: Descent, other: Descent, *, share: flo
     return other if less or (other.allowed and not found.allowed) else found
 
 
-_PLAINLY = 0.98
-"""The answer does not depend on where it begins, unless squares are less than this share from there."""
-
-
-SEED = 0
-
-
 def restarts(search: InverseSearch, best: Callable[[], InverseState]) -> Iterator[InverseState]:
     """States to restart from: poses reached directly from rest by other contractions.
 
@@ -239,7 +233,8 @@ def restarts(search: InverseSearch, best: Callable[[], InverseState]) -> Iterato
     found = search.jump(state.values)
     if found is not None and not _same(found, state):
         yield found
-    draw = np.random.default_rng(SEED)
+    seed = 0
+    draw = np.random.default_rng(seed)
     failures = 0
     for number in count():
         found = search.jump(_contractions(search, best(), number, draw))
@@ -258,12 +253,14 @@ def _contractions(search: InverseSearch, state: InverseState, number: int, draw:
     kind, turn = number % 3, number // 3
     values = state.values.copy()
     span = bounds.span[moved]
+    # distance of contractions near the best ones: a share of the range, in the root of the mean square
+    near = 0.03
     if kind == 0:
         values[moved] = np.clip(0.0, bounds.low, bounds.high)[moved]
         alone = moved[turn % len(moved)]
         values[alone] = bounds.high[alone] * 2.0 ** -(turn // len(moved))
     elif kind == 1:
-        values[moved] += _NEAR * span * draw.standard_normal(len(moved))
+        values[moved] += near * span * draw.standard_normal(len(moved))
     else:
         values[moved] = bounds.low[moved] + span * draw.uniform(size=len(moved))
     return np.clip(values, bounds.low, bounds.high)
@@ -274,15 +271,14 @@ def _channels_of_misses(search: InverseSearch, state: InverseState) -> np.ndarra
     slopes = search.problem.jacobian(state) ** 2
     missed = state.residual**2 / max(float(np.max(state.residual**2, initial=0.0)), np.finfo(float).tiny)
     share = (missed @ slopes) / np.maximum(slopes.sum(axis=0), np.finfo(float).tiny)
-    return share >= _CONCERNED * share.max(initial=0.0)
+    concerned = 0.3  # channels that act on what is missed at least this well, beside the one that does so best
+    return share >= concerned * share.max(initial=0.0)
 
 
 def _same(first: InverseState, second: InverseState) -> bool:
     nodes = second.result.nodes
-    return bool(np.abs(first.result.nodes - nodes).max() < _APART * np.ptp(nodes, axis=0).max())
+    apart = 1e-6  # poses that differ by less, in sizes of the body, are one
+    return bool(np.abs(first.result.nodes - nodes).max() < apart * np.ptp(nodes, axis=0).max())
 
 
 _FAILURES = 6  # jumps that lead to no pose, after which there are no more
-_NEAR = 0.03  # distance of contractions near the best ones: a share of the range, in the root of the mean square
-_CONCERNED = 0.3  # channels that act on what is missed at least this well, beside the one that does so best
-_APART = 1e-6  # poses that differ by less, in sizes of the body, are one

@@ -191,7 +191,8 @@ class Tracker:
         problem, largest = search.problem, self._options.largest_step
         least = self._options.progress * problem.objective(state, weight)
         first, found = self._radius, False
-        for _ in range(_TRIES):
+        tries = 3  # Steps tried in one update before the robot stays where it is
+        for _ in range(tries):
             step = problem.step(state, weight, self._radius)
             if ends(problem, state, step, least, first):
                 self._radius = largest
@@ -226,8 +227,6 @@ _WORTH = 0.5
 _SMALLEST = 1e-4
 """Steps do not become shorter than this share of a range; a target that moves on asks for longer ones again."""
 
-_TRIES = 3
-"""Steps tried in one update before the robot stays where it is."""
 
 _RULES = StepRules(excess_share=1.0, far=1e-3)
 """When an update takes a step; what exceeds a limit, the next one reduces."""

@@ -6,10 +6,10 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.learning.certify import exact_steps, solve_exactly, verify
-    from hydrostat.learning.export import EXPORTS, check_export, export_samples
+    from hydrostat.learning.export import check_export, export_samples
     from hydrostat.learning.learn_model import correct_model, learn_model
     from hydrostat.learning.learn_options import LearnOptions
-    from hydrostat.learning.learned_model import LearnedModel, LearnedPose, Tier
+    from hydrostat.learning.learned_model import LearnedModel, LearnedPose
     from hydrostat.learning.model_card import ModelCard
     from hydrostat.learning.model_file import load_model, save_model
     from hydrostat.learning.perceptrons import Perceptrons
@@ -23,15 +23,13 @@ if TYPE_CHECKING:
         plan_samples,
         shared_numbers,
     )
-    from hydrostat.learning.sample_robot import BACKENDS, sample_robot
+    from hydrostat.learning.sample_robot import sample_robot
     from hydrostat.learning.sample_shard import sample_shard
-    from hydrostat.learning.samples import SampleFolder, Samples, read_samples
+    from hydrostat.learning.samples import Samples, read_samples
     from hydrostat.learning.train import answer, tensors_of, train_forward
     from hydrostat.learning.training_set import LEAST, TrainingSet, linear_map, make_training_set
 
 __all__ = [
-    "BACKENDS",
-    "EXPORTS",
     "LEAST",
     "LearnOptions",
     "LearnedModel",
@@ -39,11 +37,9 @@ __all__ = [
     "ModelCard",
     "Perceptrons",
     "PortablePolicy",
-    "SampleFolder",
     "SamplePlan",
     "Samples",
     "SamplingScheme",
-    "Tier",
     "TrainingSet",
     "answer",
     "antagonists",

@@ -46,7 +46,7 @@ def verify(
         pose = simulation.solve(answer.contractions, strict=False)
     pose, taken = exact_steps(simulation, pose, answer.target, steps, enough=enough)
     found = model.evaluate(answer.target, pose.contractions, Tier.STEP if taken else answer.tier)
-    certified = _missed(answer, pose) if pose.result.converged else None
+    certified = _target_distances(answer, pose) if pose.result.converged else None
     return replace(found, certified=certified, reason=pose.result.reason, pose=pose)
 
 
@@ -72,7 +72,8 @@ def exact_steps(
         return pose, 0
     goals = dict(named_targets(target)) if not isinstance(target, PoseTarget) else target.targets
     tracker, taken, tried = Tracker(simulation, start=pose), 0, 0
-    while taken < steps and tried < _TRIES and _mean_error(pose, goals) > enough:
+    tries = 3  # So many updates in a row may find nothing better; each tries shorter steps than the one before
+    while taken < steps and tried < tries and _mean_error(pose, goals) > enough:
         reached = tracker.update(target, seconds=1.0)
         moved = not np.array_equal(reached.pose.contractions, pose.contractions)
         pose, taken, tried = reached.pose, taken + moved, 0 if moved else tried + 1
@@ -111,7 +112,7 @@ def solve_exactly(
     begun = start.pose if start.certified is not None else None
     reached = solve_ik(simulation, answer.target, limits=limits, start=begun, options=options)
     found = model.evaluate(answer.target, reached.pose.contractions, Tier.EXACT)
-    return replace(found, certified=_missed(answer, reached.pose), reason=reached.status, pose=reached.pose)
+    return replace(found, certified=_target_distances(answer, reached.pose), reason=reached.status, pose=reached.pose)
 
 
 def _same(one: Robot, other: Robot) -> bool:
@@ -124,10 +125,6 @@ def _residual(answer: LearnedPose, pose: Equilibrium) -> np.ndarray:
     return np.array([pose.markers[name] - np.asarray(point) for name, point in answer.target.targets.items()])
 
 
-def _missed(answer: LearnedPose, pose: Equilibrium) -> dict[str, float]:
+def _target_distances(answer: LearnedPose, pose: Equilibrium) -> dict[str, float]:
     distances = np.linalg.norm(_residual(answer, pose), axis=1).tolist()
     return dict(zip(answer.target.targets, distances, strict=True))
-
-
-_TRIES = 3
-"""So many updates in a row may find nothing better; each tries shorter steps than the one before."""

@@ -10,6 +10,7 @@ import numpy as np
 from hydrostat.errors import InputError
 from hydrostat.learning.sample_shard import REASONS
 from hydrostat.learning.samples import read_rows
+from hydrostat.version import install_command
 
 
 def export_samples(folder: Path, out: Path) -> Path:
@@ -30,7 +31,7 @@ def export_samples(folder: Path, out: Path) -> Path:
         write(part, facts, rows)
         part.rename(out)
     except ImportError as error:
-        raise InputError(f"{out}: needs {error.name}; install hydrostat[cluster]") from None
+        raise InputError(f"{out}: package {error.name} not found. Install it: {install_command('cluster')}") from None
     except OSError as error:
         raise InputError(f"{out}: cannot be written ({error.strerror})") from None
     return out
@@ -47,7 +48,7 @@ def check_export(out: Path) -> None:
     if out.exists():
         raise InputError(f"{out}: is there already; name another")
     if find_spec(_NEEDS[out.suffix]) is None:
-        raise InputError(f"{out}: needs {_NEEDS[out.suffix]}; install hydrostat[cluster]")
+        raise InputError(f"{out}: package {_NEEDS[out.suffix]} not found. Install it: {install_command('cluster')}")
 
 
 def _parquet(path: Path, facts: Mapping[str, Any], rows: np.ndarray) -> None:

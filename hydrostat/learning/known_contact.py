@@ -47,8 +47,9 @@ def check_contact(known: KnownContact, robot: Robot) -> None:
     if known.contact != mine.contact:
         have, lack = ("the model", "the robot") if known.contact else ("the robot", "the model")
         raise InputError(f"{have} knows contact and {lack} does not: give both or none [contact]")
+    same = 1e-6  # A relative difference below this is rounding, as between meshes of two machines
     if known.contact and not all(
-        isclose(*pair, rel_tol=_SAME) for pair in zip(_numbers(known), _numbers(mine), strict=True)
+        isclose(*pair, rel_tol=same) for pair in zip(_numbers(known), _numbers(mine), strict=True)
     ):
         raise InputError(
             f"the model knows {_words(known)}, the robot has {_words(mine)}: give [contact] the same, or sample and "
@@ -64,7 +65,3 @@ def _numbers(known: KnownContact) -> tuple[float, float]:
 def _words(known: KnownContact) -> str:
     distance, friction = _numbers(known)
     return f"contact from {1e3 * distance:.4g} mm with friction {friction:g}"
-
-
-_SAME = 1e-6
-"""A relative difference below this is rounding, as between meshes of two machines."""

@@ -48,7 +48,8 @@ def learn_model(
             raise KeyboardInterrupt
         raise InputError("the networks learned nothing: try a smaller rate")
     inverse = None if forward.stopped else train_inverse(training_set, dim, forward.networks, options, told, pairs)
-    some = np.linspace(0, len(samples) - 1, min(len(samples), KNOWN)).astype(int)
+    known = 2000  # So many samples a model keeps, to begin a search from
+    some = np.linspace(0, len(samples) - 1, min(len(samples), known)).astype(int)
     card = ModelCard(
         **kept,
         version=version("hydrostat"),
@@ -56,7 +57,7 @@ def learn_model(
         lost=samples.lost,
         error=length * forward.error,
         inverse_error=None if inverse is None or not np.isfinite(inverse.error) else length * inverse.error,
-        displacement=float(_moved(samples.markers).mean()),
+        displacement=float(_marker_distances(samples.markers).mean()),
         stopped=forward.stopped or (inverse is not None and inverse.stopped),
         options=asdict(options),
         seconds=time.process_time() - began,
@@ -86,13 +87,9 @@ def kept_facts(samples: Samples) -> dict[str, Any]:
     }
 
 
-def _moved(markers: np.ndarray) -> np.ndarray:
+def _marker_distances(markers: np.ndarray) -> np.ndarray:
     """Return the distances of markers from their mean."""
     return np.linalg.norm(markers - markers.mean(axis=0), axis=-1)
-
-
-KNOWN = 2000
-"""So many samples a model keeps, to begin a search from."""
 
 
 def correct_model(
@@ -121,7 +118,8 @@ def correct_model(
             raise InputError(f"the samples are of a robot with other {name} than the model's")
     if not all(np.allclose(one, other) for one, other in zip(samples.limits, (model.low, model.high), strict=True)):
         raise InputError("the samples are of a robot whose winches have another travel than the model's")
-    options = replace(options or LearnOptions(steps=_STEPS, rate=_RATE), members=len(model.forward))
+    steps, rate = 6000, 6e-3  # Default number of steps and learning rate of a correction
+    options = replace(options or LearnOptions(steps=steps, rate=rate), members=len(model.forward))
     began, training_set = time.process_time(), make_training_set(samples, model)
     trained = train_forward(training_set, model.card.dim, options, progress or no_progress, start=model.forward)
     if not np.isfinite(trained.error):
@@ -137,7 +135,3 @@ def correct_model(
         seconds=model.card.seconds + time.process_time() - began,
     )
     return replace(model, card=card, forward=trained.networks)
-
-
-_STEPS, _RATE = 6000, 6e-3
-"""Default number of steps and learning rate of a correction."""

@@ -129,11 +129,11 @@ class LearnedModel:
 
     def predict(self, contractions: Vector) -> tuple[Vector, Vector]:
         """Predict coordinates of the markers [m], then tensions [N], at contractions [m]; and their spread."""
-        return self._expected(self._winches(contractions))
+        return self._predict_pose(self._winches(contractions))
 
     def slopes(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
         """Predict the displacements of the markers for contractions of the winches."""
-        _, slopes = self.forward.slopes(self._scaled(self._winches(contractions)))
+        _, slopes = self.forward.slopes(self._scale_inputs(self._winches(contractions)))
         return (self.unit[:, None] * slopes / self._half)[: self.card.coordinates]
 
     def predict_inverse(self, markers: Vector) -> Vector:
@@ -170,7 +170,7 @@ class LearnedModel:
 
     def evaluate(self, target: PoseTarget, contractions: Vector, tier: Tier) -> LearnedPose:
         """An answer, with what the networks say of it."""
-        expected, spread = self._expected(contractions)
+        expected, spread = self._predict_pose(contractions)
         names, dim, count = self.card.markers, self.card.dim, self.card.coordinates
         places = expected[:count].reshape(-1, dim)
         found, doubted, goals = places.tolist(), spread[:count].reshape(-1, dim).tolist(), target.targets
@@ -191,10 +191,10 @@ class LearnedModel:
             raise InputError("the model has no inverse network: its learning was stopped before")
         count = self.card.coordinates
         raw, _ = self.inverse.average_members((markers - self.middle[:count]) / self.unit[:count])
-        return self._held(self._contractions(_BEYOND * np.tanh(raw)))
+        return self._apply_pairs(self._contractions(_BEYOND * np.tanh(raw)))
 
-    def _expected(self, contractions: Vector) -> tuple[Vector, Vector]:
-        mean, spread = self.forward.average_members(self._scaled(contractions))
+    def _predict_pose(self, contractions: Vector) -> tuple[Vector, Vector]:
+        mean, spread = self.forward.average_members(self._scale_inputs(contractions))
         return self.middle + self.unit * mean, self.unit * spread
 
     def _search(self, goal: Vector, asked: np.ndarray) -> Vector:
@@ -204,18 +204,19 @@ class LearnedModel:
         weights[:count] = asked * self.unit[:count]  # what is left is then in metres
         wanted = np.zeros(len(self.unit))
         wanted[:count] = (goal - self.middle[:count]) / self.unit[:count]
-        enough = asked.sum() / self.card.dim * (_USUAL * self.card.error) ** 2
+        usual = 3.0  # Ratio of a target's error to the mean error of the networks, above which it is unusual
+        enough = asked.sum() / self.card.dim * (usual * self.card.error) ** 2
         starts = [] if self.inverse is None else [self._apply_inverse(goal)]
         best, least = np.zeros(len(self.low)), np.inf
         for start in [*starts, *self._nearest(goal, asked, _STARTS)[0]]:
-            found, left = self.forward.descend(self._scaled(start), wanted, weights, self._box(start))
+            found, left = self.forward.descend(self._scale_inputs(start), wanted, weights, self._box(start))
             if left < least:
                 best, least = found, left
             if least <= enough:
                 break
         return self._contractions(best)
 
-    def _held(self, contractions: Vector) -> Vector:
+    def _apply_pairs(self, contractions: Vector) -> Vector:
         """Apply the pairs of the samples: of two winches only one takes in, by the difference of both."""
         one, other = self._pairs
         if not len(one):
@@ -231,7 +232,7 @@ class LearnedModel:
         if not len(one):
             return None
         low, high = np.full(len(self.low), -1.0), np.ones(len(self.low))
-        rest = self._scaled(np.zeros(len(self.low)))
+        rest = self._scale_inputs(np.zeros(len(self.low)))
         both = np.r_[one, other]
         low[both] = rest[both]
         idle = np.where(start[one] > start[other], other, one)
@@ -269,7 +270,7 @@ class LearnedModel:
             raise InputError(f"contractions must be {len(self.low)} finite numbers [m]")
         return given
 
-    def _scaled(self, contractions: Vector) -> Vector:
+    def _scale_inputs(self, contractions: Vector) -> Vector:
         return (contractions - self._centre) / self._half
 
     def _contractions(self, scaled: Vector) -> Vector:
@@ -312,6 +313,3 @@ _BEYOND = 1.02
 
 _STARTS = 3
 """Samples that a search begins from where the inverse network's answer is not near enough."""
-
-_USUAL = 3.0
-"""Ratio of a target's error to the mean error of the networks, above which it is unusual."""

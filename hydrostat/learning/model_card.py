@@ -85,7 +85,7 @@ class ModelCard:
 
     def as_json(self) -> dict[str, Any]:
         """Return the facts by key, for the file."""
-        return {name: _listed(value) for name, value in asdict(self).items() if value is not None or name in _NULL}
+        return {name: _as_lists(value) for name, value in asdict(self).items() if value is not None or name in _NULL}
 
     @property
     def coordinates(self) -> int:
@@ -98,9 +98,9 @@ class ModelCard:
         return KnownContact(self.contact, self.contact_distance, self.contact_friction)
 
 
-def _listed(value: Any) -> Any:
+def _as_lists(value: Any) -> Any:
     """Return tuples as lists, all the way down."""
-    return [_listed(one) for one in value] if isinstance(value, tuple) else value
+    return [_as_lists(one) for one in value] if isinstance(value, tuple) else value
 
 
 def _parse(name: str, value: Any) -> Any:

@@ -38,9 +38,10 @@ class Perceptrons:
     def of(cls, arrays: Mapping[str, np.ndarray], name: str, inputs: int, outputs: int) -> Self:
         """Networks of arrays NAME.sizes and NAME.numbers (ValueError: they have not these inputs and outputs)."""
         sizes, numbers = arrays[f"{name}.sizes"], arrays[f"{name}.numbers"]
-        if not 2 <= len(sizes) <= _LAYERS or sizes[0] != inputs or sizes[-1] != outputs:
+        layers, widest = 64, 100_000  # Most layers, and most units in one, of networks of a file
+        if not 2 <= len(sizes) <= layers or sizes[0] != inputs or sizes[-1] != outputs:
             raise ValueError(f"the {name} network fits no such robot")
-        if ((sizes < 1) | (sizes > _WIDEST)).any() or not len(numbers) or numbers.shape[1] != cls.count(sizes):
+        if ((sizes < 1) | (sizes > widest)).any() or not len(numbers) or numbers.shape[1] != cls.count(sizes):
             raise ValueError(f"the {name} network has wrong sizes")
         return cls(sizes=sizes, numbers=numbers)
 
@@ -93,17 +94,9 @@ class Perceptrons:
         low, high = box or (np.full(len(start), -1.0), np.ones(len(start)))
         point = np.clip(start, low, high)
         given = [np.ascontiguousarray(array, dtype=float) for array in (goal, weights, low, high)]
-        left = native.network_descent(self.sizes, self.numbers[:1], point, *given, _ROUNDS)
+        rounds = 30  # Most steps of a descent on one network
+        left = native.network_descent(self.sizes, self.numbers[:1], point, *given, rounds)
+        last_rounds = 5  # Most steps of all networks together, from where the first one led
         if len(self) > 1:
-            left = native.network_descent(self.sizes, self.numbers, point, *given, _LAST_ROUNDS)
+            left = native.network_descent(self.sizes, self.numbers, point, *given, last_rounds)
         return point, left
-
-
-_ROUNDS = 30
-"""Most steps of a descent on one network."""
-
-_LAST_ROUNDS = 5
-"""Most steps of all networks together, from where the first one led."""
-
-_LAYERS, _WIDEST = 64, 100_000
-"""Most layers, and most units in one, of networks of a file."""

@@ -8,7 +8,6 @@ from math import ceil, isfinite
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.stats.qmc import Sobol
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
@@ -72,8 +71,9 @@ def antagonists(moves: Float[np.ndarray, "winches coordinates"]) -> tuple[tuple[
     np.fill_diagonal(cosines, 1.0)
     partner: Int[np.ndarray, " winches"] = np.argmin(cosines, axis=1)
     groups: list[tuple[int, ...]] = []
+    opposite = -0.3  # Cosine of the ways of markers below which two winches work against one another
     for winch, other in enumerate(partner):
-        paired = partner[other] == winch and cosines[winch, other] < _OPPOSITE
+        paired = partner[other] == winch and cosines[winch, other] < opposite
         if not paired:
             groups.append((winch,))
         elif winch < other:
@@ -93,10 +93,6 @@ def _against(points: Points, high: Vector, pairs: Winches) -> Rows:
         rows[:, one] = np.maximum(2 * value - 1, 0) * high[one]
         rows[:, other] = np.maximum(1 - 2 * value, 0) * high[other]
     return rows
-
-
-_OPPOSITE = -0.3
-"""Cosine of the ways of markers below which two winches work against one another."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -167,6 +163,8 @@ class SamplePlan:
 
     def _points(self, place: int, first: int, count: int) -> Float[np.ndarray, "samples dims"]:
         """Some scrambled Sobol points of one of the draws."""
+        from scipy.stats.qmc import Sobol  # a fifth of the start of the studio's workers, which draw no samples
+
         size = dimensions(self.draws[place], self.pairs, len(self.robot.winches))
         random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([self.seed, place])))
         points = Sobol(size, scramble=True, rng=random)
@@ -235,7 +233,8 @@ def plan_samples(
         return plan
     simulation, winches = Simulation(robot), len(robot.winches)
     travel = np.array([winch.travel for winch in robot.winches])
-    rows = np.vstack([np.zeros(winches), _LITTLE * np.diag(travel)])
+    little = 0.2  # Share of its travel by which each winch shows where it moves the markers
+    rows = np.vstack([np.zeros(winches), little * np.diag(travel)])
     markers = simulation.solve_batch(rows, jacobians=False, threads=1).markers.reshape(winches + 1, -1)
     return replace(plan, pairs=antagonists(np.nan_to_num(markers[1:] - markers[0])))
 
@@ -245,7 +244,3 @@ def physics_hash(robot: Robot) -> str:
     bare = replace(robot, name="robot", poses={}, contact=None)
     made = b"" if robot.body.content else robot.body.mesh.nodes.tobytes() + robot.body.mesh.elements.tobytes()
     return hashlib.sha256(robot_hash(bare).encode() + made).hexdigest()
-
-
-_LITTLE = 0.2
-"""Share of its travel by which each winch shows where it moves the markers."""

@@ -14,6 +14,7 @@ from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import sample_shard
 from hydrostat.learning.samples import SampleFolder
 from hydrostat.progress import Progress
+from hydrostat.version import install_command
 
 Sampled = tuple[int, np.ndarray]
 
@@ -91,7 +92,7 @@ def _by_joblib(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampl
     with parallel_config(backend="loky", n_jobs=jobs, inner_max_num_threads=1):
         options: dict[str, Any] = {"batch_size": 1, "initializer": end_with, "initargs": (os.getpid(),)}
         work = Parallel(return_as="generator_unordered", **options)
-        yield from cast(Iterator[Sampled], work(delayed(_numbered)(plan, shard) for shard in shards))
+        yield from cast(Iterator[Sampled], work(delayed(_sample_numbered)(plan, shard) for shard in shards))
 
 
 def _by_ray(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampled]:
@@ -104,13 +105,15 @@ def _by_ray(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampled]
     try:
         import ray  # pyright: ignore[reportMissingImports]
     except ImportError:
-        raise InputError("ray is not installed; install hydrostat[cluster]") from None
+        raise InputError(f"package ray not found. Install it: {install_command('cluster')}") from None
     if not ray.is_initialized():
         here = "RAY_ADDRESS" not in os.environ
         ray.init(num_cpus=(os.cpu_count() if jobs < 0 else jobs) if here else None, log_to_driver=False)
-    work = ray.remote(num_cpus=1, max_retries=_RETRIES)(_numbered)
+    retries = 5  # So often Ray gives a file to another worker
+    work = ray.remote(num_cpus=1, max_retries=retries)(_sample_numbered)
     shared, waiting, running = ray.put(plan), list(reversed(shards)), []
-    most = _AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
+    ahead = 2  # Files for each worker that Ray knows of at a time
+    most = ahead * max(1, int(ray.cluster_resources().get("CPU", 1)))
     try:
         while waiting or running:
             while waiting and len(running) < most:
@@ -122,7 +125,7 @@ def _by_ray(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampled]
             ray.cancel(task, force=True)
 
 
-def _numbered(plan: SamplePlan, shard: int) -> Sampled:
+def _sample_numbered(plan: SamplePlan, shard: int) -> Sampled:
     return shard, sample_shard(plan, shard)
 
 
@@ -142,9 +145,3 @@ _BY = {"loky": _by_joblib, "ray": _by_ray}
 
 BACKENDS = tuple(_BY)
 """Ways to work in many processes: of this machine, or of a Ray cluster."""
-
-_RETRIES = 5
-"""So often Ray gives a file to another worker."""
-
-_AHEAD = 2
-"""Files for each worker that Ray knows of at a time."""

@@ -98,7 +98,8 @@ def _within(simulation: Simulation, contractions: Vector, tension: float | None)
     pose = simulation.solve(contractions, strict=False)
     if tension is None:
         return pose
-    for _ in range(_TRIALS):
+    trials = 12  # So often a sample is let out
+    for _ in range(trials):
         most = float(pose.tensions.max(initial=0.0))
         if pose.result.converged and most <= tension:
             break
@@ -125,8 +126,6 @@ def _crosses(simulation: Simulation, pose: Equilibrium) -> bool:
 _KEPT: dict[str, Simulation] = {}
 """Physics of the robot that this process samples."""
 
-_TRIALS = 12
-"""So often a sample is let out."""
 
 _CAUTION = 0.97
 """Tensions grow faster than contractions, so it is let out a little less than in proportion to what is too much."""

@@ -131,8 +131,9 @@ def read_manifest(path: str | Path) -> dict[str, Any]:
         InputError: there is none, or it is not one of ours.
     """
     file = path_of(path, "samples are read from their folder, by a path") / MANIFEST
+    most_text = 10_000_000  # No manifest is longer [bytes]
     try:
-        text = read_stranger(file, most=_MOST_TEXT)
+        text = read_stranger(file, most=most_text)
     except InputError as error:
         raise InputError(f"{error}; name a folder that hydrostat sample has written") from None
     try:
@@ -158,10 +159,6 @@ def _write_whole(path: Path, content: bytes) -> None:
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
-
-
-_MOST_TEXT = 10_000_000
-"""No manifest is longer [bytes]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -241,9 +238,10 @@ def read_rows(folder: str | Path) -> tuple[dict[str, Any], np.ndarray]:
     if not files:
         raise InputError(f"{folder}: there are no samples yet")
     parts: list[np.ndarray] = []
+    most = 2_000_000_000  # No file of samples is larger [bytes]
     for file in files:
         try:
-            rows = np.load(BytesIO(read_stranger(file, most=_MOST)), allow_pickle=False)
+            rows = np.load(BytesIO(read_stranger(file, most=most)), allow_pickle=False)
         except (InputError, OSError, ValueError, EOFError, TokenError, SyntaxError, MemoryError, OverflowError):
             raise InputError(f"{file}: is damaged; delete it and let hydrostat sample make it again") from None
         if rows.dtype.names is None or rows.ndim != 1 or (parts and rows.dtype != parts[0].dtype):
@@ -276,7 +274,3 @@ def read_samples(folder: str | Path) -> Samples:
         nodes=rows["nodes"] if "nodes" in (rows.dtype.names or ()) else None,
         lost=lost,
     )
-
-
-_MOST = 2_000_000_000
-"""No file of samples is larger [bytes]."""

@@ -14,12 +14,13 @@ from hydrostat.learning.learned_model import span_of
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.learning.training_set import TrainingSet, linear_map
 from hydrostat.progress import Progress
+from hydrostat.version import install_command
 
 try:
     import torch  # pyright: ignore[reportMissingImports]
     from torch import Tensor  # pyright: ignore[reportMissingImports]
 except ImportError:
-    raise InputError("learning needs PyTorch. Install it: pip install 'hydrostat[learn]'") from None
+    raise InputError(f"learning needs PyTorch. Install it: {install_command('learn')}") from None
 
 Numbers = Sequence[Tensor]  # weights and biases of each layer, then S, each (members, ...)
 
@@ -101,7 +102,7 @@ def train_inverse(
     learned = torch.tensor(np.setdiff1d(np.arange(len(inputs)), aside.numpy()))[None]
     batches, members, held = _batches(learned, options.batch, draw), len(forward), _holding(training_set, pairs)
 
-    def reached(goals: Tensor, number: int) -> tuple[Tensor, Tensor, Tensor]:
+    def apply_inverse(goals: Tensor, number: int) -> tuple[Tensor, Tensor, Tensor]:
         scaled = held(BEYOND * torch.tanh(answer(numbers, goals[None], None)[0]))
         value = answer([part[number : number + 1] for part in teacher], scaled, None)[0][0]
         return value[:, : training_set.coordinates], value[:, training_set.coordinates :], scaled[0]
@@ -114,12 +115,12 @@ def train_inverse(
         with torch.no_grad():
             expected = answer([part[number : number + 1] for part in teacher], between[None], None)[0][0]
         goals = torch.cat([markers[rows], expected[:, : training_set.coordinates]])
-        found, pulls, scaled = reached(goals, number)
+        found, pulls, scaled = apply_inverse(goals, number)
         effort = torch.relu(pulls).square().sum(-1) + (1 + scaled).square().sum(-1)
         return (found - goals).square().sum(-1).mean() + options.effort * effort.mean()
 
     def error() -> Tensor:
-        found = torch.stack([reached(markers[aside], number)[0] for number in range(members)]).mean(0)
+        found = torch.stack([apply_inverse(markers[aside], number)[0] for number in range(members)]).mean(0)
         return (found - markers[aside]).unflatten(-1, (-1, dim)).norm(dim=-1).mean()[None]
 
     best, errors, stopped = _train(
@@ -138,7 +139,7 @@ def _holding(training_set: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) ->
         for part in (training_set.low, training_set.high, 0.5 * span_of(training_set.low, training_set.high))
     )
 
-    def held(scaled: Tensor) -> Tensor:
+    def apply_pairs(scaled: Tensor) -> Tensor:
         shares = (low + half * (scaled + 1.0)) / torch.where(high > 0, high, 1.0)
         more = shares[..., one] - shares[..., other]
         found = scaled.clone()
@@ -146,7 +147,7 @@ def _holding(training_set: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) ->
             found[..., places] = (taken * high[places] - low[places]) / half[places] - 1.0
         return found
 
-    return held
+    return apply_pairs
 
 
 def loss_weights(coordinates: int, outputs: int, options: LearnOptions) -> tuple[Tensor, Tensor]:
@@ -187,13 +188,13 @@ def answer(numbers: Numbers, points: Tensor, ways: Tensor | None) -> tuple[Tenso
     for layer in range(layers):
         weights, biases = numbers[2 * layer], numbers[2 * layer + 1]
         value = torch.baddbmm(biases, value, weights)
-        moved = None if moved is None else _moved(moved, weights)
+        moved = None if moved is None else _multiply_members(moved, weights)
         if layer < layers - 1:
             gate = torch.sigmoid(value)
             value = value * gate
             moved = None if moved is None else moved * (gate + value * (1.0 - gate))[:, :, None]
     value = value + torch.bmm(points, numbers[-1])
-    return value, None if moved is None or ways is None else moved + _moved(ways, numbers[-1])
+    return value, None if moved is None or ways is None else moved + _multiply_members(ways, numbers[-1])
 
 
 def tensors_of(networks: Perceptrons, kind: torch.dtype = torch.float32) -> list[Tensor]:
@@ -221,7 +222,8 @@ def _train(
     optimiser = torch.optim.Adam(numbers, lr=rate, betas=(0.9, 0.99))
     schedule = torch.optim.lr_scheduler.LambdaLR(optimiser, lambda step: _rate(step / steps))
     best, least = [part.detach().clone() for part in numbers], torch.full((len(numbers[0]),), math.inf)
-    often = max(1, steps // _LOOKS)
+    looks = 60  # So often held-out samples are looked at
+    often = max(1, steps // looks)
     try:
         for step in range(steps):
             optimiser.zero_grad(set_to_none=True)
@@ -242,7 +244,8 @@ def _train(
 
 def _rate(share: float) -> float:
     """Learning rate as a share of the largest: a short rise, then a cosine."""
-    return share / _RISE if share < _RISE else 0.5 * (1.0 + math.cos(math.pi * (share - _RISE) / (1.0 - _RISE)))
+    rise = 0.05  # Share of the steps in which the learning rate rises
+    return share / rise if share < rise else 0.5 * (1.0 + math.cos(math.pi * (share - rise) / (1.0 - rise)))
 
 
 def _begin(sizes: list[int], members: int, linear: np.ndarray, draw: torch.Generator) -> list[Tensor]:
@@ -274,7 +277,7 @@ def _batches(rows: Tensor, size: int, draw: torch.Generator) -> Iterator[Tensor]
             yield mixed[:, at : at + size]
 
 
-def _moved(ways: Tensor, weights: Tensor) -> Tensor:
+def _multiply_members(ways: Tensor, weights: Tensor) -> Tensor:
     return torch.bmm(ways.flatten(1, 2), weights).unflatten(1, ways.shape[1:3])
 
 
@@ -292,9 +295,3 @@ BEYOND = 1.02
 
 _BETWEEN = 0.5
 """Goals of the inverse network lie up to so far on the way from one sample to another."""
-
-_LOOKS = 60
-"""So often held-out samples are looked at."""
-
-_RISE = 0.05
-"""Share of the steps in which the learning rate rises."""

@@ -53,7 +53,7 @@ def make_training_set(samples: Samples, like: LearnedModel | None = None) -> Tra
     markers = samples.markers.reshape(count, -1)
     found = np.hstack([markers, samples.tensions])
     middle, coordinates = found.mean(axis=0), markers.shape[1]
-    length, force = (_spread(part) for part in np.split(found - middle, [coordinates], axis=1))
+    length, force = (_rms_scale(part) for part in np.split(found - middle, [coordinates], axis=1))
     unit = np.r_[np.full(coordinates, length), np.full(found.shape[1] - coordinates, force)]
     if like is not None:
         middle, unit = like.middle, like.unit
@@ -78,10 +78,11 @@ def make_training_set(samples: Samples, like: LearnedModel | None = None) -> Tra
 def linear_map(inputs: np.ndarray, outputs: np.ndarray) -> np.ndarray:
     """Ridge regression; the constant is the last row."""
     rows = np.hstack([inputs, np.ones((len(inputs), 1))])
-    return np.linalg.solve(rows.T @ rows + _RIDGE * len(rows) * np.eye(rows.shape[1]), rows.T @ outputs)
+    ridge = 1e-3
+    return np.linalg.solve(rows.T @ rows + ridge * len(rows) * np.eye(rows.shape[1]), rows.T @ outputs)
 
 
-def _spread(part: np.ndarray) -> float:
+def _rms_scale(part: np.ndarray) -> float:
     """Root of the mean square; 1 where there is none."""
     return float(np.sqrt(np.mean(np.square(part)))) if np.any(part) else 1.0
 
@@ -91,5 +92,3 @@ LEAST = 20
 
 FEWEST = 5
 """So many correct a model."""
-
-_RIDGE = 1e-3

@@ -10,16 +10,8 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.cable_friction import FrictionCableEnergy
     from hydrostat.mechanics.capstan import ViaPointTurns
     from hydrostat.mechanics.contact import ContactEnergy
-    from hydrostat.mechanics.energy import (
-        Compliance,
-        ContactForces,
-        Energy,
-        Law,
-        LowRankStiffness,
-        Stencils,
-        nearest_semidefinite,
-    )
-    from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
+    from hydrostat.mechanics.energy import ContactForces, Energy, LowRankStiffness, Stencils
+    from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation
     from hydrostat.mechanics.fibre import FibreEnergy
     from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
@@ -31,7 +23,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
     from hydrostat.mechanics.self_friction import SelfFrictionEnergy
     from hydrostat.mechanics.stiffness import Stiffness
-    from hydrostat.mechanics.tension_law import ChainLaw, TensionLaw
+    from hydrostat.mechanics.tension_law import TensionLaw
     from hydrostat.mechanics.viscous import MaxwellBranches, Metrics
     from hydrostat.mechanics.warp import Bend, Warp
 
@@ -45,8 +37,6 @@ __all__ = [
     "CableEnergy",
     "CableSegments",
     "CarriedWarp",
-    "ChainLaw",
-    "Compliance",
     "ContactEnergy",
     "ContactForces",
     "Energy",
@@ -55,7 +45,6 @@ __all__ = [
     "FrictionCableEnergy",
     "GuideEnergy",
     "InertiaEnergy",
-    "Law",
     "LowRankStiffness",
     "MaxwellBranches",
     "Metrics",
@@ -76,10 +65,8 @@ __all__ = [
     "ViaPointTurns",
     "Warp",
     "WeightEnergy",
-    "factorise",
     "grow_patches",
     "minimise",
-    "nearest_semidefinite",
 ]
 
 open_package(__name__)

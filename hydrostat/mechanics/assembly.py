@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.mechanics.energy import Energy, LowRankStiffness, ScatterMap
+from hydrostat.mechanics.energy import Energy, Gaps, LowRankStiffness, ScatterMap
 from hydrostat.mechanics.sparsity import SparsityPattern
 from hydrostat.mechanics.stiffness import Stiffness
 
@@ -123,6 +123,10 @@ class Assembly:
         """Largest share of a straight move [m] that all energies admit, above 0, at most 1."""
         return min((energy.largest_step(nodes, move) for energy in self.energies), default=1.0)
 
+    def gaps(self, nodes: Nodes) -> list[Gaps]:
+        """Gaps between parts near one another, of each energy of contact."""
+        return [found for energy in self.energies if (found := energy.gaps(nodes)) is not None]
+
     def least_volume(self, nodes: Nodes) -> float:
         """J of the element that is squeezed most, at most 1."""
         return min((energy.least_volume(nodes) for energy in self.energies), default=1.0)
@@ -211,14 +215,21 @@ class Assembly:
         return [energy.coupling(nodes, controls) for energy in self.energies]
 
     def stiffness(
-        self, nodes: Nodes, controls: Vector, *, projection: float = 0.0, shift: float = 0.0, damping: float = 0.0
+        self,
+        nodes: Nodes,
+        controls: Vector,
+        *,
+        projection: float = 0.0,
+        early: float | None = None,
+        shift: float = 0.0,
+        damping: float = 0.0,
     ) -> Stiffness:
         """Whole Hessian d2E/dx2, factorised.
 
-        `projection` is as in `hessian`; `damping` [N/m] is added to the diagonal, as is `shift`, a share of its largest
-        entry.
+        `projection` is as in `hessian`; `early` is that of energies that project first, if it is another one. `damping`
+        [N/m] is added to the diagonal, as is `shift`, a share of its largest entry.
         """
-        values = self._values(nodes, controls, projection)
+        values = self._values(nodes, controls, projection, early)
         if damping:
             values[self.pattern.diagonal] += damping
         if shift:
@@ -250,13 +261,14 @@ class Assembly:
         other.token = self.token
         return other
 
-    def _values(self, nodes: Nodes, controls: Vector, projection: float) -> Vector:
+    def _values(self, nodes: Nodes, controls: Vector, projection: float, early: float | None = None) -> Vector:
         """Values of the sparse part of the Hessian."""
         self.pattern.settle()
         data = self._quadratic.copy()
+        early = float(projection > 0.0) if early is None else early
         for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
             if not energy.quadratic:
-                share = 1.0 if projection and energy.projects_first else projection
+                share = early if energy.projects_first else projection
                 energy.add_hessian(nodes, controls, share, ScatterMap(slots, self.pattern.strides, data))
         return data
 

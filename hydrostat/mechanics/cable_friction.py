@@ -191,7 +191,8 @@ class FrictionCableEnergy(Energy):
 
     def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
         """Energy after other slips [m], at equilibrium with these in a given state."""
-        still = self._with(np.full_like(history, _HELD), history)
+        held = 1e30  # Friction that nothing overcomes [N]
+        still = self._with(np.full_like(history, held), history)
         return still.with_limits(still.capstan_limits(nodes, controls))
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
@@ -226,7 +227,8 @@ class FrictionCableEnergy(Energy):
         solves = limits is not None
         if limits is None:
             limits = self.law.limits + self._newton_step(nodes, controls, compliance, wanted - self.law.limits)
-        share = min(2 * self._share, 1.0) if falls or solves > self._solves else max(0.5 * self._share, _LEAST_SHARE)
+        least_share = 1 / 16  # No correction goes less than this share of its way
+        share = min(2 * self._share, 1.0) if falls or solves > self._solves else max(0.5 * self._share, least_share)
         other = self.with_limits(np.maximum(self.law.limits + share * (limits - self.law.limits), 0.0))
         other._share, other._missed, other._solves = share, missed, solves
         return other
@@ -331,7 +333,9 @@ class FrictionCableEnergy(Energy):
     ) -> tuple[RankMatrix, RankMatrix]:
         """dT/d elongations and dT/d limits while cable slips where it is at the limit, or joins."""
         drops = np.where(self._firsts, 0.0, np.append(0.0, -np.diff(tensions)))
-        near = _AT_THE_LIMIT * tensions.max(initial=0.0)
+        # Tensions that come as near to the capstan's limit, as a share of the largest tension, are at it
+        at_the_limit = 1e-6
+        near = at_the_limit * tensions.max(initial=0.0)
         slipping = joining | (np.abs(drops) >= self.capstan_limits(nodes, controls) - near)
         return self.law.compute_slip_jacobians(tensions, np.sign(drops) * slipping)
 
@@ -365,28 +369,17 @@ class FrictionCableEnergy(Energy):
 
 
 def _semidefinite(matrix: RankMatrix) -> bool:
+    slight = 1e-9  # A matrix is semidefinite if it is definite with this share of its diagonal more
     try:
-        np.linalg.cholesky(matrix + np.diag(_SLIGHT * matrix.diagonal()))
+        np.linalg.cholesky(matrix + np.diag(slight * matrix.diagonal()))
     except np.linalg.LinAlgError:
         return False
     return True
 
 
-_HELD = 1e30
-"""Friction that nothing overcomes [N]."""
-
-
 _JUST_TAUT = 1.0 / 16.0
 """Tension of a cable that has just become taut, in units of its stiffness times its smoothing: at half of this."""
 
-_AT_THE_LIMIT = 1e-6
-"""Tensions that come as near to the capstan's limit, as a share of the largest tension, are at it."""
-
-_SLIGHT = 1e-9
-"""A matrix is semidefinite if it is definite with this share of its diagonal more."""
 
 _FALLS = 0.5
 """A correction that leaves more than this share of what was off before it was too long."""
-
-_LEAST_SHARE = 1 / 16
-"""No correction goes less than this share of its way."""

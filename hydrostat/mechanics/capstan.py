@@ -48,17 +48,14 @@ class ViaPointTurns:
         """Derivative of each angle by the vectors along the segments before and after it [rad/m]; as above."""
         (before, after), lengths = self._directions(nodes)
         cosine = np.einsum("td,td->t", before, after)[:, None]
-        sine = np.maximum(np.sin(self.angles(nodes)), _STRAIGHT)[:, None]
+        straight = 1e-9  # A turn of less [rad] counts as none
+        sine = np.maximum(np.sin(self.angles(nodes)), straight)[:, None]
         return np.stack([(cosine * before - after) / sine, (cosine * after - before) / sine]) / lengths[..., None]
 
     def _directions(self, nodes: Nodes) -> tuple[Float[np.ndarray, "2 turns dim"], Float[np.ndarray, "2 turns"]]:
         spans = np.einsum("stc,stcd->std", self.weights, nodes[self.stencils]) + self.offsets
         lengths = np.maximum(np.linalg.norm(spans, axis=2), np.finfo(float).tiny ** 0.5)
         return spans / lengths[..., None], lengths
-
-
-_STRAIGHT = 1e-9
-"""A turn of less [rad] counts as none."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -108,7 +105,9 @@ class CapstanChains:
         tensions, own = self.tensions, law.elongation(self.tensions)
         slips = law.slips(self.elongations)[points]
         guess = np.concatenate([self.tensions > 0, slips > 0, slips < 0]).astype(float)
-        for _ in range(_ROUNDS if scale > 0 else 0):
+        rounds = 20  # Most linear problems of one answer; it takes two to ten
+        near = 1e-10  # Tensions that change by less than this share of the largest are found
+        for _ in range(rounds if scale > 0 else 0):
             matrix, right, unit = self._problem(points, tensions, own, scale, turns)
             if not native.complement(matrix, right, self.stable, guess):
                 return None
@@ -120,7 +119,7 @@ class CapstanChains:
             stretched[points - 1] -= slips
             tensions = np.where(found > 0, found, TensionLaw.tension(law, stretched))
             own = np.where(tensions > 0, law.elongation(tensions), 0.0)
-            if change <= _NEAR * tensions.max(initial=0.0):
+            if change <= near * tensions.max(initial=0.0):
                 return tensions
         return None
 
@@ -151,10 +150,3 @@ class CapstanChains:
 
     def _turn_limits(self, tensions: Vector) -> Vector:
         return np.maximum(self.angles - self.turning @ (tensions - self.tensions), 0.0)
-
-
-_ROUNDS = 20
-"""Most linear problems of one answer; it takes two to ten."""
-
-_NEAR = 1e-10
-"""Tensions that change by less than this share of the largest are found."""

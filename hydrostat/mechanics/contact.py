@@ -3,6 +3,7 @@
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
+from math import log
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import BoundaryTree, Mesh, Pairs, facet_areas
 from hydrostat.kernel import native
-from hydrostat.mechanics.energy import Blocks, ContactForces, Energy, HessianBlocks, ScatterMap, Stencils
+from hydrostat.mechanics.energy import Blocks, ContactForces, Energy, Gaps, HessianBlocks, ScatterMap, Stencils
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,14 +45,17 @@ class ContactSurface:
 
     def begins(self, pairs: Pairs) -> Vector:
         """Squared distance [m^2] at which each pair becomes active, below half its rest distance: none is at rest."""
-        return np.minimum(self.distance**2, _REST * self.compute_squared_distances(self.rest, pairs))
+        rest = 0.25  # Pairs that are near at rest, as in a crease, are felt below half of that distance
+        return np.minimum(self.distance**2, rest * self.compute_squared_distances(self.rest, pairs))
 
     def weights(self, pairs: Pairs, begins: Vector) -> Vector:
         """Factor of each pair's barrier [N/m]: its force at half the contact distance is stiffness x area."""
         one = self.areas[pairs.stencils[:, 0]]
         shared = 0.5 * self.areas[pairs.stencils].mean(axis=1)
         area = np.where(pairs.edges, shared, one)
-        return self.stiffness * area / (_HALF_WAY * np.sqrt(np.maximum(begins, np.finfo(float).tiny)))
+        # Force of the barrier at half its distance, where its factor and distance are 1: 2 phi'(1/4) x 1/2
+        half_way = 4.329
+        return self.stiffness * area / (half_way * np.sqrt(np.maximum(begins, np.finfo(float).tiny)))
 
 
 class CandidatePairs(NamedTuple):
@@ -145,12 +149,14 @@ class ContactEnergy(Energy):
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         watch, skin = self.watch, self.skin
+        kept = 0.1  # No step takes more than 1 less this share of the gap between two parts
         if watch is not None and watch.serves(nodes) and watch.serves(nodes + move):
-            share = native.admissible_share(nodes, move, skin.rest, *watch.pairs, _KEPT)
+            share = native.admissible_share(nodes, move, skin.rest, *watch.pairs, kept)
         else:
-            share, pairs = skin.tree.sweep(nodes, move, skin.rest, kept=_KEPT, reach=self._reach)
+            share, pairs = skin.tree.sweep(nodes, move, skin.rest, kept=kept, reach=self._reach)
             self.swept = nodes + share * move, pairs
-        return max(float(share), _LEAST_STEP)
+        least_step = 1e-12  # Steps are above 0
+        return max(float(share), least_step)
 
     def with_active_terms(self, nodes: Nodes) -> "ContactEnergy":
         watch = self.watch
@@ -182,15 +188,31 @@ class ContactEnergy(Energy):
         places = 0.5 * np.einsum("pc,pcd->pd", weights, nodes[stencils])
         return ContactForces(places, np.einsum("pc,pcd->pd", first, blocks), stencils)
 
+    def gaps(self, nodes: Nodes) -> Gaps | None:
+        if not len(self.stencils):
+            return None
+        stencils, edges, soft, begins, weights = self._law
+        squared = np.maximum(self.skin.compute_squared_distances(nodes, self.pairs), np.finfo(float).tiny)
+        widths, normals = np.sqrt(squared), np.empty((*stencils.shape, nodes.shape[1]))
+        slope = -1.5 * log(4.0) - 2.25  # phi'(1/4)
+        resting = 0.85  # Parts pressed on one another come to rest at about this share of the distance
+        curvature = 10.0  # Stiffness of a barrier there, by its factor
+        native.barrier_forces(nodes, stencils, edges, soft, 4.0 * squared, np.ones(len(squared)), normals)
+        normals /= 2.0 * slope * widths[:, None, None]
+        return Gaps(stencils, widths - resting * np.sqrt(begins), normals, curvature * weights)
+
     @property
     def _reach(self) -> float:
-        return _LOOK * self.skin.distance
+        # Pairs are looked for so many times farther than they are felt; then they serve until nodes have moved
+        look = 2.0
+        return look * self.skin.distance
 
     def _look_around(self, nodes: Nodes) -> CandidatePairs:
         """Return the candidate pairs, valid as long as no node moves by more than half of the search margin."""
         margin = 0.5 * (self._reach - self.skin.distance)
         end, pairs = self.swept or (None, None)
-        if end is None or pairs is None or np.abs(nodes - end).max() > _ROUNDING * self.skin.distance:
+        rounding = 1e-6  # Nodes that are off by less than this share of the distance are the same
+        if end is None or pairs is None or np.abs(nodes - end).max() > rounding * self.skin.distance:
             pairs = self.skin.tree.pairs(nodes, self._reach)
         return CandidatePairs(nodes - margin, nodes + margin, pairs)
 
@@ -205,21 +227,3 @@ class ContactEnergy(Energy):
 
 _SOFT = 0.05
 """Two edges whose middles are nearest are as far apart as they are; at their ends so much of the distance more."""
-
-_REST = 0.25
-"""Pairs that are near at rest, as in a crease, are felt below half of that distance."""
-
-_HALF_WAY = 4.329
-"""Force of the barrier at half its distance, where its factor and distance are 1: 2 phi'(1/4) x 1/2."""
-
-_KEPT = 0.1
-"""No step takes more than 1 less this share of the gap between two parts."""
-
-_LOOK = 2.0
-"""Pairs are looked for so many times farther than they are felt; then they serve until nodes have moved."""
-
-_LEAST_STEP = 1e-12
-"""Steps are above 0."""
-
-_ROUNDING = 1e-6
-"""Nodes that are off by less than this share of the distance are the same."""

@@ -96,6 +96,22 @@ class ContactForces(NamedTuple):
     stencils: Stencils
 
 
+class Gaps(NamedTuple):
+    """Gaps between parts that may touch, less the width at which they come to rest on one another.
+
+    Attributes:
+        stencils: nodes of each pair, (pairs, corners).
+        widths: gap less that width [m], (pairs,).
+        normals: derivative of each gap by the nodes, (pairs, corners, dim).
+        stiffness: stiffness of each pair below that width [N/m], (pairs,).
+    """
+
+    stencils: Stencils
+    widths: Vector
+    normals: Blocks
+    stiffness: Vector
+
+
 class Energy(ABC):
     """Sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
@@ -197,6 +213,10 @@ class Energy(ABC):
         """Return contact points and forces on the body at `nodes`; None for an energy that models no contact."""
         return None
 
+    def gaps(self, nodes: Nodes) -> Gaps | None:
+        """Gaps of the pairs near one another at `nodes`, by which a step slides along them; None without contact."""
+        return None
+
     def with_load(self, share: float) -> "Energy":
         """Energy with this share of its dead load, for load steps; itself if it has none."""
         return self
@@ -266,12 +286,14 @@ def element_groups(
     """Elements with their shape gradients [1/m] and volumes [m^3] in groups."""
     count, missing = len(stencils), -len(stencils) % 8
 
-    def grouped(array: np.ndarray, kind: type) -> np.ndarray:
+    def group_terms(array: np.ndarray, kind: type) -> np.ndarray:
         filled = np.concatenate([array, np.zeros((missing, *array.shape[1:]))])
         groups = filled.reshape(-1, 8, *array.shape[1:])
         return np.ascontiguousarray(np.moveaxis(groups, 1, -1), dtype=kind)
 
-    return ElementGroups(grouped(stencils, np.int32), grouped(gradients, float), grouped(volumes, float), count)
+    return ElementGroups(
+        group_terms(stencils, np.int32), group_terms(gradients, float), group_terms(volumes, float), count
+    )
 
 
 def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:

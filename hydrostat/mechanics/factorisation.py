@@ -32,8 +32,6 @@ Backend = Literal["auto", "supernodal", "superlu"]
 TINY = 1e-13
 """A pivot not above this share of the largest diagonal entry counts as 0."""
 
-LEAF = 64
-"""Parts of so many nodes are ordered by minimum degree."""
 
 SHARES = np.array([0.4, 0.5, 0.6])
 """Fractions of the nodes on one side at which nested dissection tries to cut."""
@@ -232,8 +230,9 @@ def _cheapest_tree(
             return tree, found
     distances = ordering.graph_coordinates(starts, neighbours, DISTANCES)
     coordinates = distances if points is None else np.hstack([points, distances])
+    leaf = 64  # Parts of so many nodes are ordered by minimum degree
     orders = [
-        ordering.nested_dissection(starts, neighbours, coordinates, LEAF, SHARES),
+        ordering.nested_dissection(starts, neighbours, coordinates, leaf, SHARES),
         _minimum_degree(starts, neighbours),
     ]
     trees = [symbolic.supernodes(starts, neighbours, order, dim) for order in orders]

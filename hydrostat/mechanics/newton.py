@@ -1,6 +1,7 @@
 """Projected Newton with a line search: the statics solver."""
 
 import time
+from functools import partial
 from itertools import count
 from typing import NamedTuple
 
@@ -9,6 +10,8 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.newton_result import NewtonOptions, NewtonResult, Reason, RoundOff
+from hydrostat.mechanics.projection import Projection
+from hydrostat.mechanics.sliding_step import StepTrial, find_sliding_step
 from hydrostat.mechanics.stiffness import Stiffness, find_negative_curvature
 from hydrostat.mechanics.warp import Bend
 
@@ -55,21 +58,11 @@ class _Iterate(NamedTuple):
     least_volume: float = 1.0
 
 
-class _Trial(NamedTuple):
-    """End point of a step, and the admissible share of the step."""
-
-    assembly: Assembly
-    nodes: Nodes
-    energy: float
-    least_volume: float
-    share: float
-
-
 class _EnergyDescent:
     """One minimisation; `run` is the loop, each method one part of it.
 
     Attributes:
-        share: share of the negative part of the Hessian that the last step removed.
+        projection: shares of the negative part of the Hessian that the last step removed.
         whole: True if the step must be taken whole or not at all.
         left: residual as a share of the largest applied force.
         fast: True if the last step reduced the residual strongly.
@@ -91,7 +84,7 @@ class _EnergyDescent:
         self.exact = exact
         self.assembly, self.controls = assembly, controls
         self.noise, self.options, self.warp = round_off, options, warp
-        self.share = self.damping = 0.0
+        self.projection, self.damping = Projection(), 0.0
         self.whole = self.fast = False
         self.left = np.inf
         self.saddles = 0
@@ -138,16 +131,19 @@ class _EnergyDescent:
     def _evaluate(self, assembly: Assembly, nodes: Nodes, energy: float, least_volume: float) -> _Iterate:
         return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), least_volume)
 
-    def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> _Trial:
+    def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> StepTrial:
         """Take a step as far as all energies admit it; the energy is infinite if the step crushes an element."""
         nodes = self.bend(place.nodes, step) if bent else place.nodes + step.reshape(place.nodes.shape)
+        least = place.assembly.least_volume(nodes)
+        if least < _CRUSHED * place.least_volume:
+            return StepTrial(place.assembly, nodes, np.inf, least, 1.0)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
             nodes = place.nodes + share * (nodes - place.nodes)
+            least = place.assembly.least_volume(nodes)
         assembly = place.assembly.with_active_terms(nodes)
         energy = assembly.value(nodes, self.controls)
-        least = assembly.least_volume(nodes) if np.isfinite(energy) else 0.0
-        return _Trial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
+        return StepTrial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
 
     def _advance(self, place: _Iterate, known: Stiffness | None) -> _Iterate | None:
         """Take one step with the factors of the last one if that pays, else with `known` ones, else with new ones.
@@ -162,28 +158,48 @@ class _EnergyDescent:
         self.last = None  # its memory serves for new factors
         stiffness = reused or self._definite_hessian(place)
         self.last, self.sharp = (
-            (stiffness, self.left < _NEAR and (reused is None or self.exact))
-            if self.share == 0.0 == self.damping
-            else (None, False)
+            (stiffness, self.left < _NEAR and (reused is None or self.exact)) if self._is_unmodified else (None, False)
         )
         if stiffness is None:
             return None
         step = self._step(place, stiffness)
-        if reused is None and self.share == 0.0 == self.damping and self._within_accuracy(place, step):
+        if reused is None and self._is_unmodified and self._within_accuracy(place, step):
             return place
-        found = self._search(place, step)
-        self._damp(place, step, found)
+        slid, trial = self._slide(place, step, stiffness)
+        found = self._search(place, slid, trial)
+        self._damp(place, slid, found, eases=slid is not step)
         return found
 
-    def _damp(self, place: _Iterate, step: Vector, found: _Iterate | None) -> None:
+    @property
+    def _is_unmodified(self) -> bool:
+        """True if the last step was made with the Hessian itself."""
+        return not self.projection.any and not self.damping
+
+    def _slide(self, place: _Iterate, step: Vector, stiffness: Stiffness) -> tuple[Vector, StepTrial]:
+        """Step that slides along the parts that this one meets, with its trial; this one where it meets none."""
+        trial = self._try(place, step)
+        enough = place.energy + 1e-4 * trial.share * float(place.gradient @ step)
+        if (
+            self.whole
+            or trial.energy == np.inf
+            or (trial.share > _LONG and trial.energy <= enough)
+            or not trial.assembly.projects_first
+        ):
+            return step, trial
+        found = find_sliding_step(partial(self._try, place), place.nodes, step, trial, stiffness)
+        slope = float(place.gradient @ found.step)
+        falls = found.trial.energy < place.energy + 1e-4 * found.trial.share * slope
+        return found if slope < 0.0 and falls else (step, trial)
+
+    def _damp(self, place: _Iterate, step: Vector, found: _Iterate | None, *, eases: bool) -> None:
         """Levenberg and Marquardt's damping, where parts of a body that touch cut steps short; less again where not."""
         if found is None:
             return
         square, curvature = float(step @ step), -float(place.gradient @ step) / float(step @ step)
         taken = float(np.linalg.norm(found.nodes - place.nodes)) / square**0.5
-        if taken < _SHORT and place.assembly.projects_first:
+        if taken < _SHORT and place.assembly.projects_first and not eases:
             self.damping = max(_DAMPS * self.damping, curvature * (1.0 / max(taken, _LEAST_TAKEN) - 1.0))
-        elif taken > _LONG:
+        elif eases or taken > _LONG:
             self.damping = self.damping / _EASES if self.damping > _FREE * curvature else 0.0
 
     def _within_accuracy(self, place: _Iterate, step: Vector) -> bool:
@@ -205,44 +221,43 @@ class _EnergyDescent:
     def _definite_hessian(self, place: _Iterate) -> Stiffness | None:
         """Hessian, or a definite matrix in its place where it is not definite.
 
-        Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
-        drops the whole effect of compression, and Newton creeps for hundreds of steps. So only a share of what is
-        negative is taken out; the share falls from step to step as long as it suffices. None where nothing helps: the
-        Hessian is not finite, or 0.
+        None where nothing helps: the Hessian is not finite, or 0.
         """
-        self.share = self.share / 16 if self.share > _LEAST_SHARE and not self.fast else 0.0
+        first = place.assembly.projects_first
+        self.projection = Projection() if self.fast else self.projection.with_smaller_shares(projects_first=first)
         while True:
+            shares = self.projection
             stiffness = place.assembly.stiffness(
-                place.nodes, self.controls, projection=self.share, damping=self.damping
+                place.nodes, self.controls, projection=shares.late, early=shares.early, damping=self.damping
             )
             if stiffness.definite:
                 return stiffness
-            if self.share == 1.0:
+            if shares.whole:
                 break
-            first = _EARLY if place.assembly.projects_first else 1.0
-            self.share = (min(16 * self.share, 1.0) if self.share > _EARLY else _LEAST_SHARE) if self.share else first
+            self.projection = shares.with_larger_shares(projects_first=first)
         for shift in _SHIFTS:
             stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=1.0, shift=shift)
             if stiffness.definite:
                 return stiffness
         return None
 
-    def _search(self, place: _Iterate, step: Vector) -> _Iterate | None:
+    def _search(self, place: _Iterate, step: Vector, trial: StepTrial) -> _Iterate | None:
         """Next place; None if no length of the step lowers the energy.
 
         Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
+        `trial` is that of the whole step.
         """
         slope = float(place.gradient @ step)
         length = 1.0
-        for _ in range(self.options.halvings):
-            trial = self._try(place, length * step)
+        for halving in range(self.options.halvings):
+            trial = self._try(place, length * step) if halving else trial
             gain = -length * trial.share * slope
             if gain > self.noise.energy:
                 if self.warp is not None and not trial.energy <= place.energy - 1e-4 * gain:
                     straight = self._try(place, length * step, bent=False)
                     trial = min(trial, straight, key=lambda found: found.energy)
                 if trial.energy <= place.energy - 1e-4 * gain:
-                    if self.share > 0.0 and length * trial.share == 1.0:
+                    if self.projection.any and length * trial.share == 1.0:
                         trial = self._extrapolate(place, step, trial)
                     return self._evaluate(*trial[:4])
             elif trial.energy <= place.energy + 10 * self.noise.energy:
@@ -278,7 +293,7 @@ class _EnergyDescent:
                     return step
         return -stiffness.solve(place.gradient)
 
-    def _extrapolate(self, place: _Iterate, step: Vector, trial: _Trial) -> _Trial:
+    def _extrapolate(self, place: _Iterate, step: Vector, trial: StepTrial) -> StepTrial:
         """Double a step while the energy falls: a projected Hessian is too stiff, so its step is too short."""
         length = 2.0
         while True:
@@ -350,12 +365,6 @@ An element near J = 0 pushes back so hard, and so far from linearly, that Newton
 
 _PAYS = 0.1
 """A step with old factors has to bring the residual down this far, or new ones are made."""
-
-_LEAST_SHARE = 1 / 32
-"""Below this share of what is negative, try the full Hessian."""
-
-_EARLY = 1e-6
-"""A share so small that of most energies it takes out nothing."""
 
 _SHORT = 0.25
 """A step of which less is taken is damped from then on."""

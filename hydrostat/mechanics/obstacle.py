@@ -177,10 +177,12 @@ class ObstacleEnergy(Energy):
         """By conservative advancement: a sample cannot meet the obstacle before distance / speed."""
         distances = self._locate_samples(nodes)[1]
         speeds = self._speeds(nodes, move)
-        some = np.flatnonzero(((1.0 - _KEPT) * distances < speeds) & (speeds > 0))
+        kept = 0.1  # No step takes more than 1 less this share of the gap
+        some = np.flatnonzero(((1.0 - kept) * distances < speeds) & (speeds > 0))
         distances, speeds = distances[some], speeds[some]
-        least, done, going = _KEPT * distances, np.zeros(len(some)), np.arange(len(some))
-        for _ in range(_ADVANCES):
+        least, done, going = kept * distances, np.zeros(len(some)), np.arange(len(some))
+        advances = 200  # Steps of a conservative advancement
+        for _ in range(advances):
             if not len(going):
                 break
             done[going] += (distances[going] - least[going]) / speeds[going]
@@ -188,7 +190,8 @@ class ObstacleEnergy(Energy):
             going = going[(done[going] < 1.0) & (distances[going] > 1.1 * least[going])]
         near = distances <= 1.1 * least
         near[going] = True
-        return float(np.clip(done[near & (done > 0)].min(initial=1.0), _LEAST_STEP, 1.0))
+        least_step = 1e-12  # Steps are above 0
+        return float(np.clip(done[near & (done > 0)].min(initial=1.0), least_step, 1.0))
 
     @property
     def history(self) -> Vector:
@@ -367,12 +370,3 @@ _HALF_WAY = 4.329
 
 _STICKS = 10.0
 """Stiffness of a sample along the surface per area, in units of Young's modulus / distance."""
-
-_KEPT = 0.1
-"""No step takes more than 1 less this share of the gap."""
-
-_ADVANCES = 200
-"""Steps of a conservative advancement."""
-
-_LEAST_STEP = 1e-12
-"""Steps are above 0."""

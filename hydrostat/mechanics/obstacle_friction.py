@@ -98,7 +98,8 @@ class ObstacleFriction:
 
     def slipping(self, places: Points) -> Bool[np.ndarray, " samples"]:
         """Mask of the samples that are at their friction limit."""
-        return (self.limits > 0) & (self.springs * self.ways(places)[1] >= (1.0 - _HAIR) * self.limits)
+        hair = 1e-9  # Nearer to its limit than this share a sample slips
+        return (self.limits > 0) & (self.springs * self.ways(places)[1] >= (1.0 - hair) * self.limits)
 
     def directions(self, places: Points) -> Points:
         """Unit vectors from the anchors to the samples, along the surface."""
@@ -123,12 +124,15 @@ class ObstacleFriction:
         wanted = self.friction * pushes
         limits = self.limits + self.share * (wanted - self.limits)
         step = np.linalg.solve(np.eye(len(slips)) - self.share * moves, self.share * (wanted - self.limits)[slips])
-        limits[slips] = np.clip(self.limits[slips] + step, 0.0, _MOST * np.maximum(self.limits, wanted)[slips])
+        most = 4.0  # No step makes a limit so many times larger than what was asked
+        limits[slips] = np.clip(self.limits[slips] + step, 0.0, most * np.maximum(self.limits, wanted)[slips])
         return replace(self, limits=limits, normals=normals, trail=())
 
     def with_adapted_relaxation(self, missed: float) -> "ObstacleFriction":
         """Return this state with its relaxation factor adapted to the error of a correction [N]."""
-        share = max(0.5 * self.share, _LEAST) if missed > _FALLS * self.missed else min(2.0 * self.share, 1.0)
+        falls = 0.8  # A correction that leaves more than this share of what was off was too long
+        least = 1 / 32  # No correction goes less than this share of its way
+        share = max(0.5 * self.share, least) if missed > falls * self.missed else min(2.0 * self.share, 1.0)
         return replace(self, share=share, missed=missed)
 
     def drag_anchors(self, places: Points) -> "ObstacleFriction":
@@ -141,18 +145,6 @@ class ObstacleFriction:
         slips = self.springs * lengths > self.limits
         return np.where(slips, self.limits / np.where(slips, lengths, 1.0), self.springs)
 
-
-_HAIR = 1e-9
-"""Nearer to its limit than this share a sample slips."""
-
-_MOST = 4.0
-"""No step makes a limit so many times larger than what was asked."""
-
-_FALLS = 0.8
-"""A correction that leaves more than this share of what was off was too long."""
-
-_LEAST = 1 / 32
-"""No correction goes less than this share of its way."""
 
 _KEPT = 6
 """So many limits tried before are remembered."""

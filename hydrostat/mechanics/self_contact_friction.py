@@ -185,7 +185,8 @@ class SelfContactFriction:
         points = self._positions(nodes, anchors)
         places = np.where(held[:, None], nodes[self.skin.own] - points, 0.0)
         left = places - grip.drag_anchors(places).anchors
-        drags = held & (np.linalg.norm(left, axis=1) < (1.0 - _ROUNDING) * grip.ways(places)[1])
+        rounding = 1e-9  # A spring that loses less than this share of its length does not slip
+        drags = held & (np.linalg.norm(left, axis=1) < (1.0 - rounding) * grip.ways(places)[1])
         dragged = self._nearest(nodes, pairs, drags, left, normals)
         beside = anchors.with_points_replaced(drags & (dragged.facets >= 0), dragged).with_points_replaced(
             ~held, self._none
@@ -218,7 +219,8 @@ class SelfContactFriction:
         beside = self._nearest(nodes, pairs, fresh, np.zeros_like(normals), normals)
         new = np.flatnonzero(beside.facets >= 0)
         earlier = _beside(self.before[self.skin.facets[beside.facets[new]]], self.before[self.skin.own[new]])
-        near = (np.abs(earlier - 0.5) < _BEYOND).all(axis=1, keepdims=True)
+        beyond = 1.5  # Weights that differ by less from one half are of points near their facet
+        near = (np.abs(earlier - 0.5) < beyond).all(axis=1, keepdims=True)
         beside.weights[new] = np.where(near, earlier, beside.weights[new])
         return self.anchors.with_points_replaced(beside.facets >= 0, beside)
 
@@ -232,13 +234,15 @@ class SelfContactFriction:
         corners, dim = nodes[self.skin.facets[facets]], nodes.shape[1]
         frames = np.concatenate([corners[:, 1:] - corners[:, :1], normals[who][:, None]], axis=1).swapaxes(1, 2)
         sizes = np.linalg.norm(frames, axis=1)[:, : dim - 1].max(axis=1, initial=0.0)
-        sound = np.abs(np.linalg.det(frames)) > _STEEP * sizes ** (dim - 1)
+        steep = 0.1  # A facet more nearly along the normal than this sine is none to stick to
+        sound = np.abs(np.linalg.det(frames)) > steep * sizes ** (dim - 1)
         who, facets, sizes, corners = who[sound], facets[sound], sizes[sound], corners[sound]
         goals = (nodes[self.skin.own[who]] - spans[who] - corners[:, 0])[:, :, None]
         found = np.linalg.solve(frames[sound], goals)[:, :, 0]
         weights = np.concatenate([1.0 - found[:, :-1].sum(axis=1, keepdims=True), found[:, :-1]], axis=1)
         beyond = np.maximum(-weights.min(axis=1, initial=0.0), 0.0) * sizes + np.abs(found[:, -1])
-        beyond -= _STAYS * sizes * (facets == self.anchors.facets[who])
+        stays = 0.1  # The facet of the anchor serves a node that is beyond it by this share of its size
+        beyond -= stays * sizes * (facets == self.anchors.facets[who])
         order = np.lexsort((facets, beyond, who))
         best = order[np.unique(who[order], return_index=True)[1]]
         points = self._none
@@ -253,16 +257,3 @@ def _beside(corners: Float[np.ndarray, "some dim dim"], points: Ways) -> Float[n
     along = np.einsum("tak,tk->ta", spans, points - corners[:, 0])[:, :, None]
     found = np.linalg.solve(squares, along)[:, :, 0]
     return np.concatenate([1.0 - found.sum(axis=1, keepdims=True), found], axis=1)
-
-
-_BEYOND = 1.5
-"""Weights that differ by less from one half are of points near their facet."""
-
-_STEEP = 0.1
-"""A facet more nearly along the normal than this sine is none to stick to."""
-
-_STAYS = 0.1
-"""The facet of the anchor serves a node that is beyond it by this share of its size."""
-
-_ROUNDING = 1e-9
-"""A spring that loses less than this share of its length does not slip."""

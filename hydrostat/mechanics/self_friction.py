@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry import Mesh, Pairs
 from hydrostat.mechanics.contact import ContactEnergy
-from hydrostat.mechanics.energy import Blocks, Compliance, ContactForces, Energy, HessianBlocks, Response
+from hydrostat.mechanics.energy import Blocks, Compliance, ContactForces, Energy, Gaps, HessianBlocks, Response
 from hydrostat.mechanics.self_contact_friction import FacetPoints, SelfContactFriction, SelfContactSurface
 
 
@@ -40,7 +40,9 @@ class SelfFrictionEnergy(Energy):
             friction: Coulomb's coefficient mu.
         """
         skin = SelfContactSurface.of(mesh, contact.skin.distance)
-        springs = _STICKS * contact.skin.stiffness / contact.skin.distance * contact.skin.areas[skin.own]
+        # Stiffness of each side along the surface per area, in units of Young's modulus / distance
+        sticks = 5.0
+        springs = sticks * contact.skin.stiffness / contact.skin.distance * contact.skin.areas[skin.own]
         return cls(contact, SelfContactFriction.at_rest(skin, contact.skin.rest, 0.5 * friction, springs))
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
@@ -60,6 +62,9 @@ class SelfFrictionEnergy(Energy):
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         return self.contact.largest_step(nodes, move)
+
+    def gaps(self, nodes: Nodes) -> Gaps | None:
+        return self.contact.gaps(nodes)
 
     def contact_forces(self, nodes: Nodes) -> ContactForces:
         return self.contact.contact_forces(nodes)
@@ -121,7 +126,8 @@ class SelfFrictionEnergy(Energy):
         self.contact.add_gradient(nodes, np.zeros(0), forces)
         forces = -forces[self.clasp.skin.own]
         pushes = np.linalg.norm(forces, axis=1)
-        pushes[pushes < _FAINT * self.clasp.grip.springs * self.contact.skin.distance] = 0.0
+        faint = 1e-10  # Forces below this share of the modulus x area are none
+        pushes[pushes < faint * self.clasp.grip.springs * self.contact.skin.distance] = 0.0
         return pushes, np.where(pushes > 0, 1.0 / np.where(pushes > 0, pushes, 1.0), 0.0)[:, None] * forces
 
     def _active_pairs(self, nodes: Nodes) -> Pairs:
@@ -155,10 +161,3 @@ def _drags(
     for corner in range(clasp.stencils.shape[1]):
         columns[clasp.stencils[rows, corner], :, np.arange(len(some))] += blocks[:, corner]
     return columns.reshape(nodes.size, len(some))
-
-
-_STICKS = 5.0
-"""Stiffness of each side along the surface per area, in units of Young's modulus / distance."""
-
-_FAINT = 1e-10
-"""Forces below this share of the modulus x area are none."""

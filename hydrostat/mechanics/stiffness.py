@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
-from hydrostat.mechanics.energy import Compliance, LowRankBasis, LowRankStiffness, RankMatrix
+from hydrostat.mechanics.energy import Compliance, Law, LowRankBasis, LowRankStiffness, RankMatrix
 from hydrostat.mechanics.factorisation import Factorisation
 
 
@@ -74,6 +74,14 @@ class Stiffness:
         self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
         self.definite = not self.singular and self.factors.negative == int((signs < 0).sum())
 
+    @property
+    def _correction(self) -> RankMatrix:
+        """R (I + R^T M R)^-1 R^T."""
+        if self._inside is None:
+            root, inner = self._inner()
+            self._inside = root @ np.linalg.solve(inner, root.T)
+        return self._inside
+
     def _inner(self) -> tuple[RankMatrix, RankMatrix]:
         """R, and I + R^T M R."""
         root = _square_root(self.weights)
@@ -113,15 +121,32 @@ class Stiffness:
         tensions = coupling.law.solve_slack_complementarity(elongations, self.compliance)
         return None if tensions is None else self.factors.expand(free - self._reduced @ tensions)
 
+    def push(
+        self, columns: LowRankBasis, elongations: Float[np.ndarray, " rank"], law: Law
+    ) -> Float[np.ndarray, " dofs"] | None:
+        """Displacement of x by springs along some columns, without the forces that are there; None if none is found.
+
+        Args:
+            columns: derivatives of the elongations of the springs.
+            elongations: elongations before the springs act [m].
+            law: force law of the springs.
+        """
+        reduced = self.factors.reduce(columns)
+        compliance = self.factors.inner(reduced, reduced)
+        if self._pulling:
+            across = self.factors.inner(self._reduced, reduced)
+            pulls = self._correction @ across
+            compliance -= across.T @ pulls
+            reduced = reduced - self._reduced @ pulls
+        tensions = law.solve_slack_complementarity(elongations, np.ascontiguousarray(compliance))
+        return None if tensions is None else -self.factors.expand(reduced @ tensions)
+
     def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
         """Solution of H x = right, for one or several right-hand sides."""
         if not self._pulling:
             return self.factors.solve(right)
-        if self._inside is None:
-            root, inner = self._inner()
-            self._inside = root @ np.linalg.solve(inner, root.T)
         free = self.factors.reduce(right)
-        pulls = self._inside @ self.factors.inner(self._reduced, free)
+        pulls = self._correction @ self.factors.inner(self._reduced, free)
         return self.factors.expand(free - self._reduced @ pulls)
 
 

@@ -21,9 +21,6 @@ import numpy as np
 from hydrostat.kernel import THREADS, native
 from hydrostat.mechanics.symbolic import EliminationTree, children
 
-BLOCK = 8
-"""Most columns that are eliminated together, before a product applies them to the rest."""
-
 WHOLE, LOWER, UPPER = range(3)
 """Part of A^-1 that is applied: all of it, L^-1, or L^-T S."""
 
@@ -63,8 +60,6 @@ SPARE = 8
 IDLE = 4
 """So many arrays of factors are kept for each body, for those to come; fresh pages take half as long as factors."""
 
-IDLE_SIZE = 75_000_000
-"""Numbers in all arrays that are kept so for one body (600 MB)."""
 
 LARGE = 0.2
 """Modelled time of a factorisation [s] from which on several threads share it."""
@@ -120,7 +115,8 @@ class _IdleArrays:
 
     def give(self, array: np.ndarray) -> None:
         """Keep an array that nobody else uses, if there is room."""
-        if len(self._arrays) < IDLE and (len(self._arrays) + 1) * len(array) <= IDLE_SIZE:
+        idle_size = 75_000_000  # Numbers in all arrays that are kept so for one body (600 MB)
+        if len(self._arrays) < IDLE and (len(self._arrays) + 1) * len(array) <= idle_size:
             self._arrays.append(array)
 
     def __reduce__(self) -> tuple:
@@ -139,7 +135,8 @@ class SupernodalAnalysis:
         self.height = int((table[:, COLUMNS] + table[:, BELOW]).max(initial=1))
         widest = int(table[:, COLUMNS].max(initial=1))
         self.idle = _IdleArrays()
-        self.workspace = _Workspace(max(widest * BLOCK, 1), (int(sizes[0]), int(sizes[1])))
+        block = 8  # Most columns that are eliminated together, before a product applies them to the rest
+        self.workspace = _Workspace(max(widest * block, 1), (int(sizes[0]), int(sizes[1])))
 
     def factorise(self, data: np.ndarray, tiny: float) -> "SupernodalFactors":
         """Factors of the matrix with these values."""

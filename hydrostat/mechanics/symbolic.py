@@ -14,9 +14,6 @@ import numpy as np
 
 from hydrostat.kernel import native
 
-FRONT = 1.5e-6
-ENTRY = 0.6e-9
-UPDATE = 0.8e-9
 RATE = 30e9
 RAMP = 12.0
 """A model of time [s]: of a front; of an entry of L; of an entry handed on to the parent; of an operation of a large
@@ -48,7 +45,10 @@ def front_seconds(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     below = rows - columns
     operations = columns * (columns * columns / 3.0 + columns * below + below * 1.0 * below)
     rate = RATE * columns / (columns + RAMP)
-    return FRONT + ENTRY * columns * rows + 0.5 * UPDATE * below * below + operations / rate
+    front = 1.5e-6
+    entry = 0.6e-9
+    update = 0.8e-9
+    return front + entry * columns * rows + 0.5 * update * below * below + operations / rate
 
 
 def supernodes(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray, dim: int) -> EliminationTree:

@@ -129,14 +129,12 @@ def roots(matrices: Matrices) -> Matrices:
     """L with L L^T = each symmetric matrix (Cholesky); NaN where a matrix is not positive definite."""
     lower = np.zeros_like(matrices)
     dim = matrices.shape[-1]
+    # A metric whose pivots fall below this share of its diagonal counts as not positive definite
+    least_pivot = 1e-6
     for j in range(dim):
         pivot = matrices[:, j, j] - (lower[:, j, :j] ** 2).sum(axis=1)
-        lower[:, j, j] = np.sqrt(np.where(pivot > _LEAST_PIVOT * matrices[:, j, j], pivot, np.nan))
+        lower[:, j, j] = np.sqrt(np.where(pivot > least_pivot * matrices[:, j, j], pivot, np.nan))
         for i in range(j + 1, dim):
             crossed = matrices[:, i, j] - (lower[:, i, :j] * lower[:, j, :j]).sum(axis=1)
             lower[:, i, j] = crossed / lower[:, j, j]
     return lower
-
-
-_LEAST_PIVOT = 1e-6
-"""A metric whose pivots fall below this share of its diagonal counts as not positive definite."""

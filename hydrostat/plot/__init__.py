@@ -10,14 +10,12 @@ if TYPE_CHECKING:
     from hydrostat.plot.branch_figure import draw_branches
     from hydrostat.plot.calibration_page import reach, write_calibration_page
     from hydrostat.plot.chart import new_chart, plain_axes, short_number
-    from hydrostat.plot.design_charts import draw_front, draw_growth
     from hydrostat.plot.drawn_body import DrawnBody
     from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, upright, winch_stops
     from hydrostat.plot.frame import Attachments, Frame
     from hydrostat.plot.frame_pictures import FramePictures, Picture
     from hydrostat.plot.grasp_figure import draw_pull, pull_frames
     from hydrostat.plot.healing_figure import draw_healing
-    from hydrostat.plot.labels import shorten
     from hydrostat.plot.learning_curves import draw_curves
     from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion import motion_frames, motion_svg
@@ -61,8 +59,6 @@ __all__ = [
     "draw_branches",
     "draw_candidates",
     "draw_curves",
-    "draw_front",
-    "draw_growth",
     "draw_healing",
     "draw_motion",
     "draw_network",
@@ -100,7 +96,6 @@ __all__ = [
     "save_png",
     "section",
     "short_number",
-    "shorten",
     "table",
     "target_chapter",
     "trajectory_frames",

@@ -108,10 +108,7 @@ def _after_blocks(whole: bytes, start: int) -> int:
     return start + 1
 
 
-COLOURS = 72  # colours of a GIF, all frames together: what lies between two of felt is not to be told
-SAMPLES = 10  # so many frames, evenly chosen, tell which colours are needed
 WIDTHS = (160, 1920)  # least and largest width of a picture [pixels]
-SHORTEST = 0.02  # shortest time of a frame [s]: browsers play shorter ones of a GIF slowly
 
 
 def save_gif(
@@ -134,7 +131,8 @@ def save_gif(
     """
     _check(robot, frames, step, width)
     pictures = list(_draw_frames(robot, frames, width, progress))
-    some = sorted({int(index) for index in np.linspace(0, len(frames) - 1, SAMPLES).round()})
+    samples = 10  # so many frames, evenly chosen, tell which colours are needed
+    some = sorted({int(index) for index in np.linspace(0, len(frames) - 1, samples).round()})
     palette = _palette(robot, [_unpack_frame(pictures[index]) for index in some])
     runs = _runs(pictures)
     ends = np.round(100 * step * np.cumsum([count for _, count in runs])).astype(int)
@@ -192,8 +190,9 @@ def find_ffmpeg() -> str:
 
 def _check(robot: Robot, frames: Sequence[Frame], step: float, width: int) -> None:
     check_frames(robot, frames)
-    if not SHORTEST <= step <= 10:
-        raise InputError(f"the time of a frame must be {SHORTEST:g} to 10 s, not {step:g} s")
+    shortest = 0.02  # shortest time of a frame [s]: browsers play shorter ones of a GIF slowly
+    if not shortest <= step <= 10:
+        raise InputError(f"the time of a frame must be {shortest:g} to 10 s, not {step:g} s")
     if not WIDTHS[0] <= width <= WIDTHS[1]:
         raise InputError(f"the width of a picture must be {WIDTHS[0]} to {WIDTHS[1]} pixels, not {width}")
 
@@ -233,8 +232,9 @@ def _palette(robot: Robot, pictures: Sequence[Picture]) -> Palette:
     told = np.array([channels(colour) for colour in fixed], dtype=np.uint8)
     told = np.unique(told, axis=0)
     strip = Image.fromarray(np.concatenate([picture[::2, ::2].reshape(-1, 3) for picture in pictures])[None])
-    found = strip.quantize(COLOURS - len(told), method=Image.Quantize.MEDIANCUT).getpalette() or []
-    return np.unique(np.concatenate([told, np.array(found, dtype=np.uint8).reshape(-1, 3)])[:COLOURS], axis=0)
+    colours = 72  # colours of a GIF, all frames together: what lies between two of felt is not to be told
+    found = strip.quantize(colours - len(told), method=Image.Quantize.MEDIANCUT).getpalette() or []
+    return np.unique(np.concatenate([told, np.array(found, dtype=np.uint8).reshape(-1, 3)])[:colours], axis=0)
 
 
 def _even(picture: Picture) -> Picture:

@@ -20,7 +20,6 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Branch, Equilibrium, Multistability
 from hydrostat.units import plural
 
-MOST_MARKERS = 4  # so many markers have a chart: those that differ most between the poses, or move most
 TOLD = 0.25  # markers that differ less, or move less, than this share of the first have no chart
 ROW = 2.3  # height of a row of charts [inch]
 EDGES = 0.75  # of that for words and numbers [inch]
@@ -79,7 +78,8 @@ def _tracked_markers(robot: Robot, found: Multistability, branches: Sequence[Bra
     ways = {name: max((_displacement(robot, point.pose, name) for point in points), default=0.0) for name in names}
     counts = found.spread if len(found.poses) > 1 else ways
     told = [name for name in names if counts[name] >= TOLD * max(counts.values())]
-    return sorted(told, key=lambda name: -counts[name])[:MOST_MARKERS]
+    most_markers = 4  # so many markers have a chart: those that differ most between the poses, or move most
+    return sorted(told, key=lambda name: -counts[name])[:most_markers]
 
 
 def _displacement(robot: Robot, pose: Equilibrium, name: str) -> float:

@@ -10,14 +10,14 @@ from matplotlib.ticker import MaxNLocator
 from hydrostat.drawing import GRID, INK, MUTED
 from hydrostat.plot.sheet import WIDTH, new_figure
 
-EDGES = (0.62, 0.2, 0.5, 0.16)  # left, right, lower and upper border [inch]
 DASHES = ("-", "--", ":", "-.")  # lines of one colour, one after the other
 
 
 def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0) -> tuple[Figure, Axes]:
     """A figure [inch] with one chart and words at its axes; the one across counts in whole numbers."""
     figure = new_figure(width, height)
-    left, right, lower, upper = EDGES
+    edges = (0.62, 0.2, 0.5, 0.16)  # left, right, lower and upper border [inch]
+    left, right, lower, upper = edges
     box = (left / width, lower / height, (width - left - right) / width, (height - lower - upper) / height)
     axes = figure.add_axes(box)
     plain_axes(axes)

@@ -15,8 +15,6 @@ from hydrostat.plot.report_tables import millimetres
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.units import plural
 
-_WIDE = 30.0  # errors that differ by this factor are drawn on a logarithmic scale
-
 
 def draw_growth(
     stages: Sequence[DesignStage],
@@ -78,7 +76,8 @@ def _draw_level(axes: Axes, error: float, words: str, colour: str, lift: int) ->
 def _scale(axes: Axes, errors: np.ndarray) -> None:
     """Scale an axis from 0, unless errors [mm] differ too much for that."""
     most = float(errors.max(initial=0.0))
-    if most > 0 and 0 < errors.min() < most / _WIDE:
+    wide = 30.0  # errors that differ by this factor are drawn on a logarithmic scale
+    if most > 0 and 0 < errors.min() < most / wide:
         axes.set_yscale("log")
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axes.yaxis.set_minor_formatter(NullFormatter())
@@ -131,15 +130,13 @@ def _draw_dots(axes: Axes, networks: Sequence[Alternative | Network], dots: Sequ
             )  # fmt: skip
 
 
-_APART = 0.03, 0.06  # numbers nearer than these shares of a chart, across and upwards, would be one blot
-
-
 def _draw_counts(axes: Axes, networks: Sequence[Alternative | Network], dots: Sequence[Dot]) -> None:
     """The number of cables of each network above its dot; where two would meet the later is left out."""
     written: list[np.ndarray] = []
+    apart = 0.03, 0.06  # numbers nearer than these shares of a chart, across and upwards, would be one blot
     for number, (one, dot) in enumerate(zip(networks, dots, strict=True)):
         place = axes.transAxes.inverted().transform(axes.transData.transform(dot))
-        if all((np.abs(place - other) > _APART).any() for other in written):
+        if all((np.abs(place - other) > apart).any() for other in written):
             written.append(place)
             axes.annotate(
                 str(len(one.robot.cables)), dot, xytext=(0, 4 if number else -8), textcoords="offset points",

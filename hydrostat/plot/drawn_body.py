@@ -8,7 +8,6 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.drawing import Camera, Render
 from hydrostat.plot.sheet import MILLIMETRES, Place, Places, Spread
 
-STEP = 1.0  # length of the pieces into which a run is cut to see which of them are covered, in pixels
 LEVELS = 8  # steps from what is just covered to what is deep inside
 
 
@@ -43,7 +42,8 @@ class DrawnBody:
             places = MILLIMETRES * points
             return DrawnCable(places, [(places, 0.0)], np.zeros(len(points)))
         camera, shift, image, _ = self.sight
-        fine = _subdivide(points, STEP * image.buffer.pixel / MILLIMETRES)
+        step = 1.0  # length of the pieces into which a run is cut to see which of them are covered, in pixels
+        fine = _subdivide(points, step * image.buffer.pixel / MILLIMETRES)
         places, fades = camera.see(MILLIMETRES * fine)[:, :2] + shift, self.fades(fine)
         cuts = np.flatnonzero(np.diff(fades)) + 1
         starts, ends = [0, *cuts], [*cuts, len(fades)]

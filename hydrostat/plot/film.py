@@ -17,8 +17,6 @@ from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
 STILL = 0.25  # share of the time from one stop to the next in which the robot stays there
-FEWEST = 4  # frames from one stop to the next
-LEAST_LEFT = 0.7  # no winch is taken in so far that less than this share of its shortest cable is left
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,11 +54,12 @@ def pose_stops(reached: Iterable[IKResult]) -> list[Stop]:
 def winch_stops(robot: Robot) -> list[Stop]:
     """Each winch in turn taken in by half its travel; less where its cables are too short for that."""
     stops = []
+    least_left = 0.7  # no winch is taken in so far that less than this share of its shortest cable is left
     for index, winch in enumerate(robot.winches):
         pairs = zip(robot.cables, robot.spool_ratios, strict=True)
         lengths = [cable.length / ratio for cable, ratio in pairs if cable.winch == winch.name]
         taken = np.zeros(len(robot.winches))
-        taken[index] = min([winch.travel / 2, *((1 - LEAST_LEFT) * length for length in lengths)])
+        taken[index] = min([winch.travel / 2, *((1 - least_left) * length for length in lengths)])
         words = f"{shorten(winch.name)} {MILLIMETRES * taken[index]:.0f} mm"
         stops.append(Stop(name=words, contractions=taken, words=words))
     return stops
@@ -87,8 +86,9 @@ def film(
     if not stops:
         raise InputError("a film needs a stop to go to")
     count = round(seconds / step)
-    if count < 1 + FEWEST * ways:
-        least = np.ceil(10 * (1 + FEWEST * ways) * step) / 10
+    fewest = 4  # frames from one stop to the next
+    if count < 1 + fewest * ways:
+        least = np.ceil(10 * (1 + fewest * ways) * step) / 10
         raise InputError(f"{seconds:g} s are too short for {ways} ways; at least {least:g} s")
     ends = 1 + np.round((count - 1) * np.arange(ways + 1) / ways).astype(int)
     rest = simulation.solve({})
@@ -140,21 +140,21 @@ def upright(robot: Robot, pose: Equilibrium) -> bool:
     return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())
 
 
-MOST = 240  # frames of a long trajectory
 STEP = 0.04  # time of a frame of a short trajectory [s]
-END = 0.6  # how long the last pose is shown [s]
 
 
 def trajectory_frames(trajectory: Trajectory) -> tuple[list[Frame], float]:
     """Frames at equal times, each the sample that is nearest; and the time of a frame [s]."""
-    step = max(STEP, ceil(100 * trajectory.seconds / MOST) / 100)
+    most = 240  # frames of a long trajectory
+    step = max(STEP, ceil(100 * trajectory.seconds / most) / 100)
     count = max(ceil(trajectory.seconds / step), 1)
     frames = []
     for time in np.linspace(0.0, trajectory.seconds, count + 1):
         sample = int(np.argmin(np.abs(trajectory.times - time)))
         key, there = _key(trajectory, sample)
         frames.append(Frame.of(trajectory.poses[sample], target=key.target, words=_words(key, there)))
-    return [*frames, *[frames[-1]] * ceil(END / step)], step
+    end = 0.6  # how long the last pose is shown [s]
+    return [*frames, *[frames[-1]] * ceil(end / step)], step
 
 
 def _key(trajectory: Trajectory, sample: int) -> tuple[KeyPose, bool]:

@@ -22,8 +22,6 @@ from hydrostat.robot import Robot, rims
 from hydrostat.simulation import with_obstacles
 
 Picture = UInt8[np.ndarray, "_ _ 3"]  # red, green and blue of each pixel, the top row first
-INCHES = 6.4  # width of the drawing, whatever its pixels: words and lines keep their share of it
-FINER = 1.25  # pixels of the image of a body for one of the picture: edges of its parts stay smooth as they move
 
 
 class FramePictures:
@@ -34,19 +32,22 @@ class FramePictures:
         self._robot, self._carried = robot, Attachments(robot)
         self._scale = TensionScale.of(np.concatenate([frame.tensions for frame in frames]))
         points = _visible_points(robot, self._carried, frames)
+        inches = 6.4  # width of the drawing, whatever its pixels: words and lines keep their share of it
         self._sheet, panes = open_sheet(
             with_obstacles(robot, frames[0].things),
             [],
             [points],
             title=shorten(robot.name),
             subtitle=" ",
-            width=INCHES,
+            width=inches,
             bar=True,
             ruled=False,
         )
-        self._dpi = width / INCHES
+        self._dpi = width / inches
         pane = panes[0]
-        pixel = fit_pixel(self._sheet, self._sheet.high - self._sheet.low, dpi=FINER * self._dpi)
+        # pixels of the image of a body for one of the picture: edges of its parts stay smooth as they move
+        finer = 1.25
+        pixel = fit_pixel(self._sheet, self._sheet.high - self._sheet.low, dpi=finer * self._dpi)
         self._pane = replace(pane, pixel=pixel) if isinstance(pane, SpacePane) else pane
         self._sheet.figure.set_facecolor(PAPER)
         self._sheet.figure.set_dpi(self._dpi)

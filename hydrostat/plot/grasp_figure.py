@@ -15,9 +15,6 @@ from hydrostat.plot.robot_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
 from hydrostat.robot import Robot, rims
 
-PORTRAIT = 3.0
-"""Width at which a portrait is drawn [inch]."""
-
 
 def draw_pull(
     robot: Robot, pull: PullOut, cases: Sequence[PullCase] = (), *, title: str | None = None, width: float = WIDTH
@@ -85,8 +82,9 @@ def _portraits(robot: Robot, pull: PullOut, rows: Sequence[int]) -> list[np.ndar
     beside = [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
     frame = np.concatenate([*shapes, *beside, *(line for each in lines for line in each)])
     images = []
+    portrait = 3.0  # Width at which a portrait is drawn [inch]
     for nodes, thing in zip(shapes, things, strict=True):
-        figure = draw_portrait(robot, nodes, frame=frame, things=[thing], width=PORTRAIT)
+        figure = draw_portrait(robot, nodes, frame=frame, things=[thing], width=portrait)
         images.append(figure_pixels(figure, dpi=220))
     drawn = np.any([image[..., 3] > 0 for image in images], axis=0)
     up, across = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))

@@ -15,8 +15,6 @@ from hydrostat.plot.pane import fit_pixel, lay_image
 from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
 
 LINE, HEAD, LETTERS = 11.0, 28.0, 92  # height of a line of notes and of what is above the views [pt]; letters of a line
-REDNESS = 0.72  # how red the inside of a surface is drawn where it is seen
-WELD = 1e-6  # vertices nearer than this, in sizes of the surface, are drawn as one
 
 
 def draw_healing(
@@ -103,7 +101,8 @@ def _apart(rings: Float[np.ndarray, "_ 2"], gap: float) -> Float[np.ndarray, "_ 
 def _weld(surface: Surface) -> Surface:
     """The surface with vertices at one place as one, for shades and edges; triangles without area are left out."""
     low = surface.vertices.min(axis=0)
-    cells = np.round((surface.vertices - low) / max(WELD * surface.size, 1e-300))
+    weld = 1e-6  # vertices nearer than this, in sizes of the surface, are drawn as one
+    cells = np.round((surface.vertices - low) / max(weld * surface.size, 1e-300))
     _, first, names = np.unique(cells, axis=0, return_index=True, return_inverse=True)
     triangles = names.reshape(-1)[surface.triangles]
     real = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
@@ -123,7 +122,8 @@ def _both_sides(spots: Spots, triangles: Int[np.ndarray, "triangles 3"], pixel: 
     red = np.array(channels(ERROR)) / 255
     nearer = inside.buffer.depth > outside.buffer.depth
     tinted = inside.colours.copy()
-    tinted[..., :3] += REDNESS * (red - tinted[..., :3])
+    redness = 0.72  # how red the inside of a surface is drawn where it is seen
+    tinted[..., :3] += redness * (red - tinted[..., :3])
     colours = np.where(nearer[..., None], tinted, outside.colours)
     depth = np.maximum(outside.buffer.depth, inside.buffer.depth)
     return Render(colours, replace(outside.buffer, depth=depth))

@@ -6,7 +6,6 @@ import shapely
 from hydrostat.drawing import INK, LIGHT
 from hydrostat.plot.sheet import PictureSheet, Place, Places
 
-LONGEST = 26  # most letters of a name that a picture shows
 HALO = "halo"  # group name of words that need a border of paper around their letters
 RAYS = 16  # directions in which a label is tried
 
@@ -76,4 +75,5 @@ class Labels:
 def shorten(words: str) -> str:
     """Words fit for a picture: no control letters, and not too long."""
     plain = "".join(letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in words)
-    return plain if len(plain) <= LONGEST else plain[: LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}"
+    longest = 26  # most letters of a name that a picture shows
+    return plain if len(plain) <= longest else plain[: longest - 1] + "\N{HORIZONTAL ELLIPSIS}"

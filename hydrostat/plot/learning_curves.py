@@ -19,7 +19,8 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
     field what lies between the least and the largest; width in inches.
     """
     handles, names = [], list(dict.fromkeys(name for curves in panes.values() for name in curves))
-    columns = 5 if sum(map(len, names)) < _LETTERS else 3
+    letters = 60  # So many letters of names stand beside one another below a picture of curves
+    columns = 5 if sum(map(len, names)) < letters else 3
     height = 3.2 + 0.2 * -(-len(names) // columns)
     figure = new_figure(width, height)
     lower, tall = (height - 2.6) / height, 2.45 / height
@@ -40,7 +41,3 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
         handles, names = axes.get_legend_handles_labels()
     figure.legend(handles, names, loc="lower center", ncol=columns, frameon=False, fontsize=8, labelcolor=INK)
     return figure
-
-
-_LETTERS = 60
-"""So many letters of names stand beside one another below a picture of curves."""

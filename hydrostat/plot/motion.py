@@ -27,7 +27,6 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
 STEPS = 6  # equilibria from rest to a pose
-STILL = 4  # steps that it rests in a pose, and at rest
 SCALE = 0.7  # millimetres to a point in this picture: it shows true millimetres, about so large on a page
 STEP = 0.16  # time of a step [s]
 
@@ -35,24 +34,25 @@ STEP = 0.16  # time of a step [s]
 def motion_frames(robot: Robot, poses: Iterable[Vector], *, steps: int = STEPS) -> list[Nodes]:
     """Solved equilibria from rest to the contractions [m] of each pose and back in turn; it starts and stops gently."""
     simulation = Simulation(robot)
-    frames: list[Nodes] = [robot.body.mesh.nodes] * STILL
+    still = 4  # steps that it rests in a pose, and at rest
+    frames: list[Nodes] = [robot.body.mesh.nodes] * still
     for contractions in poses:
         there, solved = [], None
         for step in range(1, steps + 1):
             share = 0.5 - 0.5 * np.cos(np.pi * step / steps)
             solved = simulation.solve(share * contractions, start=solved, strict=False)
             there.append(solved.nodes)
-        frames += [*there, *[there[-1]] * STILL, *there[-2::-1], *[robot.body.mesh.nodes] * STILL]
+        frames += [*there, *[there[-1]] * still, *there[-2::-1], *[robot.body.mesh.nodes] * still]
     return frames
 
 
-def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float = STEP) -> Html:
-    """The robot moving through frames [m] a step [s] apart for ever, as an `<svg>` with a label for who cannot see it.
+def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str) -> Html:
+    """The robot moving through frames [m], `STEP` apart, for ever, as an `<svg>` with a label for who cannot see it.
 
     Where nothing moves the first frame is shown. A body in space is an InputError.
     """
     skin = FlatSkin.of(robot.body)
-    seconds = step * (len(frames) - 1)
+    seconds = STEP * (len(frames) - 1)
     shapes = [_outline(skin.shape(nodes)) for nodes in frames]
     seams = [_outline(skin.seam(nodes)) for nodes in frames]
     parts = [

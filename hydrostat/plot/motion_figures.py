@@ -19,8 +19,6 @@ from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, MotionTable
 
-MOST_NAMES = 12  # so many lines are named; of more, the others are only drawn
-
 
 def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """Draw marker displacements, winch contractions and cable tensions over time.
@@ -61,8 +59,9 @@ def _lines(axes: Axes, times: np.ndarray, values: np.ndarray, names: list[str], 
         dashes[colour] += 1
         line = values[:, column]
         axes.plot(times, line, color=colour, linewidth=1.4, linestyle=DASHES[count % len(DASHES)], label=name)
+    most_names = 12  # so many lines are named; of more, the others are only drawn
     if names:
-        most = np.argsort(-np.ptp(values, axis=0), kind="stable")[:MOST_NAMES]
+        most = np.argsort(-np.ptp(values, axis=0), kind="stable")[:most_names]
         handles, _ = axes.get_legend_handles_labels()
         shown = sorted(int(index) for index in most)
         axes.legend(
@@ -76,9 +75,6 @@ def _lines(axes: Axes, times: np.ndarray, values: np.ndarray, names: list[str], 
         )
 
 
-MOST_POSES = 5  # so many keyframes are drawn: the first ones
-PORTRAIT = 2.4  # width at which a portrait is drawn [inch]; then it is made smaller, its lines too
-TALLEST = 1.7  # greatest height of a portrait in the figure [inch]
 CHART = 1.45  # height of a chart [inch]
 
 
@@ -89,10 +85,12 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
     """
     shown = [("start", 0.0, trajectory.poses[0]), *((key.name, key.time, key.pose) for key in trajectory.keyframes)]
     told = [shown[0], *(one for last, one in pairwise(shown) if last[2].nodes is not one[2].nodes)]
-    shown = told[: MOST_POSES + 1]  # without poses that are still those before
+    most_poses = 5  # so many keyframes are drawn: the first ones
+    shown = told[: most_poses + 1]  # without poses that are still those before
     images = _portraits(robot, [pose for _, _, pose in shown])
     side = (width - 0.2) / max(len(shown), 3)
-    tall = min(max(image.shape[0] / image.shape[1] for image in images) * 0.94 * side, TALLEST)
+    tallest = 1.7  # greatest height of a portrait in the figure [inch]
+    tall = min(max(image.shape[0] / image.shape[1] for image in images) * 0.94 * side, tallest)
     top = 0.55 if title != "" else 0.3
     height = top + tall + 0.2 + 3 * CHART + 0.5
     figure = new_figure(width, height)
@@ -112,7 +110,8 @@ def _portraits(robot: Robot, poses: list[Equilibrium]) -> list[np.ndarray]:
     carried, shapes = Attachments(robot), [pose.nodes for pose in poses]
     beside = [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
     frame = np.concatenate([*shapes, *beside])
-    figures = [draw_portrait(robot, nodes, frame=frame, width=PORTRAIT) for nodes in shapes]
+    portrait = 2.4  # width at which a portrait is drawn [inch]; then it is made smaller, its lines too
+    figures = [draw_portrait(robot, nodes, frame=frame, width=portrait) for nodes in shapes]
     images = [figure_pixels(figure, dpi=220) for figure in figures]
     drawn = np.any([image[..., 3] > 0 for image in images], axis=0)
     rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))

@@ -12,10 +12,6 @@ from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Plac
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import ObstacleShape, Robot
 
-ROOM = (34.0, 34.0, 40.0, 20.0)  # left, right, lower, upper border of the three-quarter view [pt]: words; compass below
-BARE = 12.0  # free border around a view that stands alone [pt]: half a winch on its plate, that stands at the edge
-RULES = (28.0, 12.0, 20.0, 14.0)  # that of the view along an axis [pt]: there are numbers
-
 
 def open_sheet(
     robot: Robot,
@@ -103,11 +99,16 @@ def _lay_out(sides: Sequence[Place], paper: float) -> _ViewLayout:
 
     Side by side or one below the other, whichever shows the body larger; side by side if that makes little difference.
     """
+    # free border around a view that stands alone [pt]: half a winch on its plate, that stands at the edge
+    bare = 12.0
     if len(sides) == 1:
-        scale = max(sides[0][0] / (paper - 2 * BARE), sides[0][1] / (TALLEST * paper - 2 * BARE))
-        whole = np.array([paper * scale, sides[0][1] + 2 * BARE * scale])
+        scale = max(sides[0][0] / (paper - 2 * bare), sides[0][1] / (TALLEST * paper - 2 * bare))
+        whole = np.array([paper * scale, sides[0][1] + 2 * bare * scale])
         return _ViewLayout(whole, [(whole - sides[0]) / 2], np.zeros(2))
-    borders = [_around(ROOM), _around(RULES)]
+    # left, right, lower, upper border of the three-quarter view [pt]: words; compass below
+    room = (34.0, 34.0, 40.0, 20.0)
+    rules = (28.0, 12.0, 20.0, 14.0)  # that of the view along an axis [pt]: there are numbers
+    borders = [_around(room), _around(rules)]
     scales = []
     for beside in (True, False):
         need, free = _joint_size(sides[0], sides[1], beside), _joint_size(borders[0], borders[1], beside)
@@ -126,7 +127,7 @@ def _lay_out(sides: Sequence[Place], paper: float) -> _ViewLayout:
         first[0] = whole[0]
         boxes = [np.array([0.0, second[1]]), np.array([(whole[0] - second[0]) / 2, 0.0])]
     lows = []
-    for box, border, whole_side, side in zip(boxes, (ROOM, RULES), (first, second), sides, strict=True):
+    for box, border, whole_side, side in zip(boxes, (room, rules), (first, second), sides, strict=True):
         free = whole_side - side - _around(border) * scale
         lows.append(box + np.array([border[0], border[2]]) * scale + free / 2)
     return _ViewLayout(whole, lows, boxes[0])
@@ -145,14 +146,14 @@ def _joint_size(first: Place, second: Place, beside: bool) -> Place:
     return size
 
 
-ARM = 15.0  # length of an axis of the compass [pt]
 SIDES = np.array([112.0, 38.0])  # room that compass and bar take [pt]
 
 
 def draw_compass(sheet: PictureSheet, camera: Camera, low: Place) -> None:
     """x, y and z as arrows, and beside them a bar of round length; `low` is the lower left corner of both [mm]."""
     point = sheet.scale
-    ways = camera.axes[:2].T * ARM * point
+    arm = 15.0  # length of an axis of the compass [pt]
+    ways = camera.axes[:2].T * arm * point
     middle = low + np.array([9.0, 9.0]) * point - np.minimum(ways.min(axis=0), 0.0)
     for way, name in zip(ways, "xyz", strict=True):
         if np.linalg.norm(way) > 3 * point:
@@ -161,7 +162,7 @@ def draw_compass(sheet: PictureSheet, camera: Camera, low: Place) -> None:
             letter = end + way / np.linalg.norm(way) * 5 * point
             sheet.text((letter[0], letter[1]), name, fontsize=7, color=MUTED, ha="center", va="center", zorder=12)
     length = round_step(4 * 55 * point)
-    left = low + np.array([24.0 + 2 * ARM, 8.0]) * point
+    left = low + np.array([24.0 + 2 * arm, 8.0]) * point
     bar = np.array([left, left + np.array([length, 0.0])])
     sheet.curve(bar, color=INK, linewidth=1.6, solid_capstyle="butt", zorder=12)
     words = left + np.array([length / 2, 4 * point])

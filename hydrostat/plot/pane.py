@@ -57,19 +57,15 @@ def _points(thing: Obstacle) -> Points:
         axes, turns = thing.frame()[1], np.linspace(0.0, 2 * np.pi, 48, endpoint=False)
         ring = radius * (np.outer(np.cos(turns), axes[1]) + np.outer(np.sin(turns), axes[2]))
         return np.concatenate([at + ring, to + ring])
-    heights = np.linspace(-1.0, 1.0, _DOTS)
-    turns = np.pi * (3 - np.sqrt(5)) * np.arange(_DOTS)  # a spiral by the golden angle covers a sphere evenly
+    dots = 800  # Points on a sphere
+    heights = np.linspace(-1.0, 1.0, dots)
+    turns = np.pi * (3 - np.sqrt(5)) * np.arange(dots)  # a spiral by the golden angle covers a sphere evenly
     flat = np.sqrt(1 - heights**2)
     ball = radius * np.column_stack([flat * np.cos(turns), flat * np.sin(turns), heights])
     return at + ball if thing.to is None else np.concatenate([at + ball, to + ball])
 
 
-_DOTS = 800
-"""Points on a sphere."""
-
-
 DPI = 200  # pixels of an image of a body to an inch
-MOST_PIXELS = 1.0e6  # pixels of a larger image grow, so that no image takes long
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,7 +212,8 @@ class SpacePane(Pane):
 
 def fit_pixel(sheet: PictureSheet, sides: Place, *, dpi: float = DPI) -> float:
     """Side of a pixel [mm] of an image with these sides [mm], so many to an inch unless they would be too many."""
-    return max(72 / dpi * sheet.scale, float(np.sqrt(np.prod(sides) / MOST_PIXELS)))
+    most_pixels = 1.0e6  # pixels of a larger image grow, so that no image takes long
+    return max(72 / dpi * sheet.scale, float(np.sqrt(np.prod(sides) / most_pixels)))
 
 
 def lay_image(sheet: PictureSheet, image: Render, shift: Place, *, seam: str = SEAM) -> list[Places]:

@@ -41,8 +41,6 @@ def report_text(network: Network, *, title: str | None = None, facts: Mapping[st
     return page(name, _hero(network, name), *chapters(network), footer(network, facts or {}))
 
 
-PORTRAIT = 4.6  # width of a portrait [inch]
-MOST_POSES = 5  # so many poses of a body in space have a portrait
 HOW = ", by its own winches, in simulation"
 
 
@@ -93,7 +91,8 @@ def _portraits(network: Network) -> Html:
     beside = [part for nodes in (*poses, rest) for part in (*carried.cables(nodes), carried.winches(nodes))]
     frame = np.concatenate(outer if rest.shape[1] == 2 else [*outer, *beside])
     still = _portrait(robot, rest, frame, "hero-rest", "At rest")
-    shown = network.reached[:1] if rest.shape[1] == 2 else network.reached[:MOST_POSES]
+    most_poses = 5  # so many poses of a body in space have a portrait
+    shown = network.reached[:1] if rest.shape[1] == 2 else network.reached[:most_poses]
     posed = [
         _portrait(robot, reached.pose.nodes, frame, f"hero-pose-{index}", "In a pose")
         for index, reached in enumerate(shown)
@@ -115,4 +114,5 @@ def _portraits(network: Network) -> Html:
 
 
 def _portrait(robot: Robot, nodes: Nodes, frame: Spread, name: str, label: str) -> Html:
-    return Html(inline_svg(draw_portrait(robot, nodes, frame=frame, width=PORTRAIT), name=name, label=label))
+    portrait = 4.6  # width of a portrait [inch]
+    return Html(inline_svg(draw_portrait(robot, nodes, frame=frame, width=portrait), name=name, label=label))

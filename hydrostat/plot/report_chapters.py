@@ -194,7 +194,8 @@ def reach_chapters(network: Network) -> list[Chapter]:
     """Return the chapters on the workspace of each marker beyond the requested poses; none where no pose is found."""
     robot = network.robot
     limit = network.constraints.tension_limit
-    reaches = find_reach(Simulation(robot), tension=limit, count=MOST_TRIED)
+    most_tried = 36  # poses that are tried for the reach of markers
+    reaches = find_reach(Simulation(robot), tension=limit, count=most_tried)
     if not any(len(reach.places) for reach in reaches):
         return []
     words = (
@@ -239,9 +240,6 @@ def _routes(network: Network, trace: TreeTrace) -> Chapter:
     return Chapter("From muscles to routes", words, [grid(*pictures, kind="small")])
 
 
-MOST_TRIED = 36  # poses that are tried for the reach of markers
-MOST_STAGES = 8  # so many stages have a picture
-MOST_ALTERNATIVES = 12  # so many alternatives have a picture
 CHART = 7.2  # width of a chart [inch]
 
 
@@ -258,7 +256,8 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
             " Several networks are begun: grown from different first cables, drawn along the limbs, or taken from "
             "winch trees; the most promising are refined."
         )
-    shown = evenly(len(trace.stages), MOST_STAGES)
+    most_stages = 8  # so many stages have a picture
+    shown = evenly(len(trace.stages), most_stages)
     stages = [trace.stages[index] for index in shown]
     frame = stage_frame([*(stage.robot for stage in stages), network.robot])
     pictures = []
@@ -288,7 +287,8 @@ def alternative_chapters(network: Network) -> list[Chapter]:
         figure = draw_front(others, network, tolerance=network.request.route_options.tolerance, width=CHART)
         note = ", a colour for each number of winches"
         parts.append(grid(picture(figure, "front", "Error against minutes of sewing", note)))
-    shown = [others[index] for index in evenly(len(others), MOST_ALTERNATIVES)]
+    most_alternatives = 12  # so many alternatives have a picture
+    shown = [others[index] for index in evenly(len(others), most_alternatives)]
     parts.append(_pictures(network, shown))
     if len(shown) < len(others):
         parts.append(tag("p", f"{len(shown)} of {len(others)} are shown.", class_="quiet"))

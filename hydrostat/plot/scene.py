@@ -21,12 +21,10 @@ from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import PoseTarget, Robot, replace_file
 
 MOST_KEYS = 120  # of a film of more different frames every second, third ... is a key: programs hold them all at once
-SAME = 1e-5  # two frames are one key where no node differs by more than this, in sizes of the body
 CABLE, MARKER, TARGET = 0.0045, 0.011, 0.05
 """Radius of a cable and of a marker, and length of a target's cross, in sizes of the body."""
 
 SPOOL = (0.012, 0.045)  # least and largest radius of a spool that is shown, in sizes of the body
-OPACITY = 0.72  # of a body that has cables: they run inside, mostly
 
 
 def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float) -> Path:
@@ -78,7 +76,8 @@ class _Film:
 
 def _distinct(robot: Robot, frames: Sequence[Frame]) -> tuple[list[Frame], list[int]]:
     """Frames that differ, and which of them each frame is."""
-    near = SAME * robot.body.mesh.size
+    same = 1e-5  # two frames are one key where no node differs by more than this, in sizes of the body
+    near = same * robot.body.mesh.size
     most = max(float(frame.tensions.max(initial=0.0)) for frame in frames)
     keys: list[Frame] = []
     order: list[int] = []
@@ -121,7 +120,8 @@ def _turn(robot: Robot) -> tuple[float, float, float, float]:
 def _body(film: _Film) -> GlbPart:
     body = film.robot.body
     solid = skin(body.mesh, film.nodes) if body.mesh.dim == 3 else slab(body.mesh, film.nodes, body.thickness or 0.0)
-    return _shape("body", solid, FELT, opacity=OPACITY if film.robot.cables else 1.0)
+    opacity = 0.72  # of a body that has cables: they run inside, mostly
+    return _shape("body", solid, FELT, opacity=opacity if film.robot.cables else 1.0)
 
 
 def _cables(film: _Film) -> GlbPart:

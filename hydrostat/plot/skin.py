@@ -15,8 +15,6 @@ from hydrostat.geometry import Anchors, Mesh
 from hydrostat.plot.sheet import Places, Spread
 from hydrostat.robot import Body
 
-RING_POINTS = 320  # points on a ring as long as the body's whole boundary
-
 
 @dataclass(frozen=True, eq=False)
 class FlatSkin:
@@ -70,10 +68,11 @@ def _shape(body: Body) -> Polygon | MultiPolygon:
 def _rings(shape: Polygon | MultiPolygon, length: float) -> list[Places]:
     """Every ring of a shape as evenly spaced points, the first not repeated."""
     rings = []
+    ring_points = 320  # points on a ring as long as the body's whole boundary
     for part in getattr(shape, "geoms", [shape]):
         for ring in (part.exterior, *part.interiors):
             if ring.length > 0:
-                count = max(12, round(RING_POINTS * ring.length / length))
+                count = max(12, round(ring_points * ring.length / length))
                 places = np.arange(count) / count * ring.length
                 rings.append(np.array([ring.interpolate(place).coords[0] for place in places]))
     return rings

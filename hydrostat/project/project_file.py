@@ -10,15 +10,13 @@ from pydantic import ConfigDict, ValidationError, create_model
 
 from hydrostat import units
 from hydrostat.control import Timeline
-from hydrostat.design import Constraints, RouteOptions, TreeKnobs
+from hydrostat.design import STEPPED, Constraints, RouteOptions, TreeKnobs
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
 from hydrostat.project.wishes import ELSEWHERE, Wishes
 from hydrostat.robot import replace_file
 
 PROJECT_FILE = "studio.json"
-
-LARGEST = 20_000_000  # maximum size of the file [bytes]
 
 
 KEYS = (
@@ -38,7 +36,8 @@ def _wishes_table() -> type:
     for record in (RouteOptions, TreeKnobs, Constraints, Wishes):
         hints |= get_type_hints(record)
     forms = [(name, hints[name], field(default=usual.value(name))) for name in (*KEYS, *MORE)]
-    return make_dataclass("Wishes", forms, frozen=True, kw_only=True)
+    ratio = ("spool_ratio", float | None, field(default=None))  # None: as "stepped" says
+    return make_dataclass("Wishes", [*forms, ratio], frozen=True, kw_only=True)
 
 
 _TABLE = _wishes_table()
@@ -56,8 +55,11 @@ _FILE = create_model(
 def write_project_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:
     """Write keyframes and wishes whole or not at all (InputError: the file cannot be written)."""
     usual = Wishes()
-    table = _TABLE(**{name: wishes.value(name) for name in (*KEYS, *MORE)})
+    ratio = wishes.constraints.spool_ratio
+    special = None if ratio in (1.0, STEPPED) else ratio
+    table = _TABLE(**{name: wishes.value(name) for name in (*KEYS, *MORE)}, spool_ratio=special)
     left_out = {name for name in MORE if wishes.value(name) == usual.value(name)}
+    left_out |= {"spool_ratio"} if special is None else set()
     text = _FILE(timeline=timeline, wishes=table).model_dump_json(indent=2, exclude={"wishes": left_out})
     replace_file(folder / PROJECT_FILE, text.encode() + b"\n")
 
@@ -67,10 +69,14 @@ def read_project_file(folder: Path, cables: Sequence[str] = ()) -> tuple[Timelin
     file = folder / PROJECT_FILE
     if not file.exists():
         return Timeline(), Wishes()
-    content = read_stranger(file, name=PROJECT_FILE, most=LARGEST)
+    largest = 20_000_000  # maximum size of the file [bytes]
+    content = read_stranger(file, name=PROJECT_FILE, most=largest)
     try:
         read: Any = _FILE.model_validate_json(_with_names(content, cables))
-        return read.timeline, Wishes.of(**vars(read.wishes))
+        values = dict(vars(read.wishes))
+        if values["spool_ratio"] is None:
+            del values["spool_ratio"]
+        return read.timeline, Wishes.of(**values)
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))[:80]

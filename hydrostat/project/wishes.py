@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
+from numbers import Real
 from typing import Any
 
 from hydrostat.closed_set import make_member
@@ -130,7 +131,9 @@ def _check(name: str, value: Any) -> None:
     if not allowed.unit:
         raise InputError(f"{words} must be {allowed}, not {value}")
     scale, unit = allowed.shown
-    raise InputError(f"{words} must be {allowed.words(scale, unit)}, not {scale * value:g} {unit}")
+    is_number = isinstance(value, Real) and not isinstance(value, bool)
+    told = f"{scale * float(value):g} {unit}" if is_number else "nothing" if value is None else quote(value)
+    raise InputError(f"{words} must be {allowed.words(scale, unit)}, not {told}")
 
 
 def _check_mirror(value: object) -> None:

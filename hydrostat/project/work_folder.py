@@ -77,9 +77,6 @@ def fresh_name(stem: str, taken: Collection[str]) -> str:
     return f"{stem}_{number}"
 
 
-MOST_TOLD = 5  # so many lost comments are told one by one
-
-
 def open_work(folder: Path) -> Work:
     """Read a robot's folder; a broken studio.json is left, `open_note` says why (InputError: as for `load_robot`)."""
     robot = load_robot(folder)
@@ -159,8 +156,9 @@ def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
     if work.robot.body.file != _body_file(_home(folder)) and _is_other(file, work.robot.body.content):
         asked.append(f"There is another {file.name} in this folder, not of this robot; saving replaces it.")
     lost = comments_lost(work, folder)
+    most_told = 5  # so many lost comments are told one by one
     if lost:
-        told = lost if len(lost) <= MOST_TOLD else [*lost[:MOST_TOLD], f"and {len(lost) - MOST_TOLD} more"]
+        told = lost if len(lost) <= most_told else [*lost[:most_told], f"and {len(lost) - most_told} more"]
         asked.append("Comments in robot.toml would be lost, as what they speak of is gone:\n" + "\n".join(told))
     note = open_note(folder)
     if note:

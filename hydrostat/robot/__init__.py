@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body, surface_body
     from hydrostat.robot.cable import Cable
     from hydrostat.robot.checks import Point, check_name, check_not_negative, check_number, check_positive
-    from hydrostat.robot.contact import DISTANCE, ClosedMesh, Contact, Obstacle, ObstacleShape, closed_mesh
+    from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
     from hydrostat.robot.face import Face
     from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
     from hydrostat.robot.html_repr import html_repr, in_words
@@ -43,7 +43,6 @@ __all__ = [
     "Angle",
     "Body",
     "Cable",
-    "ClosedMesh",
     "Contact",
     "Coordinates",
     "Face",

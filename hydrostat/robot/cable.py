@@ -21,8 +21,6 @@ from hydrostat.robot.checks import (
     check_positive,
 )
 
-LARGEST_FRICTION = 2.0  # no coefficient of friction is larger: one half turn would then hold 500 times the tension
-
 
 @dataclass(frozen=True, kw_only=True)
 class Cable:
@@ -76,8 +74,10 @@ class Cable:
         if self.spool_radius is not None:
             check_positive("spool_radius", self.spool_radius, "m")
         check_number("friction", self.friction, "")
-        if not 0 <= self.friction <= LARGEST_FRICTION:
-            raise InputError(f"friction must be at least 0 and at most {LARGEST_FRICTION:g}, not {self.friction:g}")
+        # no coefficient of friction is larger: one half turn would then hold 500 times the tension
+        largest_friction = 2.0
+        if not 0 <= self.friction <= largest_friction:
+            raise InputError(f"friction must be at least 0 and at most {largest_friction:g}, not {self.friction:g}")
         for start, end in self.sheathed:
             if not 0 <= start < end < count:
                 raise InputError(

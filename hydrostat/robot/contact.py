@@ -23,9 +23,6 @@ from hydrostat.geometry import (
 )
 from hydrostat.robot.checks import Point, check_name, check_number, check_point, check_positive
 
-MOST_TRIANGLES = 20_000
-"""No thing may have more."""
-
 
 @dataclass(frozen=True)
 class ClosedMesh:
@@ -72,9 +69,10 @@ def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
     from hydrostat.geometry import crossing_pairs  # only here: a robot without such a thing starts sooner
 
     surface = read_surface(content, name=file, unit=unit)
-    if len(surface.triangles) > MOST_TRIANGLES:
+    most_triangles = 20_000  # No thing may have more
+    if len(surface.triangles) > most_triangles:
         count = len(surface.triangles)
-        raise InputError(f"{file}: has {count} triangles, an obstacle at most {MOST_TRIANGLES}; simplify the surface")
+        raise InputError(f"{file}: has {count} triangles, an obstacle at most {most_triangles}; simplify the surface")
     merged, numbers = np.unique(surface.vertices, axis=0, return_inverse=True)
     triangles = numbers.reshape(-1)[surface.triangles]
     whole = Surface(merged, triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)])
@@ -117,8 +115,9 @@ class Contact:
 def check_friction(friction: float) -> None:
     """Check a coefficient of friction (InputError: it is not from 0 to 3)."""
     check_number("friction", friction, "")
-    if not 0 <= friction <= _MOST_FRICTION:
-        raise InputError(f"friction must be from 0 to {_MOST_FRICTION:g}, not {friction:g}: rubber has about 1")
+    most_friction = 3.0  # No coefficient of friction is larger
+    if not 0 <= friction <= most_friction:
+        raise InputError(f"friction must be from 0 to {most_friction:g}, not {friction:g}: rubber has about 1")
 
 
 class ObstacleShape(StrEnum):
@@ -217,10 +216,11 @@ class Obstacle:
         at = np.array(self.at)
         if self.shape == ObstacleShape.PLANE:
             return np.zeros((0, len(at)))
+        spine = 41  # Points along an obstacle that are looked for in the body
         if self.mesh is not None:
             corners = self.mesh.surface.vertices
-            return at + corners[:: max(1, len(corners) // _SPINE)]
-        return at + np.linspace(0, 1, _SPINE)[:, None] * ((self.to or self.at) - at)
+            return at + corners[:: max(1, len(corners) // spine)]
+        return at + np.linspace(0, 1, spine)[:, None] * ((self.to or self.at) - at)
 
     def field(self) -> DistanceField:
         """Distance of points from it."""
@@ -277,9 +277,6 @@ class Obstacle:
         """Mean squares of the coordinates of its mass along its axes [m^2]."""
         return _MOMENTS[ObstacleShape(self.shape)](self)
 
-
-_SPINE = 41
-"""Points along an obstacle that are looked for in the body."""
 
 _NEEDED = {
     ObstacleShape.PLANE: ("normal",),
@@ -339,6 +336,3 @@ _MOMENTS: dict[ObstacleShape, Callable[[Obstacle], Vector]] = {
     ObstacleShape.BOX: _box_moments,
     ObstacleShape.MESH: _mesh_moments,
 }
-
-_MOST_FRICTION = 3.0
-"""No coefficient of friction is larger."""

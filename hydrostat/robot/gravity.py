@@ -6,7 +6,6 @@ from hydrostat.errors import InputError
 
 STANDARD_GRAVITY = 9.80665  # standard acceleration of free fall [m/s^2] (CGPM 1901)
 
-LARGEST_GRAVITY = 1000.0  # no component of gravity is larger [m/s^2]: about a hundred times that on earth
 DIRECTIONS = ("-x", "+x", "-y", "+y", "-z", "+z")  # words for standard gravity along an axis
 
 
@@ -29,9 +28,10 @@ def check_gravity(gravity: tuple[float, ...], dim: int) -> None:
     """Refuse gravity that has not one finite component of reasonable size for each axis."""
     if len(gravity) != dim:
         raise InputError(f"gravity has {len(gravity)} entries, but the body has {dim} axes; give one for each")
+    largest_gravity = 1000.0  # no component of gravity is larger [m/s^2]: about a hundred times that on earth
     for axis, component in enumerate(gravity):
-        if not abs(component) <= LARGEST_GRAVITY or math.isnan(component):
+        if not abs(component) <= largest_gravity or math.isnan(component):
             raise InputError(
-                f"gravity[{axis}] must be from {-LARGEST_GRAVITY:g} to {LARGEST_GRAVITY:g} m/s^2, "
+                f"gravity[{axis}] must be from {-largest_gravity:g} to {largest_gravity:g} m/s^2, "
                 f"not {component:g} m/s^2"
             )

@@ -100,7 +100,8 @@ def _blown_up(body: Body, element_size: float | None) -> Body:
 def _skin(body: Body, places: Points, side: float) -> Vector:
     """Height of the skin over points of the plane, on the side of +z or -z, a little inside [m]."""
     low, high = np.zeros(len(places)), np.full(len(places), float(np.abs(body.mesh.nodes[:, 2]).max()))
-    for _ in range(_HALVINGS):
+    halvings = 14  # of the height, so that it is within a hundredth of a millimetre
+    for _ in range(halvings):
         middle = 0.5 * (low + high)
         outside = body.distances(np.column_stack([places, side * middle])) > 0
         high, low = np.where(outside, middle, high), np.where(outside, low, middle)
@@ -138,6 +139,3 @@ def _pin(pin: Pin, thickness: float) -> Pin:
     if pin.at is not None and pin.radius == 0.0:
         return replace(pin, at=_raise_place(pin.at))
     return replace(pin, at=None, radius=0.0, box=((*map(float, low), -thickness), (*map(float, high), thickness)))
-
-
-_HALVINGS = 14  # of the height, so that it is within a hundredth of a millimetre

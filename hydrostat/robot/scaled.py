@@ -12,9 +12,6 @@ from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.marker import PoseTarget
 from hydrostat.robot.robot import Robot
 
-LEAST, MOST = 0.01, 100.0
-"""No robot is made smaller or larger at once than by these factors."""
-
 
 def scaled_robot(robot: Robot, factor: float) -> Robot:
     """Scale every length of a robot: body, elements, thickness, pins, winches, cables, obstacles.
@@ -25,8 +22,9 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     Raises:
         InputError: a factor out of its range, an obstacle that is a mesh, or no body of that size.
     """
-    if isinstance(factor, bool) or not isinstance(factor, int | float) or not LEAST <= factor <= MOST:
-        raise InputError(f"the factor must be from {LEAST:g} to {MOST:g}, not {factor!r}")
+    least, most = 0.01, 100.0  # No robot is made smaller or larger at once than by these factors
+    if isinstance(factor, bool) or not isinstance(factor, int | float) or not least <= factor <= most:
+        raise InputError(f"the factor must be from {least:g} to {most:g}, not {factor!r}")
     for obstacle in robot.obstacles:
         if obstacle.mesh is not None:
             raise InputError(f'obstacle "{obstacle.name}" has the size of its file; scale that in CAD')
@@ -43,7 +41,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     def maybe(value: float | None) -> float | None:
         return None if value is None else length(value)
 
-    def placed(each: Obstacle) -> Obstacle:
+    def scale_obstacle(each: Obstacle) -> Obstacle:
         return replace(
             each, at=point(each.at), to=None if each.to is None else point(each.to), radius=maybe(each.radius)
         )
@@ -82,7 +80,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
             name: PoseTarget(name=name, targets={key: point(place) for key, place in pose.targets.items()})
             for name, pose in robot.poses.items()
         },
-        obstacles=tuple(map(placed, robot.obstacles)),
+        obstacles=tuple(map(scale_obstacle, robot.obstacles)),
         contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),
     )
 

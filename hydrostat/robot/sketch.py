@@ -22,16 +22,10 @@ def finer_size(body: Body, most: int) -> float | None:
     if not parts or body.element_size is None:
         return None
     few = min(part.across for part in parts)
-    size = body.element_size * max(few / (_SPARE * least), 0.5)
+    spare = 1.15  # as meshes differ, so much more than is needed is aimed at
+    size = body.element_size * max(few / (spare * least), 0.5)
     nodes = len(body.mesh.nodes) * (body.element_size / size) ** dim
     return size if nodes <= most else None
-
-
-_SPARE = 1.15  # as meshes differ, so much more than is needed is aimed at
-
-
-MOST_NODES = 2000
-"""A sketch gets no more nodes than this for the sake of its thin limbs."""
 
 
 def sketch_robot(
@@ -73,7 +67,8 @@ def sketch_robot(
     length, asked = element_size or _element_size(outline, nodes), bool(element_size or nodes)
     make = partial(outline_body, content, file=file, material=get_material(material), size=size, inner=inner)
     body = make(element_size=length, thickness=thickness or _round(outline.size / 7))
-    while not asked and (finer := finer_size(body, MOST_NODES)) is not None:
+    most_nodes = 2000  # A sketch gets no more nodes than this for the sake of its thin limbs
+    while not asked and (finer := finer_size(body, most_nodes)) is not None:
         if _round(finer) >= length:
             break
         length = _round(finer)

@@ -21,8 +21,6 @@ from hydrostat.robot.winch import Winch
 NODES = 900
 """Nodes of a sketch, if neither a number nor an element size is asked for: as many as the thesis's hand (N3)."""
 
-SHORTEST, LONGEST = 0.002, 20.0  # bodies are as long [m]; what is not was probably meant in another unit
-
 
 @dataclass(frozen=True, eq=False)
 class SurfaceSketch:
@@ -115,11 +113,12 @@ def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: s
 
 def _check_scale(length: float, size: float | None) -> None:
     """Refuse bodies so small or large that the file probably counts in another unit."""
-    if SHORTEST <= length <= LONGEST:
+    shortest, longest = 0.002, 20.0  # bodies are as long [m]; what is not was probably meant in another unit
+    if shortest <= length <= longest:
         return
-    meant = 1e3 * length if length < SHORTEST else 1e-3 * length
+    meant = 1e3 * length if length < shortest else 1e-3 * length
     hint = f'; files without a unit are read as mm: give a size, perhaps "{1e3 * meant:.3g} mm"' if size is None else ""
-    raise InputError(f"the body would be {1e3 * length:.3g} mm long, not {1e3 * SHORTEST:g} mm to {LONGEST:g} m{hint}")
+    raise InputError(f"the body would be {1e3 * length:.3g} mm long, not {1e3 * shortest:g} mm to {longest:g} m{hint}")
 
 
 def _guess(surface: Surface, nodes: int) -> float:
@@ -128,16 +127,10 @@ def _guess(surface: Surface, nodes: int) -> float:
     return float((max(min(abs(surface.volume), box), 0.05 * box, 1e-3 * surface.size**3) / nodes) ** (1 / 3))
 
 
-_END = 0.12  # an end is as much of the longest side
-
 _STOUT = 0.35
 """An end with such a share of the largest cross section is a good place to hold: a wrist, not the tip of an arm."""
 
 _STATIONS = np.linspace(0.04, 0.9, 12)
-_BAND = 0.05
-_SMOOTHINGS = 3
-_OFFS = (0.3, 0.2, 0.1, 0.0)  # how far a cable may lie from the middle of a limb towards its skin, the best first
-_COVER = 0.004  # a cable should be as deep [m]
 
 _SPOOL, _LEAST_SPOOL = 0.006, 0.002
 
@@ -179,15 +172,16 @@ def _hold(mesh: Mesh) -> Pin:
     low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
     axis = int(np.argmax(high - low))
     along = (mesh.nodes[mesh.elements].mean(axis=1)[:, axis] - low[axis]) / (high[axis] - low[axis])
-    slabs = np.bincount(np.minimum(along / _END, 1 / _END - 1).astype(int), weights=mesh.volumes)
-    ends = [float(mesh.volumes[chosen].sum()) for chosen in (along < _END, along > 1 - _END)]
+    end = 0.12  # an end is as much of the longest side
+    slabs = np.bincount(np.minimum(along / end, 1 / end - 1).astype(int), weights=mesh.volumes)
+    ends = [float(mesh.volumes[chosen].sum()) for chosen in (along < end, along > 1 - end)]
     if max(ends) < _STOUT * slabs.max():
         inner = np.setdiff1d(np.arange(len(mesh.nodes)), mesh.boundary_nodes)
         depths = clearance(mesh, mesh.nodes[inner])
         return Pin(at=_point(mesh.nodes[inner[np.argmax(depths)]]), radius=round(0.8 * float(depths.max()), 4))
     box = np.array([low, high]) + 0.05 * (high - low) * [[-1.0], [1.0]]
     last = ends[1] > ends[0]
-    box[0 if last else 1, axis] = (high if last else low)[axis] + (-1 if last else 1) * _END * (high - low)[axis]
+    box[0 if last else 1, axis] = (high if last else low)[axis] + (-1 if last else 1) * end * (high - low)[axis]
     return Pin(box=(_point(box[0]), _point(box[1])))
 
 
@@ -204,7 +198,8 @@ class _Limb:
         from scipy.sparse.csgraph import connected_components  # Imported here: not every command needs it.
 
         away = self.away[mesh.elements].mean(axis=1)
-        width = _BAND
+        band = 0.05
+        width = band
         while not np.isin(self.path, mesh.elements[near := np.abs(away - share) < width]).any():
             width *= 2  # in a stout body the way has few nodes, with none in a narrow band
         ends = mesh.elements[near]
@@ -253,18 +248,22 @@ def _side(mesh: Mesh, arm: Vector) -> Vector:
 
 def _smooth_line(points: Points) -> Points:
     """Line without its zigzag, which is that of the elements; its ends stay."""
-    for _ in range(_SMOOTHINGS):
+    smoothings = 3
+    for _ in range(smoothings):
         points = np.concatenate([points[:1], (points[:-2] + 2 * points[1:-1] + points[2:]) / 4, points[-1:]])
     return points
 
 
 def _cover_offset(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
     """Place off the middle of a limb towards its skin, in the solid, as far as there is cover, or else the best."""
-    places = middle + np.multiply.outer(_OFFS, way)
+    # how far a cable may lie from the middle of a limb towards its skin, the best first
+    offs = (0.3, 0.2, 0.1, 0.0)
+    places = middle + np.multiply.outer(offs, way)
     found = locate(mesh, np.concatenate([places, middle[None]]))
     places = np.concatenate([places, mesh.nodes[found.stencils[-1:]].mean(axis=1)])
     depths = np.where(np.append(found.inside[:-1], True), -solid.distances(places), -np.inf)
-    return places[int(np.argmax(depths > _COVER))] if (depths > _COVER).any() else places[int(np.argmax(depths))]
+    cover = 0.004  # a cable should be as deep [m]
+    return places[int(np.argmax(depths > cover))] if (depths > cover).any() else places[int(np.argmax(depths))]
 
 
 def _space_points(points: list[Vector]) -> Points:

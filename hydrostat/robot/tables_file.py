@@ -70,9 +70,6 @@ _NO_WINCH = """\
 """
 
 
-LARGEST_TEXT = 1_000_000  # the file may have this many bytes
-_LONGEST = 400  # characters of a complaint, its file and line not counted
-
 _PLACE = re.compile(r"([a-z_]+)(?:\[\d+\])*(?:\.[a-z_]+(?:\[\d+\])*)*(?=[ :.])")
 _LONG_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]*["']?[ \t]*\.[ \t]*){30}""")
 _Record = TypeVar("_Record")
@@ -126,7 +123,8 @@ class TablesFile(ABC):
         line = line or find_line(self.text, key)
         where = f"{self.file}{f', line {line}' if line else ''}"
         told = key + message if message.startswith((" ", ":")) else f"{key}: {message}" if key else message
-        told = told if len(told) <= _LONGEST else told[: _LONGEST - 3] + "..."
+        longest = 400  # characters of a complaint, its file and line not counted
+        told = told if len(told) <= longest else told[: longest - 3] + "..."
         raise InputError(units.printable(f"{where}: {told}")) from None
 
     def _parse(self) -> Any:
@@ -159,7 +157,8 @@ class TablesFile(ABC):
 
 def read_text(file: Path) -> str:
     """Read the text of a file in UTF-8 (InputError: it cannot be read, is too large, or is no such text)."""
-    content = read_stranger(file, name=units.printable(str(file)), most=LARGEST_TEXT)
+    largest_text = 1_000_000  # the file may have this many bytes
+    content = read_stranger(file, name=units.printable(str(file)), most=largest_text)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

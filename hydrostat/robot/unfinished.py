@@ -10,12 +10,12 @@ from pathlib import Path
 
 _HOST = re.sub(r"\W", "_", platform.node())[:24] or "here"
 _NAME = re.compile(rf"\..*\.{_HOST}-(\d+)-\d+\.part", re.DOTALL)
-_LONGEST = 40  # letters of the name that are kept, as no name has more than 255 bytes
 
 
 def temporary_path(path: Path) -> Path:
     """Return the hidden path next to a path at which it is written first: unique to each writer on each machine."""
-    return path.with_name(f".{path.name[:_LONGEST]}.{_HOST}-{os.getpid()}-{threading.get_native_id()}.part")
+    longest = 40  # letters of the name that are kept, as no name has more than 255 bytes
+    return path.with_name(f".{path.name[:longest]}.{_HOST}-{os.getpid()}-{threading.get_native_id()}.part")
 
 
 def clear_unfinished(folder: Path) -> None:

@@ -49,11 +49,8 @@ class Winch:
         check_positive("spool_radius", self.spool_radius, "m")
         check_positive("travel", self.travel, "m")
         check_not_negative("release", self.release, "m")
+        most = 20.0  # No winch takes in more [m]
         for field, value in (("travel", self.travel), ("release", self.release), ("spool_radius", self.spool_radius)):
-            if value > _MOST:
-                raise InputError(f"{field} must be at most {_MOST:g} m, not {value:g}; in metres: 60 mm is 0.06")
+            if value > most:
+                raise InputError(f"{field} must be at most {most:g} m, not {value:g}; in metres: 60 mm is 0.06")
         make_member(self, "mount", Mount)
-
-
-_MOST = 20.0
-"""No winch takes in more [m]."""

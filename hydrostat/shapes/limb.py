@@ -12,8 +12,6 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.geometry import Surface, contour
 from hydrostat.shapes.field import Field, Place, ellipsoidal
 
-_SPACING = 4e-3  # stations along the spine of a limb are about this far apart [m]
-
 
 @dataclass(frozen=True, eq=False)
 class Limb:
@@ -167,8 +165,9 @@ def _smooth(corners: Float[np.ndarray, "joints 3"], bend: float) -> Float[np.nda
         )
     places.append(corners[-1])
     stations = [places[0]]
+    spacing = 4e-3  # stations along the spine of a limb are about this far apart [m]
     for start, end in pairwise(places):
-        count = max(round(float(np.linalg.norm(end - start)) / _SPACING), 1)
+        count = max(round(float(np.linalg.norm(end - start)) / spacing), 1)
         stations.extend(start + share * (end - start) for share in np.arange(1, count + 1) / count)
     return np.array(stations)
 

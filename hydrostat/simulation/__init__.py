@@ -6,9 +6,9 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.simulation.body_physics import BodyPhysics
-    from hydrostat.simulation.branches.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
-    from hydrostat.simulation.branches.continue_branch import BranchOptions, continue_branch
-    from hydrostat.simulation.branches.find_equilibria import FoundPose, Multistability, find_equilibria
+    from hydrostat.simulation.branches.branch import Branch
+    from hydrostat.simulation.branches.continue_branch import continue_branch
+    from hydrostat.simulation.branches.find_equilibria import Multistability, find_equilibria
     from hydrostat.simulation.branches.friction_hysteresis import friction_hysteresis
     from hydrostat.simulation.cable_sensitivities import CableSensitivities, cable_sensitivities
     from hydrostat.simulation.contraction_profile import (
@@ -25,54 +25,36 @@ if TYPE_CHECKING:
         contraction_values,
         largest_distance,
     )
-    from hydrostat.simulation.filled import FilledMotion, filled_motion, is_filled_motion_fast
+    from hydrostat.simulation.filled import filled_motion, is_filled_motion_fast
     from hydrostat.simulation.find_contacts import ContactPatch, describe_contacts, find_contacts
-    from hydrostat.simulation.motion_file import MotionTable, pose_facts, write_motion, write_pose
-    from hydrostat.simulation.obstacle_frames import (
-        carried_frames,
-        obstacle_forces,
-        obstacles_in_pose,
-        with_obstacles,
-        with_replaced,
-    )
-    from hydrostat.simulation.sensitivities.adjoint import Sensitivity
+    from hydrostat.simulation.motion_file import MotionTable, write_motion, write_pose
+    from hydrostat.simulation.obstacle_frames import obstacle_forces, obstacles_in_pose, with_obstacles, with_replaced
     from hydrostat.simulation.simulation import Simulation
     from hydrostat.simulation.static_obstacles import require_static_obstacles, rests_at_first, without_contact_friction
     from hydrostat.simulation.statics.batch_result import BatchResult
     from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium
     from hydrostat.simulation.statics.static_solver import StaticSolver, not_converged
     from hydrostat.simulation.strain import node_strains, node_stresses
-    from hydrostat.simulation.time.dynamics import Dynamics, PinShifts, StepOptions
+    from hydrostat.simulation.time.dynamics import StepOptions
     from hydrostat.simulation.time.motion import Motion
 
 __all__ = [
     "BatchResult",
     "BodyPhysics",
     "Branch",
-    "BranchOptions",
-    "BranchPoint",
-    "BranchReason",
     "CableSensitivities",
     "ContactPatch",
     "ContractionProfile",
     "Contractions",
-    "CriticalKind",
-    "CriticalPoint",
-    "Dynamics",
     "Equilibrium",
-    "FilledMotion",
-    "FoundPose",
     "Motion",
     "MotionTable",
     "Multistability",
-    "PinShifts",
     "ProfileTable",
-    "Sensitivity",
     "Simulation",
     "StaticSolver",
     "StepOptions",
     "cable_sensitivities",
-    "carried_frames",
     "check_pose",
     "continue_branch",
     "contraction_values",
@@ -89,7 +71,6 @@ __all__ = [
     "not_converged",
     "obstacle_forces",
     "obstacles_in_pose",
-    "pose_facts",
     "profile_text",
     "read_profile",
     "require_static_obstacles",

@@ -149,7 +149,8 @@ class ProfileTable:
         Raises:
             InputError: it cannot be read, or see `read`.
         """
-        return cls.read(read_stranger(path, most=_MOST), robot, name=str(path))
+        most = 50_000_000  # Bytes that a table of moves may have
+        return cls.read(read_stranger(path, most=most), robot, name=str(path))
 
     def place(self, row: int) -> str:
         """File and line of a row, for messages."""
@@ -220,6 +221,3 @@ _MARKS = {
     ";": "; commas part them, not semicolons",
     "\t": "; commas part them, not tabs",
 }
-
-_MOST = 50_000_000
-"""Bytes that a table of moves may have."""

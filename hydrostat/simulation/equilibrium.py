@@ -115,16 +115,13 @@ class Equilibrium:
 
 def beyond_travel(robot: Robot, contractions: Vector) -> list[str]:
     """Winches that would take in more than they can, or let out more, in words; empty where none does."""
+    hair = 1e-9  # Tolerance for rounding errors of a contraction [m]
     return [
         f"winch {winch.name}: contraction {1e3 * value:.4g} mm is outside its range "
         f"({0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm)"
         for winch, value in zip(robot.winches, contractions, strict=True)
-        if not -winch.release - _HAIR <= value <= winch.travel + _HAIR
+        if not -winch.release - hair <= value <= winch.travel + hair
     ]
-
-
-_HAIR = 1e-9
-"""Tolerance for rounding errors of a contraction [m]."""
 
 
 def largest_distance(one: Nodes, other: Nodes) -> float:
@@ -206,18 +203,15 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
 def _check_metres(robot: Robot, contractions: Vector) -> None:
     """Reject contractions that no winch can reach, such as values in millimetres."""
     size = robot.body.mesh.size
-    if np.abs(contractions).max(initial=0.0) <= _MOST * size:  # no winch has a lower limit
+    most = 3.0  # A winch moves at most so many lengths of body and cable together
+    if np.abs(contractions).max(initial=0.0) <= most * size:  # no winch has a lower limit
         return
     bare = {winch.name: 0.0 for winch in robot.winches}
     for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
         bare[cable.winch] = max(bare[cable.winch], cable.length / float(ratio))
     for winch, value in zip(robot.winches, contractions, strict=True):
-        if abs(value) > _MOST * (size + bare[winch.name]):
+        if abs(value) > most * (size + bare[winch.name]):
             raise InputError(
                 f'the contraction of winch "{winch.name}", {value:g} m, is far more than the body, {size:.3g} m, and '
                 "all of its cable; contractions are in metres: 12 mm is 0.012"
             )
-
-
-_MOST = 3.0
-"""A winch moves at most so many lengths of body and cable together."""

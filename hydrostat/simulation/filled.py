@@ -36,11 +36,9 @@ def is_filled_motion_fast(robot: Robot, poses: int) -> bool:
     if body.outline is None or body.thickness is None or not robot.cables or not poses:
         return False
     across = max(body.thickness / (body.element_size or body.mesh.size / 25), 1.0)
-    return poses * _DEEP * across * len(body.mesh.nodes) <= _QUICK
-
-
-_DEEP = 1.5  # nodes of the body in space for each of the flat mesh and each element of its thickness
-_QUICK = 8000  # nodes times poses
+    deep = 1.5  # nodes of the body in space for each of the flat mesh and each element of its thickness
+    quick = 8000  # nodes times poses
+    return poses * deep * across * len(body.mesh.nodes) <= quick
 
 
 def filled_motion(

@@ -71,7 +71,8 @@ def describe_contacts(found: Sequence[ContactPatch]) -> str:
 
 
 def _newtons(force: float) -> str:
-    return f"{force:.2g} N" if force >= _LITTLE else f"less than {_LITTLE:g} N"
+    little = 0.001  # Force below which no figure is told [N]
+    return f"{force:.2g} N" if force >= little else f"less than {little:g} N"
 
 
 def _patches(stencils: Stencils, count: int) -> Iterator[np.ndarray]:
@@ -95,7 +96,3 @@ def _touch(pressed: ContactForces, patch: np.ndarray, obstacle: str | None) -> C
     return ContactPatch(
         place=weights @ pressed.places[patch] / weights.sum(), force=forces.sum(axis=0), obstacle=obstacle
     )
-
-
-_LITTLE = 0.001
-"""Force below which no figure is told [N]."""

@@ -360,9 +360,10 @@ class Simulation:
     def rest_stiffness(self) -> Stiffness:
         """Hessian at the nodes' rest positions."""
         nodes, idle = self.body.rest_unknowns, np.zeros(len(self.robot.winches))
+        near = self.assembly.with_active_terms(nodes)
         if self._more:
-            return self.assembly.with_active_terms(nodes).stiffness(nodes, idle)
-        return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
+            return near.stiffness(nodes, idle)
+        return Stiffness(self.body.rest_factors, near.coupling(nodes, idle), token=near.token, source=near)
 
     def with_deadline(self, deadline: float) -> "Simulation":
         """Return the same physics whose solves stop at a time of `time.monotonic` [s]; itself if that is infinite."""

@@ -14,13 +14,14 @@ from hydrostat.given import check_type
 from hydrostat.robot import Cable, Mount, Robot, Winch
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.simulation import Simulation
+from hydrostat.version import install_command
 
 try:
     import torch  # pyright: ignore[reportMissingImports]
     from torch import Tensor  # pyright: ignore[reportMissingImports]
     from torch.autograd.function import once_differentiable  # pyright: ignore[reportMissingImports]
 except ImportError:
-    raise InputError("solve_torch needs PyTorch; install hydrostat with its extra learn, hydrostat[learn]") from None
+    raise InputError(f"solve_torch needs PyTorch. Install it: {install_command('learn')}") from None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

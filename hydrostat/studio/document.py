@@ -15,7 +15,6 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.judge import Judge
 
 MOST_STEPS = 500  # so many changes can be undone; older ones are forgotten
-KEPT = 2  # so many states before, and after, keep the physics that were made for them
 
 
 @dataclass(eq=False)
@@ -189,7 +188,8 @@ class Document:
 
     def _forget_physics(self) -> None:
         """Physics take megabytes: only the last few states keep theirs."""
-        for change in (*self._past[:-KEPT], *self._future[:-KEPT]):
+        kept = 2  # so many states before, and after, keep the physics that were made for them
+        for change in (*self._past[:-kept], *self._future[:-kept]):
             change.simulation = None
 
     @property

@@ -30,8 +30,6 @@ from hydrostat.studio.view.colouring import Colouring, Scale, node_values, scale
 from hydrostat.studio.view.picture import Show, Shown
 from hydrostat.studio.view.things import rest_shape
 
-MOST_NOTES = 50  # so many notes are kept
-
 
 class Tone(StrEnum):
     """Tone of a note."""
@@ -83,7 +81,8 @@ class Session:
         }
         self.stage = StageName.START  # that is shown
         self.colouring = Colouring.FELT  # of the body
-        self.notes: deque[Note] = deque(maxlen=MOST_NOTES)
+        most_notes = 50  # so many notes are kept
+        self.notes: deque[Note] = deque(maxlen=most_notes)
         self._told = 0
         self._holder: str | None = None
         self._stamp = self.answered = 0.0  # stamps of the last drag, and of that which the present shape answers

@@ -12,8 +12,6 @@ from hydrostat.studio.jobs import Jobs, Report, Slots
 
 TITLE = "Flattening the skin, patch by patch"
 
-KEPT = 20  # so many skins are remembered
-
 
 @dataclass(frozen=True, eq=False)
 class SewnSkin:
@@ -102,8 +100,9 @@ class Skins:
         self._begin()
 
     def _note(self, skin: SewnSkin) -> None:
+        kept = 20  # so many skins are remembered
         with self._lock:
-            self._known = (skin, *self._known)[:KEPT]
+            self._known = (skin, *self._known)[:kept]
 
 
 def lay_flat(report: Report, body: Body, pattern: PatternOptions) -> Sewing:

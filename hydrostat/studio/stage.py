@@ -86,3 +86,10 @@ class Stage(ABC):
     def step(self, now: float) -> bool:
         """Do a bit of work, at a time [s] of a clock that only runs forward; whether there is more to do."""
         return False
+
+
+def told_error(error: float) -> str:
+    """Text of an error [m]; nobody builds a robot that is better than a tenth of a millimetre."""
+    if error < 1e-4:
+        return "below 0.1 mm"
+    return f"{1e3 * error:.1f} mm" if error < 0.01 else f"{1e3 * error:.0f} mm"

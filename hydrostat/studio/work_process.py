@@ -13,9 +13,6 @@ from typing import Any, Protocol, runtime_checkable
 
 from hydrostat.errors import HydrostatError
 
-SHORTEST = 0.03  # progress of one stage is not told more often than each so many seconds
-AGAIN = 0.02  # a stop that was not heard is said again after so many seconds
-
 
 @runtime_checkable
 class Report(Protocol):
@@ -94,7 +91,8 @@ class _Report:
 
     def progress(self, stage: str, done: int, total: int) -> None:
         now = time.monotonic()
-        if stage == self._stage and now - self._told < SHORTEST and done < total:
+        shortest = 0.03  # progress of one stage is not told more often than each so many seconds
+        if stage == self._stage and now - self._told < shortest and done < total:
             return
         self._stage, self._told = stage, now
         with self._lock:
@@ -120,12 +118,13 @@ class _Report:
 
     def _stop(self) -> None:
         """Signal until it is heard: a signal that comes just before the main thread begins to wait does not wake it."""
+        again = 0.02  # a stop that was not heard is said again after so many seconds
         while True:
             with self._lock:  # so that no message is cut in two
                 if not self._stoppable:
                     return
                 _wake()
-            time.sleep(AGAIN)
+            time.sleep(again)
 
     def interrupt(self, number: int, frame: FrameType | None) -> None:
         """Take a signal: a stop that was asked for, or the end from elsewhere."""

@@ -13,8 +13,6 @@ from hydrostat.teleop.source import HandReading, HandSource
 
 BAUD = 115200
 SENSORS = 22
-ASKS = 3
-"""Number of queries before the glove counts as silent."""
 _FINGERS = ("index", "middle", "ring", "pinky")
 _THUMB = ("thumb roll", "thumb inner", "thumb outer", "thumb abduction")
 _SPREADS = {"middle": "middle-index abduction", "ring": "ring-middle abduction", "pinky": "pinky-ring abduction"}
@@ -44,8 +42,9 @@ class CyberGlove(HandSource):
 
     def read(self) -> HandReading:
         """The newest values; one answer that is cut short or spoilt is asked for again."""
+        asks = 3  # Number of queries before the glove counts as silent
         try:
-            for _ in range(ASKS):
+            for _ in range(asks):
                 if waiting := getattr(self._port, "in_waiting", 0):  # what is left of an answer that came late
                     self._port.read(waiting)
                 self._port.write(b"G")

@@ -13,8 +13,6 @@ from hydrostat.teleop.ways import CommandMapper
 
 TICK = 1 / 60
 """Motors are told at least once in this time, and read about as often [s]."""
-SHARE = 0.35
-"""Share of sending alone in the time that sending and reading take on a line, approximately."""
 SWITCHING = 5e-4
 """Threads of Python give way to one another after so long [s], in place of 5 ms: the one that solves poses is busy."""
 
@@ -61,7 +59,9 @@ class DriveLoop:
         self.motors.drive(now, look=look)
         if look:
             self._looked, self._exchange = now, self._clock() - begin
-        self.pause = 0.0 if look else SHARE * self._exchange
+        # Share of sending alone in the time that sending and reading take on a line, approximately
+        share = 0.35
+        self.pause = 0.0 if look else share * self._exchange
         self.way.observe(self.motors.places)
         return not wish.over
 

@@ -8,14 +8,9 @@ from typing import Any
 
 from hydrostat.errors import HydrostatError
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
+from hydrostat.version import install_command
 
-FAST = 0.04
-"""Speed of a channel at full deflection [m/s]."""
-DEAD = 0.12
-"""Share of the way of a stick that is taken for its middle."""
 HELP = "cross: choose   stick: out, in   A: hold   B: rest   start: end"
-_LONGEST = 0.1
-"""Maximum time step counted between two readings of the sticks [s]."""
 
 
 class Gamepad(DriveSource):
@@ -36,7 +31,7 @@ class Gamepad(DriveSource):
             import pygame
             from pygame._sdl2 import controller
         except ModuleNotFoundError:
-            raise HydrostatError('gamepads need pygame; install it: pip install "hydrostat[teleop]"') from None
+            raise HydrostatError(f"gamepads need pygame; install it: {install_command('teleop')}") from None
         pygame.display.init()
         controller.init()
         if number >= controller.get_count() or not controller.is_controller(number):
@@ -53,7 +48,8 @@ class Gamepad(DriveSource):
         if not pad.attached():
             raise HydrostatError("gamepad disconnected; motors holding")
         now = self._clock()
-        passed, self._looked = min(now - self._looked, _LONGEST), now
+        longest = 0.1  # Maximum time step counted between two readings of the sticks [s]
+        passed, self._looked = min(now - self._looked, longest), now
         on, back = (
             (game.CONTROLLER_BUTTON_DPAD_RIGHT, game.CONTROLLER_BUTTON_RIGHTSHOULDER),
             (
@@ -90,9 +86,11 @@ class Gamepad(DriveSource):
         else:
             speeds = {group[0]: self._stick(game.CONTROLLER_AXIS_LEFTX), group[-1]: up}
             speeds |= {group[1]: -self._stick(game.CONTROLLER_AXIS_RIGHTY)} if len(group) > 2 else {}
-        return {self._channels.names[index]: FAST * passed * speed for index, speed in speeds.items() if speed}
+        fast = 0.04  # Speed of a channel at full deflection [m/s]
+        return {self._channels.names[index]: fast * passed * speed for index, speed in speeds.items() if speed}
 
     def _stick(self, axis: int) -> float:
         """Deflection from -1 to 1, 0 about its middle."""
         value = max(-1.0, self._pad.get_axis(axis) / 32767)
-        return 0.0 if abs(value) < DEAD else (abs(value) - DEAD) / (1 - DEAD) * (1 if value > 0 else -1)
+        dead = 0.12  # Share of the way of a stick that is taken for its middle
+        return 0.0 if abs(value) < dead else (abs(value) - dead) / (1 - dead) * (1 if value > 0 else -1)

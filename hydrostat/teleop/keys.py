@@ -10,8 +10,6 @@ from contextlib import suppress
 from hydrostat.errors import HydrostatError
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 
-FINE, COARSE = 0.5e-3, 3e-3
-"""Step of a channel per key press [m], and with a capital letter or page up and down [m]."""
 HELP = "tab next; arrows out, in; Shift+A, D further; r rest; space hold; q end"
 _ARROWS = {b"\x1b[A": "w", b"\x1b[B": "s", b"\x1b[C": "d", b"\x1b[D": "a", b"\x1b[5~": "D", b"\x1b[6~": "A"}
 _BACK = b"\x1b[Z"
@@ -74,7 +72,9 @@ class Keys(DriveSource):
         if key.lower() not in ways:
             return None
         which, sign = ways[key.lower()]
-        return self._channels.names[group[which]], sign * (COARSE if key.isupper() else FINE)
+        # Step of a channel per key press [m], and with a capital letter or page up and down [m]
+        fine, coarse = 0.5e-3, 3e-3
+        return self._channels.names[group[which]], sign * (coarse if key.isupper() else fine)
 
     def _pressed_keys(self) -> list[str]:
         data = b""

@@ -20,12 +20,8 @@ SHARE = 0.4
 """Largest share of its range that a winch takes in for a pose."""
 LATE = 2.0
 """Motors may take so much longer than at their largest speed [s]."""
-TICK = 1 / 60
-"""Motors are told again after so long [s]."""
 HOLD = 0.3
 """A person holds still for so long [s]; the readings of that time are averaged."""
-STILL = 0.012
-"""Sensors of a hand that holds still vary by less, one standard deviation of the worst; their range is 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +41,9 @@ class HeldStill:
     @property
     def still(self) -> bool:
         """True if the hand was still."""
-        return self.spread < STILL
+        # Sensors of a hand that holds still vary by less, one standard deviation of the worst; their range is 1
+        still = 0.012
+        return self.spread < still
 
 
 def pose_pool(channels: DriveChannels, seed: int = 0, count: int = POOL) -> Table:
@@ -79,11 +77,12 @@ def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -
     motors.ask(contractions)
     latest = clock() + float(np.abs(motors.command - motors.places).max(initial=0.0)) / motors.fastest + LATE
     beat()
+    tick = 1 / 60  # Motors are told again after so long [s]
     while motors.is_moving:
         if clock() > latest:
             index = int(np.abs(motors.command - motors.places).argmax())
             raise HydrostatError(f"{motors.names[index]}: target not reached in time. Check for a jammed cable.")
-        time.sleep(TICK)
+        time.sleep(tick)
         beat()
 
 

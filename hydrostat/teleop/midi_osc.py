@@ -9,11 +9,10 @@ from typing import Any
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
+from hydrostat.version import install_command
 
 USUAL = 1
 """Controller number of the first knob unless told otherwise."""
-LOOK = 1.0
-"""Interval between checks that the port still exists [s]."""
 
 
 class MidiKnobs(DriveSource):
@@ -54,9 +53,10 @@ class MidiKnobs(DriveSource):
     def read(self) -> DriveWish:
         """Return the positions of the knobs turned since the previous read."""
         now, places = self._clock(), dict[str, float]()
+        look = 1.0  # Interval between checks that the port still exists [s]
         try:
             messages = list(self._port.iter_pending())
-            gone = self._port.closed or (self._named and now - self._looked > LOOK and not self._there(now))
+            gone = self._port.closed or (self._named and now - self._looked > look and not self._there(now))
         except OSError as error:
             raise HydrostatError(f"MIDI port lost ({error}); motors holding") from None
         if gone:
@@ -92,7 +92,7 @@ def _open(name: str) -> Any:
 
         names = list(mido.get_input_names())  # type: ignore[attr-defined]
     except ModuleNotFoundError:
-        raise HydrostatError('MIDI needs mido and python-rtmidi: pip install "hydrostat[teleop]"') from None
+        raise HydrostatError(f"MIDI needs mido and python-rtmidi: {install_command('teleop')}") from None
     except Exception as error:  # noqa: BLE001 (each system of sound has errors of its own)
         raise HydrostatError(f"MIDI is not to be had here: {error}") from None
     found = [each for each in names if name.lower() in each.lower()]
@@ -103,10 +103,6 @@ def _open(name: str) -> Any:
 
 HERE, PORT = "127.0.0.1", 9000
 """Only this computer is heard unless told otherwise."""
-ALIVE = 0.5
-"""Who once said /alive must say something so often [s]."""
-_MOST = 500
-"""Datagrams that are heard in one look, at most."""
 
 
 class Osc(DriveSource):
@@ -128,7 +124,7 @@ class Osc(DriveSource):
         try:
             from pythonosc.osc_packet import OscPacket
         except ModuleNotFoundError:
-            raise HydrostatError('OSC needs python-osc; install it: pip install "hydrostat[teleop]"') from None
+            raise HydrostatError(f"OSC needs python-osc; install it: {install_command('teleop')}") from None
         self._packet: Any = OscPacket
         self._channels, self._clock, self._heard, self._hold, self._wrong = channels, clock, clock(), False, ""
         self._known = {name.replace(" ", "_"): name for name in channels.names}
@@ -144,7 +140,8 @@ class Osc(DriveSource):
     def read(self) -> DriveWish:
         """Return the commands received since the previous read."""
         places, over = dict[str, float](), False
-        for _ in range(_MOST):
+        most = 500  # Datagrams that are heard in one look, at most
+        for _ in range(most):
             try:
                 data = self._socket.recv(65536)
             except BlockingIOError:
@@ -167,8 +164,9 @@ class Osc(DriveSource):
     def _take(self, address: str, values: Sequence[Any], places: dict[str, float]) -> bool:
         """Hear a message; tell whether it ends."""
         kind, _, name = address.strip("/").partition("/")
+        alive = 0.5  # Who once said /alive must say something so often [s]
         if kind == "alive":
-            self.silence = ALIVE
+            self.silence = alive
         elif kind == "hold":
             self._hold = bool(values[0]) if values else True
         elif kind == "rest":

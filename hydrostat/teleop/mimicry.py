@@ -12,6 +12,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import replace_file
 from hydrostat.teleop.ridge import Ridge, Table, fit_ridge, folded_error, left_out_error
+from hydrostat.version import install_command
 
 
 class Mimicry:
@@ -127,7 +128,7 @@ def write_mcap(path: Path, mimicry: Mimicry) -> Path:
     try:
         from mcap.writer import Writer
     except ModuleNotFoundError:
-        raise HydrostatError('MCAP files need mcap; install it: pip install "hydrostat[teleop]"') from None
+        raise HydrostatError(f"MCAP files need mcap; install it: {install_command('teleop')}") from None
     buffer = io.BytesIO()
     writer = Writer(buffer)
     writer.start(library="hydrostat")

@@ -6,12 +6,11 @@ from pathlib import Path
 
 from hydrostat.control import EMULATED, open_line
 from hydrostat.errors import InputError
-from hydrostat.teleop.camera_hand import MODEL, CameraHand
+from hydrostat.teleop.camera_hand import MODEL, CameraHand, HandLandmarks
 from hydrostat.teleop.cyber_glove import BAUD, CyberGlove, EmulatedPerson
 from hydrostat.teleop.gamepad import Gamepad
 from hydrostat.teleop.hand_map import HandMap
 from hydrostat.teleop.keys import Keys
-from hydrostat.teleop.landmarks import HandLandmarks
 from hydrostat.teleop.mapped_hand import USUAL_SMOOTHING, MappedHand, Smoothing
 from hydrostat.teleop.midi_osc import HERE, PORT, USUAL, MidiKnobs, Osc
 from hydrostat.teleop.source import DriveChannels, DriveSource, HandReading, HandSource

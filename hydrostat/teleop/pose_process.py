@@ -21,8 +21,6 @@ from hydrostat.ik import IKStatus, Limits, LinearizedPose, Tracker
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
-YIELDS = 5
-"""So much nicer than whoever tells the motors is who solves poses, where cores are few (Unix)."""
 LONGEST = 0.1
 """Time since the update before counts as so long at most [s]: nobody catches up in a leap. An outlook looks as far."""
 
@@ -178,8 +176,9 @@ class PoseProcess:
 def _serve(pipe: Connection, make: Callable, arguments: tuple) -> None:
     """Answer the newest job, until there is nobody to ask."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is heard by whoever asks
+    yields = 5  # So much nicer than whoever tells the motors is who solves poses, where cores are few (Unix)
     with suppress(AttributeError, OSError):
-        os.nice(YIELDS)
+        os.nice(yields)
     job, more = None, False
     with suppress(EOFError, OSError):
         try:

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 NEAR = 3e-3
 """A guard judges where a pose is known within so much of each contraction [m]."""
-APART = 2e-4
-"""Poses are solved so far apart [m]."""
 REACH = 0.5
 """Targets of a marker lie so far about its rest, as a share of the largest side of the body."""
 
@@ -79,7 +77,8 @@ class WinchMapper(CommandMapper):
 
     def observe(self, places: Vector) -> None:
         """Let the pose there be solved [m]."""
-        if self._poses is not None and np.abs(places - self._seen).max(initial=0.0) > APART:
+        apart = 2e-4  # Poses are solved so far apart [m]
+        if self._poses is not None and np.abs(places - self._seen).max(initial=0.0) > apart:
             self._seen = places.copy()
             self._poses.give(self._seen)
 

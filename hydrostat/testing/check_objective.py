@@ -99,7 +99,8 @@ class _ObjectiveCheck:
         """The slopes are the derivative of the residual along equilibria."""
         exact = self._slopes(self.term)
         best: tuple[float, tuple[int, ...]] = (np.inf, ())
-        for step in steps(_REACH * self.size):
+        reach = 0.1  # steps of contractions begin with a thousandth of this fraction of the body's size
+        for step in steps(reach * self.size):
             found = central_differences(self._residual, self.pose.contractions, np.arange(exact.shape[1]), step)
             scales = np.maximum(np.abs(found), np.abs(exact)).max(axis=0, initial=0.0)
             scale = np.where(scales > 1e-9 * scales.max(initial=0.0), scales, 1.0)
@@ -139,9 +140,6 @@ class _ObjectiveCheck:
 
     def _slopes(self, term: Residual) -> np.ndarray:
         return np.asarray(term.jacobian(self.at, state_jacobian_at(self.simulation, self.pose)))
-
-
-_REACH = 0.1  # steps of contractions begin with a thousandth of this fraction of the body's size
 
 
 def _place(array: np.ndarray) -> tuple[int, ...]:

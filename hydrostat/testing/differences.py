@@ -16,9 +16,6 @@ class ConformanceError(AssertionError):
         self.check, self.index, self.relative_error = check, index, relative_error
 
 
-RELATIVE_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 1e-6)  # fractions of a natural scale; the first is right for most functions
-
-
 def central_differences(
     function: Callable[[np.ndarray], Float[np.ndarray, " values"]],
     point: Float[np.ndarray, " variables"],
@@ -36,7 +33,9 @@ def central_differences(
 
 def steps(scale: float) -> Iterator[float]:
     """Steps to try in turn for a variable of this scale."""
-    return (relative * scale for relative in RELATIVE_STEPS)
+    # fractions of a natural scale; the first is right for most functions
+    relative_steps = (1e-3, 1e-4, 1e-2, 1e-5, 1e-6)
+    return (relative * scale for relative in relative_steps)
 
 
 def _richardson(

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from hydrostat.training.goal_env import GoalEnv, TaskOptions
     from hydrostat.training.portable import policy_of, portable_policy
     from hydrostat.training.reach_env import BEYOND, HysteresisEnv, ReachEnv, ReachOptions
-    from hydrostat.training.tasks import TASKS, Task, task_of
-    from hydrostat.training.thing_env import ThingEnv, ThingOptions
+    from hydrostat.training.tasks import TASKS, task_of
+    from hydrostat.training.thing_env import ThingOptions
     from hydrostat.training.thing_tasks import PushEnv, PushOptions, TwistEnv, TwistOptions
-    from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld
+    from hydrostat.training.thing_world import ThingPhysics
     from hydrostat.training.train import (
         CurvePoint,
         Listener,
@@ -28,36 +28,29 @@ if TYPE_CHECKING:
         moves_of,
         train,
     )
-    from hydrostat.training.walk_env import Gait, WalkActions, WalkEnv, WalkOptions
-    from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
+    from hydrostat.training.walk_env import Gait, WalkEnv, WalkOptions
+    from hydrostat.training.worlds import MixedWorld, World
 
 __all__ = [
     "BEYOND",
     "TASKS",
     "CurvePoint",
-    "ExactWorld",
     "Gait",
     "GoalEnv",
     "HysteresisEnv",
-    "LearnedWorld",
     "Listener",
     "MixedWorld",
     "PushEnv",
     "PushOptions",
     "ReachEnv",
     "ReachOptions",
-    "Task",
     "TaskOptions",
-    "ThingEnv",
     "ThingOptions",
     "ThingPhysics",
-    "ThingState",
-    "ThingWorld",
     "TrainMethod",
     "TrainOptions",
     "TwistEnv",
     "TwistOptions",
-    "WalkActions",
     "WalkEnv",
     "WalkOptions",
     "World",

@@ -87,7 +87,8 @@ class CopiesElsewhere:
     def close(self) -> None:
         """End the process."""
         self._pipe.close()
-        self._process.join(_PATIENCE)
+        patience = 5.0  # Seconds that a process has to end by itself
+        self._process.join(patience)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
@@ -112,8 +113,5 @@ def _work(pipe: Connection, env: GoalEnv, count: int) -> None:
         except OSError:  # nobody waits for it any more
             return
 
-
-_PATIENCE = 5.0
-"""Seconds that a process has to end by itself."""
 
 _DIED = "a process that solves for poses has died; train again, with resume, to go on from the last checkpoint"

@@ -28,8 +28,9 @@ def standing(robot: Robot, friction: float | None) -> Robot:
         if not np.allclose(np.array(plane.normal) / np.linalg.norm(plane.normal or ()), up):
             raise InputError(f'robot {robot.name!r} walks on level ground: obstacle "{plane.name}" is not level')
     low = float(robot.body.mesh.nodes[:, -1].min())
+    gap = 1e-3  # Between the lowest node and ground that robot.toml does not have [m]
     planes = own or [
-        Obstacle(name="ground", shape="plane", at=tuple(((low - _GAP) * up).tolist()), normal=tuple(up.tolist()))
+        Obstacle(name="ground", shape="plane", at=tuple(((low - gap) * up).tolist()), normal=tuple(up.tolist()))
     ]
     coefficient = friction if friction is not None else planes[0].friction
     coefficient = FRICTION if coefficient is None else coefficient
@@ -73,6 +74,3 @@ def tilt(masses: Vector, rest: Nodes, nodes: Nodes) -> float:
 
 FRICTION = 0.6
 """Coulomb's coefficient of ground of which nothing is said."""
-
-_GAP = 1e-3
-"""Between the lowest node and ground that robot.toml does not have [m]."""

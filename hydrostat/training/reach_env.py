@@ -17,9 +17,6 @@ from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, Worl
 BEYOND = 1.02
 """An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
 
-PACE = 1.0
-"""From an action to the next, where motors play what was done at rest [s]."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class ReachOptions:
@@ -128,7 +125,7 @@ class ReachEnv(GoalEnv):
         self._goal, self.taken_steps = self.rest.copy(), 0
         self._goal[self.seen] = goal
         self.world.back()
-        self._taken, self._at = self._begun(given)
+        self._taken, self._at = self._find_start(given)
         self.moves = [(0.0, self._taken)]
         self.show()
         return self._observation(), self._info()
@@ -138,14 +135,15 @@ class ReachEnv(GoalEnv):
         action = finite_numbers(action, int(np.prod(self.action_space.shape or (0,))), *AN_ACTION)
         self.taken_steps += 1
         if self.options.incremental:
-            change = 0.1 * (self._high - self._low) * self._spread(np.clip(action, -1.0, 1.0))
+            change = 0.1 * (self._high - self._low) * self._spread_action(np.clip(action, -1.0, 1.0))
             taken = np.clip(self._taken + change, self._low, self._high)
         else:
             taken = self.contractions(action)
         reached = self.world.reach(taken)
         if reached is not None:  # where no equilibrium is found the robot stays
             self._taken, self._at = taken, reached
-        self.moves.append((PACE * self.taken_steps, self._taken))
+        pace = 1.0  # From an action to the next, where motors play what was done at rest [s]
+        self.moves.append((pace * self.taken_steps, self._taken))
         self.show()
         observation, info = self._observation(), self._info()
         reward = float(self.compute_reward(observation["achieved_goal"], observation["desired_goal"], info))
@@ -237,12 +235,12 @@ class ReachEnv(GoalEnv):
         """Check that networks are of this robot (InputError: of another)."""
         model.check(self.robot)
 
-    def _begun(self, given: Mapping[str, Any]) -> tuple[Vector, Vector]:
+    def _find_start(self, given: Mapping[str, Any]) -> tuple[Vector, Vector]:
         """Contractions and places of all markers at the beginning of an episode [m]."""
         del given
         return np.clip(np.zeros(len(self._low)), self._low, self._high), self.rest
 
-    def _spread(self, action: np.ndarray) -> Vector:
+    def _spread_action(self, action: np.ndarray) -> Vector:
         changes = np.zeros(len(self._low))
         for value, group in zip(action.tolist(), self._groups, strict=True):
             changes[group[0]] = value
@@ -351,9 +349,9 @@ class HysteresisEnv(ReachEnv):
         """Check that networks are of the robot as it is given."""
         model.check(self.given)
 
-    def _begun(self, given: Mapping[str, Any]) -> tuple[Vector, Vector]:
+    def _find_start(self, given: Mapping[str, Any]) -> tuple[Vector, Vector]:
         """The pose of contractions given as "start" [m], come to from rest; rest, where there is none."""
-        taken, at = super()._begun(given)
+        taken, at = super()._find_start(given)
         start = np.asarray(given.get("start", taken), dtype=float)
         if start.shape != taken.shape:
             raise InputError(f"a start has {len(taken)} contractions, not {start.size}")

@@ -8,11 +8,12 @@ import numpy as np
 from hydrostat.errors import HydrostatError
 from hydrostat.training.copies import Copies, CopiesElsewhere
 from hydrostat.training.goal_env import GoalEnv
+from hydrostat.version import install_command
 
 try:
     from stable_baselines3.common.vec_env import VecEnv
 except ModuleNotFoundError as error:
-    raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 
 class SideBySide(VecEnv):
@@ -48,7 +49,7 @@ class SideBySide(VecEnv):
         self._reset_seeds()
         self._reset_options()
         self.reset_infos = [info for _, info in rows]
-        return _stacked([seen for seen, _ in rows])
+        return _stack_rows([seen for seen, _ in rows])
 
     def step_async(self, actions: np.ndarray) -> None:
         """Begin a step of each copy."""
@@ -59,7 +60,7 @@ class SideBySide(VecEnv):
         """Wait for what came of it; copies whose episode is over have begun the next."""
         rows = [row for worker in self._workers for row in worker.answer()]
         seen, rewards, over, infos = zip(*rows, strict=True)
-        return _stacked(seen), np.array(rewards, dtype=np.float32), np.array(over), list(infos)
+        return _stack_rows(seen), np.array(rewards, dtype=np.float32), np.array(over), list(infos)
 
     def close(self) -> None:
         """End the processes."""
@@ -89,6 +90,6 @@ class SideBySide(VecEnv):
         return [each for worker in self._workers for each in worker.answer()]
 
 
-def _stacked(rows: Sequence[Mapping[str, np.ndarray]]) -> dict[str, np.ndarray]:
+def _stack_rows(rows: Sequence[Mapping[str, np.ndarray]]) -> dict[str, np.ndarray]:
     """Observations of all copies, a row each."""
     return {name: np.stack([row[name] for row in rows]) for name in rows[0]}

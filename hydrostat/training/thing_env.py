@@ -110,7 +110,7 @@ class ThingEnv(GoalEnv):
         unit = np.array(axis, dtype=float) / np.linalg.norm(axis)
         self.world = ThingWorld(self.robot, self.thing, unit, options.physics)
         self.steps, self.tolerance, self._pictures = options.steps, options.tolerance, None
-        self._groups = _tied(self.robot, options.tied)
+        self._groups = _group_winches(self.robot, options.tied)
         self._low = np.array([-winch.release for winch in self.robot.winches], dtype=float)
         travel = np.inf if options.travel is None else options.travel
         self._high = np.array([min(winch.travel, travel) for winch in self.robot.winches], dtype=float)
@@ -224,7 +224,7 @@ class ThingEnv(GoalEnv):
         self._stuck |= len(motions) < self.options.physics.beats
         self.moves += [(motion.time, motion.contractions) for motion in motions]
 
-    def _counted(self) -> Vector:
+    def _counted_goal(self) -> Vector:
         """Achieved goal; the one at the beginning of the episode if a time step did not converge."""
         return self._begun.copy() if self._stuck else self.get_achieved()
 
@@ -234,10 +234,10 @@ class ThingEnv(GoalEnv):
         taken = np.clip(2.0 * (self.world.motion.contractions - self._low) / span - 1.0, -1.0, 1.0)
         more = [self.world.turned / np.pi, self.taken_steps / self.steps]
         seen = np.concatenate([taken, moved, more])
-        return {"observation": seen, "achieved_goal": self._counted(), "desired_goal": self._goal.copy()}
+        return {"observation": seen, "achieved_goal": self._counted_goal(), "desired_goal": self._goal.copy()}
 
     def _info(self) -> dict[str, Any]:
-        left = float(self.distances(self._counted(), self._goal))
+        left = float(self.distances(self._counted_goal(), self._goal))
         away = float(np.linalg.norm(self.world.place - self.world.start))
         return {
             "distance": left,
@@ -276,7 +276,7 @@ def _thing(robot: Robot, given: Obstacle | None) -> Obstacle:
     return replace(thing, friction=robot.friction_of(thing))
 
 
-def _tied(robot: Robot, parts: Sequence[str]) -> tuple[tuple[int, ...], ...]:
+def _group_winches(robot: Robot, parts: Sequence[str]) -> tuple[tuple[int, ...], ...]:
     """Winches moved by one number of the action each (InputError: a part that no name has, or one that two have)."""
     names = [winch.name for winch in robot.winches]
     groups = []

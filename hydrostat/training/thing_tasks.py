@@ -84,10 +84,6 @@ class PushEnv(ThingEnv):
         return f"{1e3 * self._info()['distance']:.1f} mm from the goal"
 
 
-HOLD = 100.0
-"""Spring in place of a palm under a thing in space [N/m]."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class TwistOptions(ThingOptions):
     """Options of the task of turning an object.
@@ -168,4 +164,5 @@ class TwistEnv(ThingEnv):
 
 def _physics(robot: Robot) -> ThingPhysics:
     """A palm in space, none in the plane."""
-    return ThingPhysics(hold=HOLD if robot.body.mesh.dim == 3 else 0.0)
+    hold = 100.0  # Spring in place of a palm under a thing in space [N/m]
+    return ThingPhysics(hold=hold if robot.body.mesh.dim == 3 else 0.0)

@@ -92,7 +92,9 @@ class ThingWorld:
         along = self._physics.hold * np.eye(len(self.start))
         guide = GuideEnergy(self._carriage, place=self.start, axes=self._begun, along=along, turning=0.0)
         held = [guide] if self._physics.hold else []
-        self.simulation = Simulation(self.robot, body=physics, energies=held, options=NewtonOptions(tolerance=_FORCE))
+        # Share of the largest force that a time step may leave: turns of a disc change by less than 0.1 degrees
+        force = 1e-5
+        self.simulation = Simulation(self.robot, body=physics, energies=held, options=NewtonOptions(tolerance=force))
         self.motion: Motion = self.simulation.motion_at_rest()
         self.turned = 0.0
 
@@ -121,17 +123,17 @@ class ThingWorld:
     @property
     def place(self) -> Vector:
         """Center of the object [m]."""
-        return self._carried[0]
+        return self._carried_body[0]
 
     @property
     def axes(self) -> Points:
         """Its axes, a row for each."""
-        axes = self._carried[1:] / self._carriage.length
+        axes = self._carried_body[1:] / self._carriage.length
         left, _, right = np.linalg.svd(axes)
         return left @ right
 
     @property
-    def _carried(self) -> Points:
+    def _carried_body(self) -> Points:
         assert self.motion.carried is not None
         return self.motion.carried[0][: len(self._carriage.rows)]
 
@@ -175,7 +177,3 @@ def angle_about(axes: Points, begun: Points, axis: Vector) -> float:
 
     x, y, z, w = Rotation.from_matrix(turn).as_quat()
     return float((2 * np.arctan2(np.array([x, y, z]) @ axis, w) + np.pi) % (2 * np.pi) - np.pi)
-
-
-_FORCE = 1e-5
-"""Share of the largest force that a time step may leave: turns of a disc change by less than 0.1 degrees."""

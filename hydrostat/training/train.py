@@ -20,6 +20,7 @@ from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import replace_file
 from hydrostat.simulation import ContractionProfile
 from hydrostat.training.goal_env import GoalEnv
+from hydrostat.version import install_command
 
 
 class TrainMethod(StrEnum):
@@ -186,7 +187,7 @@ def train(
         raise InputError(f"processes must be 1 to {options.together}, the episodes side by side, not {processes}")
     curve, listener = begun_curve(out, options, resume=resume), listener or Listener()
     with _copies(env, options, processes) as copies:
-        learner = _resumed(copies, options, _checkpoint(curve, out)) if resume else _learner(env, copies, options)
+        learner = _resume_model(copies, options, _checkpoint(curve, out)) if resume else _learner(env, copies, options)
         out.mkdir(parents=True, exist_ok=True)
         learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
         while learner.num_timesteps < options.steps:
@@ -248,11 +249,11 @@ def _stretch(model: Any, options: TrainOptions, whole: int, progress: Progress) 
     due = min(options.every, options.steps - model.num_timesteps)
     model._last_obs = None  # each stretch begins with episodes of its own
 
-    def told(*_: object) -> bool:
+    def report_progress(*_: object) -> bool:
         progress("actions", min(model.num_timesteps, options.steps - 1), options.steps)
         return True
 
-    model.learn(whole * math.ceil(due / whole), callback=told, reset_num_timesteps=False)
+    model.learn(whole * math.ceil(due / whole), callback=report_progress, reset_num_timesteps=False)
 
 
 def _learner(env: GoalEnv, copies: Any, options: TrainOptions) -> Any:
@@ -295,7 +296,7 @@ def _algorithm(method: TrainMethod) -> Any:
             return TQC
         import stable_baselines3
     except ModuleNotFoundError as error:
-        raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+        raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
     return getattr(stable_baselines3, method.name)
 
 
@@ -344,7 +345,7 @@ def _read_whole(path: Path) -> Iterator[None]:
         raise InputError(f"{path}: is missing or damaged; begin anew, without --resume") from None
 
 
-def _resumed(copies: Any, options: TrainOptions, folder: Path) -> Any:
+def _resume_model(copies: Any, options: TrainOptions, folder: Path) -> Any:
     """The model of a checkpoint of one's own, with everything as it was then (InputError: it is damaged)."""
     import torch
     from stable_baselines3.common.vec_env import VecMonitor

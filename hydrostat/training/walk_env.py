@@ -181,7 +181,8 @@ class WalkEnv(GoalEnv):
         mesh, by_gait = self.robot.body.mesh, self.options.actions is WalkActions.GAIT
         self.unit, self.tolerance = mesh.size, self.options.tolerance
         self.beat = BEATS[WalkActions(self.options.actions)]
-        self.steps = self.options.steps or round(_SECONDS / (self.beat * STEP))
+        seconds = 5.0  # Default duration of an episode [s]
+        self.steps = self.options.steps or round(seconds / (self.beat * STEP))
         self.action_space = spaces.Box(-1.0, 1.0, (3 if by_gait else count,), np.float32)
         seen = count + 2 * marks * mesh.dim + (4 if by_gait else 0)
         goal = spaces.Box(-_FAR, _FAR, (2,), np.float64)
@@ -214,7 +215,7 @@ class WalkEnv(GoalEnv):
         """Go on by the time steps of an action; an episode is cut off after its actions."""
         action = finite_numbers(action, int(np.prod(self.action_space.shape or (0,))), *AN_ACTION)
         self.taken_steps += 1
-        for contractions in self._asked(np.clip(action, -1.0, 1.0)):
+        for contractions in self._step_contractions(np.clip(action, -1.0, 1.0)):
             if self._fallen:
                 break
             self._advance(contractions)
@@ -279,7 +280,7 @@ class WalkEnv(GoalEnv):
         assert self.motion is not None, "an episode begins with reset"
         return self.motion
 
-    def _asked(self, action: Vector) -> list[Vector]:
+    def _step_contractions(self, action: Vector) -> list[Vector]:
         """Contractions at the end of each time step of an action [m]."""
         if self.options.actions is WalkActions.GAIT:
             gait = Gait.of_action(action, self.most)
@@ -326,9 +327,6 @@ class WalkEnv(GoalEnv):
             "friction": self._given,
         }
 
-
-_SECONDS = 5.0
-"""Default duration of an episode [s]."""
 
 _FAR = 100.0
 """Bound of what is observed."""

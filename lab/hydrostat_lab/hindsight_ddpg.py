@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.version import install_command
 from hydrostat_lab.curriculum import Curriculum
 from hydrostat_lab.trials import Trials
 
@@ -21,7 +22,7 @@ try:
     import torch
     from torch import Tensor
 except ModuleNotFoundError as error:
-    raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 
 @dataclass(frozen=True, kw_only=True)

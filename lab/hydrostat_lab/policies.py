@@ -10,6 +10,7 @@ from itertools import pairwise
 
 from hydrostat.errors import HydrostatError
 from hydrostat.progress import Progress, no_progress
+from hydrostat.version import install_command
 from hydrostat_lab.experiments import SMALL
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
 from hydrostat_lab.trials import Begun, NetworkReach, Trials
@@ -18,7 +19,7 @@ try:
     import torch
     from torch import Tensor
 except ModuleNotFoundError as error:
-    raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 from hydrostat.learning import answer
 

@@ -88,7 +88,7 @@ def reproduce(
     table-noise and table-reward. figure-5.14-trial compares it with methods that train on the same pairs.
     table-policies compares other policy methods on the same outcomes, table-gradient only the best one. Training runs
     in networks of the hand, with one action per finger and several seeds in parallel. The output lists the claims that
-    hold. Needs pip install "hydrostat[rl]".
+    hold. Needs the extra rl.
 
     figure-5.13 runs the same method in FetchReach, figure-5.13-hand in HandReach (both gymnasium-robotics), and
     compares it with published curves.

@@ -9,6 +9,7 @@ import numpy as np
 from hydrostat.errors import HydrostatError
 from hydrostat.progress import Progress, no_progress
 from hydrostat.simulation import Simulation
+from hydrostat.version import install_command
 from hydrostat_lab.experiments import SMALL
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
 from hydrostat_lab.policies import Act, Budget, TriedPairs, clone_actions, drawn_pairs, nearest, ridge
@@ -18,7 +19,7 @@ from hydrostat_lab.trials import NetworkReach
 try:
     import torch
 except ModuleNotFoundError as error:
-    raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 
 class Order(NamedTuple):

@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from hydrostat.errors import InputError
 from hydrostat.learning import Samples, SamplingScheme, contractions, shared_numbers
+from hydrostat.version import install_command
 
 Goals = Float[np.ndarray, "targets coordinates"]
 Answers = Float[np.ndarray, "targets winches"]
@@ -41,7 +42,7 @@ def train_thesis_network(train: Samples, *, seed: int = 0, epochs: int = 300) ->
     try:
         import torch  # pyright: ignore[reportMissingImports]
     except ImportError:
-        raise InputError("the thesis's network needs PyTorch; install hydrostat[learn]") from None
+        raise InputError(f"the thesis's network needs PyTorch. Install it: {install_command('learn')}") from None
     draw = torch.Generator().manual_seed(seed)
     to_action, to_contractions = _actions(train)
     inputs = torch.tensor(100 * train.markers.reshape(len(train), -1), dtype=torch.float32)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hydrostat.errors import HydrostatError
+from hydrostat.version import install_command
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,7 +30,7 @@ def trials_missing() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        raise HydrostatError(f'package {error.name} not found. Install it: pip install "hydrostat[rl]"') from None
+        raise HydrostatError(f"package {error.name} not found. Install it: {install_command('rl')}") from None
 
 
 def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[str, Any]:

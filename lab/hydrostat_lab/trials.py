@@ -8,12 +8,13 @@ import numpy as np
 
 from hydrostat.errors import HydrostatError
 from hydrostat.learning import LearnedModel, answer, tensors_of
+from hydrostat.version import install_command
 
 try:
     import torch
     from torch import Tensor
 except ModuleNotFoundError as error:
-    raise HydrostatError(f'training needs {error.name}; install it: pip install "hydrostat[rl]"') from None
+    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 Begun = tuple[Tensor, Tensor, Tensor]
 

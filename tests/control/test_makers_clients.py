@@ -6,8 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from hydrostat.control.dynamixel_packets import PacketReader, pack
-from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
-from hydrostat.control.emulated_line import EmulatedLine
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedLine, EmulatedSts
 
 
 def answer(wanted: object, ask: Callable[[], object]) -> None:

@@ -8,7 +8,8 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.arrays import Vector
-from hydrostat.control import SILENCE, Link, Motors, SimulatedLink
+from hydrostat.control import Link, Motors, SimulatedLink
+from hydrostat.control.link import SILENCE
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot, Winch
 from hydrostat.simulation import ProfileTable

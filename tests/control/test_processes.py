@@ -13,14 +13,8 @@ import pytest
 from emulation import RADIUS
 
 import hydrostat
-from hydrostat.control import (
-    EmulatedChain,
-    EmulatedFeetechChain,
-    EmulatedLine,
-    EmulatedServo,
-    EmulatedSts,
-    InjectedFaults,
-)
+from hydrostat.control import EmulatedChain, EmulatedLine, EmulatedServo, InjectedFaults
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 
 STANDS = 0.25  # motors stand so long after the last command [s]
 HOST = Path(__file__).with_name("host.py")
@@ -117,7 +111,7 @@ def ends(event: str, kind: str, slow: int) -> tuple[int, str, list[float]]:
 def test_motors_stand_whatever_happens_to_the_program(event: str, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     told = ""
     for slow in SLOW:
-        monkeypatch.setattr("hydrostat.control.emulated_line.time", slower(slow))
+        monkeypatch.setattr("hydrostat.control.emulated_feetech.time", slower(slow))
         code, told, places = ends(event, kind, slow)
         assert "played" not in told
         assert max(places) < 0.025
@@ -130,7 +124,7 @@ def test_motors_stand_whatever_happens_to_the_program(event: str, kind: str, mon
 def test_a_clock_that_jumps_by_a_year_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     told = ""
     for slow in SLOW:
-        monkeypatch.setattr("hydrostat.control.emulated_line.time", slower(slow))
+        monkeypatch.setattr("hydrostat.control.emulated_feetech.time", slower(slow))
         code, told, places = ends("clock jumps", "dynamixel", slow)
         if code == 0 and told.strip() == "played":
             assert places == pytest.approx([0.0096] * 3, abs=5e-5)

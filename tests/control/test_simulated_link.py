@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from hydrostat.control import SILENCE, SimulatedLink
+from hydrostat.control import SimulatedLink
+from hydrostat.control.link import SILENCE
 
 
 def link() -> SimulatedLink:

@@ -10,7 +10,9 @@ import pytest
 from fingerprint import differences, fingerprint
 from plush_robots import crossed
 
-from hydrostat.fabrication import Kit, pattern_dxf, pattern_svg, plush_pattern
+from hydrostat.fabrication import Kit, plush_pattern
+from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
+from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.solids.print_files import stl_bytes
 from hydrostat.fabrication.solids.printed import Printed
 

@@ -10,10 +10,9 @@ from solids import ball, boundary, brick
 
 from hydrostat.geometry.mesh import Mesh, dihedral_angles
 from hydrostat.geometry.surface import Solid, Surface, covering_points
-from hydrostat.geometry.tetrahedra import improve as module
-from hydrostat.geometry.tetrahedra.improve import ImproveStage, improve
+from hydrostat.geometry.tetrahedra import tetrahedralise as module
 from hydrostat.geometry.tetrahedra.stuffing import signed_volumes
-from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+from hydrostat.geometry.tetrahedra.tetrahedralise import ImproveStage, improve, tetrahedralise
 from hydrostat.kernel import native
 
 REGULAR = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])[[0, 2, 1, 3]]

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.ik import Effort, EffortKind, IKOptions, Limits, MarkerTarget, solve_ik
+from hydrostat.ik import Effort, IKOptions, Limits, MarkerTarget, solve_ik
 from hydrostat.ik.limits import bounds
+from hydrostat.ik.objectives.effort import EffortKind
 from hydrostat.ik.objectives.objective import posture_of, state_at, state_jacobian_at
 from hydrostat.ik.search.inverse_search import InverseSearch
 from hydrostat.ik.search.linear_model import channels, stack_jacobians

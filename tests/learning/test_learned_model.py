@@ -12,8 +12,9 @@ from plain_model import plain
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.learning import ModelCard, Tier, load_model, plan_samples, read_samples, sample_robot, save_model, verify
+from hydrostat.learning import ModelCard, load_model, plan_samples, read_samples, sample_robot, save_model, verify
 from hydrostat.learning.learn_model import kept_facts
+from hydrostat.learning.learned_model import Tier
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.learning.sample_plan import SamplingScheme, contractions, shared_numbers
 from hydrostat.robot import Robot

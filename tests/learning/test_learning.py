@@ -19,7 +19,6 @@ from hydrostat.learning import (
     LearnedModel,
     LearnOptions,
     Samples,
-    Tier,
     correct_model,
     learn_model,
     load_model,
@@ -31,6 +30,7 @@ from hydrostat.learning import (
     verify,
 )
 from hydrostat.learning.certify import exact_steps
+from hydrostat.learning.learned_model import Tier
 from hydrostat.learning.training_set import linear_map
 from hydrostat.mechanics import Reason
 from hydrostat.robot import Robot

@@ -347,7 +347,11 @@ def test_what_cannot_be_exported_is_told_before_sampling(tmp_path: Path, monkeyp
     """Oracle: no folder of samples is begun."""
     (tmp_path / "there.zarr").mkdir()
     monkeypatch.setattr("hydrostat.learning.export.find_spec", lambda name: None)
-    for name, words in (("a.csv", "must end in"), ("there.zarr", "is there already"), ("a.parquet", "needs pyarrow")):
+    for name, words in (
+        ("a.csv", "must end in"),
+        ("there.zarr", "is there already"),
+        ("a.parquet", "package pyarrow"),
+    ):
         with pytest.raises(InputError, match=words):
             sample(Path("gallery:starfish"), tmp_path / "out", count=1, jobs=1, export=tmp_path / name)
     assert not (tmp_path / "out").exists()

@@ -5,15 +5,8 @@ import pytest
 from states import CONTROLS, LAW, deform, rough_mesh
 
 from hydrostat.geometry import locate
-from hydrostat.mechanics import (
-    Assembly,
-    CableEnergy,
-    CableSegments,
-    NeoHookean,
-    PinEnergy,
-    WeightEnergy,
-    nearest_semidefinite,
-)
+from hydrostat.mechanics import Assembly, CableEnergy, CableSegments, NeoHookean, PinEnergy, WeightEnergy
+from hydrostat.mechanics.energy import nearest_semidefinite
 from hydrostat.mechanics.sparsity import SparsityPattern
 
 

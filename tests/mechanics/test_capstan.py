@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hydrostat.kernel import native
-from hydrostat.mechanics import ChainLaw
 from hydrostat.mechanics.capstan import CapstanChains
+from hydrostat.mechanics.tension_law import ChainLaw
 
 
 @pytest.mark.parametrize("seed", range(10))

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from hydrostat.mechanics import ChainLaw
+from hydrostat.mechanics.tension_law import ChainLaw
 
 
 def test_springs_between_slack_ones_find_their_least_energy() -> None:

@@ -186,3 +186,24 @@ def test_a_block_pressed_against_a_plane(dim: int) -> None:
         0.02 * (0.02 if dim == 3 else depth) * mu * (1 / stretch - stretch), rel=1e-3
     )
     assert 0.5e-4 < wall.gap(found.nodes) < 1e-4
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_gaps_by_differences(dim: int) -> None:
+    """Derivatives of each gap by central differences."""
+    nodes = closed(dim).nodes
+    energy = own(dim).with_active_terms(nodes)
+    gaps = energy.gaps(nodes)
+    assert gaps is not None
+    move = np.random.default_rng(dim).standard_normal(nodes.shape)
+    step = 1e-6 * DISTANCE
+    ahead, behind = energy.gaps(nodes + step * move), energy.gaps(nodes - step * move)
+    assert ahead is not None
+    assert behind is not None
+    expected = (ahead.widths - behind.widths) / (2 * step)
+    slopes = np.einsum("pci,pci->p", gaps.normals, move[gaps.stencils])
+    assert slopes == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+
+
+def test_no_gaps_without_pairs() -> None:
+    assert own(2).gaps(fork_robot(2).body.mesh.nodes) is None

@@ -7,7 +7,8 @@ import pytest
 from states import SIZE, State, deform, rough_mesh
 
 from hydrostat.geometry import locate
-from hydrostat.mechanics import CableEnergy, CableSegments, ChainLaw, FrictionCableEnergy, TensionLaw, ViaPointTurns
+from hydrostat.mechanics import CableEnergy, CableSegments, FrictionCableEnergy, TensionLaw, ViaPointTurns
+from hydrostat.mechanics.tension_law import ChainLaw
 from hydrostat.testing import central_differences, check_energy
 
 LAW = TensionLaw(stiffness=np.array([4e3, 2e3]), smoothing=np.array([0.5e-3, 0.2e-3]))

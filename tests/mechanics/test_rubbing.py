@@ -203,7 +203,7 @@ def test_robots(dim: int) -> None:
 
 def test_inverse_kinematics_is_followed() -> None:
     rough = Simulation(replace(fork_robot(2), contact=Contact(distance=DISTANCE, friction=0.3)))
-    goal = rough.solve({"up": 0.006, "down": 0.006}).markers["tip"]
+    goal = rough.solve({"up": 0.0058, "down": 0.0058}).markers["tip"]
     found = solve_ik(rough, {"tip": goal})
     assert found.pose.markers["tip"] == pytest.approx(goal, abs=2e-3)
     assert len(found.pose.history) == len(rough.assembly.history) > 0

@@ -162,3 +162,19 @@ def test_a_sum_that_is_singular_is_named() -> None:
     held = found.with_weights(np.diag([0.75, 8.0]))
     assert held.definite
     assert not held.singular
+
+
+@pytest.mark.parametrize("kind", ["diagonal", "none"])
+@pytest.mark.parametrize("seed", range(3))
+def test_springs_push(kind: str, seed: int) -> None:
+    """The dense matrix balances the springs' tensions at the elongations that are left; slack ones do not pull."""
+    random = np.random.default_rng(seed)
+    matrix, columns, weights = body(0.5, seed), random.standard_normal((SIZE, RANK)), weights_of(kind, random)
+    springs, elongations = random.standard_normal((SIZE, 6)), random.standard_normal(6)
+    law = TensionLaw(stiffness=np.full(6, 40.0), smoothing=np.full(6, 1e-3))
+    move = made(matrix, columns, weights).push(springs, elongations, law)
+    assert move is not None
+    tensions = law.tension(elongations + springs.T @ move)
+    assert 0 < (tensions > 0).sum() < 6
+    whole = matrix + columns @ weights @ columns.T
+    assert whole @ move == pytest.approx(-springs @ tensions, abs=1e-8 * np.abs(springs @ tensions).max())

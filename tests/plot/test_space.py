@@ -41,35 +41,32 @@ def figure(kind: str) -> Figure:
 
 @pytest.mark.parametrize("kind", FIGURES)
 @pytest.mark.slow
-def test_png_twice_the_same(kind: str, tmp_path: Path) -> None:
-    one = plot.save_png(figure(kind), tmp_path / "one.png", dpi=60)
-    two = plot.save_png(figure(kind), tmp_path / "two.png", dpi=60)
+def test_png_and_svg_twice_the_same_with_all_words_inside(kind: str, tmp_path: Path) -> None:
+    """Oracle: a second figure; and matplotlib's own measure of every text."""
+    figures = [figure(kind), figure(kind)]
+    one, two = (plot.save_png(drawn, tmp_path / f"{place}.png", dpi=60) for place, drawn in enumerate(figures))
     assert one.read_bytes() == two.read_bytes()
     with Image.open(one) as image:
         assert min(image.size) > 50
         assert len(image.convert("RGB").getcolors(1 << 20) or []) > 100
-
-
-@pytest.mark.parametrize("kind", FIGURES)
-@pytest.mark.slow
-def test_svg_twice_the_same(kind: str) -> None:
-    text = plot.inline_svg(figure(kind), name="it", label="a box")
-    assert text == plot.inline_svg(figure(kind), name="it", label="a box")
+    text, again = (plot.inline_svg(drawn, name="it", label="a box") for drawn in figures)
+    assert text == again
     root = ElementTree.fromstring(text)
     names = [element.get("id") for element in root.iter() if element.get("id")]
     assert len(names) == len(set(names))
     assert any(element.tag.endswith("image") for element in root.iter())
+    check_words(figures[0])
 
 
-@pytest.mark.parametrize("kind", FIGURES)
-@pytest.mark.parametrize("width", [4.9, 6.4])
 @pytest.mark.slow
-def test_all_words_lie_within_the_picture(kind: str, width: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_words_lie_within_a_narrow_picture() -> None:
     """Oracle: matplotlib's own measure of every text."""
-    drawn = figure(kind) if width == 6.4 else None
-    if drawn is None:
-        network = space_network()
-        drawn = plot.draw_reached(network.robot, network.reached[0], width=width)
+    network = space_network()
+    check_words(plot.draw_reached(network.robot, network.reached[0], width=4.9))
+
+
+def check_words(drawn: Figure) -> None:
+    """Check that every text lies within the picture."""
     drawn.canvas.draw()  # pyright: ignore[reportAttributeAccessIssue]
     page = drawn.bbox
     for text in drawn.findobj(Text):

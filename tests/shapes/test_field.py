@@ -5,7 +5,7 @@ import pytest
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import contour
-from hydrostat.shapes import (
+from hydrostat.shapes.field import (
     chain,
     ellipsoid,
     half_space,

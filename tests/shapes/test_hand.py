@@ -5,8 +5,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from hydrostat.shapes import CUPPING, EXTENDED, HandPosture, Shape, hand
+from hydrostat.shapes import Shape, hand
 from hydrostat.shapes.hand import (
+    CUPPING,
+    EXTENDED,
     FINGERS,
     HAND_BREADTH,
     HAND_LENGTH,
@@ -18,6 +20,7 @@ from hydrostat.shapes.hand import (
     SOFT_TIPS,
     THUMB_BREADTH,
     THUMB_THICKNESS,
+    HandPosture,
 )
 
 POSTURES = {

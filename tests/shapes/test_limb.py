@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from hydrostat.geometry import contour
-from hydrostat.shapes import limb, round_cone
+from hydrostat.shapes.field import round_cone
+from hydrostat.shapes.limb import limb
 
 STRAIGHT = [(0, 0, 0), (0, 0, 0.04), (0, 0, 0.1)]
 

@@ -13,9 +13,9 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, locate
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Volume, Winch
-from hydrostat.simulation import Sensitivity, Simulation
+from hydrostat.simulation import Simulation
 from hydrostat.simulation.route_points import route_points
-from hydrostat.simulation.sensitivities.adjoint import sensitivity
+from hydrostat.simulation.sensitivities.adjoint import Sensitivity, sensitivity
 
 TIGHT = NewtonOptions(tolerance=1e-13)
 RUBBER = replace(FOAM, poisson=0.47)

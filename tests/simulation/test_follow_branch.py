@@ -9,15 +9,9 @@ from builders import gallery_robot, strip_robot
 from test_buckling import column, hessian, mirrored, saddle  # pyright: ignore[reportMissingImports]
 
 from hydrostat.errors import InputError
-from hydrostat.simulation import (
-    Branch,
-    BranchOptions,
-    BranchReason,
-    CriticalKind,
-    Equilibrium,
-    Simulation,
-    continue_branch,
-)
+from hydrostat.simulation import Branch, Equilibrium, Simulation, continue_branch
+from hydrostat.simulation.branches.branch import BranchReason, CriticalKind
+from hydrostat.simulation.branches.continue_branch import BranchOptions
 
 GOAL = 0.3
 BETWEEN = 0.145

@@ -9,15 +9,8 @@ from builders import FOAM, mesh_body, strip_mesh
 
 from hydrostat.mechanics import GuideEnergy
 from hydrostat.robot import Contact, Marker, Obstacle, Pin, Robot
-from hydrostat.simulation import (
-    BodyPhysics,
-    ContractionProfile,
-    Simulation,
-    StepOptions,
-    carried_frames,
-    with_replaced,
-    write_motion,
-)
+from hydrostat.simulation import BodyPhysics, ContractionProfile, Simulation, StepOptions, with_replaced, write_motion
+from hydrostat.simulation.obstacle_frames import carried_frames
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 

@@ -14,7 +14,7 @@ from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.judge import QUIET, Judge
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.view.finding_things import BRIEF, TONES, finding_things
+from hydrostat.studio.view.robot_things import BRIEF, TONES, finding_things
 from hydrostat.studio.view.things import Dot, Look
 
 WISHES = Wishes()

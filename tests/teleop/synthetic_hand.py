@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from hydrostat.teleop import CyberGlove, EmulatedGlove, Mimicry
-from hydrostat.teleop.cyber_glove import SENSORS
+from hydrostat.teleop import CyberGlove, Mimicry
+from hydrostat.teleop.cyber_glove import SENSORS, EmulatedGlove
 
 OUTPUTS = 10
 RANDOM = np.random.default_rng(3)

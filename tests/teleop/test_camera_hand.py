@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.teleop import CameraHand, HandLandmarks, open_hand, open_source
-from hydrostat.teleop.landmarks import COUNT, bends
+from hydrostat.teleop import open_hand, open_source
+from hydrostat.teleop.camera_hand import COUNT, CameraHand, HandLandmarks, bends
 from hydrostat.teleop.source import DriveChannels
 
 PLACES = np.random.default_rng(2).normal(size=(COUNT, 3))
@@ -132,8 +132,6 @@ def test_words_open_it(model: Path) -> None:
 
 def test_without_the_library_it_is_told_in_a_line(model: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mediapipe", None)
-    with pytest.raises(
-        HydrostatError, match=r"a camera needs mediapipe .*: pip install \"hydrostat\[camera\]\""
-    ) as told:
+    with pytest.raises(HydrostatError, match=r"a camera needs mediapipe .*: pip install -e \"\.\[camera\]\"") as told:
         open_hand(f"camera:{model}")
     assert "\n" not in str(told.value)

@@ -13,8 +13,9 @@ import pytest
 import hydrostat as hs
 from hydrostat.control import Motors, SimulatedLink, TensionLookup
 from hydrostat.errors import HydrostatError
-from hydrostat.teleop import DriveLoop, DriveSource, DriveWish, MarkerMapper, WinchMapper, drive
+from hydrostat.teleop import DriveLoop, DriveSource, MarkerMapper, WinchMapper, drive
 from hydrostat.teleop.pose_process import FingertipPoses, PoseOnWay, PoseProcess, WinchPoses
+from hydrostat.teleop.source import DriveWish
 
 
 class Script(DriveSource):

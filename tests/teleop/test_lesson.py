@@ -8,16 +8,8 @@ import pytest
 from hydrostat.control import Motors, SimulatedLink
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch
-from hydrostat.teleop import (
-    CyberGlove,
-    DriveChannels,
-    EmulatedPerson,
-    LessonPoses,
-    Mimicry,
-    go_there,
-    hold_still,
-    pose_pool,
-)
+from hydrostat.teleop import CyberGlove, EmulatedPerson, LessonPoses, Mimicry, go_there, hold_still, pose_pool
+from hydrostat.teleop.source import DriveChannels
 
 COUNT = 10
 CHANNELS = DriveChannels(

@@ -9,10 +9,10 @@ import pytest
 from synthetic_hand import OUTPUTS, averaged, mimicked, shown
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.teleop import CyberGlove, EmulatedGlove, Mimicry, fit_ridge
-from hydrostat.teleop.cyber_glove import SENSORS
+from hydrostat.teleop import CyberGlove, Mimicry
+from hydrostat.teleop.cyber_glove import SENSORS, EmulatedGlove
 from hydrostat.teleop.mimicry import write_mcap
-from hydrostat.teleop.ridge import folded_error, left_out_error
+from hydrostat.teleop.ridge import fit_ridge, folded_error, left_out_error
 
 MARK = 0.0026  # of the thesis: error of 120 poses, contractions from -1 to 1
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.teleop import OneEuro, Smoothing
+from hydrostat.teleop import Smoothing
+from hydrostat.teleop.mapped_hand import OneEuro
 
 STEP = 1 / 90
 

@@ -16,21 +16,14 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.teleop import (
-    DriveChannels,
-    Gamepad,
-    HandLandmarks,
-    HandMap,
-    HandReading,
-    Keys,
-    MappedHand,
-    MidiKnobs,
-    Osc,
-    open_source,
-)
+from hydrostat.teleop import HandMap, MappedHand, open_source
+from hydrostat.teleop.camera_hand import COUNT, HandLandmarks, bends
 from hydrostat.teleop.cyber_glove import SENSORS, CyberGlove, EmulatedGlove
-from hydrostat.teleop.landmarks import COUNT, bends
+from hydrostat.teleop.gamepad import Gamepad
+from hydrostat.teleop.keys import Keys
+from hydrostat.teleop.midi_osc import MidiKnobs, Osc
 from hydrostat.teleop.ridge import Ridge
+from hydrostat.teleop.source import DriveChannels, HandReading
 
 WINCHES = DriveChannels(
     names=("index flexor", "thumb"),

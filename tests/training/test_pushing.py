@@ -19,12 +19,12 @@ from hydrostat.training import (  # noqa: E402
     TaskOptions,
     ThingOptions,
     ThingPhysics,
-    ThingWorld,
     TwistEnv,
     TwistOptions,
     held_out_goals,
     judge,
 )
+from hydrostat.training.thing_world import ThingWorld  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 BALL = Obstacle(name="ball", shape="sphere", at=(0.12, 0.045), radius=0.015, mass=0.05, friction=0.5)

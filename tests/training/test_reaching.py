@@ -19,7 +19,6 @@ gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed"
 from hydrostat.arrays import Vector  # noqa: E402
 from hydrostat.training import (  # noqa: E402
     CurvePoint,
-    ExactWorld,
     Listener,
     MixedWorld,
     ReachEnv,
@@ -33,7 +32,7 @@ from hydrostat.training import (  # noqa: E402
     portable_policy,
     train,
 )
-from hydrostat.training.worlds import LearnedWorld  # noqa: E402
+from hydrostat.training.worlds import ExactWorld, LearnedWorld  # noqa: E402
 
 Goals = list[dict[str, Any]]
 

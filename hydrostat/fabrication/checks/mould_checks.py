@@ -15,7 +15,7 @@ _POURS = ("silicone_lower", "silicone_upper")
 
 def mould_checks(robot: Robot, mould: Mould) -> tuple[Check, ...]:
     """The account of the block, the way that the foam takes, and the body against the simulated mesh."""
-    return (_account(mould), _filled(mould), _as_simulated(robot, mould))
+    return (_account(mould), _check_connected(mould), _as_simulated(robot, mould))
 
 
 def _account(mould: Mould) -> Check:
@@ -48,7 +48,7 @@ def _body(mould: Mould) -> float:
     return sum(float(piece.solid.volume()) for piece in mould.assembly.pieces if piece.name == "body")
 
 
-def _filled(mould: Mould) -> Check:
+def _check_connected(mould: Mould) -> Check:
     """Check that sprue, cavity and vents form one connected volume."""
     rooms = sum(room.volume() > 0 for room in mould.poured.decompose())
     sprue = mould.volumes["sprue"]

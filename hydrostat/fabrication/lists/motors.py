@@ -8,8 +8,7 @@ from typing import Annotated
 from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.lists.table import Table, number_column, text_column
-from hydrostat.fabrication.parts.board import BOARDS, board_for
-from hydrostat.fabrication.parts.motor import MARGIN, Motor
+from hydrostat.fabrication.parts.motor import BOARDS, MARGIN, Motor, board_for
 from hydrostat.robot import Robot, Winch
 
 SLOW = 10.0  # a winch that takes longer than this for its full travel [s] is called slow

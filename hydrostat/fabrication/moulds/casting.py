@@ -70,10 +70,10 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
         release=_release(foams),
         notes=_casting_notes(foams, silicone=bool(pours)),
     )
-    return casting, (*problems, *_poisoned(cast, silicone=bool(pours)))
+    return casting, (*problems, *_inhibition_problem(cast, silicone=bool(pours)))
 
 
-def _poisoned(material: Material, *, silicone: bool) -> tuple[str, ...]:
+def _inhibition_problem(material: Material, *, silicone: bool) -> tuple[str, ...]:
     """Return a problem if the mold keeps the body from curing; else nothing."""
     if not (silicone and material.name.startswith(_PLATINUM)):
         return ()

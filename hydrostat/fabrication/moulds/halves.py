@@ -57,7 +57,7 @@ def make_halves(
     above = _upper_side(pockets)
     upper, lower = (solid ^ above) - closing.sockets, (solid - above) + closing.bumps
     account = {"box": volume(block.solid), "body": volume(body)}
-    account["dents"], account["pockets"] = _taken(body, dents, pockets)
+    account["dents"], account["pockets"] = _removed_volumes(body, dents, pockets)
     account["cavity"] = volume(cavity)
     account |= _voids(block, cavity, openings, closing)
     account |= {"upper": volume(upper), "lower": volume(lower)}
@@ -82,7 +82,7 @@ def volume(solid: Manifold) -> float:
     return float(solid.volume())
 
 
-def _taken(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> tuple[float, float]:
+def _removed_volumes(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> tuple[float, float]:
     """Volumes that dents remove from the body, and pockets from the rest [mm^3]."""
     cores = join_solids(pocket.core for pocket in pockets)
     return volume(body ^ dents), volume(cores ^ body) - volume(cores ^ body ^ dents)
@@ -124,7 +124,7 @@ def mould_prints(
             ("mould_upper", "upper half", halves.upper, _OVER),
         ):
             pieces = split(solid, block.x_cuts, block.y_cuts)
-            printed += _printed(name, title, pieces.solids, lying, _HALF)
+            printed += _make_pieces(name, title, pieces.solids, lying, _HALF)
             dowels += pieces.dowels
             holes += pieces.lost
     for name, title, solid, lying in (
@@ -136,9 +136,9 @@ def mould_prints(
             else ()
         ),
     ):
-        pieces = _fitted(solid, bed)
+        pieces = _fit_pieces(solid, bed)
         framing = name.startswith("frame")
-        printed += _printed(name, title, pieces.solids, lying, _FRAME if framing else _POSITIVE)
+        printed += _make_pieces(name, title, pieces.solids, lying, _FRAME if framing else _POSITIVE)
         dowels += pieces.dowels if frames else 0
         holes += pieces.lost if frames and not framing else 0.0
     if frames:
@@ -146,7 +146,7 @@ def mould_prints(
     return tuple(printed), dowels, holes
 
 
-def _fitted(solid: Manifold, bed: tuple[float, float, float]) -> Pieces:
+def _fit_pieces(solid: Manifold, bed: tuple[float, float, float]) -> Pieces:
     """Pieces of a solid that fit the bed; none for a half with nothing in it."""
     if solid.is_empty():
         return Pieces(solids=(), dowels=0, lost=0.0)
@@ -154,7 +154,7 @@ def _fitted(solid: Manifold, bed: tuple[float, float, float]) -> Pieces:
     return split(solid, *grid(box[:3], box[3:], bed))
 
 
-def _printed(name: str, title: str, solids: tuple[Manifold, ...], lying: _Lying, note: str) -> list[Printed]:
+def _make_pieces(name: str, title: str, solids: tuple[Manifold, ...], lying: _Lying, note: str) -> list[Printed]:
     if len(solids) == 1:
         return [Printed(name=name, title=title, solid=_on_bed(solids[0], lying), note=note)]
     return [

@@ -76,7 +76,7 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     """
     solid = body_solid(robot.body)
     pull = find_pull(solid)
-    stance = find_stance(pull, _held(robot))
+    stance = find_stance(pull, _pinned_nodes(robot))
     inside = _fill_block(robot, options, solid, pull, stance, pockets or {})
     closing = make_closing(
         inside.block,
@@ -128,7 +128,7 @@ def _silicone_volumes(halves: Halves, positive: Positive, frames: Frames) -> dic
     return kept | {"box": sides, "sprue": positive.stub, "silicone_lower": lower, "silicone_upper": upper}
 
 
-def _held(robot: Robot) -> Float[np.ndarray, "held 3"]:
+def _pinned_nodes(robot: Robot) -> Float[np.ndarray, "held 3"]:
     """Nodes at pins [mm], flat bodies at z = 0."""
     mesh = robot.body.mesh
     held = np.zeros(len(mesh.nodes), dtype=bool)

@@ -102,13 +102,13 @@ def _together(ways: list[list[Pocket]]) -> tuple[Pocket, ...]:
 
 def _worth(pocket: Pocket, others: list[Pocket]) -> tuple[float, bool, float, float, float]:
     """The lower the better: what is outside, too little skin, winches in one place, halves that cross, size."""
-    shared = sum(_shared(pocket.unit, other.unit) for other in others)
-    crossed = sum(_shared(pocket.reach, other.reach) for other in others if other.upper != pocket.upper)
+    shared = sum(_overlap_volume(pocket.unit, other.unit) for other in others)
+    crossed = sum(_overlap_volume(pocket.reach, other.reach) for other in others if other.upper != pocket.upper)
     outside = round(max(pocket.outside, _OUTSIDE), 3)
     return (outside, bool(pocket.problem), round(shared, 3), round(crossed, 3), round(float(pocket.core.volume()), 3))
 
 
-def _shared(one: Manifold, other: Manifold) -> float:
+def _overlap_volume(one: Manifold, other: Manifold) -> float:
     """Overlap volume of two boxes along the axes [mm^3]."""
     (low, high), (low_other, high_other) = (np.reshape(box.bounding_box(), (2, 3)) for box in (one, other))
     return float(np.prod(np.maximum(np.minimum(high, high_other) - np.maximum(low, low_other), 0.0)))

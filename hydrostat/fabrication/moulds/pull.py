@@ -1,6 +1,7 @@
 """`find_pull`: the direction along which a mould of two halves comes off with the least undercut."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
@@ -61,16 +62,26 @@ def best_height(surface: FineSurface, freed: Release) -> tuple[float, float]:
 
 
 def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
-    """The best direction and height for a flat parting of a body [mm]: of `count` on half a sphere, and then nearby."""
+    """The best direction and height for a flat parting of a body [mm]: of `count` on half a sphere, and then nearby.
+
+    The results of the last bodies are kept: other options of a mould need no new search.
+    """
     surface = fine_surface(solid)
+    return _find_pull(surface.vertices.tobytes(), surface.triangles.tobytes(), count)
+
+
+@lru_cache(maxsize=8)
+def _find_pull(vertices: bytes, triangles: bytes, count: int) -> Pull:
+    """Search the best pull of a surface, whose arrays are given as bytes."""
+    surface = FineSurface(np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(triangles, int).reshape(-1, 3))
     tried = np.vstack([_own_axes(surface), np.eye(3), _flat_directions(surface), half_sphere(count)])
-    shares, costs = _rated(surface, tried)
+    shares, costs = _rate_directions(surface, tried)
     best = 3
     leaders = tried[np.argsort(costs, kind="stable")[:best]]
     rings = (9.0, 4.5, 2.2, 1.1, 0.5)  # angles at which neighbours of the best direction are tried [degrees]
     for angle in np.radians(rings):
         near = np.vstack([_ring(leader, angle) for leader in leaders])
-        more_shares, more_costs = _rated(surface, near)
+        more_shares, more_costs = _rate_directions(surface, near)
         tried = np.vstack([tried, near])
         shares, costs = np.concatenate([shares, more_shares]), np.concatenate([costs, more_costs])
         leaders = tried[np.argsort(costs, kind="stable")[:1]]
@@ -88,7 +99,7 @@ def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
     )
 
 
-def _rated(surface: FineSurface, directions: Float[np.ndarray, "tried 3"]) -> tuple[Vector, Vector]:
+def _rate_directions(surface: FineSurface, directions: Float[np.ndarray, "tried 3"]) -> tuple[Vector, Vector]:
     """Share of undercut of each direction, and what it costs with the depth of the mould."""
     shares = np.array([best_height(surface, release(surface, direction))[1] for direction in directions])
     depths = np.ptp(surface.vertices @ directions.T, axis=0)

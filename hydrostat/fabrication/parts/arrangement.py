@@ -32,17 +32,17 @@ def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float
     enough for that.
     """
     ways = [_Ways(ways_to_lie(box, seam), thickness) for box in boxes]
-    total, places = _settled(ways)
+    total, places = _settle_units(ways)
     if total[0] > 0:
         thin = [way.thinnest() if _meets_another(places, number) else way for number, way in enumerate(ways)]
-        places = min((total, places), _settled(thin), key=lambda pair: pair[0])[1]
+        places = min((total, places), _settle_units(thin), key=lambda pair: pair[0])[1]
     problems, warnings = (
         [_alone(place, thickness) for place in places],
         [_bulging(place, thickness) for place in places],
     )
     stuck = {number for number, told in enumerate(problems) if told}  # no way of laying these is any good
     for pile in _piles(places):
-        words, possible = _piled([places[number] for number in pile], thickness)
+        words, possible = _describe_pile([places[number] for number in pile], thickness)
         (warnings if possible else problems)[pile[0]].append(words)
         stuck |= set() if possible else set(pile)
     turned = [number for number, way in enumerate(ways) if places[number] is not way.alone or any(places[number].slid)]
@@ -105,7 +105,7 @@ class _Ways:
         return self._shares[id(other)]
 
 
-def _settled(ways: list[_Ways]) -> tuple[tuple[float, float], list[UnitPlace]]:
+def _settle_units(ways: list[_Ways]) -> tuple[tuple[float, float], list[UnitPlace]]:
     """Place each in turn at its best until none changes; return shared areas and places of the best start."""
     found: list[tuple[tuple[float, float], list[UnitPlace]]] = []
     for first in range(len(ways)):
@@ -155,7 +155,7 @@ def _piles(places: Sequence[UnitPlace]) -> list[tuple[int, ...]]:
     return piles
 
 
-def _piled(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
+def _describe_pile(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
     """Return the sentence on units above each other, and True if they can be built."""
     high = sum(place.depth for place in pile)
     names = " and ".join(f'"{place.box.winch}"' for place in pile) + _sizes(pile)

@@ -111,11 +111,11 @@ class Housing:
         if self.motor.horn is None:
             least.append((self.recess + wall / 2 + passage) / math.sqrt(2))
         found = max(least)
-        while self._blocked(found):
+        while self._is_blocked(found):
             found += _TRY
         return found
 
-    def _blocked(self, post: float) -> bool:
+    def _is_blocked(self, post: float) -> bool:
         """Return True if a screw would collide with a screw in the face, or with a motor below the base."""
         mine = self.screw.passage / 2
         corners = MultiPoint([(x, y) for x in (-post, post) for y in (-post, post)])

@@ -54,7 +54,7 @@ class UnitPlace:
     def azimuth(self, way: float) -> int:
         """The side of the housing that is nearest to a way [degrees]: along +y 90; if it lies 90 or 270."""
         quarter = 90 if self.across else 180
-        return (90 + quarter * round(_turned(way - self.turn) / quarter)) % 360
+        return (90 + quarter * round(_wrap_angle(way - self.turn) / quarter)) % 360
 
     @property
     def instruction(self) -> str:
@@ -113,7 +113,7 @@ def _laid_out(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, ac
     )
 
 
-def _turned(angle: float) -> float:
+def _wrap_angle(angle: float) -> float:
     """The same between -180 and 180 degrees, a little towards 180, so that rounding noise changes nothing."""
     return (angle + 180 - 1e-6) % 360 - 180 + 1e-6
 

@@ -148,16 +148,16 @@ class WinchParts:
         """Make what is printed for a winch (spool, box, plate, the coupling of a servo) and put it together."""
         box = housing.box().rotate(x=180).move(0, 0, housing.top)
         printed = [
-            self._printed("spool", "Spool", housing.spool.construction(), _SPOOL),
-            self._printed("housing", "Housing", box, _BOX),
-            self._printed("motor_plate", "Motor plate", housing.plate(), _PLATE),
+            self._make_piece("spool", "Spool", housing.spool.construction(), _SPOOL),
+            self._make_piece("housing", "Housing", box, _BOX),
+            self._make_piece("motor_plate", "Motor plate", housing.plate(), _PLATE),
         ]
         coupling = housing.coupling()
         if coupling is not None:
-            printed.append(self._printed("coupling", "Coupling", coupling, _COUPLING))
+            printed.append(self._make_piece("coupling", "Coupling", coupling, _COUPLING))
         return tuple(printed), self._assembly(housing, tuple(printed), winch)
 
-    def _printed(self, kind: str, title: str, model: Construction, note: str) -> Printed:
+    def _make_piece(self, kind: str, title: str, model: Construction, note: str) -> Printed:
         made = self._made.setdefault(kind, {})
         if model not in made:
             made[model] = Printed.of(model, name=f"{kind}_{letter_label(len(made))}", title=title, note=note)
@@ -312,7 +312,7 @@ class _UnitDraft:
             printed=printed,
             assembly=assembly,
             exits=tuple(way for place, cables in enumerate(self.wound) for way in _exits(housing, place, cables)),
-            bought=_bought(housing),
+            bought=_bought_pieces(housing),
             across=laid is None or laid.place.across,
             place=laid.place if laid else None,
             problems=(*self.problems, *(laid.problems if laid else ())),
@@ -371,7 +371,7 @@ def _exits(housing: Housing, place: int, cables: tuple[int, ...]) -> Iterator[Ex
         )
 
 
-def _bought(housing: Housing) -> tuple[tuple[str, int], ...]:
+def _bought_pieces(housing: Housing) -> tuple[tuple[str, int], ...]:
     motor, wall = housing.motor, housing.options.wall
     found = [(motor.screw.title(wall), len(motor.holes))]
     if motor.horn is not None:

@@ -70,7 +70,7 @@ def flatten(disc: Disc, *, settled: float = SETTLED) -> Patch:
     """
     import igl
 
-    toothed = _toothed(disc, _TOOTH * float(np.sqrt(disc.areas.sum())))
+    toothed = _add_teeth(disc, _TOOTH * float(np.sqrt(disc.areas.sum())))
     energy, none = igl.MappingEnergyType.SYMMETRIC_DIRICHLET, np.zeros(0, dtype=np.int32)
     triangles = np.asfortranarray(toothed.triangles.astype(np.int32))
     solid, start = np.asfortranarray(toothed.vertices), np.asfortranarray(_tutte(toothed))
@@ -87,7 +87,7 @@ def flatten(disc: Disc, *, settled: float = SETTLED) -> Patch:
     return Patch(disc=disc, flat=flat[: len(disc.vertices)])
 
 
-def _toothed(disc: Disc, height: float) -> Disc:
+def _add_teeth(disc: Disc, height: float) -> Disc:
     """The disc with a triangle so high [mm] on each edge of its rim, in the plane of the one inside."""
     starts, ends = disc.rim, np.roll(disc.rim, -1)
     apex = {(a, b): c for a, b, c in _corners(disc)}

@@ -132,7 +132,7 @@ def _notch_places(seam: Seam) -> list[tuple[float, bool]]:
     return [(0.0, True), (pair, False), *((seam.length * step / count, True) for step in range(1, count))]
 
 
-def _named(seams: tuple[Seam, ...]) -> list[list[tuple[str, float]]]:
+def _name_notches(seams: tuple[Seam, ...]) -> list[list[tuple[str, float]]]:
     """Letters and places of the notches of each seam."""
     letters = notch_letters()
     return [[(next(letters) if lettered else "", along) for along, lettered in _notch_places(seam)] for seam in seams]
@@ -141,7 +141,7 @@ def _named(seams: tuple[Seam, ...]) -> list[list[tuple[str, float]]]:
 def patch_notches(seams: tuple[Seam, ...]) -> dict[int, list[PatchNotch]]:
     """The notches of each patch: at the same place of the body on both sides of a seam."""
     found: dict[int, list[PatchNotch]] = {number: [] for seam in seams for number in seam.patches}
-    for seam, named in zip(seams, _named(seams), strict=True):
+    for seam, named in zip(seams, _name_notches(seams), strict=True):
         for side, number in enumerate(seam.patches):
             found[number] += [PatchNotch(name=name, place=seam.place(along, side)) for name, along in named]
     return found
@@ -151,7 +151,7 @@ def stuffing_gap(seams: tuple[Seam, ...], names: tuple[str, ...]) -> tuple[str, 
     """Return the sentence on where a body without a zipper is turned and stuffed."""
     lengths = [seam.length for seam in seams]
     longest = int(np.argmax(lengths))
-    seam, named = seams[longest], [notch for notch in _named(seams)[longest] if notch[0]]
+    seam, named = seams[longest], [notch for notch in _name_notches(seams)[longest] if notch[0]]
     if len(named) < 2:
         return ("no seam is long enough to turn the body through: close the last one by hand",)
     stuffing = 80.0  # length of seam left open for turning and stuffing where there is no zipper [mm], about

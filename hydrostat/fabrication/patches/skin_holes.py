@@ -100,7 +100,7 @@ def find_holes(
         first = int(robot.winch(cable.winch).mount is not Mount.WORLD)
         near = [index for index in range(first, len(points)) if depths[index] <= DEEPEST]
         begins = Side.INSIDE if first else Side.OUTSIDE
-        for index, passes, after in _sewn(cable, near, begins):
+        for index, passes, after in _sewn_points(cable, near, begins):
             x, y = flat[index].tolist()
             a, b, c = solid[index].tolist()
             hole = SkinHole(
@@ -117,7 +117,7 @@ def find_holes(
     return tuple(holes)
 
 
-def _sewn(cable: Cable, near: list[int], side: Side) -> Iterator[tuple[int, bool, Side]]:
+def _sewn_points(cable: Cable, near: list[int], side: Side) -> Iterator[tuple[int, bool, Side]]:
     """Yield each point near the skin, True if the cable passes there, and the side after it."""
     passes = dict.fromkeys(near, False)
     now = side

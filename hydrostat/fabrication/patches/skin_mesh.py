@@ -59,7 +59,7 @@ class SkinMesh(TriangleMesh):
         new[marked] = len(self.vertices) + np.arange(int(marked.sum()))
         parts, parents = [], []
         for index in range(len(self.triangles)):
-            pieces = _divided(self.triangles[index].tolist(), new[of[index]].tolist(), vertices)
+            pieces = _divide_triangle(self.triangles[index].tolist(), new[of[index]].tolist(), vertices)
             parts += pieces
             parents += [index] * len(pieces)
         parent = np.array(parents, dtype=np.int64)
@@ -67,7 +67,9 @@ class SkinMesh(TriangleMesh):
         return mesh, parent
 
 
-def _divided(corners: list[int], middles: list[int], vertices: Float[np.ndarray, "vertices 3"]) -> list[list[int]]:
+def _divide_triangle(
+    corners: list[int], middles: list[int], vertices: Float[np.ndarray, "vertices 3"]
+) -> list[list[int]]:
     """A triangle with new vertices on its sides (-1: none), in triangles."""
     count = sum(middle >= 0 for middle in middles)
     if count == 0:
@@ -149,7 +151,7 @@ def cut_at_zero(
     edges = mesh.edges[0]
     touched = np.zeros(len(edges), dtype=bool)
     touched[mesh.edges[1][inside]] = True
-    field = _snapped(mesh, field, touched, inside)
+    field = _snap_field(mesh, field, touched, inside)
     ends = field[edges]
     marked = touched & (ends[:, 0] * ends[:, 1] < 0)
     share = np.zeros(len(edges))
@@ -160,7 +162,7 @@ def cut_at_zero(
     return divided, parent, np.where(inside[parent], side, 0)
 
 
-def _snapped(
+def _snap_field(
     mesh: SkinMesh,
     field: Float[np.ndarray, " vertices"],
     touched: Bool[np.ndarray, " edges"],

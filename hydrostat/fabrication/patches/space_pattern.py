@@ -15,6 +15,7 @@ from shapely.geometry.polygon import orient
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.cutting import cut_skin, patch_problems, patch_warnings, thin_direction
+from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import PatchNotch, Seam, find_seams, patch_notches, stuffing_gap
 from hydrostat.fabrication.patches.skin_holes import (
@@ -26,7 +27,7 @@ from hydrostat.fabrication.patches.skin_holes import (
     hole_warnings,
     way_problems,
 )
-from hydrostat.fabrication.patches.skin_mesh import skin_mesh
+from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh
 from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.marks import dash_lines
 from hydrostat.fabrication.patterns.opening import Opening, opening_at
@@ -36,7 +37,8 @@ from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
 from hydrostat.fabrication.patterns.skin import Skin, skin_of
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Body, Mount, Robot
+from hydrostat.units import plural
 
 _CLEAR = 0.8
 
@@ -224,7 +226,7 @@ def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
         ),
         patches=moved,
         seams=find_seams(cutting.mesh, moved, view.up),
-        holes=tuple(_moved(hole, origins) for hole in holes),
+        holes=tuple(_move_hole(hole, origins) for hole in holes),
         skin=float(mesh.areas.sum()),
     )
 
@@ -251,7 +253,7 @@ def _on_sheet(opening: Opening, origin: Place) -> Opening:
     return replace(opening, slit=translate(opening.slit, *origin))
 
 
-def _moved(hole: SkinHole, origins: list[Place]) -> SkinHole:
+def _move_hole(hole: SkinHole, origins: list[Place]) -> SkinHole:
     """The hole in places of the sheet."""
     places = tuple((number, (x + origins[number][0], y + origins[number][1])) for number, (x, y) in hole.places)
     return replace(hole, places=places)
@@ -306,3 +308,42 @@ def skin_stitches(robot: Robot, holes: tuple[SkinHole, ...], view: FrontView) ->
             stitches.append(Stitch(number=point, place=(x, y), passes=bool(hole and hole.passes), after=side))
         sewn.append(CableStitches(cable=number, winch=cable.winch, begins=begins, stitches=tuple(stitches)))
     return tuple(sewn)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sewing:
+    """Sewing work for the skin of a body, without its cables."""
+
+    patches: int  # number of patches of cloth; 0 if it cannot be cut at all
+    give: float  # stretch of the cloth in 95 % of the worst patch: 0.1 for 10 %
+    problems: tuple[str, ...]  # reasons why it cannot be sewn, one line each
+
+    def __str__(self) -> str:
+        """In words, such as "2 patches, cloth with 9 % stretch"."""
+        return f"{plural(self.patches, 'patch')}, cloth with {100 * self.give:.0f} % stretch"
+
+
+def find_sewing(body: Body, *, options: PatternOptions | None = None) -> Sewing:
+    """Cut and flatten the skin of a body in space as its kit will, with the reasons if it cannot be sewn.
+
+    It takes seconds. Raises InputError: a flat body.
+    """
+    if body.mesh.dim != 3:
+        raise InputError("a flat body has a flat pattern of its own")
+    try:
+        mesh = skin_mesh(body)
+    except InputError as error:
+        return Sewing(patches=0, give=0.0, problems=(str(error),))
+    return sewing_of(mesh, options or PatternOptions())
+
+
+def sewing_of(mesh: SkinMesh, options: PatternOptions) -> Sewing:
+    """Compute the sewing work of a skin, with the reasons if it cannot be sewn."""
+    cutting = cut_skin(mesh)
+    skins = tuple(patch_skin(patch, options) for patch in cutting.patches)
+    seams = find_seams(cutting.mesh, cutting.patches, np.eye(3)[2])
+    return Sewing(
+        patches=len(cutting.patches),
+        give=max(distortion(patch).give(0.95) for patch in cutting.patches),
+        problems=patch_problems(cutting.names, cutting.patches, skins, seams),
+    )

@@ -69,10 +69,12 @@ def cable_stitches(robot: Robot, seam: Polygon) -> tuple[CableStitches, ...]:
     sheath that begins at such a winch lies outside.
     """
     ways = [(panel, cable) for panel in sewn_sides(robot) for cable in robot.cables]
-    return tuple(_stitched(robot, number, cable, seam, panel) for number, (panel, cable) in enumerate(ways, start=1))
+    return tuple(
+        _stitch_cable(robot, number, cable, seam, panel) for number, (panel, cable) in enumerate(ways, start=1)
+    )
 
 
-def _stitched(robot: Robot, number: int, cable: Cable, seam: Polygon, panel: str) -> CableStitches:
+def _stitch_cable(robot: Robot, number: int, cable: Cable, seam: Polygon, panel: str) -> CableStitches:
     places = [(1e3 * point[0], 1e3 * point[1]) for point in cable.points]
     world = robot.winch(cable.winch).mount is Mount.WORLD
     beside = world and not seam.intersects(shapely.Point(places[0]))

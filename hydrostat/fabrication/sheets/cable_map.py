@@ -84,7 +84,7 @@ def front_runs(robot: Robot, stitches: Sequence[CableStitches], frame: CanvasFra
     near = [sewn for sewn in stitches if sewn.panel == stitches[0].panel]
     behind = [sewn.cable for sewn in stitches if sewn.panel != stitches[0].panel]
     twins: Sequence[int | None] = behind or [None] * len(near)
-    return [_stitched(robot, sewn, frame, twin) for sewn, twin in zip(near, twins, strict=True)] or [
+    return [_draw_stitches(robot, sewn, frame, twin) for sewn, twin in zip(near, twins, strict=True)] or [
         _within(robot, index, frame) for index in range(len(robot.cables))
     ]
 
@@ -140,7 +140,7 @@ def _put_pane(canvas: Canvas, robot: Robot, pane: SightedBody, room: Box) -> Non
     _put_runs(canvas, labels, runs, stands)
 
 
-def _stitched(robot: Robot, sewn: CableStitches, frame: CanvasFrame, twin: int | None) -> CableRun:
+def _draw_stitches(robot: Robot, sewn: CableStitches, frame: CanvasFrame, twin: int | None) -> CableRun:
     """A cable that is sewn through cloth."""
     sides = [stitch.after is Side.OUTSIDE for stitch in sewn.stitches[:-1]]
     cable = robot.cables[sewn.cable - 1]

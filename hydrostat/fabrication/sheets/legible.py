@@ -68,7 +68,7 @@ def legible(words: str) -> str:
 
 def lacking(words: str) -> frozenset[str]:
     """Letters of which the fonts that come with typst have no picture; spaces are not counted."""
-    return frozenset(letter for letter in words if not letter.isspace() and not _drawn(letter))
+    return frozenset(letter for letter in words if not letter.isspace() and not _is_printable(letter))
 
 
 def typeset(words: str) -> str:
@@ -84,7 +84,7 @@ def _power(found: re.Match[str]) -> str:
 
 
 @cache
-def _drawn(letter: str) -> bool:
+def _is_printable(letter: str) -> bool:
     """Return True if a letter can be printed: typst rejects a PDF/A page if no font has the letter."""
     if letter.isascii():
         return letter.isprintable()
@@ -109,14 +109,14 @@ _MOTOR = re.compile(r"\b(motor|torque|N mm)\b")
 def note_lines(problems: tuple[str, ...], warnings: tuple[str, ...], robot: Robot | None = None) -> list[str]:
     """Return problems first, then warnings on motors, on fits, on cloth, and the number of those left out."""
     ranked = (*merge_sentences(problems), *sorted(merge_sentences(warnings), key=_rank))
-    ordered = [_marked(in_words(words), robot) for words in ranked]
+    ordered = [_mark_winches(in_words(words), robot) for words in ranked]
     shown = [shorten_text(sentence(words), _SENTENCE) for words in ordered[:_MOST]]
     if len(ordered) > _MOST:
         shown.append(f"… and {len(ordered) - _MOST} more in manifest.json")
     return shown
 
 
-def _marked(words: str, robot: Robot | None) -> str:
+def _mark_winches(words: str, robot: Robot | None) -> str:
     """Words with the mark of each winch before its name, as it stands on the map."""
     for name, mark in (winch_marks_of(robot) if robot else {}).items():
         if not lacking(name):  # else the mark will stand in its place

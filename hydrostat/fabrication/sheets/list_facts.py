@@ -6,7 +6,7 @@ from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.bill import BillRow
 from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.motors import PowerPlan
-from hydrostat.fabrication.parts.board import BOARDS
+from hydrostat.fabrication.parts.motor import BOARDS
 from hydrostat.fabrication.sheets.facts import PieceFacts, PowerFacts, TableFacts
 from hydrostat.fabrication.sheets.legible import shorten_text
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
@@ -64,7 +64,7 @@ def piece_numbers(plan: KitPlan) -> tuple[dict[str, int], dict[str, int]]:
     """Numbers of the pieces of the winch and of the stopper by name; pieces of one title share a number."""
     numbers: list[dict[str, int]] = []
     count = 0
-    for assembly in _numbered(plan):
+    for assembly in _numbered_assemblies(plan):
         titles: dict[str, int] = {}
         for placed in assembly.pieces if assembly else ():
             if placed.title not in titles:
@@ -74,7 +74,7 @@ def piece_numbers(plan: KitPlan) -> tuple[dict[str, int], dict[str, int]]:
     return numbers[0], numbers[1]
 
 
-def _numbered(plan: KitPlan) -> tuple[PartAssembly | None, PartAssembly | None]:
+def _numbered_assemblies(plan: KitPlan) -> tuple[PartAssembly | None, PartAssembly | None]:
     """Assemblies whose pieces have numbers: the winch and the stopper."""
     return plan.rigid.winch_assembly, plan.rigid.stopper_assembly
 
@@ -98,9 +98,9 @@ def piece_facts(plan: KitPlan) -> list[PieceFacts]:
     for part in plan.printed:
         kinds.setdefault(_kind_of(part, plan), []).append(part)
     pieces: dict[int, _Piece] = {}
-    for assembly, numbers, unit in zip(_numbered(plan), piece_numbers(plan), units, strict=True):
+    for assembly, numbers, unit in zip(_numbered_assemblies(plan), piece_numbers(plan), units, strict=True):
         for placed in assembly.pieces if assembly else ():
-            piece = pieces.setdefault(numbers[placed.name], _Piece(_called(placed)))
+            piece = pieces.setdefault(numbers[placed.name], _Piece(_short_title(placed)))
             if placed.printed and placed.title in kinds:
                 piece.count, piece.files = _count_and_files(kinds.pop(placed.title))
             elif not piece.files:
@@ -133,7 +133,7 @@ def _kind_of(part: Printed, plan: KitPlan) -> str:
     return shorten_text(kind[:1].upper() + kind[1:], 44) + optional
 
 
-def _called(placed: Placed) -> str:
+def _short_title(placed: Placed) -> str:
     """A bought piece without its details, which are in the bill."""
     return placed.title if placed.printed else placed.title.partition(",")[0]
 

@@ -177,7 +177,7 @@ def portrait(robot: Robot, view: Camera | None, *, width: float, height: float) 
     rings = [1e3 * ring for ring in flat_rings(robot)]
     box = np.array([rings[0].min(axis=0), rings[0].max(axis=0)])
     frame = CanvasFrame.fit(box, room)
-    for grey, shade in _puffed(rings, box, 500 * (robot.body.thickness or 0.04)):
+    for grey, shade in _puff_rings(rings, box, 500 * (robot.body.thickness or 0.04)):
         canvas.fill([frame.way(ring) for ring in shade], grey=grey)
     canvas.line([frame.way(ring) for ring in rings], width=MIDDLE, closed=True)
     canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN)
@@ -187,7 +187,7 @@ def portrait(robot: Robot, view: Camera | None, *, width: float, height: float) 
     return canvas
 
 
-def _puffed(rings: list[np.ndarray], box: np.ndarray, radius: float) -> list[tuple[float, list[np.ndarray]]]:
+def _puff_rings(rings: list[np.ndarray], box: np.ndarray, radius: float) -> list[tuple[float, list[np.ndarray]]]:
     """Rings round the darker sides of a stuffed body: its section is a half circle of a radius [mm] at the rim."""
     pixels = 300  # along the longer side of a flat body
     pixel = float((box[1] - box[0]).max()) / pixels

@@ -208,13 +208,13 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             "Close and calibrate" if cables else "Close it",
             10 + 5 * cables,
             ("Close the zipper, lead the wires out at its end, then calibrate. " if cables else "Close the zipper. ")
-            + _matched(plan)
+            + _pair_sentence(plan)
             + held_text(plan.robot),
         ),
     )
 
 
-def _matched(plan: KitPlan) -> str:
+def _pair_sentence(plan: KitPlan) -> str:
     """Return a sentence on how to set the two cables of a pair; empty without pairs."""
     if not plan.pairs:
         return ""
@@ -255,13 +255,14 @@ def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Stitch the cables",
             10 * cables,
-            f"{_laid(plan)} (lists/stitching.csv). Begin at the winch and follow the numbers of the map: solid runs "
-            f"outside, dashed inside. {sheaths}End outside; put the stopper on loosely behind the last hole.{grommets}",
+            f"{_panel_sentence(plan)} (lists/stitching.csv). Begin at the winch and follow the numbers of the map: "
+            f"solid runs outside, dashed inside. {sheaths}"
+            f"End outside; put the stopper on loosely behind the last hole.{grommets}",
         ),
     )
 
 
-def _laid(plan: KitPlan) -> str:
+def _panel_sentence(plan: KitPlan) -> str:
     """Return a sentence on the panel to lay flat and the order in which its cables are sewn."""
     cables = len(plan.robot.cables)
     if plan.pairs:

@@ -18,7 +18,7 @@ def body_solid(body: Body) -> Manifold:
     thickness half to either side of z = 0, with sharp edges. Raises InputError: the surface encloses no body.
     """
     if body.mesh.dim == 2:
-        return _raised(body)
+        return _extrude_body(body)
     if body.healing is not None:
         surface = body.healing.surface
         return closed_solid(MILLIMETRES * surface.vertices, surface.triangles)
@@ -56,7 +56,7 @@ def _solid(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray,
     )
 
 
-def _raised(body: Body) -> Manifold:
+def _extrude_body(body: Body) -> Manifold:
     """A flat body as thick as it is simulated."""
     thickness = MILLIMETRES * (body.thickness or 0.0)
     rings = body.outline.rings if body.outline is not None else _rings(body.mesh)

@@ -124,7 +124,7 @@ def _file(parts: tuple[Printed, ...], plate: tuple[PartOnBed, ...], title: str) 
         ' <metadata name="Application">hydrostat</metadata>\n'
         f" <resources>\n{objects} </resources>\n <build>\n{items} </build>\n</model>\n"
     )
-    return _zipped({"[Content_Types].xml": _TYPES, "_rels/.rels": _RELATIONS, "3D/3dmodel.model": model})
+    return _zip_texts({"[Content_Types].xml": _TYPES, "_rels/.rels": _RELATIONS, "3D/3dmodel.model": model})
 
 
 def _object(number: int, part: Printed) -> str:
@@ -144,7 +144,7 @@ def _number(length: float) -> str:
     return f"{length:.5f}".rstrip("0").rstrip(".")
 
 
-def _zipped(texts: dict[str, str]) -> bytes:
+def _zip_texts(texts: dict[str, str]) -> bytes:
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
         for name, text in texts.items():

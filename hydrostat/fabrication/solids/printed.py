@@ -27,10 +27,10 @@ def file_mesh(solid: Manifold) -> FileMesh:
     that know vertices by their place alone, as STL does, have the very neighbours of the solid.
     """
     mesh = solid.to_mesh64()
-    corners = _rounded(np.asarray(mesh.vert_properties, dtype=float)[:, :3])
+    corners = _round_corners(np.asarray(mesh.vert_properties, dtype=float)[:, :3])
     triangles = np.asarray(mesh.tri_verts, dtype=np.int64)
-    merged = _merged(corners, triangles)
-    return merged if loose_edges(merged[1]) == 0 else _merged(_apart(corners), triangles)
+    merged = _merge_corners(corners, triangles)
+    return merged if loose_edges(merged[1]) == 0 else _merge_corners(_apart(corners), triangles)
 
 
 def loose_edges(triangles: Int[np.ndarray, "triangles 3"]) -> int:
@@ -44,13 +44,13 @@ def loose_edges(triangles: Int[np.ndarray, "triangles 3"]) -> int:
     return int(np.count_nonzero((there != 1) | (back != 1)))
 
 
-def _rounded(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corners 3"]:
+def _round_corners(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corners 3"]:
     """The nearest numbers that 32 bits hold, with few decimals; no -0."""
     decimals = 5  # decimals of a coordinate [mm]: the limit of 32-bit numbers for parts up to 128 mm
     return np.round(corners, decimals).astype(np.float32).astype(float) + 0.0
 
 
-def _merged(corners: Float[np.ndarray, "corners 3"], triangles: Int[np.ndarray, "triangles 3"]) -> FileMesh:
+def _merge_corners(corners: Float[np.ndarray, "corners 3"], triangles: Int[np.ndarray, "triangles 3"]) -> FileMesh:
     vertices, which = np.unique(corners, axis=0, return_inverse=True)
     triangles = which.reshape(-1)[triangles]
     first, second, third = triangles.T
@@ -85,7 +85,7 @@ def _apart(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corner
         if len(again) == 0:
             break
         corners[again, turn % 2] += step
-        corners = _rounded(corners)
+        corners = _round_corners(corners)
     return corners
 
 

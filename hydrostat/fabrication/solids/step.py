@@ -21,6 +21,7 @@ from hydrostat.fabrication.solids.construct import (
     Union,
 )
 from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.version import install_command
 
 _NO_DATE = "1970-01-01T00:00:00"
 
@@ -110,7 +111,7 @@ def _(shape: Turned) -> Any:
 def require_cad() -> None:
     """Make sure, before long work begins, that STEP can be written (InputError: build123d is not installed)."""
     if find_spec("build123d") is None:
-        raise InputError('STEP needs build123d, which is not installed: pip install "hydrostat[cad]"')
+        raise InputError(f"STEP needs build123d, which is not installed: {install_command('cad')}")
 
 
 def _build123d() -> Any:

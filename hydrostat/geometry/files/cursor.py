@@ -20,7 +20,6 @@ class Cells:
     triangles: Int[np.ndarray, "triangles 3"]  # indices of three points each
 
 
-_PIECE = 1_000_000  # bytes of text taken apart at once
 _LONGEST = 10_000  # characters of a word
 _SPACE = re.compile(rb"\s")
 _BLANK = re.compile(rb"\s*")
@@ -89,9 +88,10 @@ class Cursor:
     def _words(self, count: int) -> array:
         """Next numbers of text."""
         values = array("d")
+        piece = 1_000_000  # bytes of text taken apart at once
         while len(values) < count:
             need = count - len(values)
-            words, end = self._piece(min(_PIECE, 32 * need))
+            words, end = self._piece(min(piece, 32 * need))
             if not words:
                 raise self.make_damage_error(f"ends where {need} more numbers belong")
             if len(words) > need:

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 MOST_ENTITIES = 20_000  # a drawing with more entities, counting what its blocks repeat, is refused
 
-_MOST_DEPTH = 20
 _FARTHEST = 1e100
 _METRES = {
     1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 25.4e-9, 9: 25.4e-6, 10: 0.9144,
@@ -161,8 +160,9 @@ class _ModelSpace:
         self.budget -= count
         if self.budget < 0:
             raise OutlineError(f"{self.name}: more than {MOST_ENTITIES} entities: save the outline alone")
-        if depth > _MOST_DEPTH:
-            raise OutlineError(f"{self.name}: blocks nested deeper than {_MOST_DEPTH}: explode the blocks")
+        most_depth = 20
+        if depth > most_depth:
+            raise OutlineError(f"{self.name}: blocks nested deeper than {most_depth}: explode the blocks")
 
     def _is_hidden(self, entity: Any) -> bool:
         """Return True if an entity or its layer is switched off."""

@@ -27,9 +27,6 @@ if TYPE_CHECKING:
 
 MOST_PIXELS = 50_000_000  # a picture with more pixels is refused
 
-_LONGEST = 1600
-_EDGE = 0.35
-_UNEVEN = 80.0
 _BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticError, AttributeError, EOFError)
 
 
@@ -63,6 +60,7 @@ def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 
     """Red, green, blue and opacity from 0 to 255, upright, and the number of file pixels per pixel along each side."""
     from PIL import Image, ImageOps
 
+    longest = 1600
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -70,7 +68,7 @@ def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 
                 columns, rows = image.size
                 if columns * rows > MOST_PIXELS:
                     raise _too_large(name, f"{columns} x {rows}")
-                step = max(1, -(-max(columns, rows) // _LONGEST))
+                step = max(1, -(-max(columns, rows) // longest))
                 ImageOps.exif_transpose(image, in_place=True)
                 return _plain(image, step), step
     except Image.DecompressionBombError as error:
@@ -118,7 +116,9 @@ def _find_body(
             f"{name}: the picture is too small, {opacity.shape[1]} x {opacity.shape[0]} pixels: take a larger one"
         )
     seen = contrast(pixels[..., :3])
-    if seen.edge > _EDGE or seen.faint > _UNEVEN:
+    edge = 0.35
+    uneven = 80.0
+    if seen.edge > edge or seen.faint > uneven:
         raise OutlineError(
             f"{name}: the ground is not plain: put the body on a sheet of one colour, away from the picture's border, "
             "or cut it out"

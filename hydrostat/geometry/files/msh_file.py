@@ -15,8 +15,6 @@ _CORNERS = {
 }  # fmt: skip
 """Number of nodes of each Gmsh element type."""
 
-_MOST_BLOCKS = 20_000
-_MOST_OLD_BLOCKS = 1_000_000
 
 _Found = dict[int, list[np.ndarray]]
 
@@ -99,10 +97,11 @@ def _old_elements(cursor: Cursor) -> _Found:
     left, blocks = _count(cursor), 0
     if cursor.text:
         return _old_rows(cursor, left)
+    most_old_blocks = 1_000_000
     while left > 0:
         kind, count, tags = cursor.numbers(3, "i4").tolist()
         blocks += 1
-        if kind not in _CORNERS or tags < 0 or count < 1 or blocks > _MOST_OLD_BLOCKS:
+        if kind not in _CORNERS or tags < 0 or count < 1 or blocks > most_old_blocks:
             raise cursor.make_damage_error("has an element of a kind that is not known")
         width = 1 + tags + _CORNERS[kind]
         rows = cursor.numbers(width * count, "i4").reshape(count, width)
@@ -136,8 +135,9 @@ def _old_rows(cursor: Cursor, count: int) -> _Found:
 def _blocks(cursor: Cursor) -> int:
     """Number of blocks of a section of version 4.1."""
     blocks = int(cursor.numbers(4, "i8")[0])
-    if not 0 <= blocks <= _MOST_BLOCKS:
-        raise cursor.make_damage_error(f"declares {blocks} blocks, at most {_MOST_BLOCKS} are read")
+    most_blocks = 20_000
+    if not 0 <= blocks <= most_blocks:
+        raise cursor.make_damage_error(f"declares {blocks} blocks, at most {most_blocks} are read")
     return blocks
 
 

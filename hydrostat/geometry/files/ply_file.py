@@ -11,7 +11,6 @@ from hydrostat.errors import SurfaceError
 from hydrostat.geometry.files.soup import MOST_TRIANGLES, Soup, check_count, check_text, fans
 from hydrostat.geometry.surface import Surface
 
-_MOST_HEAD = 100_000
 _LONGEST_ROW = 1_000_000
 _TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
@@ -70,7 +69,8 @@ _Values = dict[str, tuple[np.ndarray, np.ndarray]]
 
 def _head(content: bytes, name: str) -> tuple[str, list[_Element], int]:
     """Byte order (none for text), elements, and where the rows begin."""
-    end = content.find(b"end_header", 0, _MOST_HEAD)
+    most_head = 100_000
+    end = content.find(b"end_header", 0, most_head)
     start = content.find(b"\n", end) + 1
     if not content.startswith(b"ply") or end < 0 or start <= 0:
         raise SurfaceError(f"{name}: has no whole head of a PLY file: export the surface again")

@@ -69,11 +69,9 @@ DRAWN_HINT = '--inner drawn, or inner = "drawn" in [body]'
 """Hint for errors about closed shapes that are no holes."""
 
 MOST_POINTS = 100_000  # a drawing with more points, counting what it repeats, is refused
-MOST_SHAPES = 200  # a drawing may have this many closed shapes: the body and its holes
 CHORD_ERROR = 2e-5  # curves become chords that stray at most this part of their box
 
 _GAP = 1e-3
-_ROUNDING = 1e-6
 
 
 def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ring], list[Ring]]:
@@ -83,11 +81,12 @@ def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ri
     Raises OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
     """
     rings, open_lines = [], []
+    rounding = 1e-6
     for line, closed in checked_lines(lines, name):
         extent = float(np.ptp(line, axis=0).max())
         gap = float(np.linalg.norm(line[0] - line[-1]))
         closed = closed or gap <= _GAP * extent
-        if 0.0 < gap <= _ROUNDING * extent:
+        if 0.0 < gap <= rounding * extent:
             line = np.concatenate([line[:-1], line[:1]])
         (rings if closed else open_lines).append((extent, line))
     largest = max((extent for extent, _ in rings), default=0.0)
@@ -156,8 +155,9 @@ def shapes_of(rings: list[Ring], name: str) -> list[Polygon]:
             shapes.append(polygon)
     if not shapes:
         raise OutlineError(f"{name}: the outline has no area: draw the body as one closed path")
-    if len(shapes) > MOST_SHAPES:
-        raise OutlineError(f"{name}: has {len(shapes)} closed shapes, more than {MOST_SHAPES}: leave out some holes")
+    most_shapes = 200  # a drawing may have this many closed shapes: the body and its holes
+    if len(shapes) > most_shapes:
+        raise OutlineError(f"{name}: has {len(shapes)} closed shapes, more than {most_shapes}: leave out some holes")
     return sorted(shapes, key=lambda shape: shape.area, reverse=True)
 
 

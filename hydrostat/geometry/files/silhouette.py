@@ -11,10 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.outline import Curve, Ring
 
-_FAINT = 16.0
 _GRAIN = 1.0
-_MOST_SAMPLES = 40_000
-_DARKEST_SHADOW = 0.4
 
 Field = Float[np.ndarray, "rows columns"]  # a value for each pixel
 
@@ -54,7 +51,8 @@ def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
 
 
 def _faint(noise: float) -> float:
-    return max(_FAINT, 2.5 * noise)
+    faint = 16.0
+    return max(faint, 2.5 * noise)
 
 
 def _ground(
@@ -66,7 +64,8 @@ def _ground(
     rows, columns = pixels.shape[:2]
     y, x = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-1, 1, columns), indexing="ij")
     where = np.flatnonzero(like)
-    where = where[:: max(1, len(where) // _MOST_SAMPLES)]
+    most_samples = 40_000
+    where = where[:: max(1, len(where) // most_samples)]
     px, py = x.ravel()[where], y.ravel()[where]
     basis = np.stack([np.ones_like(px), px, py, px * px, px * py, py * py], axis=1)
     colours = pixels.reshape(-1, 3)[where]
@@ -100,7 +99,8 @@ def _find_shadow(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bo
     """Find the pixels that are the ground times a number below one."""
     share = np.einsum("rcd,rcd->rc", pixels, ground) / np.maximum(np.einsum("rcd,rcd->rc", ground, ground), 1.0)
     off = np.linalg.norm(pixels - share[..., None] * ground, axis=2)
-    return (off < tolerance) & (share < 1.0) & (share > _DARKEST_SHADOW)
+    darkest_shadow = 0.4
+    return (off < tolerance) & (share < 1.0) & (share > darkest_shadow)
 
 
 @dataclass(frozen=True)
@@ -117,26 +117,21 @@ def shaded_part(seen: Contrast, level: float) -> ShadedPart | None:
     body = seen.field > level
     shaded = body & seen.shaded
     depth = np.asarray(distance_transform_edt(shaded))
-    wide = shaded & (depth > _SHADE_DEPTH)
+    shade_depth = 3.0  # pixels: along its edge every body is mixed with the ground
+    wide = shaded & (depth > shade_depth)
     share = float(shaded.sum() / max(body.sum(), 1))
     outer = float(np.asarray(distance_transform_edt(body))[wide].min(initial=np.inf))
-    if not (wide.any() and _SHADE_LEAST < share < _SHADE_MOST and outer < 2 * _SHADE_DEPTH):
+    shade_least, shade_most = 0.02, 0.5
+    if not (wide.any() and shade_least < share < shade_most and outer < 2 * shade_depth):
         return None
     row, column = np.unravel_index(int(np.argmax(depth)), depth.shape)
     return ShadedPart(share, (float(column), float(row)), 2.0 * float(depth[row, column]))
 
 
-_SHADE_DEPTH = 3.0  # pixels: along its edge every body is mixed with the ground
-_SHADE_LEAST, _SHADE_MOST = 0.02, 0.5
-
 _SECOND = 0.02
 _HOLE = 0.01
-_THIN = 0.025
 _LINE = 0.03
-_INKED = 0.15
-_LEAST_PIXELS = 200
 _NOISE = 3
-_MOST_CORNERS = 2000
 
 _Mask = Bool[np.ndarray, "rows columns"]
 
@@ -179,7 +174,8 @@ def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouett
     mask = field > level
     filled = _fill_holes(mask)
     labels, patches = _patches(filled)
-    if not patches or max(patch.area for patch in patches) < _LEAST_PIXELS:
+    least_pixels = 200
+    if not patches or max(patch.area for patch in patches) < least_pixels:
         raise OutlineError(f"{name}: no body is seen in the picture: draw or photograph it large on plain ground")
     body = labels == 1 + int(np.argmax([patch.area for patch in patches]))
     lines = _is_lines((field > faint) & body, body, name)
@@ -230,14 +226,16 @@ def _is_lines(drawn: _Mask, body: _Mask, name: str) -> bool:
     step = max(1, round(extent / 600))
     whole = np.pad(body[box], 1)[::step, ::step]
     width = 2.0 * step * float(_depth(whole).max())
-    if width < _THIN * extent:
+    thin = 0.025
+    if width < thin * extent:
         raise OutlineError(
             f"{name}: only a thin line is seen, {width:.3g} pixels wide: close the outline, or fill the body"
         )
     line = _LINE * float(np.sqrt(whole.sum()))
     thick = _depth(np.pad(drawn[box], 1)[::step, ::step]) > line
     opened = _depth(~thick) <= line if thick.any() else thick
-    return float((opened & whole).sum()) < _INKED * float(whole.sum())
+    inked = 0.15
+    return float((opened & whole).sum()) < inked * float(whole.sum())
 
 
 def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[PixelPatch, ...]]:
@@ -292,7 +290,8 @@ def _rings(field: Field, stepped: bool, body: int) -> list[Ring]:
     rings = [np.asarray(ring)[:-1] - 1.0 for ring in found if len(ring) > 3]
     rings.sort(key=lambda ring: -Polygon(ring).area)
     rings = [ring for ring in rings if Polygon(ring).area > 0.3 * _HOLE * body]
-    most = _MOST_CORNERS // (1 + len(rings[1:]) // 4)
+    most_corners = 2000
+    most = most_corners // (1 + len(rings[1:]) // 4)
     smooth = [_smooth(ring, 4.0 if stepped else 1.0, 0.4 if stepped else 0.15, most) for ring in rings]
     return smooth if Polygon(smooth[0], smooth[1:]).is_valid else rings  # a hole came too near to the outside
 

@@ -13,8 +13,6 @@ MOST_BYTES = 120_000_000  # a surface file larger than this, or that unpacks to 
 MOST_TEXT_BYTES = 60_000_000  # the same for what is read word by word, which takes longer: text, and the XML of 3MF
 MOST_TRIANGLES = 2_000_000  # a surface with more triangles is refused; of vertices it may have three times as many
 
-_LONGEST_LINE = 1_000_000
-
 
 @dataclass(frozen=True, eq=False)
 class Soup:
@@ -59,9 +57,10 @@ def text_lines(content: bytes, name: str) -> Iterator[tuple[int, bytes]]:
     check_text(content, name)
     if b"\r" in content:
         content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    longest_line = 1_000_000
     for number, line in enumerate(BytesIO(content), start=1):
-        if len(line) > _LONGEST_LINE:
-            raise SurfaceError(f"{name}: line {number} is longer than {_LONGEST_LINE} characters: export it again")
+        if len(line) > longest_line:
+            raise SurfaceError(f"{name}: line {number} is longer than {longest_line} characters: export it again")
         yield number, line
 
 

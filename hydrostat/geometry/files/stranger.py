@@ -8,8 +8,6 @@ from hydrostat.errors import InputError
 MOST_BYTES = {".svg": 20_000_000, ".dxf": 10_000_000, ".png": 50_000_000, ".jpg": 50_000_000, ".jpeg": 50_000_000}
 """The most bytes of a drawing or a picture, by the ending of its name."""
 
-MOST_OF_ANY = 120_000_000
-"""The most bytes of any other file."""
 
 _MESHES = dict.fromkeys((".vtk", ".vtu", ".msh"), 60_000_000)
 
@@ -26,7 +24,8 @@ def read_stranger(path: str | Path, *, name: str | None = None, most: int | None
         InputError: there is no such file, it is a folder, a device or a pipe, or it is too large.
     """
     path, said = Path(path), name or str(path)
-    most = (MOST_BYTES | _MESHES).get(path.suffix.lower(), MOST_OF_ANY) if most is None else most
+    most_of_any = 120_000_000  # The most bytes of any other file
+    most = (MOST_BYTES | _MESHES).get(path.suffix.lower(), most_of_any) if most is None else most
     try:
         known = path.stat()
         if not stat.S_ISREG(known.st_mode):

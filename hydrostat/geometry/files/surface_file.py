@@ -9,10 +9,16 @@ from pathlib import PurePath
 import numpy as np
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.files.obj_off_file import OFF_HEAD, read_obj, read_off
 from hydrostat.geometry.files.ply_file import read_ply, write_ply
 from hydrostat.geometry.files.soup import MOST_BYTES, Soup, check_count
-from hydrostat.geometry.files.stl_file import fits_binary_stl, is_stl_text, read_stl
+from hydrostat.geometry.files.stl_obj_off_files import (
+    OFF_HEAD,
+    fits_binary_stl,
+    is_stl_text,
+    read_obj,
+    read_off,
+    read_stl,
+)
 from hydrostat.geometry.files.threemf_file import read_3mf
 from hydrostat.geometry.surface import Surface
 
@@ -22,7 +28,6 @@ _READERS = {".stl": read_stl, ".obj": read_obj, ".ply": read_ply, ".off": read_o
 
 SURFACE_SUFFIXES = tuple(_READERS)  # endings of the files that are read as surfaces
 
-_SMALLEST, _LARGEST = 1e-6, 1e4  # m
 _STRANGERS = {
     b"ISO-10303": "a STEP file: export it from CAD as STL",
     b"glTF": "a glTF file: export it as STL or PLY",
@@ -101,7 +106,8 @@ def _surface(soup: Soup, name: str, unit: float, size: float | None) -> Surface:
     scale = size / max(extent, 1e-300) if size is not None else (soup.unit or unit)
     if not extent > 1e-9 * np.abs(vertices).max():
         raise SurfaceError(f"{name}: has no size, all its vertices are in one place: export the surface again")
-    if not _SMALLEST <= extent * scale <= _LARGEST:
+    smallest, largest = 1e-6, 1e4  # m
+    if not smallest <= extent * scale <= largest:
         raise SurfaceError(
             f"{name}: is {1e3 * extent * scale:.3g} mm large, which no robot is: give its size, or the "
             "unit of its numbers"

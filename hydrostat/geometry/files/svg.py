@@ -28,8 +28,6 @@ from hydrostat.units import printable
 if TYPE_CHECKING:
     from svgelements import Path
 
-_MOST_DEPTH = 200
-_MOST_WORDS = 100_000  # letters of a style sheet, and of an attribute that holds no points
 _COMMAND = re.compile(r"[A-DF-Za-df-z]")  # of a path; an e is part of a number
 _NUMBER = re.compile(r"\d+\.?\d*|\.\d+")
 _METRES = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6, "q": 0.25e-3}
@@ -75,11 +73,13 @@ def _guard(content: bytes, name: str) -> None:
     """Read the XML once without building anything: reject XML that is broken, deep, or declares entities."""
     depth = 0
 
+    most_depth = 200
+
     def start(_tag: str, _attributes: dict[str, str]) -> None:
         nonlocal depth
         depth += 1
-        if depth > _MOST_DEPTH:
-            raise OutlineError(f"{name}: elements nested deeper than {_MOST_DEPTH}: ungroup the drawing")
+        if depth > most_depth:
+            raise OutlineError(f"{name}: elements nested deeper than {most_depth}: ungroup the drawing")
 
     def end(_tag: str) -> None:
         nonlocal depth
@@ -144,14 +144,15 @@ def _check_points(root: ElementTree.Element, name: str) -> None:
 
 def _check_words(root: ElementTree.Element, name: str) -> None:
     """Refuse long style sheets and long attributes that are no points: reading them could take for ever."""
+    most_words = 100_000  # letters of a style sheet, and of an attribute that holds no points
     for element in root.iter():
         words = {key: len(value) for key, value in element.attrib.items() if key not in ("d", "points")}
         words["text"] = len(element.text or "") if _tag(element) == "style" else 0
         key = max(words, key=lambda each: words[each])
-        if words[key] > _MOST_WORDS:
+        if words[key] > most_words:
             what = "a style sheet" if key == "text" else f"an attribute {printable(key.rpartition('}')[2])[:40]!r}"
             raise OutlineError(
-                f"{name}: has {what} of {words[key]} letters, at most {_MOST_WORDS} are read: save it as plain SVG"
+                f"{name}: has {what} of {words[key]} letters, at most {most_words} are read: save it as plain SVG"
             )
 
 

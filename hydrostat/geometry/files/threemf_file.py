@@ -13,8 +13,6 @@ import numpy as np
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.files.soup import MOST_TEXT_BYTES, MOST_TRIANGLES, Soup, check_count
 
-_MOST_MEMBERS = 2000
-_MOST_PLACED = 10_000
 _MOST_DEPTH = 50
 _METRES = {
     "micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0, "inch": 0.0254, "foot": 0.3048,
@@ -49,8 +47,9 @@ def read_3mf(content: bytes, name: str) -> Soup:
     Raises SurfaceError: no archive, or not a 3MF one; too large when unpacked; broken XML, or XML with entities;
     objects that hold themselves, are not there, or repeat too often.
     """
-    if content.count(b"PK\x01\x02") > _MOST_MEMBERS:  # before anything lists them
-        raise SurfaceError(f"{name}: holds more than {_MOST_MEMBERS} files: save the model alone")
+    most_members = 2000
+    if content.count(b"PK\x01\x02") > most_members:  # before anything lists them
+        raise SurfaceError(f"{name}: holds more than {most_members} files: save the model alone")
     try:
         with ZipFile(BytesIO(content)) as archive:
             model = _read_archive(archive, name)
@@ -207,12 +206,13 @@ def _meshes(model: _Model, name: str) -> Iterator[tuple[_Object, np.ndarray]]:
     """Yield every mesh of the built objects with its transform; a mesh that is used twice comes twice."""
     stack = [(key, transform, 0) for key, transform in reversed(model.items)]
     placed = 0
+    most_placed = 10_000
     while stack:
         key, transform, depth = stack.pop()
         placed += 1
         if key not in model.objects:
             raise SurfaceError(f"{name}: builds object {key[1][:20]}, which it does not hold: export it again")
-        if depth > _MOST_DEPTH or placed > _MOST_PLACED:
+        if depth > _MOST_DEPTH or placed > most_placed:
             raise SurfaceError(f"{name}: its objects hold themselves, or too many others: export it again as STL")
         found = model.objects[key]
         if found.corners:

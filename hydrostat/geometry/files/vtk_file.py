@@ -9,7 +9,6 @@ from hydrostat.geometry.files.cursor import Cells, Cursor, make_damage_error, wh
 
 TETRAHEDRON, TRIANGLE = 10, 5  # VTK's numbers of the two kinds of cells that are read
 
-_MOST_SECTIONS = 100
 _KINDS = {
     b"char": "i1", b"unsigned_char": "u1", b"short": "i2", b"unsigned_short": "u2", b"int": "i4", b"unsigned_int": "u4",
     b"long": "i8", b"unsigned_long": "u8", b"float": "f4", b"double": "f8", b"vtktypeint32": "i4",
@@ -22,7 +21,8 @@ def read_vtk(content: bytes, name: str) -> Cells:
     cursor = Cursor(content, name)
     _head(cursor)
     points = starts = corners = types = None
-    for _ in range(_MOST_SECTIONS):
+    most_sections = 100
+    for _ in range(most_sections):
         if types is not None and points is not None and corners is not None:
             break
         line = cursor.line()

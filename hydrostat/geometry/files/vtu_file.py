@@ -23,9 +23,6 @@ _KINDS = {
     "UInt64": "u8", "Float32": "f4", "Float64": "f8",
 }  # fmt: skip
 _NAMES = {code: name for name, code in _KINDS.items()}
-_BLOCK = 32768  # bytes that are packed at once, as VTK does
-_MOST_DEPTH = 50
-_MOST_PIECES = 1000
 _APPENDED = re.compile(rb"<AppendedData([^>]{0,1000})>\s*_")
 
 
@@ -55,8 +52,9 @@ def read_vtu(content: bytes, name: str) -> Cells:
         content = content[: match.start()] + b"</VTKFile>"
     grid = _parse(content, name)
     reader = _Reader(grid.attributes, appended, encoding, name)
-    if not 0 < len(grid.pieces) <= _MOST_PIECES:
-        raise make_damage_error(name, f"has no piece, or more than {_MOST_PIECES}")
+    most_pieces = 1000
+    if not 0 < len(grid.pieces) <= most_pieces:
+        raise make_damage_error(name, f"has no piece, or more than {most_pieces}")
     points, tetrahedra, triangles, before = [np.zeros((0, 3))], [], [], 0
     for piece in grid.pieces:
         if not {"points", "connectivity", "offsets", "types"} <= piece.keys():
@@ -78,11 +76,13 @@ def _parse(content: bytes, name: str) -> _GridText:
     grid, path = _GridText(), []
     now: _Array | None = None
 
+    most_depth = 50
+
     def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal now
         path.append(tag)
-        if len(path) > _MOST_DEPTH:
-            raise InputError(f"{name}: XML nested deeper than {_MOST_DEPTH}: save it again")
+        if len(path) > most_depth:
+            raise InputError(f"{name}: XML nested deeper than {most_depth}: save it again")
         if tag == "VTKFile":
             grid.attributes = attributes
         elif tag == "Piece":
@@ -227,7 +227,8 @@ def _data_array(name: str, values: np.ndarray) -> str:
     kind = _NAMES[values.dtype.str[1:]]
     width = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
     content = values.astype(values.dtype.newbyteorder("<")).tobytes()
-    blocks = [zlib.compress(content[start : start + _BLOCK]) for start in range(0, len(content), _BLOCK)]
-    head = np.array([len(blocks), _BLOCK, len(content) % _BLOCK, *map(len, blocks)], dtype="<u4").tobytes()
+    block = 32768  # bytes that are packed at once, as VTK does
+    blocks = [zlib.compress(content[start : start + block]) for start in range(0, len(content), block)]
+    head = np.array([len(blocks), block, len(content) % block, *map(len, blocks)], dtype="<u4").tobytes()
     text = base64.b64encode(head) + base64.b64encode(b"".join(blocks))
     return f'<DataArray type="{kind}" Name={quoteattr(name)}{width} format="binary">{text.decode()}</DataArray>'

@@ -12,12 +12,9 @@ from hydrostat.geometry.healing.shells import Role, Shells
 from hydrostat.geometry.surface import Surface
 from hydrostat.units import plural
 
-_PAIRS = 1_000_000  # about as many are looked at at once
 _BOXES = 4096  # and no more triangles, for the next may cross many more others
-_MOST_SEEN, _SEEN_EACH = 3_000_000, 60  # pairs whose boxes meet, in all, and for each triangle of a large surface
 MOST_PAIRS = 100_000  # where so many pairs cross, no more are looked for
 
-_NEAR = 1e-9  # of the size of the surface: what is nearer to a plane than this touches it, and does not cross it
 # a turn that no CAD model is aligned with: its walls are not seen from the side, where many boxes overlap
 _TURN = np.linalg.qr(np.array([[0.61, 0.33, -0.72], [-0.47, 0.88, 0.05], [0.64, 0.31, 0.70]]))[0]
 
@@ -32,9 +29,13 @@ def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
     within shells do, that the search would not end in time.
     """
     found, seen = [np.zeros((0, 2), dtype=np.int64)], 0
+    # pairs whose boxes meet, in all, and for each triangle of a large surface
+    most_seen, seen_each = 3_000_000, 60
+    # of the size of the surface: what is nearer to a plane than this touches it, and does not cross it
+    near = 1e-9
     for pairs in _candidates(surface):
         seen += len(pairs)
-        if seen > max(_MOST_SEEN, _SEEN_EACH * len(surface.triangles)):
+        if seen > max(most_seen, seen_each * len(surface.triangles)):
             raise SurfaceError(
                 "most of its triangles lie about each other, as in shells within shells: this is no surface of a body; "
                 "in the program it comes from, keep the outer one, and export it again"
@@ -47,7 +48,7 @@ def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
             some = np.flatnonzero(shared == count)
             one = _roll_triangles(first[some], same[some].any(axis=2), count)
             two = _roll_triangles(second[some], same[some].any(axis=1), count)
-            cross[some] = test(surface.vertices[one], surface.vertices[two], _NEAR * surface.size)
+            cross[some] = test(surface.vertices[one], surface.vertices[two], near * surface.size)
         found.append(pairs[cross])
         if sum(map(len, found)) >= MOST_PAIRS:
             break
@@ -71,11 +72,12 @@ def _candidates(surface: Surface) -> Iterator[Int[np.ndarray, "pairs 2"]]:
     boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
     tree = shapely.STRtree(boxes)
     start, chunk = 0, 16
+    pairs = 1_000_000  # about as many are looked at at once
     while start < len(boxes):
         first, second = tree.query(boxes[start : start + chunk])
         first = first + start
         start += chunk
-        chunk = int(np.clip(chunk * _PAIRS / max(len(first), 1), 16, min(4 * chunk, _BOXES)))
+        chunk = int(np.clip(chunk * pairs / max(len(first), 1), 16, min(4 * chunk, _BOXES)))
         meets = (first < second) & (low[first, 2] <= high[second, 2]) & (low[second, 2] <= high[first, 2])
         yield np.stack([first[meets], second[meets]], axis=1).astype(np.int64)
 
@@ -138,9 +140,6 @@ def _runs_through(
     return within & _straddles(heights, near)
 
 
-SLIVER = 1e-3  # a triangle lower than this share of its longest side is a sliver
-
-
 def pieces_of(shells: Shells) -> tuple[Piece, ...]:
     """Parts of a surface that are neither body nor cavity."""
     counts = np.bincount(shells.label)
@@ -155,7 +154,8 @@ def sliver_count(surface: Surface) -> int:
     """Number of triangles that are slivers."""
     corners = surface.vertices[surface.triangles]
     longest = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
-    return int((np.linalg.norm(surface.crosses, axis=1) < SLIVER * longest**2).sum())
+    sliver = 1e-3  # a triangle lower than this share of its longest side is a sliver
+    return int((np.linalg.norm(surface.crosses, axis=1) < sliver * longest**2).sum())
 
 
 def describe_faults(

@@ -22,12 +22,7 @@ from hydrostat.geometry.healing.shells import Role, Shells, shells_of
 from hydrostat.geometry.surface import Surface
 from hydrostat.units import plural
 
-_MOST_PATCHED = 0.25
-_MOST_LOST = 0.1
-_MOST_CROSSED = 20
-_MOST_AT_EDGE = 200
 _MOST_PARTS = 20_000
-_SMALL_HOLE = 24.0  # resolutions around: about two elements across
 
 
 def heal(surface: Surface, *, resolution: float) -> Healing:
@@ -89,7 +84,8 @@ def _check_parts(surface: Surface) -> None:
     """Reject input that is no surface and would take long: thousands of loose triangles, or hundreds at one edge."""
     sides = sides_of(surface.triangles)
     most = int(sides.counts.max(initial=0))
-    if most > _MOST_AT_EDGE:
+    most_at_edge = 200
+    if most > most_at_edge:
         raise SurfaceError(
             f"{most} triangles meet at one edge, where a surface has two: this is no surface of a body, perhaps the "
             "file is damaged; export it again"
@@ -105,9 +101,10 @@ def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:
     usual = float(np.median(counts[counts > 0])) if len(crossing) else 0.0
     if len(crossing) >= MOST_PAIRS:  # of the first triangles only, as no more were looked for
         usual = max(usual, len(crossing) / (1 + int(crossing[:, 0].max())))
-    if usual > _MOST_CROSSED:
+    most_crossed = 20
+    if usual > most_crossed:
         raise SurfaceError(
-            f"the triangles run through each other everywhere, most through more than {_MOST_CROSSED} others: this "
+            f"the triangles run through each other everywhere, most through more than {most_crossed} others: this "
             "is no surface of a body, perhaps the file is damaged; export it again"
         )
 
@@ -121,7 +118,8 @@ def _small_holes(surface: Surface, holes: Holes, resolution: float) -> Bool[np.n
     owner[surface.triangles] = label[:, None]
     part = np.zeros(len(holes), dtype=np.int64)
     part[holes.label] = owner[holes.edges[:, 0]]
-    return holes.simple & (holes.length <= _SMALL_HOLE * resolution) & (holes.length**2 < area[part])
+    small_hole = 24.0  # resolutions around: about two elements across
+    return holes.simple & (holes.length <= small_hole * resolution) & (holes.length**2 < area[part])
 
 
 def _is_closed(surface: Surface) -> bool:
@@ -156,10 +154,11 @@ def _made_anew(
     """Body by its winding number."""
     made = remake(kept, shells.boxes[shells.of_role(Role.CAVITY)], want)
     off = deviation(kept, made.surface, made.spacing)
-    if off.patched > _MOST_PATCHED:
+    most_patched = 0.25
+    if off.patched > most_patched:
         raise SurfaceError(
             f"the surface has holes so large that {off.patched:.0%} of the body's surface would be guessed, at most "
-            f"{_MOST_PATCHED:.0%} are: scan what is missing, or close the holes in the program it comes from"
+            f"{most_patched:.0%} are: scan what is missing, or close the holes in the program it comes from"
         )
     lost = _lost_pieces(kept, off.lost, made)
     anew = [f"made anew on a grid of {1e3 * made.spacing:.3g} mm: edges and corners are rounded by up to half of it"]
@@ -184,7 +183,8 @@ def _lost_pieces(kept: Surface, lost: Int[np.ndarray, " lost"], made: Remade) ->
         return ()
     areas = np.linalg.norm(kept.crosses, axis=1)
     share = float(areas[lost].sum() / areas.sum())
-    if share > _MOST_LOST:
+    most_lost = 0.1
+    if share > most_lost:
         raise SurfaceError(
             f"{share:.0%} of the surface belong to parts that are open, or thinner than the "
             f"{1e3 * made.spacing:.3g} mm that it is healed with: close them where the surface comes from, or use "

@@ -66,9 +66,10 @@ class Healing:
         if self.clean:
             return ("the surface is clean", *(f"found: {line}" for line in self.found))
         pieces = sorted(self.removed, key=lambda piece: -piece.size)
-        removed = [f"removed: {piece.text}" for piece in pieces[:_LISTED]]
-        if len(pieces) > _LISTED:
-            removed.append(f"removed: {len(pieces) - _LISTED} more, up to {1e3 * pieces[_LISTED].size:.3g} mm in size")
+        listed = 5
+        removed = [f"removed: {piece.text}" for piece in pieces[:listed]]
+        if len(pieces) > listed:
+            removed.append(f"removed: {len(pieces) - listed} more, up to {1e3 * pieces[listed].size:.3g} mm in size")
         change = f", {self.volume_after / self.volume_before - 1.0:+.2%}" if self.volume_before > 0.0 else ""
         return (
             *(f"found: {line}" for line in self.found),
@@ -97,6 +98,3 @@ class Healing:
         pieces = (Piece(**(piece | {"place": tuple(piece["place"])})) for piece in texts["removed"])
         lists = {"found": tuple(texts["found"]), "done": tuple(texts["done"]), "removed": tuple(pieces)}
         return cls(**(texts | lists | {"surface": Surface(arrays["vertices"], arrays["triangles"])}))
-
-
-_LISTED = 5

@@ -12,10 +12,6 @@ from hydrostat.geometry.healing.faults import Piece
 from hydrostat.geometry.healing.mend import members_of, sides_of
 from hydrostat.geometry.surface import Solid, Surface, spread_points
 
-_ACCURACY = 1e-3  # of the spacing: how near crossings are to where they should be
-_SUM_ERROR = 0.05  # how wrong the fast sum may be, amply
-_SMALL = 0.01  # a part with less than this share of the body's volume is removed; one with more is a body of its own
-
 
 @dataclass(frozen=True, eq=False)
 class Remade:
@@ -37,8 +33,9 @@ def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolu
     field = WindingField(surface)
     spacing = _allowed_spacing(surface, resolution)
     box = surface.box + 2.0 * spacing * np.array([[-1.0], [1.0]])
+    accuracy = 1e-3  # of the spacing: how near crossings are to where they should be
     try:
-        made = contour(field, box, spacing, settled=field.find_settled_points, accuracy=_ACCURACY)
+        made = contour(field, box, spacing, settled=field.find_settled_points, accuracy=accuracy)
     except SurfaceError as error:
         raise SurfaceError(
             f"the surface encloses nothing that a grid of {1e3 * spacing:.3g} mm finds: it is an open sheet or thinner "
@@ -76,7 +73,8 @@ class WindingField:
         squares = igl.point_mesh_squared_distance(points, self.solid.surface.vertices, self.rim)[0]
         rim = np.sqrt(np.array(squares)) - reach
         change = reach * self.length / (4.0 * np.pi * np.maximum(rim, 1e-12) ** 2)
-        return free & (rim > 0.0) & (np.abs(self(points)) > change + _SUM_ERROR)
+        sum_error = 0.05  # how wrong the fast sum may be, amply
+        return free & (rim > 0.0) & (np.abs(self(points)) > change + sum_error)
 
 
 def _allowed_spacing(surface: Surface, resolution: float) -> float:
@@ -98,9 +96,11 @@ def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacin
     body = int(np.argmax(volumes))
     keep, removed, filled = np.zeros(len(volumes), dtype=bool), [], []
     keep[body] = True
+    # a part with less than this share of the body's volume is removed; one with more is a body of its own
+    small = 0.01
     for part in np.flatnonzero(~keep).tolist():
         piece = made.part(numbers[part])
-        if volumes[part] > _SMALL * volumes[body]:
+        if volumes[part] > small * volumes[body]:
             raise SurfaceError(_describe_second_body(made.part(numbers[body]), piece))
         if volumes[part] > 0.0:
             removed.append(Piece.of_box(piece.box, len(piece.triangles), "loose speck"))

@@ -12,8 +12,6 @@ from hydrostat.geometry.surface import Surface
 
 SMALL = 0.1  # a part whose box has a diagonal below this share of the body's is small
 
-_MOST_CONTAINERS = 100
-
 
 class Role(Enum):
     """Meaning of a part for the body; the value says it in a report."""
@@ -141,7 +139,8 @@ def _containers_of(
     found: list[list[int]] = [[] for _ in boxes]
     diagonal = np.where(whole, np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1), -1.0)
     first = surface.vertices[surface.triangles[np.unique(label, return_index=True)[1], 0]]
-    for container in np.argsort(-diagonal, kind="stable")[: min(_MOST_CONTAINERS, int(whole.sum()))]:
+    most_containers = 100
+    for container in np.argsort(-diagonal, kind="stable")[: min(most_containers, int(whole.sum()))]:
         low, high = boxes[container]
         maybe = np.flatnonzero(judged & (boxes[:, 0] > low).all(axis=1) & (boxes[:, 1] < high).all(axis=1))
         if len(maybe):

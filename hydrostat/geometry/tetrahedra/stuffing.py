@@ -135,10 +135,6 @@ def _close(
         marked[more] = True
 
 
-_NEAR = 0.3  # a cut this near to a node, in lengths of the edge, draws the node onto it
-_DEEP = 0.1  # a tetrahedron with all corners on the surface is kept if its middle is deeper, in lengths of an edge
-
-
 def stuff(solid: Solid, nodes: Nodes, elements: Elements, distances: Vector) -> tuple[Places, Tetrahedra]:
     """Cut a solid out of a lattice with these nodal distances: return nodes [m] and elements."""
     return _cut_tetrahedra(solid, *_snap_nodes(solid, nodes, elements, distances))
@@ -162,7 +158,8 @@ def _snap_nodes(
     owner = np.concatenate([edges[:, 0], edges[:, 1]])
     away = np.concatenate([shares, 1 - shares])
     which = np.tile(np.arange(len(edges)), 2)
-    close = away < _NEAR
+    near = 0.3  # a cut this near to a node, in lengths of the edge, draws the node onto it
+    close = away < near
     order = np.lexsort((which[close], (away * np.tile(lengths, 2))[close], owner[close]))
     movers, first = np.unique(owner[close][order], return_index=True)
     nodes[movers] = cuts[which[close][order][first]]
@@ -195,7 +192,7 @@ def _cut_tetrahedra(
     count = len(nodes)
     keys = edges[:, 0] * count + edges[:, 1]
 
-    def cut(inner: Numbers, outer: Numbers) -> Numbers:
+    def find_cut_node(inner: Numbers, outer: Numbers) -> Numbers:
         """Node of the cut between two nodes; a node that is on the surface is its own."""
         low, high = np.minimum(inner, outer), np.maximum(inner, outer)
         found = count + np.searchsorted(keys, low * count + high)
@@ -208,11 +205,19 @@ def _cut_tetrahedra(
     flat = elements[(inside == 0) & (outside == 0)]
     parts = [elements[(inside > 0) & (outside == 0)], flat[_deep(solid, nodes[flat])]]
     a, b, c, d = elements[(inside == 1) & (outside > 0)].T
-    parts.append(np.column_stack([a, cut(a, b), cut(a, c), cut(a, d)]))
+    parts.append(np.column_stack([a, find_cut_node(a, b), find_cut_node(a, c), find_cut_node(a, d)]))
     a, b, c, d = elements[(inside == 2) & (outside > 0)].T
-    parts += _wedge(np.concatenate([nodes, cuts]), a, cut(a, c), cut(a, d), b, cut(b, c), cut(b, d))
+    parts += _wedge(
+        np.concatenate([nodes, cuts]),
+        a,
+        find_cut_node(a, c),
+        find_cut_node(a, d),
+        b,
+        find_cut_node(b, c),
+        find_cut_node(b, d),
+    )
     a, b, c, d = elements[(inside == 3) & (outside > 0)].T
-    lower, upper, top = cut(a, d), cut(b, d), cut(c, d)
+    lower, upper, top = find_cut_node(a, d), find_cut_node(b, d), find_cut_node(c, d)
     parts += [np.column_stack(part) for part in ((a, b, c, top), (a, b, upper, top), (a, lower, upper, top))]
     filled, places = np.concatenate(parts), np.concatenate([nodes, cuts])
     filled = filled[_four_corners(filled)]
@@ -231,7 +236,9 @@ def _wedge(nodes: Nodes, a: Numbers, ac: Numbers, ad: Numbers, b: Numbers, bc: N
 def _deep(solid: Solid, corners: Float[np.ndarray, "elements 4 3"]) -> Bool[np.ndarray, " elements"]:
     """Find the tetrahedra with all corners on the surface that are no slices of it: their middles lie well inside."""
     lengths = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
-    return solid.distances(corners.mean(axis=1)) < -_DEEP * lengths
+    # a tetrahedron with all corners on the surface is kept if its middle is deeper, in lengths of an edge
+    deep = 0.1
+    return solid.distances(corners.mean(axis=1)) < -deep * lengths
 
 
 def _four_corners(elements: Elements) -> Bool[np.ndarray, " elements"]:
@@ -240,7 +247,6 @@ def _four_corners(elements: Elements) -> Bool[np.ndarray, " elements"]:
     return (ordered[:, 1:] != ordered[:, :-1]).all(axis=1)
 
 
-_ALONG = (0.25, 0.5, 0.75)  # where to look along an edge
 _OPEN = 0.05  # a place of an edge as far outside, in lengths of the edge, is in a gap
 
 
@@ -258,7 +264,8 @@ def find_bridges(
     asked = np.flatnonzero((ends < 0).all(axis=1) & (lengths + ends.sum(axis=1) > 0))
     crossing = np.zeros(len(edges), dtype=bool)
     places = [np.empty((0, 3))]
-    for share in _ALONG:
+    along = (0.25, 0.5, 0.75)  # where to look along an edge
+    for share in along:
         there = (1 - share) * nodes[edges[asked, 0]] + share * nodes[edges[asked, 1]]
         outside = solid.distances(there) > _OPEN * lengths[asked]
         crossing[asked[outside]] = True

@@ -12,12 +12,7 @@ from hydrostat.errors import OutlineError
 from hydrostat.geometry.outline import Curve, Outline, Stations
 from hydrostat.geometry.triangles.draft import Division, Draft
 
-GROWTH = 0.3  # how much the spacing may grow for each unit of distance
-
-_STEP = 1 / 12
-_BEND_REACH = 1 / 6
 _BEND = 0.7  # a chord of length s leaves a circle of radius r by s^2 / 8r: less than 0.09
-_LEAST_BEND = 0.35
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +26,12 @@ class Spacing:
         """Wanted distance of neighbours at some points."""
         fine = np.flatnonzero(self.values < 0.999)
         wanted = np.ones(len(points))
+        growth = 0.3  # how much the spacing may grow for each unit of distance
         for part in np.array_split(np.arange(len(points)), 1 + len(points) * len(fine) // 2_000_000):
             if fine.size and part.size:
                 along, up = (points[part, axis, None] - self.places[fine, axis] for axis in (0, 1))
                 reach = np.sqrt(along * along + up * up)
-                wanted[part] = np.minimum(1.0, (self.values[fine] + GROWTH * reach).min(axis=1))
+                wanted[part] = np.minimum(1.0, (self.values[fine] + growth * reach).min(axis=1))
         return wanted
 
 
@@ -53,16 +49,19 @@ class CurveSamples:
 def sample_rings(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> CurveSamples:
     """Sample rings; `corners` are the stations of the true corners, whose bend does not count."""
     parts = []
+    step = 1 / 12
+    bend_reach = 1 / 6
+    least_bend = 0.35
     for ring, (curve, sharp) in enumerate(zip(curves, corners, strict=True)):
-        count = max(16, int(np.ceil(curve.length / _STEP)))
+        count = max(16, int(np.ceil(curve.length / step)))
         stations = np.arange(count) * (curve.length / count)
-        tangents = curve.tangents(stations, min(_STEP, curve.length / 16))
-        reach = min(_BEND_REACH, curve.length / 12)
+        tangents = curve.tangents(stations, min(step, curve.length / 16))
+        reach = min(bend_reach, curve.length / 12)
         bend = np.abs(curve.turning_angles(stations, reach)) / (2 * reach)
         if sharp.size:
             gaps = np.abs(stations[:, None] - sharp)
             bend[np.minimum(gaps, curve.length - gaps).min(axis=1) <= 1.2 * reach] = 0.0
-        bends = np.clip(np.sqrt(_BEND / np.maximum(bend, 1e-9)), _LEAST_BEND, 1.0)
+        bends = np.clip(np.sqrt(_BEND / np.maximum(bend, 1e-9)), least_bend, 1.0)
         inward = np.column_stack([-tangents[:, 1], tangents[:, 0]])
         parts.append((curve.at(stations), inward, np.full(count, float(ring)), stations, bends))
     return CurveSamples(*(np.concatenate(column) for column in zip(*parts, strict=True)))
@@ -78,7 +77,8 @@ def widths_at(samples: CurveSamples, curves: tuple[Curve, ...], polygon: Polygon
 
     width, neck = np.ones(len(samples.places)), np.ones(len(samples.places))
     tree = KDTree(samples.places)
-    if tree.count_neighbors(tree, 1.0) > _MOST_PAIRS:
+    most_pairs = 20_000_000  # places of an outline that are within an element of each other
+    if tree.count_neighbors(tree, 1.0) > most_pairs:
         raise OutlineError(
             "the outline comes near to itself in too many places: draw it simpler, or take smaller elements"
         )
@@ -102,13 +102,8 @@ def widths_at(samples: CurveSamples, curves: tuple[Curve, ...], polygon: Polygon
     return width, neck
 
 
-MOST_RIM = 50_000  # elements along the outline
-_MOST_PAIRS = 20_000_000  # places of an outline that are within an element of each other
-
-SAGITTA = 0.12  # an edge stays this near to the outline, in element sizes
 FLOOR = 1 / 6  # spacing never goes below this part of the element size on account of a thin feature
 
-_CORNER_REACH = 1 / 12
 _CORNER_ANGLE = np.radians(33)
 
 
@@ -154,16 +149,18 @@ def _refuse_long(outline: Outline, rim: float, element_size: float) -> None:
             f"the outline is only {1e3 * width:.2g} mm wide on average, too thin for elements of "
             f"{1e3 * element_size:.4g} mm: thicken it, or take elements of {1e3 * width / FLOOR:.2g} mm or less"
         )
-    if rim > MOST_RIM:
+    most_rim = 50_000  # elements along the outline
+    if rim > most_rim:
         raise OutlineError(
             f"the outline is {rim * element_size:.3g} m long, {rim:.3g} elements of {1e3 * element_size:.4g} mm, "
-            f"at most {MOST_RIM} are made: draw it with fewer teeth, or take larger elements"
+            f"at most {most_rim} are made: draw it with fewer teeth, or take larger elements"
         )
 
 
 def _corners(curve: Curve) -> Stations:
     """Stations of the true corners: where a ring turns much on a short way, and little just before and after."""
-    reach = min(_CORNER_REACH, curve.length / 24)
+    corner_reach = 1 / 12
+    reach = min(corner_reach, curve.length / 24)
     stations = curve.stations[:-1]
     sharp = np.abs(curve.turning_angles(stations, reach))
     around = np.abs(curve.turning_angles(stations, 2 * reach))
@@ -199,8 +196,9 @@ def _divide_ring(curve: Curve, sharp: Stations, stations: Vector, wanted: Vector
 
 def _split_where_far(division: Division) -> Division:
     """Split edges that stray from the ring."""
+    sagitta = 0.12  # an edge stays this near to the outline, in element sizes
     while True:
-        far = np.flatnonzero(division.sagitta() > SAGITTA)
+        far = np.flatnonzero(division.sagitta() > sagitta)
         if not far.size:
             return division
         for edge in far[::-1]:

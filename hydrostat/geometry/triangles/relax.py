@@ -11,8 +11,6 @@ from hydrostat.geometry.mesh import angles
 from hydrostat.geometry.triangles.divide import Spacing
 from hydrostat.geometry.triangles.draft import Division, Draft, doubled_areas
 
-STRAY = 0.18  # no smoothing takes a side of the mesh farther from the outline than this, in element sizes
-
 _EQUILATERAL = 2.0 * np.sqrt(3.0)
 
 
@@ -54,7 +52,8 @@ def sound(draft: Draft) -> bool:
     """Return True if nodes on the rings are in order and all sides exist, near the outline."""
     parts = draft.divisions
     ordered = all(bool((part.ends > part.stations).all()) for part in parts)
-    near = max(float(part.sagitta().max()) for part in parts) < STRAY
+    stray = 0.18  # no smoothing takes a side of the mesh farther from the outline than this, in element sizes
+    near = max(float(part.sagitta().max()) for part in parts) < stray
     return ordered and near and draft.polygon.is_valid and not draft.missing_sides.size
 
 
@@ -116,12 +115,11 @@ def _move_points(draft: Draft, variables: Vector, slides: Bool[np.ndarray, " bou
 
 _GOAL = 31.0  # triangles with a smaller angle than this [degrees] are worth a change
 
-_CHANGES = 12
-
 
 def repair(draft: Draft) -> Draft:
     """Add, remove or split near the narrowest triangle as long as that widens it; the best draft found is kept."""
-    for _ in range(_CHANGES):
+    changes = 12
+    for _ in range(changes):
         least = _least(draft)
         if least >= _GOAL:
             break

@@ -53,8 +53,9 @@ class Effort(Objective):
         travel = np.array([winch.travel for winch in robot.winches])
         weight = not_negative("weight of an effort", self.weight) * robot.body.mesh.size
         scale = None if self.scale is None else above_zero("scale of an effort", self.scale)
+        tension = 10.0  # a pull that winches of small robots bear with ease [N]
         if self.of is EffortKind.TENSION:
-            return _Tension(weight / (scale or _TENSION))
+            return _Tension(weight / (scale or tension))
         if self.of is EffortKind.SLACK:
             return _Slack(weight / (scale or simulation.cables.compute_contractions(travel)))
         return _Contraction(weight / (scale or travel))
@@ -63,9 +64,6 @@ class Effort(Objective):
 def keeps_taut(objective: Objective) -> bool:
     """Return True if an objective penalizes slack cables."""
     return isinstance(objective, Effort) and objective.of == EffortKind.SLACK
-
-
-_TENSION = 10.0  # a pull that winches of small robots bear with ease [N]
 
 
 class _Contraction(Residual):

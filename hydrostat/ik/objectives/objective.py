@@ -175,7 +175,8 @@ def describe(given: object) -> str:
     if found is not None and found.ndim == 0:
         return f"{found:g}"
     words = repr(given)
-    if len(words) <= _LONGEST and "\n" not in words:
+    longest = 60  # as many letters of what is given are told
+    if len(words) <= longest and "\n" not in words:
         return words
     kind = type(given).__name__
     return f"{'an' if kind[0] in 'AEIOU' else 'a'} {kind}"
@@ -219,10 +220,7 @@ def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"
     low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
     ways = np.maximum(np.maximum(low - found, found - high), 0.0)
     way = float(np.linalg.norm(ways if held is None else ways[held]))
-    if way > _FARTHEST * mesh.size:
+    farthest = 100.0  # sizes of its body that a target may be away; in millimetres it is a thousand
+    if way > farthest * mesh.size:
         raise InputError(f"{what} is {way:.4g} m away from a body of {mesh.size:.3g} m; targets are in metres")
     return found
-
-
-_LONGEST = 60  # as many letters of what is given are told
-_FARTHEST = 100.0  # sizes of its body that a target may be away; in millimetres it is a thousand

@@ -69,13 +69,15 @@ class ShapeTarget(Objective):
         """
         mesh = simulation.robot.body.mesh
         weight = not_negative("weight of a shape", self.weight)
-        if self.samples is not None and not (isinstance(self.samples, Integral) and _FEWEST <= self.samples <= _MOST):
+        most = 1_000_000
+        if self.samples is not None and not (isinstance(self.samples, Integral) and _FEWEST <= self.samples <= most):
             raise InputError(
-                f"samples of a shape must be a whole number from {_FEWEST} to {_MOST}, not {describe(self.samples)}"
+                f"samples of a shape must be a whole number from {_FEWEST} to {most}, not {describe(self.samples)}"
             )
         name, shell = self._shell(mesh)
         _check(name, shell, mesh)
-        count = self.samples or max(len(mesh.boundary_nodes), _SAMPLES)
+        samples = 200
+        count = self.samples or max(len(mesh.boundary_nodes), samples)
         if self.outline is not None:
             places = _along(self.outline, count)
         else:
@@ -103,10 +105,6 @@ class ShapeTarget(Objective):
 
 
 _FEWEST = 3
-_MOST = 1_000_000
-_SAMPLES = 200
-
-_LARGEST = 10.0  # a body does not get so many times longer or shorter
 
 
 class _Shape(Residual):
@@ -170,20 +168,20 @@ def _over(surface: Surface, count: int) -> Points:
     areas = np.cumsum(np.linalg.norm(surface.crosses, axis=1))
     steps = np.arange(count) + 0.5
     owners = np.searchsorted(areas, steps / count * areas[-1])
-    one, two = (steps * share % 1 for share in _EVEN)
+    # multiples of these spread evenly over a square (Roberts 2018)
+    even = (0.7548776662466927, 0.5698402909980532)
+    one, two = (steps * share % 1 for share in even)
     over = one + two > 1
     one, two = np.where(over, 1 - one, one), np.where(over, 1 - two, two)
     weights = np.column_stack([1 - one - two, one, two])
     return np.einsum("pc,pcd->pd", weights, surface.vertices[surface.triangles[owners]])
 
 
-_EVEN = (0.7548776662466927, 0.5698402909980532)  # multiples of these spread evenly over a square (Roberts 2018)
-
-
 def _check(name: str, shell: Shell, mesh: Mesh) -> None:
     """Refuse a shape that a body cannot lie on."""
     size = float(np.ptp(shell.nodes[np.unique(shell.facets)], axis=0).max())
-    if not 1 / _LARGEST < size / mesh.size < _LARGEST:
+    largest = 10.0  # a body does not get so many times longer or shorter
+    if not 1 / largest < size / mesh.size < largest:
         raise InputError(
             f"the {name} is {1e3 * size:.4g} mm large, the body {1e3 * mesh.size:.4g} mm; give it in metres"
         )

@@ -42,12 +42,15 @@ class Curvature:
         plain = old.residual + old.matrix @ step
         missed = 0.5 * float(new.residual @ new.residual - plain @ plain)
         known = np.zeros((len(step), len(step))) if self._matrix is None else self._matrix
+        poor = 0.1  # Gauss-Newton is poor if it misses the fall of the objective by this share
         if self._matrix is None:
             fallen = 0.5 * abs(float(old.residual @ old.residual - new.residual @ new.residual))
-            self._trusted = abs(missed) > _POOR * fallen
+            self._trusted = abs(missed) > poor * fallen
         else:
             self._trusted = abs(missed - 0.5 * float(step @ known @ step)) < abs(missed)
-        if new.residual @ new.residual < _FALLS * (old.residual @ old.residual):
+        # where squares fall to less than this share in a step, Gauss-Newton is on its way to a target in reach
+        falls = 0.25
+        if new.residual @ new.residual < falls * (old.residual @ old.residual):
             self._trusted = False
         self._matrix = _broyden_update(
             known, step, new.gradient() - old.gradient(new.residual), new.gradient() - old.gradient()
@@ -70,10 +73,6 @@ def _broyden_update(known: Square, step: np.ndarray, change: np.ndarray, total: 
     return known + (outer + outer.T) / along - float(step @ miss) / along**2 * np.outer(total, total)
 
 
-_FALLS = 0.25  # where squares fall to less than this share in a step, Gauss-Newton is on its way to a target in reach
-_POOR = 0.1  # Gauss-Newton is poor if it misses the fall of the objective by this share
-
-
 def descend(search: InverseSearch, state: InverseState, *, weight: float | None = None) -> Descent:
     """Trust-region steps until a goal is reached or nothing is left to gain.
 
@@ -89,7 +88,8 @@ def least_effort(search: InverseSearch, state: InverseState) -> Descent:
     poses that reach the goal would be slow, as these are curved.
     """
     spent = 0
-    for weight in _WEIGHTS:
+    weights = (1.0, 0.1, 1e-2, 1e-3)  # of the effort, one after the other
+    for weight in weights:
         lighter = descend(search, state, weight=weight)
         state, spent = lighter.state, spent + lighter.iterations
         if lighter.reason is IKStatus.TIME_LIMIT:
@@ -112,6 +112,9 @@ class _TrustRegionDescent:
 
     def run(self) -> Descent:
         problem, options = self.problem, self.problem.options
+        # progress at which a descent with a fixed weight of the effort ends: it is a stage on the way
+        rough = 1e-2
+        smallest_radius = 1e-7  # steps of less than this fraction of the range are not worth a solve
         for iteration in range(options.iterations):
             if self.search.patience.over:
                 return self._end(IKStatus.TIME_LIMIT, iteration)
@@ -121,7 +124,7 @@ class _TrustRegionDescent:
                     return self._end(IKStatus.REACHED, iteration)
                 self.weight = min(self.weight, problem.weight(self.state))
             step = self._step()
-            progress = _ROUGH if self.fixed else options.progress
+            progress = rough if self.fixed else options.progress
             least = progress * problem.objective(self.state, self.weight)
             if ends(problem, self.state, step, least, self.radius):
                 if self.state.sharp or not self._sharpen():
@@ -134,7 +137,7 @@ class _TrustRegionDescent:
                 self._move(tried.trial)
             elif not self._reconsider():
                 self._resize(-np.inf, step.values)
-                if self.radius < _SMALLEST_RADIUS:
+                if self.radius < smallest_radius:
                     reason = IKStatus.NO_EQUILIBRIUM if tried.trial is None else IKStatus.LOCAL_OPTIMUM
                     return self._end(reason, iteration + 1)
         return self._end(IKStatus.ITERATION_LIMIT, options.iterations)
@@ -179,20 +182,18 @@ class _TrustRegionDescent:
         """State if it rests within its limits, else the last one that did."""
         if not self._sharpen() or self.state.excess > EXCESS:
             self.state = self.rested or self.state
+        steep = 1e-3  # where the residual's length still falls faster than this [m/m], it is no optimum
         if self._is_reached():
             reason = IKStatus.REACHED
             self.state = self.search.drop_slack(self.state)
         elif self.state.excess > EXCESS:
             reason = IKStatus.INFEASIBLE
-        elif reason is IKStatus.LOCAL_OPTIMUM and self.problem.slope(self.state, self.weight) > _STEEP:
+        elif reason is IKStatus.LOCAL_OPTIMUM and self.problem.slope(self.state, self.weight) > steep:
             reason = IKStatus.STALLED
         return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
 
 
-_STEEP = 1e-3  # where the residual's length still falls faster than this [m/m], it is no optimum
-_ROUGH = 1e-2  # progress at which a descent with a fixed weight of the effort ends: it is a stage on the way
 _RULES = StepRules(excess_share=0.995, far=0.1)  # when a descent takes a step
-_SMALLEST_RADIUS = 1e-7  # steps of less than this fraction of the range are not worth a solve
 
 
 def _next_radius(radius: float, ratio: float, used: float) -> float:
@@ -200,6 +201,3 @@ def _next_radius(radius: float, ratio: float, used: float) -> float:
     if ratio < 0.25:
         return 0.25 * min(radius, max(used, 1e-12))
     return 2 * radius if ratio > 0.75 and used > 0.9 * radius else radius
-
-
-_WEIGHTS = (1.0, 0.1, 1e-2, 1e-3)  # of the effort, one after the other

@@ -1,20 +1,48 @@
 """`InverseSearch`: states of an inverse problem, connected by trust-region steps; `reached_pose`: its result."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from math import inf
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.errors import NotConvergedError
+from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.ik_result import IKResult, IKStatus
 from hydrostat.ik.search.linear_model import channels
 from hydrostat.ik.search.problem import InverseProblem, InverseState, ModelStep
-from hydrostat.ik.search.search_budget import SearchBudget
 from hydrostat.mechanics import NewtonResult
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import Equilibrium
+
+SearchProgress = Callable[[int, float], None]
+"""Called with the steps tried so far and the rms error of the best that is known [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchBudget:
+    """Deadline of a search, and the callback for its progress; an exception of `tell` ends the search."""
+
+    deadline: float = inf  # deadline on the clock of `time.monotonic` [s]
+    tell: SearchProgress | None = None
+
+    @classmethod
+    def of(cls, seconds: float | None, tell: SearchProgress | None) -> Self:
+        """Patience for so many seconds from now, without end if that is None (InputError: not above 0)."""
+        if tell is not None and not callable(tell):
+            raise InputError(f"progress must be a function that is called with a step and an error, not {tell!r:.60}")
+        if seconds is None:
+            return cls(tell=tell)
+        if isinstance(seconds, bool) or not isinstance(seconds, int | float) or not seconds > 0:
+            raise InputError(f"seconds must be above 0, not {seconds!r}")
+        return cls(deadline=time.monotonic() + seconds, tell=tell)
+
+    @property
+    def over(self) -> bool:
+        """True if the time is up."""
+        return time.monotonic() >= self.deadline
 
 
 class InverseSearch:
@@ -115,9 +143,11 @@ class InverseSearch:
         contractions = self.problem.bounds.spread @ values
         result = state.result
         far = (np.abs(values - state.values) > _FAR * self.problem.bounds.span).any()
-        for _ in range(_RELAXATIONS):
+        relaxations = 6  # steps of Newton towards an equilibrium before stronger means are used
+        loose = 0.1  # force left over after these, as a share of the largest tension
+        for _ in range(relaxations):
             before = result.nodes
-            iterations, tolerance = (_ITERATIONS, _LOOSE) if far else (1, None)
+            iterations, tolerance = (_ITERATIONS, loose) if far else (1, None)
             result = self.problem.simulation.solver.relax(
                 before, contractions, result.stiffness, iterations=iterations, tolerance=tolerance
             )
@@ -191,10 +221,8 @@ class InverseSearch:
         return self.problem.idle(self.problem.state(values, result)) if _sound(result) else None
 
 
-_RELAXATIONS = 6  # steps of Newton towards an equilibrium before stronger means are used
 _ITERATIONS = 30  # steps of Newton before an equilibrium is given up
 _FAR = 0.02  # a step of more than this share of a channel's range is far: it takes more than one step of Newton
-_LOOSE = 0.1  # force left over after these, as a share of the largest tension
 _APART = 1e-8  # ways that end within this share of the body's size end in the same pose
 _LEFT = 0.2  # an equilibrium is near enough when what is left is this share of the last step of Newton
 _HARDLY = 1e-3  # a channel whose tautest cable pulls less than this share of the largest tension may as well be slack

@@ -100,16 +100,19 @@ class LinearModel:
         scale = self.range[active]
         matrix, right = self._squares(effort)
         matrix, aim = matrix * scale, -right
+        flat = 1e-12  # least curvature of a model, as a share of the largest
         if curvature is not None:
             hessian = matrix.T @ matrix + curvature[np.ix_(active, active)] * scale[:, None] * scale
             values, axes = np.linalg.eigh(hessian)
             bends = np.abs(values)  # downhill of a crest too, as far as the radius allows
-            root = np.sqrt(np.maximum(bends, _FLAT * bends.max(initial=0.0)))[:, None] * axes.T
+            root = np.sqrt(np.maximum(bends, flat * bends.max(initial=0.0)))[:, None] * axes.T
             if bends.any():
                 matrix, aim = root, np.linalg.solve(root.T, -matrix.T @ right)
         limits, room = self._limits(radius)
         step = None
-        for share in _SHARES:
+        # of an excess that one step takes back: the first possible
+        shares = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.0)
+        for share in shares:
             step = least_squares(matrix, aim, limits * scale, np.maximum(room, share * room))
             if step is not None:
                 break
@@ -146,7 +149,9 @@ class LinearModel:
             return 0.0
         gradient = matrix.T @ right / length
         limits, room = self._limits(1.0)
-        rows = limits[room <= _HOLDS * np.abs(limits) @ self.range[self.active]]
+        # a limit holds when less than this share of what the channels' ranges could use of it is left
+        holds = 1e-9
+        rows = limits[room <= holds * np.abs(limits) @ self.range[self.active]]
         if len(rows):
             from scipy.optimize import nnls  # Imported here: not every pose is at a limit.
 
@@ -167,7 +172,9 @@ class LinearModel:
         ends[leaves] += (step - places.beyond)[leaves]
         ends[stays] += step[stays]
         low, high = self.bounds.low, self.bounds.high
-        hair = _ROUNDING * self.bounds.span  # what least squares leave of the way to a limit
+        # a step that ends within this share of the range of a channel from its limit ends on it
+        rounding = 1e-12
+        hair = rounding * self.bounds.span  # what least squares leave of the way to a limit
         return np.where(ends > high - hair, high, np.where(ends < low + hair, low, ends))
 
     def _squares(self, effort: Vector) -> tuple[np.ndarray, Vector]:
@@ -194,10 +201,6 @@ class LinearModel:
         return np.vstack(rows), np.concatenate(room)
 
 
-_SHARES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.0)  # of an excess that one step takes back: the first possible
-_FLAT = 1e-12  # least curvature of a model, as a share of the largest
-_HOLDS = 1e-9  # a limit holds when less than this share of what the channels' ranges could use of it is left
-_ROUNDING = 1e-12  # a step that ends within this share of the range of a channel from its limit ends on it
 Matrix = Float[np.ndarray, "rows size"]
 
 
@@ -241,9 +244,8 @@ def _least_distance(
     pushes, _ = nnls(stacked, np.eye(len(stacked))[-1])
     left = stacked @ pushes
     left[-1] -= 1.0
-    if -left[-1] < _INCONSISTENT:
+    # what is left of the nonnegative problem is 1 / (1 + |z|^2); below this no z is allowed
+    inconsistent = 1e-12
+    if -left[-1] < inconsistent:
         return None
     return -far * left[:-1] / left[-1]
-
-
-_INCONSISTENT = 1e-12  # what is left of the nonnegative problem is 1 / (1 + |z|^2); below this no z is allowed

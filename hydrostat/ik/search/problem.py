@@ -204,7 +204,8 @@ class InverseProblem:
         places = channels(self.simulation.cables, state.posture, state.values, self.bounds)
         moves = stack_jacobians(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
         matrix = self._rows(state.posture, moves)
-        loose = places.gaps > _EDGE * self.bounds.span
+        edge = 1e-9  # a channel this near to taut, in shares of its range, is at the edge of it
+        loose = places.gaps > edge * self.bounds.span
         if loose.any():  # a slack channel that follows a step stays where it is
             matrix[:, loose] -= self._direct(state.posture)[:, loose]
         tensions = moves.tensions @ self.bounds.spread
@@ -221,7 +222,8 @@ class InverseProblem:
         if not moves.size:
             return False
         values = np.linalg.svd(moves, compute_uv=False)
-        return moves.shape[0] < moves.shape[1] or bool(values[-1] < _IDLE * values[0])
+        idle = 1e-3  # a change that moves less than this share of what the best one moves counts as none
+        return moves.shape[0] < moves.shape[1] or bool(values[-1] < idle * values[0])
 
     def jacobian(self, state: InverseState) -> Slopes:
         """D residual / d contractions of the channels; slack ones as if they had just become taut."""
@@ -259,12 +261,10 @@ class InverseProblem:
 def effort_weight(residual: Rows, size: float, most: float) -> float:
     """Weight of the effort where so much is left [m], of a body of a size [m]: at most `most`."""
     error = float(np.sqrt(residual @ residual)) / size
-    return max(min(most, _SHARE * error), _LEAST_WEIGHT)
+    share = 0.1  # weight of the effort, as a share of the error in sizes of the body
+    return max(min(most, share * error), _LEAST_WEIGHT)
 
 
-_EDGE = 1e-9  # a channel this near to taut, in shares of its range, is at the edge of it
-_IDLE = 1e-3  # a change that moves less than this share of what the best one moves counts as none
-_SHARE = 0.1  # weight of the effort, as a share of the error in sizes of the body
 _LEAST_WEIGHT = 1e-8  # of the effort; enough to keep the linearised problem well posed
 
 

@@ -148,12 +148,16 @@ class KeySearch:
         return (*self.objectives, _TAUT) if self.knots else self.objectives
 
     def _better(self, one: IKResult, other: IKResult) -> bool:
-        near = _TELL * self.simulation.robot.body.mesh.size
-        return one.rms_error < min((1 - _BETTER) * other.rms_error, other.rms_error - near)
+        tell = 1e-5  # and by this share of the body's size
+        near = tell * self.simulation.robot.body.mesh.size
+        better = 0.01  # a search from rest is better when its error is smaller by this share,
+        return one.rms_error < min((1 - better) * other.rms_error, other.rms_error - near)
 
     def _way(self, begin: Equilibrium, goal: Equilibrium) -> Equilibrium | None:
         """Pose to which the branch of one pose leads at the contractions of another; None if it ends before."""
-        shares = np.linspace(0.0, 1.0, _STEPS + 1)
+        # of a way that is followed to contractions found from rest; each is cut into smaller ones as need be
+        steps = 20
+        shares = np.linspace(0.0, 1.0, steps + 1)
         contractions = (1 - shares)[:, None] * begin.contractions + shares[:, None] * goal.contractions
         try:
             poses, snaps = follow(self.simulation, begin, shares, contractions, jump=self.jump)
@@ -164,7 +168,8 @@ class KeySearch:
     def _straight(self, names: tuple[str, ...], begin: Equilibrium, end: Equilibrium) -> tuple[Equilibrium, ...]:
         """Poses in which the markers are on the straight lines between two poses, at even steps."""
         poses, last = [], begin
-        rough = replace(self.options, iterations=min(self.options.iterations, _ITERATIONS))
+        iterations = 15  # most Gauss-Newton steps to a pose on a straight way
+        rough = replace(self.options, iterations=min(self.options.iterations, iterations))
         for knot in range(1, self.knots if names else 0):
             share = knot / self.knots
             places = {
@@ -176,10 +181,6 @@ class KeySearch:
 
 
 _TAUT = Effort(of=EffortKind.SLACK, weight=0.0)  # slack cables stay just short of taut, to join without a jump
-_STEPS = 20  # of a way that is followed to contractions found from rest; each is cut into smaller ones as need be
-_ITERATIONS = 15  # most Gauss-Newton steps to a pose on a straight way
-_BETTER = 0.01  # a search from rest is better when its error is smaller by this share,
-_TELL = 1e-5  # and by this share of the body's size
 
 
 def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Equilibrium) -> None:
@@ -190,9 +191,10 @@ def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Equili
     """
     _check_own(simulation, name, pose)
     winches = [winch.name for winch in simulation.robot.winches]
+    hair = 1e-9  # a contraction may be out of its limits by this much, for rounding [m]
     for winch, channel, value in zip(winches, allowed.channels, pose.contractions, strict=True):
         low, high = float(allowed.low[channel]) + 0.0, float(allowed.high[channel])
-        if not low - _HAIR <= value <= high + _HAIR:
+        if not low - hair <= value <= high + hair:
             raise InputError(
                 f'{name}: the contraction of winch "{winch}" is {value:.6g} m, but its limits are {low:.6g} to '
                 f"{high:.6g} m; give another pose, or widen the limits"
@@ -200,7 +202,7 @@ def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Equili
     for channel in range(len(allowed.low)):
         group = np.flatnonzero(allowed.channels == channel)
         values = pose.contractions[group]
-        if np.ptp(values) > _HAIR:
+        if np.ptp(values) > hair:
             each = ", ".join(f'"{winches[winch]}" {pose.contractions[winch]:.6g} m' for winch in group)
             raise InputError(
                 f"{name}: winches that should be equal are not equal: {each}; give another pose, or let them differ"
@@ -223,6 +225,3 @@ def _check_own(simulation: Simulation, name: str, pose: Equilibrium) -> None:
             f"{name}: a pose of this robot has the markers {', '.join(markers) or 'none'}, "
             f"not {', '.join(pose.markers) or 'none'}; {remedy}"
         )
-
-
-_HAIR = 1e-9  # a contraction may be out of its limits by this much, for rounding [m]

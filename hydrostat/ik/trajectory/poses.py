@@ -38,8 +38,9 @@ def follow(
     poses: list[Equilibrium] = []
     snaps: list[BranchJump] = []
     pose = start
+    halvings = 10  # a snap is one that is still there when a step is 2 to the power of so many times smaller
     for index, (time, goal) in enumerate(zip(times, contractions, strict=True)):
-        pose, distance = _go(simulation, pose, goal, jump, _HALVINGS)
+        pose, distance = _go(simulation, pose, goal, jump, halvings)
         if not pose.result.converged:
             raise NotConvergedError(
                 f"no equilibrium found at {time:.3g} s of the trajectory: {pose.result.reason}", pose.result
@@ -62,10 +63,11 @@ def _go(
     if (pose.contractions == goal).all():
         return pose, 0.0
     predicted = _predict_nodes(simulation, pose, goal)
+    iterations = 20  # steps of Newton; near a branch a few are enough
     if simulation.assembly.has_history:
         found = simulation.solve(goal, start=pose, strict=False)
     else:
-        result = simulation.solver.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=_ITERATIONS)
+        result = simulation.solver.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=iterations)
         found = simulation.make_pose(goal, result)
     distance = largest_distance(found.nodes, predicted)
     if found.result.converged and found.result.stable and distance <= jump:
@@ -86,7 +88,3 @@ def _predict_nodes(simulation: Simulation, pose: Equilibrium, goal: Vector) -> N
         return pose.nodes + simulation.jacobian(pose) @ (goal - pose.contractions)
     except NotConvergedError:
         return pose.nodes
-
-
-_HALVINGS = 10  # a snap is one that is still there when a step is 2 to the power of so many times smaller
-_ITERATIONS = 20  # steps of Newton; near a branch a few are enough

@@ -201,9 +201,10 @@ def _check_times(
 ) -> None:
     """Refuse times that are too short."""
     used = pace.share(*course.peaks())
+    hair = 1e-9  # limits hold to this share of them
     for one, arrival in zip(timed, arrivals, strict=False):
         share = float(used[arrival - 1])
-        if share > 1 + _HAIR:
+        if share > 1 + hair:
             length = float(np.diff(course.times)[arrival - 1])
             raise InputError(
                 f"{length:.3g} s on the way to {one.keyframe.name} are too short for the limits on speed and "
@@ -214,9 +215,10 @@ def _check_times(
 def _sample_times(times: Vector, rate: float) -> tuple[Vector, np.ndarray]:
     """Even steps in each leg, its ends among them; and where these are."""
     seconds = float(times[-1] - times[0])
-    if not seconds * rate <= _MOST_SAMPLES:
+    most_samples = 100_000  # a trajectory of more samples is a slip: each is an equilibrium
+    if not seconds * rate <= most_samples:
         raise InputError(
-            f"the course would take {seconds:.3g} s and {seconds * rate:.3g} samples, more than {_MOST_SAMPLES:,}; "
+            f"the course would take {seconds:.3g} s and {seconds * rate:.3g} samples, more than {most_samples:,}; "
             "allow a larger speed, or hold for less long"
         )
     counts = np.maximum(np.ceil(np.diff(times) * rate - 1e-9).astype(int), 1)
@@ -265,5 +267,3 @@ def _keys(
 
 
 _ACCELERATION = 0.2  # the most that a winch accelerates, unless told otherwise [m/s^2]
-_HAIR = 1e-9  # limits hold to this share of them
-_MOST_SAMPLES = 100_000  # a trajectory of more samples is a slip: each is an equilibrium

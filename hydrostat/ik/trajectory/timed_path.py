@@ -91,7 +91,6 @@ class TimedPath:
         return self.keys[:-1], p, 10 * way - 6 * p - 4 * q, 8 * p + 7 * q - 15 * way, 6 * way - 3 * p - 3 * q
 
 
-SPEED_OF_REST = 15 / 8  # largest speed of a leg from rest to rest, in ways for each length of the leg
 ACCELERATION_OF_REST = 10 / np.sqrt(3)  # largest acceleration of a leg from rest to rest, in ways / its length^2
 
 
@@ -148,7 +147,8 @@ class MotionLimits:
     def rest_to_rest(self, keys: Keys) -> Vector:
         """Least time of each leg, were it to begin and end at rest [s]."""
         ways = np.abs(np.diff(keys, axis=0))
-        return self.share(SPEED_OF_REST * ways, ACCELERATION_OF_REST * ways)
+        speed_of_rest = 15 / 8  # largest speed of a leg from rest to rest, in ways for each length of the leg
+        return self.share(speed_of_rest * ways, ACCELERATION_OF_REST * ways)
 
 
 def earliest(keys: Keys, lengths: Vector, pace: MotionLimits, *, least: float) -> TimedPath:
@@ -164,11 +164,13 @@ def earliest(keys: Keys, lengths: Vector, pace: MotionLimits, *, least: float) -
     best = TimedPath.smooth(_times(lengths), keys, passing=False)
     if not free.any():
         return TimedPath.smooth(_times(lengths), keys)
-    for _ in range(_ROUNDS):
+    rounds = 60
+    hair = 1e-9  # limits hold to this share of them
+    for _ in range(rounds):
         course = TimedPath.smooth(_times(lengths), keys)
         used = np.where(free, pace.share(*course.peaks()), 0.0)
         scaled = TimedPath.smooth(_times(np.where(free, np.maximum(used.max() * lengths, least), lengths)), keys)
-        if scaled.seconds < best.seconds and pace.share(*scaled.peaks()).max() <= 1 + _HAIR:
+        if scaled.seconds < best.seconds and pace.share(*scaled.peaks()).max() <= 1 + hair:
             best = scaled
         lengths = np.where(free, np.maximum(lengths * np.sqrt(used), least), lengths)
     return best
@@ -182,11 +184,6 @@ def linear(keys: Keys, lengths: Vector, pace: MotionLimits, *, least: float) -> 
 
 def _times(lengths: Vector) -> Vector:
     return np.concatenate([[0.0], np.cumsum(lengths)])
-
-
-_ROUNDS = 60
-
-_HAIR = 1e-9  # limits hold to this share of them
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -205,8 +202,9 @@ class StraightCourse:
         """Fastest path through the knots of each leg [m], of given durations [s] (NaN if free), within limits."""
         legs = tuple(_leg(keys) for keys in knots)
         soonest = np.array([float(pace.share(*_peaks(leg))[0]) for leg in legs])
+        room = 1.0005  # a leg takes so many times as long as the limits ask at these places
         # Between the places that are looked at a leg may be faster by a hair.
-        free = np.maximum(_ROOM * soonest, least)
+        free = np.maximum(room * soonest, least)
         times = np.concatenate([[0.0], np.cumsum(np.where(np.isnan(lengths), free, lengths))])
         return cls(times=times, legs=legs)
 
@@ -241,7 +239,8 @@ def _leg(keys: Keys) -> TimedPath:
     Where a winch must go far for little, the way is stretched: shares grow as the largest change of a contraction.
     """
     steps = np.abs(np.diff(keys, axis=0)).max(axis=1, initial=0.0)
-    steps = steps + _LEAST * steps.sum() if steps.any() else np.ones(len(steps))
+    least = 0.01  # a step of the way has at least this share of it
+    steps = steps + least * steps.sum() if steps.any() else np.ones(len(steps))
     times = np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
     course = TimedPath.smooth(times, keys)
     begins, ends = course.begins.copy(), course.ends.copy()
@@ -259,10 +258,6 @@ def _along(leg: TimedPath, shares: Vector) -> tuple[Samples, Samples, Samples]:
 
 
 def _peaks(leg: TimedPath) -> tuple[Peaks, Peaks]:
-    _, speeds, accelerations = _along(leg, np.linspace(0.0, 1.0, _PLACES * len(leg.keys)))
+    places = 400  # places for each knot where speed and acceleration are looked at
+    _, speeds, accelerations = _along(leg, np.linspace(0.0, 1.0, places * len(leg.keys)))
     return np.abs(speeds).max(axis=0, keepdims=True), np.abs(accelerations).max(axis=0, keepdims=True)
-
-
-_LEAST = 0.01  # a step of the way has at least this share of it
-_PLACES = 400  # places for each knot where speed and acceleration are looked at
-_ROOM = 1.0005  # a leg takes so many times as long as the limits ask at these places

@@ -148,10 +148,11 @@ class Trajectory:
         """Cables that pull harder than they may: the search keeps to a limit on tension in the keyframes it finds."""
         lines = []
         tensions = self.tensions
+        hair = 1e-3  # a tension may exceed its limit by this share before it is told
         for cable, limit in enumerate(self.tension):
             sample = int(np.argmax(tensions[:, cable]))
             most = tensions[sample, cable]
-            if most > limit * (1 + _HAIR):
+            if most > limit * (1 + hair):
                 lines.append(
                     f"at {self.times[sample]:.2f} s, {self._place(sample)}, cable {cable + 1} ({self.cables[cable]}) "
                     f"reaches {most:.3g} N, above its limit of {limit:.3g} N"
@@ -180,6 +181,3 @@ def path_deviation(markers: Mapping[str, Float[np.ndarray, "samples dim"]]) -> f
 def legs_of(indices: list[int]) -> list[slice]:
     """Samples of each leg, both ends included."""
     return [slice(first, last + 1) for first, last in pairwise(indices)]
-
-
-_HAIR = 1e-3  # a tension may exceed its limit by this share before it is told

@@ -22,9 +22,6 @@ from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.risks.words import mm, place
 from hydrostat.robot.robot import Robot
 
-LEAST_ANGLE = 20.0  # triangles with a smaller angle [degrees] make the simulation less exact
-LEAST_DIHEDRAL = 10.0  # tetrahedra with a smaller angle between two faces [degrees] do so, too
-
 LOCKING_POISSON = 0.35
 """From this Poisson's ratio on, what locking adds to the bending stiffness of linear elements is worth a word."""
 
@@ -37,8 +34,6 @@ LOCKING = {
 LEAST_ACROSS = {2: 2.0, 3: 3.0}
 """A limb with fewer elements across bends much too stiffly, in the plane and in space (docs/decisions/0012)."""
 
-_TOUCHES = 1e-6
-"""Parts that are nearer than this share of the size of the body touch."""
 
 GOOD_ACROSS = 4
 """Elements across a limb that are enough: 14 % too stiff in the plane, 5 to 27 % in space, by the mesh's pattern."""
@@ -58,7 +53,8 @@ def body_risks(robot: Robot) -> Iterator[str]:
 
 
 def _flat_angles(mesh: Mesh) -> Iterator[str]:
-    if smallest_angle(mesh) < LEAST_ANGLE:
+    least_angle = 20.0  # triangles with a smaller angle [degrees] make the simulation less exact
+    if smallest_angle(mesh) < least_angle:
         yield f"body: the mesh has an angle of {smallest_angle(mesh):.0f} degrees; try another element_size"
 
 
@@ -79,7 +75,8 @@ def _crossing(mesh: Mesh) -> Iterator[str]:
 
 def _touching(mesh: Mesh) -> Points:
     """Places at which parts of the boundary that have no node in common lie on one another [m]."""
-    reach = _TOUCHES * mesh.size
+    touches = 1e-6  # Parts that are nearer than this share of the size of the body touch
+    reach = touches * mesh.size
     pairs = BoundaryTree(mesh).pairs(mesh.nodes, reach)
     squared = np.empty(len(pairs.edges))
     native.squared_distances(mesh.nodes, *pairs, 0.0, squared)
@@ -88,13 +85,14 @@ def _touching(mesh: Mesh) -> Points:
 
 def _slivers(mesh: Mesh) -> Iterator[str]:
     angles = dihedral_angles(mesh.nodes, mesh.elements)
-    count = int((angles < LEAST_DIHEDRAL).sum())
+    least_dihedral = 10.0  # tetrahedra with a smaller angle between two faces [degrees] do so, too
+    count = int((angles < least_dihedral).sum())
     if count:
         flattest = int(np.argmin(angles))
         where = place(mesh.nodes[mesh.elements[flattest]].mean(axis=0))
         yield (
             f"body: {count} of {len(angles)} tetrahedra {'is a sliver' if count == 1 else 'are slivers'} (below "
-            f"{LEAST_DIHEDRAL:.0f} degrees between two faces; the worst {angles[flattest]:.1f}, at {where}): too stiff "
+            f"{least_dihedral:.0f} degrees between two faces; the worst {angles[flattest]:.1f}, at {where}): too stiff "
             f"and slow to solve; mesh the body anew"
         )
 

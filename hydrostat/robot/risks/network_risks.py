@@ -94,7 +94,6 @@ def _sticking_out(robot: Robot) -> Iterator[Risk]:
 LEAST_COVER = 0.003  # a cable nearer to the edge or the surface than this [m] tears out
 _STEP = 0.5 * LEAST_COVER  # distance of the places at which a cable is looked at [m]
 _MOST_STEPS = 400  # places on one segment
-_CORNER = 0.02  # a straight line may cut a corner of a coarse surface by this many elements
 
 
 def cable_risks(robot: Robot) -> Iterator[str]:
@@ -122,6 +121,7 @@ def _sample_line(points: Points) -> Float[np.ndarray, "places dim"]:
 
 def _leaving(robot: Robot) -> Iterator[Risk]:
     """Cables of which a straight piece lies outside: of a drawing however little, of a mesh more than a corner."""
+    corner = 0.02  # a straight line may cut a corner of a coarse surface by this many elements
     for index, cable in enumerate(robot.cables):
         inside = _points_in_body(robot, cable)
         if len(inside) < 2:
@@ -129,7 +129,7 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
         places = _sample_line(inside)
         if robot.body.outline is None:
             out = locate(robot.body.mesh, places).distances
-            leaves = out.max() > _CORNER * np.median(spacings(robot.body.mesh))
+            leaves = out.max() > corner * np.median(spacings(robot.body.mesh))
         else:
             from shapely import LineString, distance, points
 

@@ -29,9 +29,6 @@ def pin_risks(robot: Robot) -> Iterator[str]:
     yield from told_together(found)
 
 
-FAR = 1.5  # a marker is far from any node at this many times the usual length of an element
-
-
 def marker_risks(robot: Robot) -> Iterator[str]:
     """Find markers that cannot move, and markers that the mesh resolves badly."""
     if not robot.markers:
@@ -47,6 +44,7 @@ def marker_risks(robot: Robot) -> Iterator[str]:
     )
     usual = float(np.median(spacings(mesh)))
     gaps = np.linalg.norm(mesh.nodes[None] - places[:, None], axis=2).min(axis=1)
+    far = 1.5  # a marker is far from any node at this many times the usual length of an element
     yield from told_together(
         Risk(
             f"marker[{index}] {robot.markers[index].name}",
@@ -54,11 +52,8 @@ def marker_risks(robot: Robot) -> Iterator[str]:
             f"{mm(float(gaps[index]))} from the nearest node, where elements are {mm(usual)} long elsewhere: it moves "
             f"only as a coarse mesh does; make the mesh finer there",
         )
-        for index in np.flatnonzero(gaps > FAR * usual)
+        for index in np.flatnonzero(gaps > far * usual)
     )
-
-
-_SHORT = 2.0  # ways of fewer elements than this tell nothing of a stretch
 
 
 def pose_risks(robot: Robot) -> Iterator[str]:
@@ -89,7 +84,8 @@ def _stretching(robot: Robot) -> Iterator[Risk]:
     if material.largest_stretch is None or not robot.poses or not len(held):
         return
     ways = _ways(mesh, np.array([marker.at for marker in robot.markers], dtype=float))[:, held]
-    ways[ways < _SHORT * np.median(spacings(mesh))] = np.inf
+    short = 2.0  # ways of fewer elements than this tell nothing of a stretch
+    ways[ways < short * np.median(spacings(mesh))] = np.inf
     rows = {marker.name: row for row, marker in enumerate(robot.markers)}
     limit = known_up_to(material, f"{material.largest_stretch:g} times")
     for pose in robot.poses.values():

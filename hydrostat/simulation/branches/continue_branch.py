@@ -133,7 +133,8 @@ class _Follower:
         """Start as a place on the branch, in the direction of growing share."""
         still = Tangent(np.zeros(nodes.size), 1.0)
         place = self.system.correct(nodes, 0.0, still)
-        if place is None or not place.distance < _SAME:
+        same = 1e-5  # A start this near to an equilibrium, as a share of the body's size, is one
+        if place is None or not place.distance < same:
             raise InputError("start must be an equilibrium at its own contractions; solve for it first")
         return place if place.tangent.rate > 0 else place.reverse_direction()
 
@@ -263,9 +264,6 @@ def _solve_at(simulation: Simulation, controls: Callable[[float], Vector], place
         ),
     )
 
-
-_SAME = 1e-5
-"""A start this near to an equilibrium, as a share of the body's size, is one."""
 
 _FLAT = 0.1
 """Ratio of the rates of the share at two points below which the first is a fold: the share is quadratic there."""

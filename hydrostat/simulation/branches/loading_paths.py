@@ -88,8 +88,9 @@ def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator
     moved = [int(winch) for winch in np.flatnonzero(goal)]
     if len(moved) < 2:
         return
-    few = factorial(len(moved)) <= _MOST_ORDERS
-    orders = list(permutations(moved)) if few else [tuple(random.permutation(moved)) for _ in range(_MOST_ORDERS)]
+    most_orders = 24  # With more orders than these, random ones are drawn
+    few = factorial(len(moved)) <= most_orders
+    orders = list(permutations(moved)) if few else [tuple(random.permutation(moved)) for _ in range(most_orders)]
     for order in orders:
         stops, now = [], np.zeros_like(goal)
         for winch in order:
@@ -103,9 +104,10 @@ def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator
 def _pushes(simulation: Simulation, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
     """Paths with a push by a force like the body's weight, in two opposite directions, and a release."""
     masses = simulation.body.masses[:, None]
+    reaches = (0.1, 0.4)  # Least and largest reach of a push
     while True:
         direction = random.standard_normal(simulation.robot.body.mesh.dim)
-        reach = float(random.uniform(*_REACHES))
+        reach = float(random.uniform(*reaches))
         for sign in (1.0, -1.0):
             yield Approach(name="pushed aside and let go", stops=(goal,), push=sign * masses * direction, reach=reach)
 
@@ -122,7 +124,9 @@ def _in_steps(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Equili
     low, high = _range(simulation.robot)
     begin = pose.contractions
     steps = ceil(float((np.abs(goal - begin) / (high - low)).max(initial=0.0)) / _STEP - 1e-9)
-    steps = min(max(1, steps), _MOST_STEPS)
+    # More steps are not taken, however far beyond its range a winch goes; they are longer then
+    most_steps = 100
+    steps = min(max(1, steps), most_steps)
     for step in range(1, steps + 1):
         if not pose.result.converged:
             break
@@ -145,7 +149,8 @@ def _let_go(simulation: Simulation, pose: Equilibrium, push: Nodes, reach: float
 
 def _push_nodes(simulation: Simulation, pose: Equilibrium, step: Nodes) -> Nodes:
     """Nodes moved by a step along arcs; by less where an element would be inverted."""
-    for _ in range(_HALVINGS):
+    halvings = 12
+    for _ in range(halvings):
         nodes = simulation.body.warp(pose.nodes, step)
         if np.isfinite(simulation.assembly.with_active_terms(nodes).value(nodes, pose.contractions)):
             return nodes
@@ -153,16 +158,5 @@ def _push_nodes(simulation: Simulation, pose: Equilibrium, step: Nodes) -> Nodes
     return pose.nodes
 
 
-_MOST_ORDERS = 24
-"""With more orders than these, random ones are drawn."""
-
-_REACHES = (0.1, 0.4)
-"""Least and largest reach of a push."""
-
 _STEP = 0.1
 """Largest step on a way, as a share of a winch's travel and release together."""
-
-_MOST_STEPS = 100
-"""More steps are not taken, however far beyond its range a winch goes; they are longer then."""
-
-_HALVINGS = 12

@@ -14,9 +14,6 @@ from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
 
-_REFINEMENTS = 4
-"""Most steps of iterative refinement with factors of a state close by."""
-
 
 def response(
     assembly: Assembly,
@@ -36,7 +33,8 @@ def response(
     allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)
     rounding = 1e-15 * np.abs(body.data).max(initial=0.0)
     moves = stiffness.solve(forces)
-    for _ in range(_REFINEMENTS):
+    refinements = 4  # Most steps of iterative refinement with factors of a state close by
+    for _ in range(refinements):
         missing = forces - body @ moves - springs.columns @ (springs.weights @ (springs.columns.T @ moves))
         hidden = rounding * np.abs(moves).max(axis=0, initial=0.0)
         if (np.abs(missing).max(axis=0, initial=0.0) <= allowed + hidden).all():

@@ -20,9 +20,6 @@ Slopes = Float[np.ndarray, "markers dim winches"]
 """Jacobian of the marker positions by the contractions."""
 
 
-_LOOK = 0.1
-"""So often the waiting thread looks for Ctrl-C [s]."""
-
 LONG_ENOUGH = 2e-4
 """Modelled time of a factorisation [s] from which on threads pay: below, they mostly wait for Python's lock."""
 
@@ -187,10 +184,11 @@ def in_threads(work: Callable[[int], PoseRow], size: int, threads: int, *, pays:
     if threads == 1 or size < 2 or not pays:
         some()
         return rows
+    look = 0.1  # So often the waiting thread looks for Ctrl-C [s]
     with ThreadPoolExecutor(min(threads, size), thread_name_prefix="hydrostat") as pool:
         try:
             working = [pool.submit(some) for _ in range(min(threads, size))]
-            while wait(working, timeout=_LOOK).not_done:  # Ctrl-C does not end a wait without limit everywhere
+            while wait(working, timeout=look).not_done:  # Ctrl-C does not end a wait without limit everywhere
                 pass
         finally:
             stopped = True

@@ -32,31 +32,27 @@ def find_history_equilibrium(
     nodes, stiffness = start
     iterations = corrections = last = 0
     least = np.inf
+    tolerance = 1e-8  # Forces in balance to this share of the largest one are right
+    newton = 12  # Most corrections of one minimum, and how many of these by Newton's method
+    # A correction counts as progress if it leaves less than this share of the least imbalance before
+    falls = 0.5
     while True:
         result = relax(assembly, nodes, stiffness)
         nodes, stiffness, iterations = result.nodes, result.stiffness, iterations + result.iterations
         assembly = assembly.with_active_terms(nodes)
-        allowed = max(_TOLERANCE * assembly.largest_force(nodes, controls), floor)
+        allowed = max(tolerance * assembly.largest_force(nodes, controls), floor)
         missed = assembly.history_residual(nodes, controls)
         if not result.converged or missed <= allowed:
             break
-        if missed < _FALLS * least:
+        if missed < falls * least:
             least, last = missed, corrections
         if corrections == min(_CORRECTIONS, last + assembly.patience):
             result = replace(result, reason=Reason.NO_BALANCE)
             break
-        sharp = corrections < _NEWTON and stiffness is not None and not stiffness.singular
+        sharp = corrections < newton and stiffness is not None and not stiffness.singular
         assembly = assembly.with_corrected_history(nodes, controls, stiffness if sharp else None)
         corrections += 1
     return assembly, replace(result, iterations=iterations)
 
 
-_TOLERANCE = 1e-8
-"""Forces in balance to this share of the largest one are right."""
-
 _CORRECTIONS = 40
-_NEWTON = 12
-"""Most corrections of one minimum, and how many of these by Newton's method."""
-
-_FALLS = 0.5
-"""A correction counts as progress if it leaves less than this share of the least imbalance before."""

@@ -85,7 +85,8 @@ class LoadingPath:
         """Return the same path in a single increment, solved from a state near its end."""
         assembly = self._rest.assembly if start is None else self.with_history(start)
         assembly = assembly.with_active_terms(near.nodes)
-        for _ in range(_GUESSES):  # balance there: a better guess than none of what friction holds
+        guesses = 5  # Corrections of a first guess, while nothing moves
+        for _ in range(guesses):  # balance there: a better guess than none of what friction holds
             assembly = assembly.with_corrected_history(near.nodes, goal, None)
         state = self._solve(_PathState(near.nodes, goal, assembly, near), goal)
         assert state.result is not None
@@ -162,8 +163,6 @@ def _with_count(state: _PathState, iterations: int) -> _PathState:
 _INCREMENT = 0.05
 """Largest increment of a contraction, as a share of that which would take in a whole cable of the winch."""
 
-_GUESSES = 5
-"""Corrections of a first guess, while nothing moves."""
 
 _HALVINGS = 4
 """So often at most is an increment halved."""

@@ -147,7 +147,8 @@ class StaticSolver:
         """
         if accuracy is not None and not (isinstance(accuracy, int | float | np.number) and accuracy > 0):
             raise InputError(f"accuracy must be above 0 m, not {accuracy!r}")
-        if accuracy is not None and accuracy > _ROUGHEST * size:
+        roughest = 0.1  # So far from equilibrium, in sizes of the body, no pose is of use
+        if accuracy is not None and accuracy > roughest * size:
             raise InputError(
                 f"accuracy, {accuracy:g} m, is too rough for a body of {size:.3g} m; it is in metres: 0.01 mm is 1e-5"
             )
@@ -178,7 +179,8 @@ class StaticSolver:
         """
         begin, _, known = start or (rest[0], None, rest[1])
         pulled = bool(goal.any())  # dead loads alone pull evenly: there a step cut short does no harm
-        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS, whole=pulled)
+        direct_iterations = 200  # So many steps of Newton before a command is approached in load steps
+        direct = result = self.relax(begin, goal, known, iterations=direct_iterations, whole=pulled)
         spent = result.iterations
         if _needs_fallback(result) and start and (start[1] != goal).any():
             result = self._in_steps(start, goal)
@@ -214,12 +216,17 @@ class StaticSolver:
         so where these steps get too small Newton goes on from the last of them, by patience.
         """
         nodes, begin, stiffness = start
-        done, step, spent = 0.0, _FIRST_STEP, 0
+        first_step = 0.5  # Share of a command that is tried first
+        done, step, spent = 0.0, first_step, 0
         result, last = None, False
-        for _ in range(_MOST_STEPS):
+        step_iterations = 30  # So many steps of Newton for one load step
+        loose = 0.1  # Residual allowed for intermediate states, as a share of the largest applied force
+        most_steps = 100  # Load steps of one solve
+        smallest_step = 2.0**-7  # No load step is smaller than this share of a command
+        for _ in range(most_steps):
             share = min(done + step, 1.0)
             last = share == 1.0
-            iterations, tolerance = (None, None) if last else (_STEP_ITERATIONS, _LOOSE)
+            iterations, tolerance = (None, None) if last else (step_iterations, loose)
             controls = goal if last else begin + share * (goal - begin)
             solver = replace(self, assembly=self.assembly.with_load(share)) if with_load else self
             result = solver.relax(
@@ -230,7 +237,7 @@ class StaticSolver:
                 nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
                 continue
             step *= 0.5
-            if not _needs_fallback(result) or step < _SMALLEST_STEP:
+            if not _needs_fallback(result) or step < smallest_step:
                 break
         assert result is not None
         if with_load and _needs_fallback(result):
@@ -245,27 +252,5 @@ def _needs_fallback(result: NewtonResult) -> bool:
     return result.reason not in (Reason.CONVERGED, Reason.TIME_LIMIT)
 
 
-_DIRECT_ITERATIONS = 200
-"""So many steps of Newton before a command is approached in load steps."""
-
-_STEP_ITERATIONS = 30
-"""So many steps of Newton for one load step."""
-
-_FIRST_STEP = 0.5
-"""Share of a command that is tried first."""
-
-_LOOSE = 0.1
-"""Residual allowed for intermediate states, as a share of the largest applied force."""
-
 _SMALLEST_WHOLE = 0.05
 """Larger load steps are taken whole or not at all; smaller ones may begin with a step of Newton that is cut short."""
-
-_MOST_STEPS = 100
-"""Load steps of one solve."""
-
-_SMALLEST_STEP = 2.0**-7
-"""No load step is smaller than this share of a command."""
-
-
-_ROUGHEST = 0.1
-"""So far from equilibrium, in sizes of the body, no pose is of use."""

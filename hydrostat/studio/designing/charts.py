@@ -75,7 +75,6 @@ def ticks(largest: float, *, most: int, least: float = 0.0) -> list[float]:
 
 FRONT_WIDTH, FRONT_HEIGHT = 300.0, 196.0
 
-APART = (16.0, 11.0)  # numbers nearer to each other than this, across and upwards, would be one blot
 Place = tuple[float, float]  # in a picture
 
 
@@ -116,9 +115,10 @@ def _counts(candidates: Sequence[Candidate], places: Sequence[Place], chosen: in
     """The number of cables above each dot, that of the chosen one first; where two would meet the later is left out."""
     written: list[Place] = []
     order = sorted(range(len(candidates)), key=lambda index: candidates[index].number != chosen)
+    apart = (16.0, 11.0)  # numbers nearer to each other than this, across and upwards, would be one blot
     for index in order:
         x, y = places[index][0], places[index][1] - (13 if candidates[index].number == chosen else 9)
-        if all(abs(x - left) > APART[0] or abs(y - low) > APART[1] for left, low in written):
+        if all(abs(x - left) > apart[0] or abs(y - low) > apart[1] for left, low in written):
             written.append((x, y))
             yield (
                 f'<text x="{x:.1f}" y="{y:.1f}" class="chart-count" text-anchor="middle">'
@@ -142,17 +142,15 @@ def _legend(keys: list[tuple[str, str]]) -> str:
     return "".join(parts)
 
 
-GROWTH_WIDTH, GROWTH_HEIGHT = 316.0, 132.0
-
-
 def growth_chart(run: DesignRun, seconds: float) -> str:
     """The error against time, up to so many seconds since the run began, as SVG."""
     errors = [1e3 * run.rest, *(1e3 * mark.error for mark in run.trail)]
     times = [0.0, *(mark.seconds for mark in run.trail)]
     end = max(seconds, times[-1], 1.0)
+    growth_width, growth_height = 316.0, 132.0
     chart = Chart(
-        width=GROWTH_WIDTH,
-        height=GROWTH_HEIGHT,
+        width=growth_width,
+        height=growth_height,
         across=end,
         up=1.05 * max(*errors, 1e-3),
         name="error, mm",

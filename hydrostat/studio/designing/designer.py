@@ -35,17 +35,13 @@ from hydrostat.studio.designing.run import (
 from hydrostat.studio.designing.sketch import BodySketch, Ease
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.told_error import told_error
-from hydrostat.studio.view.finding_things import finding_things
-from hydrostat.studio.view.robot_things import robot_things, target_things
+from hydrostat.studio.stage import Hit, Stage, told_error
+from hydrostat.studio.view.robot_things import finding_things, robot_things, target_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.units import plural
 
 TITLE = "Designing cables"
 
-MOST = 60  # so many candidates are kept; the oldest go
-MOST_RINGS = 12  # more targets than these at once say nothing
 MODULE = "hydrostat.studio.designing.design_work"
 
 
@@ -300,7 +296,8 @@ class Designer(Stage):
         if self.painter.busy or not robot.poses:
             return []
         poses, colours = wished_poses(robot, self.wishes), pose_colours(robot.poses)
-        if sum(len(pose.targets) for pose in poses) > MOST_RINGS:
+        most_rings = 12  # more targets than these at once say nothing
+        if sum(len(pose.targets) for pose in poses) > most_rings:
             return []
         return [(pose.targets, colours[pose.name] if len(poses) > 1 else INK) for pose in poses]
 
@@ -342,7 +339,8 @@ class Designer(Stage):
                 )
             )
             self._document.judge.learn(made[-1].robot, demand=solution.demand)
-        self._all = (*made, *self._all)[:MOST]
+        most = 60  # so many candidates are kept; the oldest go
+        self._all = (*made, *self._all)[:most]
         self._keep()
         best = made[0]
         seconds = time.monotonic() - run.began

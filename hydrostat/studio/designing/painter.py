@@ -15,7 +15,6 @@ from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing
 COLOURS = {Paint.KEEP_OUT: "#c8243f", Paint.WINCH_ZONES: "#00795f", Paint.STILL: "#5a3da6"}  # of each paint
 LABELS = {Paint.KEEP_OUT: "no cable", Paint.WINCH_ZONES: "winches", Paint.STILL: "still"}  # written in a zone
 LEAST = 0.015  # the smallest radius of a painted zone, as a share of the body
-COARSE = 0.006  # a line drawn by hand is made this much simpler, as a share of the body
 
 
 def disc(middle: Point, rim: Point, size: float) -> Zone:
@@ -33,7 +32,8 @@ def lasso(points: tuple[Point, ...], size: float) -> Zone:
     polygons = [part for part in parts if isinstance(part, Polygon) and not part.is_empty]
     if not polygons or max(part.area for part in polygons) < (LEAST * size) ** 2:
         raise InputError("the line encloses no area. Draw it around a part of the body")
-    largest = max(polygons, key=lambda part: part.area).exterior.simplify(COARSE * size)
+    coarse = 0.006  # a line drawn by hand is made this much simpler, as a share of the body
+    largest = max(polygons, key=lambda part: part.area).exterior.simplify(coarse * size)
     return Zone(outline=tuple((float(x), float(y)) for x, y in list(largest.coords)[:-1]))
 
 
@@ -60,8 +60,6 @@ def rim_handle(zone: Zone) -> Point:
 
 WORDS = {Paint.KEEP_OUT: "no-cable zone", Paint.WINCH_ZONES: "winch zone", Paint.STILL: "rigid zone"}
 """Name of the zone of each paint, in the list of zones and for undo."""
-
-NEAR = 0.02  # a click so near the first corner closes a polygon, as a share of the body
 
 
 class Painter:
@@ -230,9 +228,10 @@ class Painter:
         if not self._flat:
             raise InputError("zones of a body in space are balls. Drag on the body from the center of a ball outward")
         first = self._corners[0] if self._corners else None
+        near = 0.02  # a click so near the first corner closes a polygon, as a share of the body
         if (
             first is not None
-            and sum((a - b) ** 2 for a, b in zip(first, place, strict=True)) < (NEAR * self._size) ** 2
+            and sum((a - b) ** 2 for a, b in zip(first, place, strict=True)) < (near * self._size) ** 2
         ):
             if len(self._corners) >= 3:
                 self._close()

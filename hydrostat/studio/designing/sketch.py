@@ -47,7 +47,6 @@ class Ease:
 EDGE = 200.0  # longest side of a picture, in units of its drawing
 MARGIN = 12.0
 
-SPECK = 12.0  # a hole of less area is none: triangles that are seen edge-on leave such
 SIGHT = np.array([[0.905, -0.426, 0.0], [0.168, 0.357, 0.919]])
 """A body in space is seen from the front, a little from the right and from above: picture axes, (2, 3)."""
 
@@ -116,7 +115,8 @@ class BodySketch:
         areas = spans[:, 0, 0] * spans[:, 1, 1] - spans[:, 0, 1] * spans[:, 1, 0]
         whole = union_all(polygons(corners[np.abs(areas) > 1e-6]), grid_size=0.05).simplify(0.3)
         pieces = getattr(whole, "geoms", [whole])
-        holes = [hole for piece in pieces for hole in piece.interiors if Polygon(hole).area > SPECK]
+        speck = 12.0  # a hole of less area is none: triangles that are seen edge-on leave such
+        holes = [hole for piece in pieces for hole in piece.interiors if Polygon(hole).area > speck]
         rings = [*(piece.exterior for piece in pieces), *holes]
         return "".join(_path(np.array(ring.coords)) + "Z" for ring in rings)
 

@@ -15,8 +15,7 @@ from hydrostat.studio.driving.film import Recorder
 from hydrostat.studio.driving.keyframes import Keyframes
 from hydrostat.studio.driving.machine import Machine
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.told_error import told_error
+from hydrostat.studio.stage import Hit, Stage, told_error
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing
 from hydrostat.studio.view.touching import touch_things

@@ -16,7 +16,6 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs, JobState, Report
 
-LONGEST_FILM = 60.0  # no film is longer [s]
 WIDTH = 640  # width of its pictures [pixels]
 
 
@@ -35,9 +34,10 @@ def check_film(timeline: Timeline, kind: FilmKind) -> None:
     """Refuse what cannot be filmed before work begins (InputError: no keyframes, too long, or MP4 without ffmpeg)."""
     if not timeline.keys:
         raise InputError("no keyframes to record. Turn the knobs and press Add")
-    if timeline.seconds > LONGEST_FILM:
+    longest_film = 60.0  # no film is longer [s]
+    if timeline.seconds > longest_film:
         raise InputError(
-            f"the timeline is {timeline.seconds:.1f} s long (maximum {LONGEST_FILM:g} s for a video). Shorten it"
+            f"the timeline is {timeline.seconds:.1f} s long (maximum {longest_film:g} s for a video). Shorten it"
         )
     if kind is FilmKind.MP4:
         find_ffmpeg()

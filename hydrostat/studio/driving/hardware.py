@@ -31,7 +31,6 @@ from hydrostat.studio.view.things import RobotShape
 SILENT = 1.5
 """Motors hold when no page has given a sign of life for so long [s]: it was closed, hidden, or its line is gone."""
 
-PERIOD = 0.02  # motors are told and read so often [s]
 NEAR = 2e-3  # the guard judges tensions where motors are this close to what is shown [m]
 
 Opener = Callable[[str, Robot, Calibration, Callable[[Vector], Vector]], Bus]
@@ -189,7 +188,8 @@ class Hardware:
 
     def _run(self) -> None:
         """Tell motors what is shown, and see where they are, as long as they are armed; only the studio ends it."""
-        while not self._over.wait(PERIOD):
+        period = 0.02  # motors are told and read so often [s]
+        while not self._over.wait(period):
             try:
                 if not self._turn():
                     continue

@@ -9,8 +9,6 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.document import Document
 
-APART = 0.5  # a copy of a key is put so much later [s]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _DraggedKey:
@@ -90,9 +88,10 @@ class Keyframes:
     def duplicate(self) -> float:
         """Copy the selected key to the next free time [s]; select and return that (InputError: no key or place)."""
         key = self._key(self.chosen)
-        time = key.time + APART
+        apart = 0.5  # a copy of a key is put so much later [s]
+        time = key.time + apart
         while self.timeline.index_at(time) is not None:
-            time += APART
+            time += apart
         if time > LONGEST:
             raise InputError(f"no free time for another keyframe before {LONGEST:g} s. Move or delete one")
         self._document.change("duplicate keyframe", timeline=self.timeline.with_key(replace(key, time=time)))

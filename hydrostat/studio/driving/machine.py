@@ -43,7 +43,6 @@ _LEAST = 0.1
 """Motors that would stall are shown at this share of their free speed: the kit says that they are too weak."""
 
 
-TICK = 1 / 70  # motors are told and read once in this time [s], however often there is a step: about 60 times a second
 ROUGH = 3e-4  # how far a node may be from equilibrium while it moves, in sizes of the body: less than a pixel
 
 
@@ -154,7 +153,9 @@ class Machine:
 
     def due(self, now: float) -> bool:
         """Tell whether it is time for the next `run`."""
-        return not 0 <= now - self._ran < TICK
+        # motors are told and read once in this time [s], however often there is a step: about 60 times a second
+        tick = 1 / 70
+        return not 0 <= now - self._ran < tick
 
     def fail(self, error: Exception) -> bool:
         """Something went wrong, whatever it was: motors hold, and nothing plays. Whether that is news."""
@@ -174,11 +175,11 @@ class Machine:
         """Motors of a robot; winches of the same name keep what they have taken in, and what they shall take in."""
         names = [winch.name for winch in robot.winches]
 
-        def kept(values: Vector) -> Vector:
+        def carry_over(values: Vector) -> Vector:
             known = dict(zip(before.names, values.tolist(), strict=True))
             return np.array([known.get(name, 0.0) for name in names], dtype=float)
 
-        places, link = kept(before.places), before.link
+        places, link = carry_over(before.places), before.link
         if names != list(before.names):
             places = np.clip(
                 places, [-winch.release for winch in robot.winches], [winch.travel for winch in robot.winches]
@@ -189,7 +190,7 @@ class Machine:
         if names == list(before.names):
             fastest = before.fastest
         motors = Motors(robot.winches, link, places=places, fastest=fastest, patience=inf)
-        motors.ask(kept(before.command))
+        motors.ask(carry_over(before.command))
         return motors
 
     def _play(self, now: float) -> None:

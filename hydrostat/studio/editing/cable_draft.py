@@ -12,8 +12,6 @@ from hydrostat.studio.editing.part import Mirror
 from hydrostat.studio.editing.place import add_cable, add_winch
 from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
 
-NEAR_WINCH = 0.03  # a first point so near to a winch, as a share of the body, means that winch
-
 
 @dataclass(frozen=True, kw_only=True)
 class CableDraft:
@@ -36,10 +34,11 @@ def begin_cable(robot: Robot, at: Point, key: str = "") -> CableDraft:
     for winch in robot.winches:
         if key == f"winch:{winch.name}":
             return CableDraft(points=(winch.at,), winch=winch.name)
+    near_winch = 0.03  # a first point so near to a winch, as a share of the body, means that winch
     if robot.winches:
         gaps = [float(np.linalg.norm(np.subtract(winch.at, at))) for winch in robot.winches]
         winch = robot.winches[int(np.argmin(gaps))]
-        if min(gaps) <= max(2 * winch.spool_radius, NEAR_WINCH * robot.body.mesh.size):
+        if min(gaps) <= max(2 * winch.spool_radius, near_winch * robot.body.mesh.size):
             return CableDraft(points=(winch.at,), winch=winch.name)
     return CableDraft(points=(at,))
 
@@ -62,9 +61,6 @@ def end_cable(robot: Robot, draft: CableDraft, mirror: Mirror | None = None) -> 
     return add_cable(laid, twin.removeprefix("winch:"), tuple(mirror.point(point) for point in draft.points[1:]))
 
 
-BEYOND = 0.06  # the line of the mirror goes so far beyond the body, as a share of it
-
-
 def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> list[Thing]:
     """Return the mirror axis and the cable draft, to be shown with the parts of the robot."""
     things: list[Thing] = []
@@ -81,7 +77,8 @@ def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> li
 def _axis(robot: Robot, mirror: Mirror) -> Strand:
     """The line about which a flat body is mirrored."""
     nodes, along = robot.body.mesh.nodes, 1 - mirror.axis
-    margin = BEYOND * robot.body.mesh.size
+    beyond = 0.06  # the line of the mirror goes so far beyond the body, as a share of it
+    margin = beyond * robot.body.mesh.size
     ends = (float(nodes[:, along].min()) - margin, float(nodes[:, along].max()) + margin)
     points = tuple(mirror.on_plane((end, end)) for end in ends)
     return Strand(points=points, stroke=Stroke.PATH, colour=MUTED, loose=-1)

@@ -125,9 +125,6 @@ def sheaths(segments: Collection[int]) -> tuple[tuple[int, int], ...]:
     return tuple(pairs)
 
 
-BODY_RANGE = (1e-4, 20.0)  # least and most thickness and element size that a person may ask for [m]
-
-
 def remesh(
     robot: Robot, *, element_size: float | None = None, thickness: float | None = None, material: str | None = None
 ) -> Body:
@@ -137,9 +134,10 @@ def remesh(
     table. A number out of its range, an unknown material, or a body whose elements are given is an InputError.
     """
     body = robot.body
+    body_range = (1e-4, 20.0)  # least and most thickness and element size that a person may ask for [m]
     for name, value in (("thickness", thickness), ("element_size", element_size)):
         if value is not None:
-            check_range(name, value, *BODY_RANGE)
+            check_range(name, value, *body_range)
     if material is not None:
         body = replace(body, material=get_material(material))
     if thickness is not None:

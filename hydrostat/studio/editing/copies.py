@@ -11,8 +11,6 @@ from hydrostat.robot import Pin, Point, Robot
 from hydrostat.studio.editing.part import Kind, Mirror, find_part, place_of
 from hydrostat.studio.editing.place import move
 
-SHARES = (0.05, 0.1, 0.2)  # copies lie so far beside what they are of, in sizes of the body, the first that fits
-
 
 def spots(robot: Robot, keys: Collection[str]) -> list[str]:
     """Keys of what has a place; a cable by its points after the winch."""
@@ -49,7 +47,9 @@ def paste_parts(robot: Robot, source: Robot, keys: Collection[str]) -> tuple[Rob
     room beside them, or that the winch of a cable is gone.
     """
     reach, refused = source.body.mesh.size, InputError("no free space next to the parts")
-    for share in SHARES:
+    # copies lie so far beside what they are of, in sizes of the body, the first that fits
+    shares = (0.05, 0.1, 0.2)
+    for share in shares:
         for way in _ways(robot.body.mesh.dim):
             try:
                 return _with_copies(robot, source, keys, tuple(share * reach * value for value in way))

@@ -21,13 +21,9 @@ from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move,
 from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Findings, Ruler, Tool, look_over
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.view.finding_things import finding_things
-from hydrostat.studio.view.robot_things import robot_things
+from hydrostat.studio.view.robot_things import finding_things, robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.units import plural
-
-SAME_CLICK = 0.005  # a click so near to the last one, as a share of the body, ends a cable: it was a double click
-DEPTH = 0.005  # how deep below the skin of a body in space winches and cables are placed at first [m]
 
 
 class Editor(Stage):
@@ -37,7 +33,8 @@ class Editor(Stage):
         self._document, self._jobs = document, jobs
         self.tool = Tool.MOVE  # what the pointer does
         self.mirror: Mirror | None = None  # both sides are edited alike about this plane; None: only what is touched
-        self.depth = DEPTH  # how deep below the skin of a body in space winches and cables are placed [m]
+        depth = 0.005  # how deep below the skin of a body in space winches and cables are placed at first [m]
+        self.depth = depth  # how deep below the skin of a body in space winches and cables are placed [m]
         self.draft: CableDraft | None = None  # the cable that is being laid
         self.snap = 0.0  # places of parts are multiples of it [m]; 0: of a tenth of a millimetre
         self.ruler: Ruler | None = None  # laid with its tool; None: it is not
@@ -327,10 +324,12 @@ class Editor(Stage):
     def _lay(self, hit: Hit) -> None:
         """One more point of the cable that is being laid."""
         robot, at = self._document.robot, self._clicked_place(hit, skin=False)
+        # a click so near to the last one, as a share of the body, ends a cable: it was a double click
+        same_click = 0.005
         if self.draft is None:
             self.draft = begin_cable(robot, at, hit.key)
             self._chosen = ()
-        elif np.linalg.norm(np.subtract(at, self.draft.points[-1])) <= SAME_CLICK * robot.body.mesh.size:
+        elif np.linalg.norm(np.subtract(at, self.draft.points[-1])) <= same_click * robot.body.mesh.size:
             if len(self.draft.points) > 1:
                 self.finish()
         else:

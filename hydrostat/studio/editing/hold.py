@@ -10,8 +10,6 @@ from hydrostat.robot import Body, Mount, Point, Robot
 from hydrostat.studio.editing.part import Kind, Mirror, find_part, place_of
 from hydrostat.studio.editing.place import insert_via
 
-DIGITS = 4  # places are whole tenths of a millimetre: decimals of a metre
-
 
 def inside(body: Body, at: Point) -> Point:
     """A place, or the nearest one in the body [m]."""
@@ -50,7 +48,8 @@ def below_skin(body: Body, at: Point, depth: float) -> Point:
 
 def tidy(at: Point) -> Point:
     """A place in whole tenths of a millimetre."""
-    return tuple(round(float(value), DIGITS) + 0.0 for value in at)
+    digits = 4  # places are whole tenths of a millimetre: decimals of a metre
+    return tuple(round(float(value), digits) + 0.0 for value in at)
 
 
 def snap_to_grid(at: Point, step: float) -> Point:

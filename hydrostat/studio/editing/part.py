@@ -93,7 +93,6 @@ def _parse_named(kind: Kind, name: str, names: list[str]) -> Part | None:
 
 
 SAME = 1e-3  # what is so near to the mirrored place, as a share of the body, is the twin
-ON_PLANE = 0.01  # what is placed so near to the plane, as a share of the body, is put on it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,7 +116,8 @@ class Mirror:
 
     def near(self, robot: Robot, at: Point) -> bool:
         """Tell whether a new part there is meant to be on the plane."""
-        return abs(at[self.axis]) <= ON_PLANE * robot.body.mesh.size
+        on_plane = 0.01  # what is placed so near to the plane, as a share of the body, is put on it
+        return abs(at[self.axis]) <= on_plane * robot.body.mesh.size
 
     def twin(self, robot: Robot, key: str) -> str | None:
         """The part of the same kind at the mirrored place; None for a part on the plane, or without a twin."""

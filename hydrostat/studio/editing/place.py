@@ -10,13 +10,12 @@ from hydrostat.project import fresh_name
 from hydrostat.robot import Cable, Marker, Pin, Point, PoseTarget, Robot, Winch
 from hydrostat.studio.editing.part import Kind, Part, find_part, place_of
 
-PIN_SHARE = 0.06  # radius of a robot's first pin as a share of the body
-
 
 def add_pin(robot: Robot, at: Point) -> Robot:
     """One more pin, as wide as the last one (InputError: it would hold nothing)."""
     radii = [pin.radius for pin in robot.pins if pin.at is not None]
-    radius = radii[-1] if radii else round(PIN_SHARE * robot.body.mesh.size, 3)
+    pin_share = 0.06  # radius of a robot's first pin as a share of the body
+    radius = radii[-1] if radii else round(pin_share * robot.body.mesh.size, 3)
     return replace(robot, pins=(*robot.pins, Pin(at=at, radius=radius)))
 
 

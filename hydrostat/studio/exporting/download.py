@@ -30,17 +30,15 @@ class Download:
 MEDIA_TYPES = {"zip": "application/zip", "png": "image/png", "svg": "image/svg+xml", "html": "text/html"}
 
 
-EPOCH = (1980, 1, 1, 0, 0, 0)  # the date of all files: the first that a zip can have
-MODE = 0o644 << 16  # everybody may read what is unpacked
-
-
 def archive(files: Mapping[str, bytes], *, folder: str) -> bytes:
     """Files, content by path, as a zip with all of them in one folder, sorted by their names."""
     buffer = io.BytesIO()
+    epoch = (1980, 1, 1, 0, 0, 0)  # the date of all files: the first that a zip can have
+    mode = 0o644 << 16  # everybody may read what is unpacked
     with ZipFile(buffer, "w") as zipped:
         for path in sorted(files):
-            entry = ZipInfo(f"{folder}/{path}", EPOCH)
-            entry.compress_type, entry.external_attr = ZIP_DEFLATED, MODE
+            entry = ZipInfo(f"{folder}/{path}", epoch)
+            entry.compress_type, entry.external_attr = ZIP_DEFLATED, mode
             zipped.writestr(entry, files[path])
     return buffer.getvalue()
 

@@ -19,8 +19,7 @@ from hydrostat.studio.exporting.kit_work import KitMade, make_kit
 from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Stage
-from hydrostat.studio.view.finding_things import finding_things
-from hydrostat.studio.view.robot_things import robot_things
+from hydrostat.studio.view.robot_things import finding_things, robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
 _ONCE = IKOptions(restarts=0)  # a pose is shown as soon as it is found

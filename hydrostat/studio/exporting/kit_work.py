@@ -62,22 +62,20 @@ def _screen_pattern(pattern: bytes) -> bytes:
     return head + THICK + end + rest
 
 
-DOTS = 110.0  # to the inch: fine enough to be read where a page is as wide as a window
-MOST_PAGES = 12
-
-
 def page_pictures(pdf: bytes) -> tuple[bytes, ...]:
     """Each page as PNG; none if the typesetter at hand is too old to read PDF."""
     import typst
 
+    dots = 110.0  # to the inch: fine enough to be read where a page is as wide as a window
+    most_pages = 12
     with TemporaryDirectory() as folder:
         sheet, source = Path(folder) / "sheet.pdf", Path(folder) / "pages.typ"
         sheet.write_bytes(pdf)
         pages = []
-        for number in range(1, MOST_PAGES + 1):
+        for number in range(1, most_pages + 1):
             source.write_text(_PAGE.format(number=number), encoding="utf-8")
             try:
-                pages.append(typst.compile(source, format="png", ppi=DOTS))
+                pages.append(typst.compile(source, format="png", ppi=dots))
             except (RuntimeError, typst.TypstError):  # the sheet has no such page
                 break
     return tuple(pages)

@@ -13,8 +13,6 @@ from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops
 from hydrostat.studio.starting.photo import Backdrop
 
-SEEN = 0.05  # changes smaller than this are not sent to the screen
-
 
 class Knob(ui.element, component="static/knob.js"):
     """A knob for a number; while a person holds it, it heeds nobody else, so that no answer fights the hand.
@@ -29,19 +27,20 @@ class Knob(ui.element, component="static/knob.js"):
 
     def show(self, wanted: float, reached: float) -> None:
         """Show what is wanted and what is reached."""
-        if abs(wanted - self._props["value"]) > SEEN or abs(reached - self._props["reach"]) > SEEN:
+        seen = 0.05  # changes smaller than this are not sent to the screen
+        if abs(wanted - self._props["value"]) > seen or abs(reached - self._props["reach"]) > seen:
             self._props["value"], self._props["reach"] = wanted, reached
             self.update()
 
     def on_turn(self, turn: Callable[[float], Any], let_go: Callable[[], Any]) -> None:
         """Call `turn` with the number that a person turns it to, and `let_go` after that."""
 
-        def heed(event: events.GenericEventArguments) -> None:
+        def handle_event(event: events.GenericEventArguments) -> None:
             number = sent_number(event.args)
             if number is not None:
                 turn(number)
 
-        self.on("turn", heed)
+        self.on("turn", handle_event)
         self.on("letgo", lambda: let_go())
 
 

@@ -175,14 +175,14 @@ def _query(scope: Scope) -> dict[str, list[str]]:
 def _with_headers(send: Send) -> Send:
     """The same, with headers that keep other pages out."""
 
-    async def dressed(message: Message) -> None:
+    async def add_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(raw=list(message.get("headers", [])))
             headers.update(SAFE_HEADERS)
             message = {**message, "headers": headers.raw}
         await send(message)
 
-    return dressed
+    return add_headers
 
 
 async def _refuse(scope: Scope, receive: Receive, send: Send, reason: str) -> None:

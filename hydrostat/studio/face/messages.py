@@ -59,9 +59,6 @@ def read_message(text: str) -> Message:
         raise InputError(f"a message is not understood: {what}") from None
 
 
-LARGEST_NUMBER = 1e9  # no number of a screen is larger
-
-
 def sent_number(value: Any) -> float | None:
     """The number, or that of a text which a person is typing; None if it is none yet."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
@@ -70,4 +67,5 @@ def sent_number(value: Any) -> float | None:
         number = float(value)
     except (ValueError, OverflowError):
         return None
-    return number if -LARGEST_NUMBER <= number <= LARGEST_NUMBER else None
+    largest_number = 1e9  # no number of a screen is larger
+    return number if -largest_number <= number <= largest_number else None

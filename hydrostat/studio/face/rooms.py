@@ -16,7 +16,6 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.session import Session
 
 MOST = 48  # so many rooms are open at a time
-WORKS = 2  # so many long works run at a time, of all rooms
 IDLE = 120.0  # a room that nobody looked at for so long [s] may be closed for another; its work is kept
 
 _KEY = re.compile(r"[A-Za-z0-9_-]{16,64}")
@@ -58,7 +57,8 @@ class Rooms:
             state: folder in which rooms remember what is not saved; None: nowhere.
             first: folder of a robot of which each new room has a copy; None: rooms begin empty.
         """
-        self._state, self._first, self._slots = state, first, Slots(WORKS)
+        works = 2  # so many long works run at a time, of all rooms
+        self._state, self._first, self._slots = state, first, Slots(works)
         self._lock, self._open = Lock(), False
         self._rooms: dict[str, Room] = {}
         self._only = None if only is None else Room(new_key(), only)

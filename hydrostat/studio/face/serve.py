@@ -25,8 +25,6 @@ from hydrostat.studio.face.window import build_window
 
 TITLE = "hydrostat studio"
 ROOM = "hydrostat_room"  # the cookie of a browser's own room, followed by the port
-KEPT = 90 * 24 * 3600  # a browser remembers its room so long [s]
-SWITCH = 1e-3  # threads take turns so often [s]: a solver in one must not keep the pointer waiting in another
 
 
 def make_app(rooms: Rooms, *, token: str | None = None, port: int = 0) -> FastAPI:
@@ -83,6 +81,8 @@ def _add_pages(rooms: Rooms, token: str | None, cookie: str) -> None:
         page = build_window(room.session, stream, links if rooms.many or token else None)
         ui.context.client.on_delete(page.close)
 
+    kept = 90 * 24 * 3600  # a browser remembers its room so long [s]
+
     @ui.page("/", title=TITLE, language="en-US")
     def front(request: Request) -> Response | None:
         if not rooms.many:
@@ -90,7 +90,7 @@ def _add_pages(rooms: Rooms, token: str | None, cookie: str) -> None:
             return None
         key = request.cookies.get(cookie) or new_key()
         response = RedirectResponse(f"/room/{quote(key, safe='')}", headers={"cache-control": "no-store"})
-        response.set_cookie(cookie, key, httponly=True, samesite="lax", max_age=KEPT)
+        response.set_cookie(cookie, key, httponly=True, samesite="lax", max_age=kept)
         return response
 
     @ui.page("/room/{key}", title=TITLE, language="en-US")
@@ -124,7 +124,9 @@ def serve(
     At another address than this machine's own a token is asked for. Port 0 is a free one; `announce` is told the
     address, `show` opens the browser.
     """
-    sys.setswitchinterval(SWITCH)
+    # threads take turns so often [s]: a solver in one must not keep the pointer waiting in another
+    switch = 1e-3
+    sys.setswitchinterval(switch)
     listener = _listener(host, port)
     own = host in ("127.0.0.1", "localhost", "::1")
     token = None if own else token_urlsafe(16)

@@ -18,12 +18,6 @@ from hydrostat.studio.view.picture import Shown
 MOST_MISTAKES = 20
 """A screen that says so much that is not understood is sent away."""
 
-MOST_FLYING = 2
-"""So many pictures may be on their way to a screen: one that is painted, and one that comes next."""
-
-PATIENCE = 2.0
-"""A screen that has not painted for so long [s] is sent the next picture all the same."""
-
 
 class Stream:
     """All screens of one session."""
@@ -77,7 +71,7 @@ class Stream:
             if received["type"] == "websocket.disconnect":
                 return
             try:
-                self._heed(name, screen, received.get("text") or "")
+                self._handle_event(name, screen, received.get("text") or "")
             except InputError:
                 mistakes += 1
             except Exception:
@@ -86,7 +80,7 @@ class Stream:
             await asyncio.sleep(0)  # messages that wait in a row must not keep other screens waiting
         await screen.socket.close(1008)
 
-    def _heed(self, name: str, screen: "_Screen", text: str) -> None:
+    def _handle_event(self, name: str, screen: "_Screen", text: str) -> None:
         message = read_message(text)
         if isinstance(message, Seen):
             screen.saw(message.count)
@@ -133,12 +127,15 @@ class _Screen:
 
     async def write(self, latest: Callable[[], Shown | None]) -> None:
         """Send pictures until the connection ends."""
+        # So many pictures may be on their way to a screen: one that is painted, and one that comes next
+        most_flying = 2
+        patience = 2.0  # A screen that has not painted for so long [s] is sent the next picture all the same
         while True:
             await self.fresh.wait()
-            while self._flying >= MOST_FLYING:
+            while self._flying >= most_flying:
                 self._room.clear()
                 try:
-                    await asyncio.wait_for(self._room.wait(), PATIENCE)
+                    await asyncio.wait_for(self._room.wait(), patience)
                 except TimeoutError:
                     self._flying = 0
             self.fresh.clear()

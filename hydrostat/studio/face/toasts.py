@@ -4,7 +4,6 @@ from nicegui import ui
 
 from hydrostat.studio.session import Tone
 
-MOST = 2  # so many notes are seen at once
 LASTING = {Tone.BAD: 9.0, Tone.PLAIN: 3.0, Tone.GOOD: 3.0}  # seconds that a note is seen
 ICONS = {Tone.BAD: "error_outline", Tone.GOOD: "check_circle"}
 
@@ -22,7 +21,8 @@ class Toasts:
         for toast, other, words in list(self._shown):
             if words == text or (tone is not Tone.BAD and other is not Tone.BAD):
                 self._drop(toast)
-        while len(self._shown) >= MOST:
+        most = 2  # so many notes are seen at once
+        while len(self._shown) >= most:
             self._drop(self._shown[0][0])
         with self.room:
             toast = ui.element("div").classes(f"studio-toast studio-toast-{tone}")

@@ -66,7 +66,6 @@ KEYS = (  # and what they do
     (("?",), "this help"),
 )
 SEEN = "hydrostat-tour"  # where the browser keeps that it has shown the tour
-DELAY = 0.5  # the window is drawn before something is laid over it [s]
 
 PLACE = """
 const [card, ring] = [getHtmlElement(%d), getHtmlElement(%d)];
@@ -193,4 +192,5 @@ def help_dialog(tour: Tour) -> Callable[[], object]:
 
 def offer_tour(tour: Tour) -> None:
     """Show the tour as soon as the window is there, if this browser has not seen it."""
-    ui.timer(DELAY, tour.offer, once=True)
+    delay = 0.5  # the window is drawn before something is laid over it [s]
+    ui.timer(delay, tour.offer, once=True)

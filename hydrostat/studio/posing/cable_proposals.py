@@ -28,10 +28,7 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.posing.pose_state import Anchored, HeldPoint, Mode, with_pose
 
-POLITE = 10  # the process steps back by so much, so that what a person drags comes first
 POSE = "held"  # name of the pose that is held, in that process alone
-WINCHES = 2  # where their number is left open
-SHARES = 12  # ways to share the cables among the winches that are tried until a network can be built
 STEPS = 12  # of inverse kinematics: enough to say what a network is worth
 OPTIONS = IKOptions(iterations=STEPS, restarts=0, min_tension=False)
 
@@ -61,13 +58,15 @@ def asked_of_trees(robot: Robot, wishes: Wishes) -> DesignRequest:
 
     Raises InputError for counts that do not fit each other.
     """
+    winches = 2  # where their number is left open
+    shares = 12  # ways to share the cables among the winches that are tried until a network can be built
     return DesignRequest(
         poses=(robot.pose(POSE),),
-        winches=wishes.winches or min(WINCHES, wishes.cables),
+        winches=wishes.winches or min(winches, wishes.cables),
         cables=wishes.cables,
         method=DesignMethod.TREES,
         constraints=wishes.constraints.restrict_to_trees(),
-        options=replace(wishes.tree_options, shares=SHARES),
+        options=replace(wishes.tree_options, shares=shares),
     ).fit_robot(robot)
 
 
@@ -94,8 +93,9 @@ def propose_network(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> P
 
 def propose_work(pipe: Connection) -> None:
     """Answer each `ProposalInput` from the pipe with a `Proposal`; a `Robot` in the pipe replaces the robot."""
+    polite = 10  # the process steps back by so much, so that what a person drags comes first
     if hasattr(os, "nice"):
-        os.nice(POLITE)
+        os.nice(polite)
     robot: Robot | None = None
     body: BodyPhysics | None = None
     try:

@@ -87,8 +87,6 @@ class Mover(ABC):
         """One step towards the targets; the shape, and whether there is more to gain."""
 
 
-MAX_MUSCLE_UPDATES = 120  # so many updates are made towards targets that stay where they are
-FAINT = 1e-3  # a share of their strength with which muscles count as at rest: they are not shown as the strongest
 MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
 
 
@@ -127,13 +125,16 @@ class MuscleMover(Mover):
         taken = {point.at for point in held.values()}
         calm = self._calm.select_points([index for index, marker in enumerate(self._markers) if marker.at not in taken])
         more = self._posing.update(self._anchored.anchors(held), self._anchored.goals(held), calm)
-        more = more and self._updates < MAX_MUSCLE_UPDATES
+        max_muscle_updates = 120  # so many updates are made towards targets that stay where they are
+        more = more and self._updates < max_muscle_updates
         return self._shape(held, more), more
 
     def _shape(self, held: Mapping[str, HeldPoint], more: bool) -> RobotShape:
         nodes, robot, tensions = self._posing.nodes, self.robot, self._posing.tensions
         pulls = self._posing.fibres.around_nodes(tensions, len(nodes))
-        most = max(float(pulls.max()), FAINT * self._posing.strength)
+        # a share of their strength with which muscles count as at rest: they are not shown as the strongest
+        faint = 1e-3
+        most = max(float(pulls.max()), faint * self._posing.strength)
         errors = self._anchored.errors(held, nodes)
         far = not more and max(errors.values(), default=0.0) > MISSED * robot.body.mesh.size
         return RobotShape(
@@ -146,7 +147,6 @@ class MuscleMover(Mover):
         )
 
 
-MAX_CABLE_UPDATES = 150  # so many updates are made towards targets that stay where they are
 CALM, CALMEST = 4.0, 0.3
 """Weights that keep free parts at rest, or all fingers of a hand move for a hair that they gain for one: a meter of the
 whole body away from rest counts by this factor, in sizes of the body, relative to a meter of error, at most
@@ -156,8 +156,6 @@ GAIN = 0.5
 """Markers that nobody holds rather stay, as in `solve_ik`: the square of their distance from rest weighs this times the
 error, in sizes of the body. An arm that is dragged out of reach yanks no other for the hair that it would gain."""
 
-STILL = 1e-4  # an update that moves no node farther brings it hardly nearer, in sizes of the body
-STILLS = 3  # after so many of them in a row nobody waits for more
 ROUGH = 1e-3
 """Force that may be left over while something moves, as a share of the largest tension: nobody sees a micrometre, and
 updates take little more than half the time. What comes to rest is followed to the end."""
@@ -166,8 +164,6 @@ STRIDE = 0.05
 """Most that a winch turns in one update, as a share of its range: longer strides take several times as long to solve,
 so that the body would follow by jerks; with these it goes through all of its range in half a second."""
 
-LAST = 10  # so many updates are made at most where that was done roughly before
-TICK = 1 / 30  # seconds that an update stands for; nothing here limits the rate
 ENDS = {IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM}
 
 
@@ -236,17 +232,22 @@ class CableMover(Mover):
             self._follow(self._simulation)
         self._updates += 1
         goals = [] if targets else [_goal(held)]
+        tick = 1 / 30  # seconds that an update stands for; nothing here limits the rate
         try:
-            reached = self._tracker.update(targets, seconds=TICK, objectives=[*goals, *self._calm(held)])
+            reached = self._tracker.update(targets, seconds=tick, objectives=[*goals, *self._calm(held)])
         except HydrostatError as error:
             self._begin(self._pose)
             return self._shape(self._anchored.errors(held, self._pose.nodes), (str(error),)), False
         moved = float(np.abs(reached.pose.nodes - self._pose.nodes).max()) / self.robot.body.mesh.size
         self._pose = reached.pose
-        self._still = self._still + 1 if moved < STILL else 0
-        more = reached.status not in ENDS and self._still < STILLS and self._updates < MAX_CABLE_UPDATES
+        still = 1e-4  # an update that moves no node farther brings it hardly nearer, in sizes of the body
+        self._still = self._still + 1 if moved < still else 0
+        max_cable_updates = 150  # so many updates are made towards targets that stay where they are
+        stills = 3  # after so many of them in a row nobody waits for more
+        more = reached.status not in ENDS and self._still < stills and self._updates < max_cable_updates
+        last = 10  # so many updates are made at most where that was done roughly before
         if not more and not self._exact:
-            self._near, self._still, self._updates, more = True, 0, MAX_CABLE_UPDATES - LAST, True
+            self._near, self._still, self._updates, more = True, 0, max_cable_updates - last, True
         notes = reached.active_limits
         if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
             stopped = reached.status is not IKStatus.ITERATION_LIMIT

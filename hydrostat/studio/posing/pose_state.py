@@ -155,9 +155,6 @@ def point_of(now: PoseState, name: str, hit: Hit) -> HeldPoint:
     return HeldPoint(at=at, target=at)
 
 
-SAME = 1e-4  # poses whose targets are nearer to each other are the same [m]
-
-
 def with_pose(robot: Robot, name: str, held: Mapping[str, HeldPoint]) -> Robot:
     """A robot with one more pose, or another of its name; held points get markers (InputError: no name or point)."""
     name = checked_name(name)
@@ -172,9 +169,10 @@ def with_pose(robot: Robot, name: str, held: Mapping[str, HeldPoint]) -> Robot:
 def same_as(robot: Robot, name: str) -> str:
     """The first other pose with the same targets as one, to a tenth of a millimetre; "" if there is none."""
     own = robot.pose(name).targets
+    same = 1e-4  # poses whose targets are nearer to each other are the same [m]
     for pose in robot.poses.values():
         alike = pose.name != name and set(pose.targets) == set(own)
-        if alike and all(math.dist(pose.targets[marker], goal) < SAME for marker, goal in own.items()):
+        if alike and all(math.dist(pose.targets[marker], goal) < same for marker, goal in own.items()):
             return pose.name
     return ""
 
@@ -215,9 +213,6 @@ def checked_name(given: str) -> str:
     return check_name(name)
 
 
-MOST_STEPS = 200  # so many drags can be undone
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Step:
     """A drag, or another change of what is held."""
@@ -251,7 +246,8 @@ class Trail:
     def note(self, label: str, held: Mapping[str, HeldPoint]) -> None:
         """Note that something is done now to what was held."""
         self._past.append(_Step(label=label, work=self._document.work, held=held))
-        del self._past[:-MOST_STEPS]
+        most_steps = 200  # so many drags can be undone
+        del self._past[:-most_steps]
         self._future = []
 
     def undo(self, held: Mapping[str, HeldPoint]) -> Mapping[str, HeldPoint]:

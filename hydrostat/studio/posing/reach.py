@@ -17,8 +17,6 @@ from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.view.things import Cloud
 
 COUNT = 400  # so many poses are tried
-PORTION = 8  # so many are told at once
-SEED = 8
 
 
 def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int = COUNT) -> int:
@@ -30,6 +28,7 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
     simulation = Simulation(robot)
     last, held, places = simulation.rest, 0, []
     rubs = simulation.assembly.has_history  # the way counts there
+    portion = 8  # so many are told at once
     for index, contractions in enumerate(spread_contractions(robot, count)):
         report.progress("sampling poses", index, count)
         try:
@@ -40,7 +39,7 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
             last = pose
             held += 1
             places.append(pose.markers[marker])
-        if len(places) == PORTION:
+        if len(places) == portion:
             report.part(np.array(places))
             places = []
     if places:
@@ -54,7 +53,8 @@ def spread_contractions(robot: Robot, count: int) -> list[Vector]:
 
     low = np.array([-winch.release for winch in robot.winches])
     high = np.array([winch.travel for winch in robot.winches])
-    drawn = qmc.Sobol(len(robot.winches), rng=SEED).random_base2(max(ceil(log2(count)), 1))[:count]
+    seed = 8
+    drawn = qmc.Sobol(len(robot.winches), rng=seed).random_base2(max(ceil(log2(count)), 1))[:count]
     left = list(range(count))
     order, here = [], np.clip(-low / (high - low), 0.0, 1.0)
     while left:

@@ -11,11 +11,7 @@ from hydrostat.units import quote
 
 UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)  # endings of files that may be brought
 MOST_BYTES = 190_000_000  # of a file that is brought; with what goes round it, no request has more than 200 MB
-LONGEST, SHORTEST = 20.0, 1e-4  # lengths that a person may ask for [m]
-NODES = (20, 20_000)  # so few and so many nodes may be asked for
-PICTURE_SIZE = 0.2  # of a body from a picture, which says no size, until another is asked for [m]
 PICTURES = (".png", ".jpg", ".jpeg")  # endings of files of pixels
-_LONGEST_STEM = 40
 _CAD = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
 THRESHOLDS = (5.0, 250.0)  # least and most difference in colour from the ground that may be asked for, of 441
@@ -58,19 +54,21 @@ class BodyDraft:
     def __post_init__(self) -> None:
         get_material(self.material)
         check_name(self.name)
+        longest, shortest = 20.0, 1e-4  # lengths that a person may ask for [m]
         for key in ("size", "element_size", "thickness", "inflate"):
             value = getattr(self, key)
-            if value is not None and not SHORTEST <= value <= LONGEST:
+            if value is not None and not shortest <= value <= longest:
                 raise InputError(
-                    f"{key.replace('_', ' ')}: must be from {1e3 * SHORTEST:g} mm to {LONGEST:g} m, "
+                    f"{key.replace('_', ' ')}: must be from {1e3 * shortest:g} mm to {longest:g} m, "
                     f"not {1e3 * value:g} mm"
                 )
         asked = (("threshold", self.reading.threshold, THRESHOLDS), ("smoothing", self.reading.smoothing, SMOOTHINGS))
         for key, value, (least, most) in asked:
             if value is not None and not least <= value <= most:
                 raise InputError(f"{key}: must be from {least:g} to {most:g}, not {value:g}")
-        if self.nodes is not None and not NODES[0] <= self.nodes <= NODES[1]:
-            raise InputError(f"nodes: must be from {NODES[0]} to {NODES[1]}, not {self.nodes}")
+        nodes = (20, 20_000)  # so few and so many nodes may be asked for
+        if self.nodes is not None and not nodes[0] <= self.nodes <= nodes[1]:
+            raise InputError(f"nodes: must be from {nodes[0]} to {nodes[1]}, not {self.nodes}")
 
     @property
     def is_picture(self) -> bool:
@@ -91,7 +89,8 @@ def new_draft(name: str, content: bytes) -> BodyDraft:
     if len(content) > MOST_BYTES:
         raise InputError(f"{file}: has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read")
     material = "polyester fibre" if file.endswith(OUTLINE_SUFFIXES) else "flexfoam-it x"
-    size = PICTURE_SIZE if file.endswith(PICTURES) else None
+    picture_size = 0.2  # of a body from a picture, which says no size, until another is asked for [m]
+    size = picture_size if file.endswith(PICTURES) else None
     return BodyDraft(file=file, content=content, name=_robot_name(PurePath(file).stem), material=material, size=size)
 
 
@@ -105,7 +104,8 @@ def safe_name(name: str) -> str:
         if suffix in _CAD:
             raise InputError(f"{shown}: CAD files are not supported. Export it as STL or 3MF")
         raise InputError(f"{shown}: file type not supported. Available: {', '.join(UPLOAD_SUFFIXES)}")
-    stem = re.sub(r"[^\w-]+", "_", stem)[:_LONGEST_STEM].strip("_-")
+    longest_stem = 40
+    stem = re.sub(r"[^\w-]+", "_", stem)[:longest_stem].strip("_-")
     return (stem or "body") + suffix
 
 

@@ -17,8 +17,6 @@ HANDLE = 0.35
 """Length of the handles of a curve, in distances of its ends: the one that fits circles of four to eight corners best.
 The editor on the screen has the same number."""
 
-FURTHEST = 20_000.0  # no corner is farther from the middle [mm]
-MOST_LOOPS, MOST_CORNERS = 50, 1000  # so many loops, so many corners in all
 _STATIONS = np.linspace(0.0, 1.0, 17)[:-1]
 _GOOD_FIT, _THIN, _FIRST, _MOST_KNOTS = 0.0045, 0.0003, 6, 200
 _SHARP, _WINDOW = np.deg2rad(50.0), 0.004
@@ -42,11 +40,13 @@ def read_loops(raw: Any) -> tuple[Loop, ...]:
         loops = tuple(tuple(LoopCorner(float(x), float(y), bool(smooth)) for x, y, smooth in loop) for loop in raw)
     except (TypeError, ValueError, OverflowError):
         raise InputError("invalid outline data") from None
-    if len(loops) > MOST_LOOPS or sum(map(len, loops)) > MOST_CORNERS:
-        raise InputError(f"an outline has at most {MOST_LOOPS} loops and {MOST_CORNERS} corners")
+    most_loops, most_corners = 50, 1000  # so many loops, so many corners in all
+    if len(loops) > most_loops or sum(map(len, loops)) > most_corners:
+        raise InputError(f"an outline has at most {most_loops} loops and {most_corners} corners")
+    furthest = 20_000.0  # no corner is farther from the middle [mm]
     for corner in (corner for loop in loops for corner in loop):
-        if not all(isfinite(value) and abs(value) <= FURTHEST for value in (corner.x, corner.y)):
-            raise InputError(f"a corner of the outline is farther than {FURTHEST / 1e3:g} m from the middle")
+        if not all(isfinite(value) and abs(value) <= furthest for value in (corner.x, corner.y)):
+            raise InputError(f"a corner of the outline is farther than {furthest / 1e3:g} m from the middle")
     return loops
 
 

@@ -11,9 +11,7 @@ from scipy.ndimage import gaussian_filter
 from hydrostat.geometry import Outline, contrast, read_drawing
 from hydrostat.studio.starting.draft import PhotoReading
 
-LONGEST = 1600  # a picture is read with so many pixels along its longer side, as `read_image` does
 SHOWN = 900  # and shown with so many
-_SLOPE = 4.0  # opacity for each step of colour about the threshold
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +38,8 @@ def cut_out(content: bytes, reading: PhotoReading) -> bytes:
     if reading.smoothing > 0:
         field = gaussian_filter(field, reading.smoothing)
     cut = image.convert("RGBA")
-    opacity = np.clip(127.5 + _SLOPE * (field - level), 0.0, 255.0)
+    slope = 4.0  # opacity for each step of colour about the threshold
+    opacity = np.clip(127.5 + slope * (field - level), 0.0, 255.0)
     cut.putalpha(Image.fromarray(opacity.astype(np.uint8)))
     return _bytes(cut, "PNG")
 
@@ -76,7 +75,8 @@ def overlay(behind: Backdrop, outline: Outline) -> str:
 def _upright(content: bytes) -> Image.Image:
     """The picture as a person holds it, with as many pixels as it is read with."""
     image = ImageOps.exif_transpose(Image.open(io.BytesIO(content), formats=("PNG", "JPEG")))
-    step = max(1, -(-max(image.size) // LONGEST))
+    longest = 1600  # a picture is read with so many pixels along its longer side, as `read_image` does
+    step = max(1, -(-max(image.size) // longest))
     if step > 1:
         image = image.convert("RGBA" if image.has_transparency_data else "RGB").reduce(step)
     return image

@@ -19,8 +19,6 @@ from hydrostat.robot import Robot, gallery_folder, list_gallery, load_robot, rep
 from hydrostat.units import plural
 
 PICTURES = Path(__file__).parent / "pictures"  # where the pictures are, as NAME.webp
-WIDE, HIGH = 400, 300  # pixels of a picture; it is shown half as large
-BORDER = 16  # pixels that are left free all round
 
 
 def draw_picture(robot: Robot) -> bytes:
@@ -31,9 +29,11 @@ def draw_picture(robot: Robot) -> bytes:
         figure.savefig(buffer, format="png", dpi=300, transparent=True)
     image = Image.open(buffer).convert("RGBA")
     image = image.crop(image.getchannel("A").getbbox())
-    image.thumbnail((WIDE - 2 * BORDER, HIGH - 2 * BORDER), Image.Resampling.LANCZOS)
-    sheet = Image.new("RGBA", (WIDE, HIGH), (0, 0, 0, 0))
-    sheet.paste(image, ((WIDE - image.width) // 2, (HIGH - image.height) // 2))
+    wide, high = 400, 300  # pixels of a picture; it is shown half as large
+    border = 16  # pixels that are left free all round
+    image.thumbnail((wide - 2 * border, high - 2 * border), Image.Resampling.LANCZOS)
+    sheet = Image.new("RGBA", (wide, high), (0, 0, 0, 0))
+    sheet.paste(image, ((wide - image.width) // 2, (high - image.height) // 2))
     result = io.BytesIO()
     sheet.save(result, format="WEBP", quality=70, method=6)
     return result.getvalue()

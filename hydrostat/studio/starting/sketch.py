@@ -11,7 +11,6 @@ from hydrostat.studio.starting.draft import BodyDraft
 from hydrostat.studio.starting.photo import Backdrop, backdrop, cut_out
 
 MOST_MEMORY = 6 * 2**30  # the process may have so much memory [bytes]; a file that needs more is refused
-WIDTH = 6.4  # of pictures [inch]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -99,10 +98,11 @@ def _with_pictures(
     from hydrostat.plot import draw_healing, draw_rest, inline_svg
 
     report.progress("drawing", 1, 2)
-    picture = inline_svg(draw_rest(robot, title="", width=WIDTH), name="sketch", label=f"{draft.name} at rest")
+    width = 6.4  # of pictures [inch]
+    picture = inline_svg(draw_rest(robot, title="", width=width), name="sketch", label=f"{draft.name} at rest")
     repair = ""
     if sketch is not None and not sketch.healing.clean:
-        figure = draw_healing(sketch.before, sketch.healing.surface, places=sketch.healing.places, width=WIDTH)
+        figure = draw_healing(sketch.before, sketch.healing.surface, places=sketch.healing.places, width=width)
         repair = inline_svg(figure, name="repair", label=f"{draft.file} as it came, and healed")
     clean = not lines if sketch is None else sketch.healing.clean
     return Sketch(

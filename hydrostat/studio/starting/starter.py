@@ -32,7 +32,6 @@ from hydrostat.units import quote
 
 MOST_FILES = 200  # in an archive
 MOST_BYTES = 200_000_000  # of all its files, unpacked
-DEEPEST = 4  # folders in one another
 
 
 def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
@@ -70,10 +69,11 @@ def _check_entries(entries: list[ZipInfo], shown: str) -> dict[PurePosixPath, Zi
     if total > MOST_BYTES:
         raise InputError(f"{shown}: has {total / 1e6:.0f} MB unpacked, at most {MOST_BYTES / 1e6:.0f} MB are read")
     found: dict[PurePosixPath, ZipInfo] = {}
+    deepest = 4  # folders in one another
     for entry in files:
         path = PurePosixPath(entry.filename)
         odd = path.is_absolute() or ".." in path.parts or "\\" in entry.filename or ":" in entry.filename
-        if odd or len(path.parts) > DEEPEST or stat.S_ISLNK(entry.external_attr >> 16):
+        if odd or len(path.parts) > deepest or stat.S_ISLNK(entry.external_attr >> 16):
             raise InputError(f"{shown}: {quote(entry.filename[:60])} would lie outside the robot's folder")
         if path in found:
             raise InputError(f"{shown}: has two files {quote(entry.filename[:60])}")

@@ -30,16 +30,14 @@ class Scale:
     high: str  # the last as text, with its unit; more than that has the same colour
 
 
-FULL = 0.5  # strain of the last colour, if the material does not say how far it can be stretched
-
-
 def scale(robot: Robot, colouring: Colouring) -> Scale | None:
     """Return the color scale of a robot; None for plain felt.
 
     The last colour of the stress is what uniaxial tension of the last strain would be, were the body linear.
     """
     material = robot.body.material
-    strain = FULL if material.largest_stretch is None else min(material.largest_stretch - 1.0, 1.0)
+    full = 0.5  # strain of the last colour, if the material does not say how far it can be stretched
+    strain = full if material.largest_stretch is None else min(material.largest_stretch - 1.0, 1.0)
     if colouring is Colouring.STRAIN:
         return Scale(title="Strain", most=strain, low="0 %", high=f"{100 * strain:.3g} %")
     if colouring is Colouring.STRESS:

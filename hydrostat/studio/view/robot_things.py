@@ -1,6 +1,6 @@
 """`robot_things`, `winch_bars`: pins, winches, cables and markers of a robot as dots and lines, its winches as bars."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -8,14 +8,13 @@ from itertools import product
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.drawing import DARK, INK, MUTED, winch_colours
+from hydrostat.design import Diagnostic, Severity
+from hydrostat.drawing import DARK, INK, MUTED, SEAM, winch_colours
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import Mesh
-from hydrostat.robot import Cable, Mount, Pin, Point, Robot, obstacle_lines
+from hydrostat.robot import Cable, Mount, Pin, Point, Robot, in_words, obstacle_lines
 from hydrostat.simulation import obstacles_in_pose
 from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, Stroke, Thing
-
-PARTS = 4  # a triangle is dotted with so many points along each side
 
 
 def pinned_points(robot: Robot) -> Points:
@@ -31,8 +30,9 @@ def _points(mesh: Mesh, pins: tuple[Pin, ...]) -> Points:
         held |= pin.holds(mesh)
     faces = mesh.elements if mesh.dim == 2 else mesh.boundary
     corners = mesh.nodes[faces[held[faces].all(axis=1)]]
-    steps = [(i, j, PARTS - i - j) for i, j in product(range(PARTS + 1), repeat=2) if i + j <= PARTS]
-    dots = np.einsum("sc,fcd->fsd", np.array(steps) / PARTS, corners).reshape(-1, mesh.dim)
+    parts = 4  # a triangle is dotted with so many points along each side
+    steps = [(i, j, parts - i - j) for i, j in product(range(parts + 1), repeat=2) if i + j <= parts]
+    dots = np.einsum("sc,fcd->fsd", np.array(steps) / parts, corners).reshape(-1, mesh.dim)
     return np.unique(np.concatenate([dots, mesh.nodes[held]]).round(7), axis=0)
 
 
@@ -195,3 +195,30 @@ def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
         )
         for winch, contraction in zip(robot.winches, np.asarray(shape.contractions).tolist(), strict=True)
     ]
+
+
+TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: SEAM}  # colour of each weight
+BRIEF = 64  # letters that are written beside a ring
+
+
+def finding_things(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic | None = None) -> list[Thing]:
+    """A ring at each place of each finding; its words are seen where it is chosen, or its part under the pointer."""
+    loose = {f"winch:{winch.name}" for winch in robot.winches if winch.mount is Mount.WORLD}
+    things: list[Thing] = []
+    most = 24  # rings of one finding: more say no more
+    for finding in said:
+        words = in_words(finding.text)
+        label = words if len(words) <= BRIEF else words[: BRIEF - 1].rsplit(" ", 1)[0].rstrip(",;:") + " …"
+        things += [
+            Dot(
+                at=place.at,
+                look=Look.FLAG,
+                colour=TONES[finding.weight],
+                label=label,
+                about=place.part,
+                stuck=place.part not in loose,
+                chosen=finding == chosen,
+            )
+            for place in finding.places[:most]
+        ]
+    return things

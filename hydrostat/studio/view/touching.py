@@ -9,9 +9,6 @@ from hydrostat.geometry import find_crossings
 from hydrostat.simulation import Equilibrium, Simulation, find_contacts
 from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
 
-MOST = 8  # places that are shown, the hardest
-LONGEST = 0.05  # arrow at the hardest, in sizes of the body
-FAINTEST = 0.02  # what presses with less than this share of the hardest is not shown
 OFF = "contact off: the body intersects itself here"
 TOUCH = "#8a2be2"
 
@@ -39,10 +36,13 @@ def touch_things(shape: RobotShape, size: float) -> list[Thing]:
     """
     things: list[Thing] = []
     hardest = max((touch.strength for touch in shape.touches), default=0.0)
-    for touch in shape.touches[:MOST]:
-        if touch.strength < FAINTEST * hardest:
+    most = 8  # places that are shown, the hardest
+    longest = 0.05  # arrow at the hardest, in sizes of the body
+    faintest = 0.02  # what presses with less than this share of the hardest is not shown
+    for touch in shape.touches[:most]:
+        if touch.strength < faintest * hardest:
             continue
-        way = LONGEST * size * np.sqrt(touch.strength / hardest) * touch.force / touch.strength
+        way = longest * size * np.sqrt(touch.strength / hardest) * touch.force / touch.strength
         ends = (touch.place - way, touch.place + way) if touch.obstacle is None else (touch.place, touch.place + way)
         line = tuple(tuple(end.tolist()) for end in ends)
         things.append(Strand(points=line, stroke=Stroke.RIM, colour=TOUCH, loose=-1))

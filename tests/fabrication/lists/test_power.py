@@ -4,8 +4,7 @@ import pytest
 
 from hydrostat.fabrication.lists.motors import PLUG, PowerPlan, power_plan
 from hydrostat.fabrication.lists.needs import control_needs
-from hydrostat.fabrication.parts.board import board_for
-from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.fabrication.parts.motor import MOTORS, board_for
 
 N20, XL330, POLOLU_25D = MOTORS
 

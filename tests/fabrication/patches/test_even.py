@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from patch_bodies import cap, half_cone
 
-from hydrostat.fabrication.patches.even import HELD, PatchEnergy, relax_patch
+from hydrostat.fabrication.patches.cutting import HELD, PatchEnergy, relax_patch
 from hydrostat.fabrication.patches.flatten import distortion, flatten
 
 

@@ -8,8 +8,7 @@ from patch_bodies import cushion, ellipsoid_body
 from hydrostat.errors import InputError
 from hydrostat.fabrication.checks.pattern_checks import patch_checks
 from hydrostat.fabrication.kit_options import PatternOptions
-from hydrostat.fabrication.patches.sewable import find_sewing
-from hydrostat.fabrication.patches.space_pattern import SpacePattern, space_pattern
+from hydrostat.fabrication.patches.space_pattern import SpacePattern, find_sewing, space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.patterns.stitches import Side

@@ -8,7 +8,8 @@ import shapely
 from plush_robots import disc_path, drawn_body, plush_robot
 from scipy.spatial import cKDTree
 
-from hydrostat.fabrication import Panel, PatternOptions, PatternPart, plush_pattern
+from hydrostat.fabrication import PatternOptions, PatternPart, plush_pattern
+from hydrostat.fabrication.patterns.shape import Panel
 
 CONVEX = {
     "triangle": "M0 0H120L30 90Z",

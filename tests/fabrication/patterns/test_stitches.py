@@ -3,7 +3,8 @@ import itertools
 import pytest
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 
-from hydrostat.fabrication import Pattern, PatternOptions, plush_pattern
+from hydrostat.fabrication import PatternOptions, plush_pattern
+from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.robot import Cable, Mount, Robot

@@ -16,7 +16,7 @@ from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, 
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import model_of, step_bytes
 
-needs_cad = pytest.mark.skipif(find_spec("build123d") is None, reason='needs build123d: pip install "hydrostat[cad]"')
+needs_cad = pytest.mark.skipif(find_spec("build123d") is None, reason="needs build123d (extra cad)")
 
 LETTER = ((0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0))
 SPOOL = ((0.0, 0.0), (9.0, 0.0), (9.0, 1.0), (5.0, 3.0), (5.0, 6.0), (0.0, 6.0))
@@ -121,5 +121,5 @@ def test_a_part_without_a_model_has_no_step():
 
 def test_where_build123d_is_missing_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "build123d", None)
-    with pytest.raises(InputError, match=r'pip install "hydrostat\[cad\]"'):
+    with pytest.raises(InputError, match=r'pip install -e "\.\[cad\]"'):
         step_bytes(part(Box((1, 1, 1))))

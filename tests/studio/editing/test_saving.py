@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.project import (
+    PROJECT_FILE,
     Paint,
     Wishes,
     Work,
@@ -21,7 +22,9 @@ from hydrostat.project import (
     folder_stamp,
     open_note,
     open_work,
+    read_project_file,
     save_work,
+    write_project_file,
 )
 from hydrostat.robot import (
     Robot,
@@ -275,6 +278,20 @@ def test_all_work_is_read_again(robot: Robot, tmp_path: Path) -> None:
     assert (again.robot, again.timeline, again.wishes) == (work.robot, work.timeline, work.wishes)
     assert open_note(tmp_path / "new" / "robot") == ""
     assert not list((tmp_path / "new" / "robot").glob(".*"))
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.5, 2.0])
+def test_a_spool_ratio_is_read_as_it_was_written(tmp_path: Path, ratio: float) -> None:
+    wishes = Wishes.of(spool_ratio=ratio)
+    write_project_file(tmp_path, Timeline(), wishes)
+    assert read_project_file(tmp_path)[1] == wishes
+    assert ("spool_ratio" in (tmp_path / PROJECT_FILE).read_text()) is (ratio == 1.5)
+
+
+@pytest.mark.parametrize(("value", "told"), [(None, "nothing"), ("20 N", '"20 N"'), (-3, "-3 N"), (True, "true")])
+def test_a_tension_that_is_no_number_is_refused(value: object, told: str) -> None:
+    with pytest.raises(InputError, match=f"^tension must be above 0 and at most 1000 N, not {told}$"):
+        Wishes.of(tension=value)
 
 
 def test_a_plain_robot_needs_no_second_file(robot: Robot, tmp_path: Path) -> None:

@@ -14,8 +14,7 @@ from hydrostat.studio.designing.run import wished_poses
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint, number_box
 from hydrostat.studio.face.panels.finding_list import finding_list
-from hydrostat.studio.stage import StageName
-from hydrostat.studio.told_error import told_error
+from hydrostat.studio.stage import StageName, told_error
 from hydrostat.units import plural
 
 METHODS = {DesignMethod.ROUTES: "routes", DesignMethod.TREES: "winch trees"}
@@ -78,14 +77,14 @@ def _poses(page: WindowPage) -> None:
     room = ui.column().classes("w-full gap-2")
 
     def state() -> tuple[object, ...]:
-        return tuple(document.robot.poses), wanted()
+        return tuple(document.robot.poses), find_wished()
 
-    def wanted() -> frozenset[str]:
+    def find_wished() -> frozenset[str]:
         robot = document.robot
         return frozenset(pose.name for pose in wished_poses(robot, designer.wishes)) if robot.poses else frozenset()
 
     def build() -> None:
-        names, on = document.robot.poses, wanted()
+        names, on = document.robot.poses, find_wished()
         colours = pose_colours(names)
         if not names:
             _no_pose(page)

@@ -14,9 +14,6 @@ from hydrostat.studio.face.panels.edit_body import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.stage import StageName
 
-STEP = 0.5  # of a knob's wheel and arrow keys [mm]
-MANY = 6  # more winches than this have smaller knobs
-
 ui.add_css("body.body--dark { --lift: 38% }", shared=True)  # colours of winches are made for paper: lighter on dark
 
 
@@ -38,9 +35,11 @@ def drive_panel(page: WindowPage) -> None:
     box = ui.column().classes("w-full").style("gap: 8px")
     cards: list[_Card] = []
 
+    many = 6  # more winches than this have smaller knobs
+
     def build() -> None:
         winches, marks = session.document.robot.winches, winch_marks_of(session.document.robot)
-        colours, size = winch_colours(winches), 68 if len(winches) <= MANY else 50
+        colours, size = winch_colours(winches), 68 if len(winches) <= many else 50
         cards[:] = [_Card(page, winch, marks[winch.name], colours[winch.name], size) for winch in winches]
 
     def show() -> None:
@@ -70,8 +69,9 @@ class _Card:
         self._page, self._typing = page, False
         driver, least, most = page.session.driver, -1e3 * winch.release, 1e3 * winch.travel
         card = ui.element("div").classes("studio-card")
+        step = 0.5  # of a knob's wheel and arrow keys [mm]
         with card.style(f"display: flex; align-items: center; gap: 8px; padding: {size // 8}px 10px"):
-            self._knob = Knob(least=least, most=most, step=STEP, colour=colour, label=winch.name)
+            self._knob = Knob(least=least, most=most, step=step, colour=colour, label=winch.name)
             self._knob.style(f"width: {size}px; height: {size}px; flex: none; margin: -3px 0 -5px -4px")
             self._knob.mark(f"knob-{winch.name}")
             with ui.element("div").style("flex: 1; min-width: 0; display: flex; flex-direction: column; gap: 5px"):
@@ -85,7 +85,7 @@ class _Card:
                     self._bar = ui.element("div").style("height: 5px; border-radius: 3px; width: 0%")
                 self._pull = ui.label("0.0 N").classes("studio-hint studio-figure").style("line-height: 1")
                 self._pull.tooltip("Maximum tension of its cables")
-            self._box = ui.number(min=least, max=most, step=STEP, format="%.1f", suffix="mm", value=0.0)
+            self._box = ui.number(min=least, max=most, step=step, format="%.1f", suffix="mm", value=0.0)
             self._box.props(f'dense outlined aria-label="{winch.name}, millimetres"').classes("drive-box")
             self._box.style("width: 88px; flex: none")
             self._box.mark(f"box-{winch.name}")

@@ -23,8 +23,6 @@ FILMS = {
 
 Part = TypeVar("Part", bound=ui.element)
 
-LARGEST = 4_000_000  # no table is larger [bytes]
-
 
 def drive_strip(page: WindowPage) -> None:
     """Build it."""
@@ -185,6 +183,7 @@ def _tables(page: WindowPage) -> None:
         if content is not None:
             ui.download.content(content, f"{session.document.robot.name}.csv")
 
+    largest = 4_000_000  # no table is larger [bytes]
     with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 380px"):
         ui.label("Import contractions").classes("studio-title")
         ui.label("A table with a column time_s and one for each winch by its name, in millimetres. It takes the place "
@@ -197,7 +196,7 @@ def _tables(page: WindowPage) -> None:
             page.act(driver.load_table, event.file.name, content)
 
         upload = ui.upload(
-            label="Choose or drop a CSV", auto_upload=True, max_file_size=LARGEST, on_upload=load,
+            label="Choose or drop a CSV", auto_upload=True, max_file_size=largest, on_upload=load,
             on_rejected=lambda: page.tell("a table may have 4 MB", Tone.BAD),
         ).props("accept=.csv flat bordered").classes("w-full")  # fmt: skip
     with _button("table_view", "Contraction table", None), _menu():

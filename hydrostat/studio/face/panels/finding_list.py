@@ -9,7 +9,7 @@ from hydrostat.robot import Robot, in_words
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.skins import SewnSkin
-from hydrostat.studio.view.finding_things import TONES
+from hydrostat.studio.view.robot_things import TONES
 
 GOOD = "#00795f"
 ICONS = {Severity.REFUSED: "block", Severity.LIMIT: "straighten", Severity.MIND: "error_outline"}
@@ -26,20 +26,20 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
     judge = document.judge
     room = ui.column().classes("w-full").style("gap: 6px").mark("finding-list")
 
-    def said() -> tuple[Diagnostic, ...] | None:
+    def find_diagnostics() -> tuple[Diagnostic, ...] | None:
         robot = shown() if document.is_open else None
         return None if robot is None else judge.of(robot, document.work.wishes)
 
-    def sewn() -> SewnSkin | None:
+    def find_skin() -> SewnSkin | None:
         robot = shown() if document.is_open else None
         return None if robot is None else judge.skin(robot)
 
     def build() -> None:
-        found = said()
+        found = find_diagnostics()
         if found is None:
             ui.label("Checking").classes("studio-hint")
             return
-        skin = sewn()
+        skin = find_skin()
         if skin is not None and (words := skin.words):
             ui.label(words[0].upper() + words[1:]).classes("studio-hint").props('data-testid="skin-words"')
         if not found and not (skin is not None and skin.is_awaited):
@@ -53,7 +53,9 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
             for finding in alike:
                 _line(page, finding, chosen=finding == judge.chosen)
 
-    page.on_new((Topic.JOB, Topic.ROBOT, Topic.THINGS), lambda: (said(), sewn(), judge.chosen), room, build)
+    page.on_new(
+        (Topic.JOB, Topic.ROBOT, Topic.THINGS), lambda: (find_diagnostics(), find_skin(), judge.chosen), room, build
+    )
 
 
 def _good(robot: Robot | None) -> str:

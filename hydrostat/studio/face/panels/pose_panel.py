@@ -10,7 +10,7 @@ from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.edit_body import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.posing import Mode, same_as
-from hydrostat.studio.told_error import told_error
+from hydrostat.studio.stage import told_error
 from hydrostat.studio.view.colouring import Colouring
 from hydrostat.studio.view.robot_things import Bar
 from hydrostat.studio.view.things import RobotShape

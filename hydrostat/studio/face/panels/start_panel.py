@@ -107,13 +107,12 @@ STYLE = Path(__file__).parents[1] / "static" / "start.css"
 
 KINDS = ("SVG", "DXF", "PNG", "JPG", "STL", "OBJ", "PLY", "OFF", "3MF", "ZIP")
 
-MOST_LEFT = 4  # so many works that a crash left are offered at once, the newest
-
 
 def shelf_view(page: WindowPage) -> Callable[[], None]:
     """Build it."""
     starter = page.session.starter
-    for left in starter.autosave.find_recovered()[:MOST_LEFT]:
+    most_left = 4  # so many works that a crash left are offered at once, the newest
+    for left in starter.autosave.find_recovered()[:most_left]:
         _show_recovered(page, left)
     ui.label("New robot").classes("start-title")
     with ui.element("div").classes("start-ways"):

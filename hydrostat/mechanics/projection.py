@@ -1,0 +1,53 @@
+"""`Projection`: the shares of the Hessian's negative part that Newton takes out where it is not definite."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Projection:
+    """Shares, 0 to 1, of the negative part of the Hessian that are taken out.
+
+    Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
+    drops the whole effect of compression, and Newton creeps for hundreds of steps. So a share is taken out, which falls
+    from step to step as long as it suffices. Contact comes first, and its share too rises and falls: with all of its
+    negative part gone, parts that slide on one another creep.
+
+    Attributes:
+        early: share of energies that project first, such as contact.
+        late: share of the others.
+        raised: True if smaller shares did not suffice for the last step; contact's share then stays for one more.
+    """
+
+    early: float = 0.0
+    late: float = 0.0
+    raised: bool = False
+
+    @property
+    def any(self) -> bool:
+        """True if something is taken out."""
+        return self.early > 0.0 or self.late > 0.0
+
+    @property
+    def whole(self) -> bool:
+        """True if nothing negative is left."""
+        return self.late == 1.0
+
+    def with_smaller_shares(self, *, projects_first: bool) -> "Projection":
+        """Return smaller shares, to begin the next step with."""
+        if self.late > _LEAST:
+            return Projection(float(projects_first), self.late / 16)
+        if self.raised and projects_first:
+            return Projection(self.early)
+        return Projection(self.early / 4 if projects_first and self.early > _LEAST else 0.0)
+
+    def with_larger_shares(self, *, projects_first: bool) -> "Projection":
+        """Return larger shares, where these did not suffice."""
+        if projects_first and self.early < 1.0 and not self.late:
+            return Projection(min(4 * self.early, 1.0) or 1 / 16, raised=True)
+        if projects_first:
+            return Projection(1.0, min(16 * self.late, 1.0) or _LEAST, raised=True)
+        return Projection(0.0, min(16 * self.late, 1.0) or 1.0)
+
+
+_LEAST = 1 / 32
+"""Below this share of what is negative, the full Hessian is tried."""
