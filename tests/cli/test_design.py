@@ -46,7 +46,7 @@ class Search:
         self.asked: DesignRequest | None = None
         self.answer: Network = plain_network()
 
-    def __call__(self, robot: hs.Robot, request: DesignRequest, *, progress: object) -> Network:
+    def __call__(self, robot: hs.Robot, request: DesignRequest, *, progress: object, watch: object) -> Network:
         self.asked = request
         return replace(self.answer, request=request)
 
@@ -76,6 +76,9 @@ OPTIONS = {
     ("--winches", "auto", "--tolerance", "3 mm"): {"winches": "auto", "options": RouteOptions(tolerance=0.003)},
     ("--improve",): {"improve": True},
     ("--method", "trees"): {"method": "trees", "options": TreeOptions()},
+    ("--method", "chang2018", "--knob", "phi=0.2"): {"method": "chang2018", "options": TreeOptions.single(phi=0.2)},
+    ("--method", "chang2018"): {"method": "chang2018", "options": TreeOptions.single()},
+    ("--time", "5 s"): {"seconds": 5.0},
     ("--method", "trees", "--fibres", "elements"): {
         "method": "trees",
         "options": TreeOptions(fibres=FibreKind.ELEMENTS),
@@ -221,10 +224,12 @@ BAD = {
     ("--winches", "many"): "winches must be a whole number from 1 to 20 or \"auto\", not 'many'",
     ("--winches", "0"): 'winches must be a whole number from 1 to 20 or "auto", not 0',
     ("--winches", "²"): "winches must be a whole number from 1 to 20 or \"auto\", not '²'",
-    ("--method", "magic"): 'method must be one of routes, trees, not "magic"',
+    ("--method", "magic"): 'method must be one of routes, trees, chang2018, not "magic"',
+    ("--time", "0 s"): "--time 0 s: must be above 0, e.g. 2 s",
+    ("--method", "trees", "--time", "5 s"): 'method "trees" has no time limit. Use method "routes".',
     ("--method", "trees", "--fibres", "hairs"): '--fibres must be one of edges, elements, not "hairs"',
-    ("--fibres", "edges"): "--fibres: needs --method trees. Add it.",
-    ("--knob", "phi=0.3"): "--knob: needs --method trees. Add it.",
+    ("--fibres", "edges"): "--fibres: needs --method trees or chang2018. Add it.",
+    ("--knob", "phi=0.3"): "--knob: needs --method trees or chang2018. Add it.",
     ("--method", "trees", "--knob", "phi=3"): "TreeOptions.phis must be at least 0 and at most 1, not 3.0",
     ("--method", "trees", "--knob", "steps=some"): "--knob steps=some: must be a whole number",
     ("--method", "trees", "--knob", "psi=3"): "--knob psi=3: unknown setting. Write threshold, distance, steps or phi "

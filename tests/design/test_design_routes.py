@@ -302,7 +302,7 @@ def error_of(text: str, **asked: Any) -> None:
 
 def test_what_is_asked_for_wrongly() -> None:
     error_of("no pose to design for. Add a [[pose]] to robot.toml.", poses=[])
-    error_of('method must be one of routes, trees, not "magic"', method="magic")
+    error_of('method must be one of routes, trees, chang2018, not "magic"', method="magic")
     error_of('options of method "routes" must be RouteOptions, not TreeOptions', options=TreeOptions())
     error_of('options of method "trees" must be TreeOptions, not RouteOptions', options=SMALL, method="trees")
     error_of(

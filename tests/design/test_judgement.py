@@ -108,7 +108,7 @@ def test_a_network_that_can_be_built_comes_before_a_better_one_that_cannot(
     assert free.alternatives
     best = robot_hash(free.robot)
     monkeypatch.setattr(
-        "hydrostat.design.routes.design_routes.find_refusals",
+        "hydrostat.design.routes.finalists.find_refusals",
         lambda made, demand: ("no room",) if robot_hash(made) == best else (),
     )
     bound = found()

@@ -123,7 +123,7 @@ class Layout:
 
     @cached_property
     def chains(self) -> Chains:
-        """Which of the `places` the lines run through, and what is known of lines and winches."""
+        """Lists of the `places` that the lines run through, and flags of lines and winches."""
         counts = [len(route.points) - 1 for route in self.routes]
         begins = np.concatenate([[0], np.cumsum(np.array(counts, dtype=np.int64) + 1)])
         members = [

@@ -153,7 +153,7 @@ class _TreeDesign:
 
     @property
     def _reasons(self) -> str:
-        """What was rejected, the most frequent first."""
+        """Rejections with their counts, the most frequent first."""
         found = [f"{words} ({count})" for words, count in self.rejected.most_common() if count]
         return ", ".join(found) or "no route grew from the strongest muscles"
 
