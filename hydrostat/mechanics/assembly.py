@@ -176,6 +176,13 @@ class Assembly:
                 return np.inf
         return total
 
+    def value_before_contact(self, nodes: Nodes, controls: Vector) -> float:
+        """Lower bound of the energy, before a search for contact [J]; -inf where parts are near one another."""
+        contact = [energy.projects_first for energy in self.energies]
+        if not any(contact) or self.projects_first:
+            return -np.inf
+        return sum(energy.value(nodes, controls) for energy, it in zip(self.energies, contact, strict=True) if not it)
+
     def gradient(self, nodes: Nodes, controls: Vector) -> Float[np.ndarray, " dofs"]:
         """dE/dx [N], (nodes x dim,)."""
         total = np.zeros(self.shape)

@@ -132,10 +132,11 @@ class _EnergyDescent:
         return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), least_volume)
 
     def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> StepTrial:
-        """Take a step as far as all energies admit it; the energy is infinite if the step crushes an element."""
+        """Take a step as far as all energies admit it; the energy is infinite where an element is crushed."""
         nodes = self.bend(place.nodes, step) if bent else place.nodes + step.reshape(place.nodes.shape)
         least = place.assembly.least_volume(nodes)
-        if least < _CRUSHED * place.least_volume:
+        lowest = place.assembly.value_before_contact(nodes, self.controls)
+        if least < _CRUSHED * place.least_volume or lowest > place.energy + 10 * self.noise.energy:
             return StepTrial(place.assembly, nodes, np.inf, least, 1.0)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
@@ -198,7 +199,8 @@ class _EnergyDescent:
         square, curvature = float(step @ step), -float(place.gradient @ step) / float(step @ step)
         taken = float(np.linalg.norm(found.nodes - place.nodes)) / square**0.5
         if taken < _SHORT and place.assembly.projects_first and not eases:
-            self.damping = max(_DAMPS * self.damping, curvature * (1.0 / max(taken, _LEAST_TAKEN) - 1.0))
+            least = 1e-3  # Damping is chosen for steps of at least this share
+            self.damping = max(_DAMPS * self.damping, curvature * (1.0 / max(taken, least) - 1.0))
         elif eases or taken > _LONG:
             self.damping = self.damping / _EASES if self.damping > _FREE * curvature else 0.0
 
@@ -371,9 +373,6 @@ _SHORT = 0.25
 
 _DAMPS = 4.0
 """So many times more than before."""
-
-_LEAST_TAKEN = 1e-3
-"""Damping is chosen for steps of at least this share."""
 
 _LONG = 0.5
 """After a step of which more was taken there is less damping."""

@@ -173,8 +173,8 @@ def test_a_stuffed_body_in_space_is_sewn_of_patches():
 
 @pytest.mark.slow
 def test_a_body_of_foam_is_not_stuffed_unless_forced():
-    """Oracle: the fish tail was simulated as a castable foam."""
-    robot = hs.load_robot(gallery_folder("fish_tail"))
+    """Oracle: the square is simulated as a castable foam."""
+    robot = replace(crossed(), body=replace(crossed().body, material=MATERIALS["flexfoam-it x"]))
     with pytest.raises(UnbuildableError, match='simulated as "flexfoam-it x", which is no stuffing for cloth'):
         build_kit(robot, options=KitOptions(method=Method.PLUSH))
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 from PIL import Image
+from plush_robots import crossed
 
 import hydrostat as hs
 from hydrostat.errors import InputError
@@ -113,12 +114,12 @@ def test_pages_are_pictures_of_the_sheet(kit: tuple[KitMade, Told]) -> None:
 
 
 @pytest.mark.slow
-def test_what_cannot_be_built_is_told_and_made_all_the_same_if_forced(starfish: Robot) -> None:
+def test_what_cannot_be_built_is_told_and_made_all_the_same_if_forced() -> None:
     small = replace(KitOptions(), mould=replace(KitOptions().mould, bed=(20.0, 20.0, 20.0)))
-    refused = make_kit(Told(), starfish, small)
+    refused = make_kit(Told(), crossed(), small)
     assert refused.refused
     assert refused.zip is None
-    forced = make_kit(Told(), starfish, replace(small, force=True))
+    forced = make_kit(Told(), crossed(), replace(small, force=True))
     assert forced.problems == refused.refused
     assert forced.zip is not None
 
