@@ -141,6 +141,9 @@ def _write(
 def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: float) -> None:
     """Print what was reached, and what keeps it from more."""
     print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.status} ({1e3 * seconds:.0f} ms)")
+    if len(reached.errors) > 1:
+        markers = ", ".join(f"{name} {1e3 * error:.2f} mm" for name, error in reached.errors.items())
+        print(f"  marker errors: {markers}")
     text = ", ".join(f"{winch} {1e3 * value:z.1f} mm" for winch, value in _contraction_facts(loaded, reached).items())
     print(f"  contractions: {text}")
     if reached.friction_hysteresis:
