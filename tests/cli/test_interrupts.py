@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from hydrostat.cli.sample import sample
+from hydrostat.cli.waiting import one_interrupt
 
 PROGRAM = """
 import os, signal
@@ -139,3 +140,11 @@ def test_a_command_that_is_interrupted_says_so(begun: Callable[[], object], tmp_
     assert work.returncode == 130
     assert beside == "hydrostat: interrupted; files written so far are complete\n"
     assert "Wrote" not in printed
+
+
+def test_another_signal_ends_a_search_as_an_interrupt_does() -> None:
+    """SIGTERM raises KeyboardInterrupt where that is asked for, once; later ones are passed over."""
+    with one_interrupt("", signals=(signal.SIGTERM,), interrupt=True):
+        with pytest.raises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), signal.SIGTERM)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
 
-from hydrostat.design import Constraints, Network, TreeOptions, design_cables
+from hydrostat.design import Constraints, DesignRequest, Network, TreeOptions, design_cables, find_network
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.network import RouteTrace
 from hydrostat.design.region import body_region
@@ -174,6 +174,26 @@ def test_a_network_whose_kit_fits_comes_first(monkeypatch: pytest.MonkeyPatch, u
     for module in (routes, finalists):
         monkeypatch.setattr(module, "kit_fits", lambda network: len(network.robot.cables) == 4)
     assert len(designed.__wrapped__("usual").robot.cables) == 4
+
+
+def test_a_time_limit_gives_the_best_network_so_far(unchecked: None) -> None:
+    """Also where it is over before the first network: that one is waited for."""
+    request = DesignRequest(poses=(UP, DOWN), winches=2, cables=2, seconds=1e-3)
+    network = find_network(bare(), request)
+    assert network.timed_out
+    assert not network.complete
+    assert broken(network) == []
+    with pytest.raises(InputError, match="seconds must be finite and above 0 s, or None for no limit, not 0"):
+        replace(request, seconds=0)
+
+
+def test_winches_move_apart_where_their_units_meet(unchecked: None) -> None:
+    """Oracle: the kit, which refuses units of 25 x 25 x 40 mm as near as the constraints alone would let them be."""
+    network = design_cables(bare(), [UP, DOWN], winches=2, cables=2)
+    assert len(network.robot.winches) == 2
+    assert find_refusals(network.robot, demand_of(network.robot, network.reached)) == ()
+    one, other = (np.array(winch.at) for winch in network.robot.winches)
+    assert np.linalg.norm(one - other) > Constraints().winch_gap
 
 
 @pytest.mark.slow

@@ -307,7 +307,9 @@ class RouteSearch:
         """The networks found, judged as their user will find them, the best first."""
         judged = self.finalists.judged(self.found if complete else [self.best])
         if not any(kit_fits(network) for network in judged):
-            judged += self.finalists.with_room(self.found if complete else [self.best], self.growth)
+            judged += self.finalists.with_room(
+                self.found if complete else [self.best], self.growth.polished if complete else self.growth.short
+            )
             known = [trial.layout for trial in self.found]
             others = [pair for pair in self.passed if not any(pair[1] is layout for layout in known)]
             judged += self.finalists.first_to_fit(others, _LOOKED_AT if complete else _LOOKED_AT_LATE)

@@ -1,6 +1,6 @@
 """`Finalists`: networks judged as their user will find them."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from hydrostat.design.buildable import pulls, violations
@@ -10,7 +10,6 @@ from hydrostat.design.network import Alternative, Network
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.bench import Bench, Trial, reached_from_rest
-from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.errors import NotConvergedError
@@ -85,7 +84,7 @@ class Finalists:
         """The networks of some trials that keep all constraints."""
         return [judged for trial in trials if trial is not None and (judged := self.judge(trial.layout)) is not None]
 
-    def with_room(self, trials: Iterable[Trial | None], growth: Growth) -> list[Alternative]:
+    def with_room(self, trials: Iterable[Trial | None], refined: Callable[[Trial], Trial]) -> list[Alternative]:
         """The first of some networks that a kit can be made of once its winches stand farther apart."""
         for times in _APART:
             limits = replace(self.constraints, winch_gap=times * self.constraints.winch_gap)
@@ -93,7 +92,7 @@ class Finalists:
                 layout = None if trial is None else replace(trial.layout, constraints=limits)
                 pushed = layout and pushed_back(layout, self.region, 0.03 * self.robot.body.mesh.size)
                 moved = self.bench.reached(pushed, trial) if pushed else None
-                judged = None if moved is None else self.judge(growth.polished(moved).layout)
+                judged = None if moved is None else self.judge(refined(moved).layout)
                 if judged is not None and kit_fits(judged):
                     return [judged]
         return []
