@@ -111,7 +111,7 @@ def test_answers_hold_what_samples_held(robot: Robot, tmp_path: Path) -> None:
     again = contractions(
         SamplingScheme.ANTAGONIST, shared_numbers(rows, held.high, [(0, 1)]), held.low, held.high, [(0, 1)]
     )
-    assert np.array([held._held(row) for row in rows]) == pytest.approx(again, abs=1e-15)
+    assert np.array([held._apply_pairs(row) for row in rows]) == pytest.approx(again, abs=1e-15)
     sides = np.linspace(0, 1, 201)[:, None] * np.diag(free.high)[:, None]
     left = []
     places = np.array([held.predict(row)[0][:2] for row in sides.reshape(-1, 2)])

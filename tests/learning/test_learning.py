@@ -291,6 +291,6 @@ def test_the_way_back_learns_what_a_model_answers() -> None:
     model = SimpleNamespace(_pairs=pairs, high=training_set.high)
     half = 0.5 * (training_set.high - training_set.low)
     for scaled in np.random.default_rng(0).uniform(-1, 1, (20, 3)):
-        want = LearnedModel._held(model, training_set.low + half * (scaled + 1))  # type: ignore[arg-type]
+        want = LearnedModel._apply_pairs(model, training_set.low + half * (scaled + 1))  # type: ignore[arg-type]
         found = _holding(training_set, pairs)(torch.tensor(scaled[None]))[0]  # type: ignore[arg-type]
         assert training_set.low + half * (found.numpy() + 1) == pytest.approx(want, abs=1e-8)
