@@ -267,7 +267,7 @@ def test_the_commands(
     assert load_model(tmp_path / "strip.model").card.samples == 60
     part = learn_model(read_samples(folder).first(60), options=replace(OPTIONS, steps=1, inverse_steps=1))
     early = replace(part, card=replace(part.card, stopped=True))
-    monkeypatch.setattr("hydrostat.learning.learn_model", lambda *_, **__: early)
+    monkeypatch.setattr("hydrostat.learning.correct_model", lambda *_, **__: early)
     with pytest.raises(typer.Exit) as ended:
         learn(folder, tmp_path / "early.model", start=tmp_path / "strip.model")
     assert ended.value.exit_code == 130
