@@ -34,6 +34,7 @@ class DesignKeywords(TypedDict, total=False):
     options: RouteOptions | TreeOptions | None
     improve: bool
     filled: bool
+    seconds: float | None
 
 
 def design_cables(
@@ -51,8 +52,9 @@ def design_cables(
         poses: poses that the network should reach, all with the same cables.
         progress: called as the work goes on.
         watch: called with each better network that is found on the way, not yet judged as those are that are returned.
-        asked: `winches`, `cables`, `method`, `constraints`, `options`, `improve` and `filled` of a `DesignRequest`.
-            With `winches="auto"` the alternatives of the network hold the best that was found of every size tried.
+        asked: `winches`, `cables`, `method`, `constraints`, `options`, `improve`, `filled` and `seconds` of a
+            `DesignRequest`. With `winches="auto"` the alternatives of the network hold the best that was found of every
+            size tried.
 
     Raises:
         InputError: no pose, a pose of a marker that does not exist, counts, constraints or options that do not fit.

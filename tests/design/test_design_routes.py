@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
 
-from hydrostat.design import Constraints, DesignRequest, Network, TreeOptions, design_cables, find_network
+from hydrostat.design import Constraints, DesignRequest, Network, TreeOptions, design_cables
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.network import RouteTrace
 from hydrostat.design.region import body_region
@@ -178,13 +178,12 @@ def test_a_network_whose_kit_fits_comes_first(monkeypatch: pytest.MonkeyPatch, u
 
 def test_a_time_limit_gives_the_best_network_so_far(unchecked: None) -> None:
     """Also where it is over before the first network: that one is waited for."""
-    request = DesignRequest(poses=(UP, DOWN), winches=2, cables=2, seconds=1e-3)
-    network = find_network(bare(), request)
+    network = design_cables(bare(), [UP, DOWN], winches=2, cables=2, seconds=1e-3)
     assert network.timed_out
     assert not network.complete
     assert broken(network) == []
     with pytest.raises(InputError, match="seconds must be finite and above 0 s, or None for no limit, not 0"):
-        replace(request, seconds=0)
+        DesignRequest(poses=(UP, DOWN), seconds=0)
 
 
 def test_winches_move_apart_where_their_units_meet(unchecked: None) -> None:
