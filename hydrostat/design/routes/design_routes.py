@@ -305,7 +305,7 @@ class RouteSearch:
 
     def _finished(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
         """The networks found, judged as their user will find them, the best first."""
-        judged = self.finalists.judged(self.found if complete else [self.best])
+        judged = self.finalists.judge_all(self.found if complete else [self.best])
         if not any(kit_fits(network) for network in judged):
             judged += self.finalists.with_room(
                 self.found if complete else [self.best], self.growth.polished if complete else self.growth.short
@@ -313,7 +313,7 @@ class RouteSearch:
             known = [trial.layout for trial in self.found]
             others = [pair for pair in self.passed if not any(pair[1] is layout for layout in known)]
             judged += self.finalists.first_to_fit(others, _LOOKED_AT if complete else _LOOKED_AT_LATE)
-        judged += self.finalists.judged(self._simpler() if complete else [])
+        judged += self.finalists.judge_all(self._simpler() if complete else [])
         if not judged:
             raise HydrostatError(
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"

@@ -80,7 +80,7 @@ class Finalists:
         )
         return replace(layout, sites=sites)
 
-    def judged(self, trials: Iterable[Trial | None]) -> list[Alternative]:
+    def judge_all(self, trials: Iterable[Trial | None]) -> list[Alternative]:
         """The networks of some trials that keep all constraints."""
         return [judged for trial in trials if trial is not None and (judged := self.judge(trial.layout)) is not None]
 

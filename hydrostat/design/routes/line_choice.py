@@ -85,7 +85,7 @@ class LineChoice:
             return list(combinations(known, count))
         return [tuple(chance.choice(known, count, replace=False).tolist()) for _ in range(_SETS)]
 
-    def filled(self, chosen: list[int], places: Collection[int] | None = None) -> list[int]:
+    def fill_set(self, chosen: list[int], places: Collection[int] | None = None) -> list[int]:
         """With one line more after the other, of winches at some places, while that helps."""
         cost = self.cost(chosen)
         while len(chosen) < self.cables:
@@ -95,7 +95,7 @@ class LineChoice:
             chosen, cost = best, least
         return chosen
 
-    def exchanged(self, chosen: list[int]) -> list[int]:
+    def exchange_lines(self, chosen: list[int]) -> list[int]:
         """With lines exchanged for others, while that helps."""
         cost = self.cost(chosen)
         for _ in range(_EXCHANGES):
@@ -105,7 +105,7 @@ class LineChoice:
                 best, least = self._best_added(rest)
                 if least < cost:
                     chosen, cost = best, least
-            chosen = self.filled(chosen)
+            chosen = self.fill_set(chosen)
             cost = self.cost(chosen)
             if cost >= before:
                 break

@@ -30,10 +30,10 @@ def sketches(proposals: Proposals, bare: Trial, *, winches: int, cables: int, co
     if not lines:
         return []
     choice = LineChoice(proposals, bare, lines, winches, cables)
-    begun = sorted((choice.filled([], places) for places in choice.place_sets()), key=choice.cost)
+    begun = sorted((choice.fill_set([], places) for places in choice.place_sets()), key=choice.cost)
     found: dict[tuple[int, ...], float] = {}
     for chosen in begun[: _BEGUN * count]:
-        better = choice.exchanged(chosen)
+        better = choice.exchange_lines(chosen)
         found[tuple(sorted(better))] = choice.cost(better)
     layouts = []
     for chosen in sorted(found, key=lambda one: found[one]):
