@@ -33,27 +33,27 @@ def robot_and_bench() -> tuple[Layout, Bench]:
 @pytest.mark.parametrize("start", ["rest", "trial"])
 def test_a_bound_on_the_error_changes_only_what_is_above_it(start: str, unchecked: None) -> None:
     layout, bench = robot_and_bench()
-    whole = bench.reached(layout, None)
+    whole = bench.reach_poses(layout, None)
     assert whole is not None
     before = None if start == "rest" else whole
-    found = bench.reached(layout, before)
+    found = bench.reach_poses(layout, before)
     assert found is not None
     assert found.error > 1e-3
-    same = bench.reached(layout, before, worst=1.001 * found.error)
+    same = bench.reach_poses(layout, before, worst=1.001 * found.error)
     assert same is not None
     assert same.error == found.error
-    assert bench.reached(layout, before, worst=0.999 * found.error) is None
+    assert bench.reach_poses(layout, before, worst=0.999 * found.error) is None
 
 
 def test_a_held_layout_above_the_bound_is_none(unchecked: None) -> None:
     layout, bench = robot_and_bench()
-    trial = bench.reached(layout, None)
+    trial = bench.reach_poses(layout, None)
     assert trial is not None
     pulls = [pose.contractions for pose in trial.poses]
-    same = bench.held(layout, pulls, trial, worst=1.001 * trial.error)
+    same = bench.hold_contractions(layout, pulls, trial, worst=1.001 * trial.error)
     assert same is not None
     assert same.error == pytest.approx(trial.error, rel=1e-6)
-    assert bench.held(layout, pulls, trial, worst=0.999 * trial.error) is None
+    assert bench.hold_contractions(layout, pulls, trial, worst=0.999 * trial.error) is None
 
 
 def test_the_best_candidates_are_those_of_all_solved_to_the_end(unchecked: None) -> None:
@@ -61,20 +61,20 @@ def test_the_best_candidates_are_those_of_all_solved_to_the_end(unchecked: None)
     bench = Bench(robot, POSES, LIMITS)
     graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     growth = Growth(Proposals(bench, graph, RouteOptions(hops=4, trials=6, steps=0), 0.05), lambda *_: None)
-    start = growth.bare(Layout(robot, LIMITS, (), ()))
+    start = growth.evaluate(Layout(robot, LIMITS, (), ()))
     assert start is not None
-    (best,) = growth._tried(start, 1, 2, count=6, best=1)
-    layouts = growth.proposals.grown(start, winches=1, needed=2, count=6)
-    every = [bench.reached(layout, start, iterations=5) for layout in layouts]
-    ratings = sorted(growth._rated(trial) for trial in every if trial is not None)
+    (best,) = growth._try_cables(start, 1, 2, count=6, best=1)
+    layouts = growth.proposals.grow_layouts(start, winches=1, needed=2, count=6)
+    every = [bench.reach_poses(layout, start, iterations=5) for layout in layouts]
+    ratings = sorted(growth._rate(trial) for trial in every if trial is not None)
     assert len(ratings) > 3
     assert ratings[0] < ratings[-1]
-    assert growth._rated(best) == ratings[0]
+    assert growth._rate(best) == ratings[0]
 
 
 def test_a_pose_that_misses_more_than_hoped_is_sought_again(monkeypatch: pytest.MonkeyPatch, unchecked: None) -> None:
     layout, bench = robot_and_bench()
-    good = bench.reached(layout, None)
+    good = bench.reach_poses(layout, None)
     asked: list[int] = []
 
     def watched(*given: Any, options: IKOptions, **more: Any) -> IKResult:
@@ -82,14 +82,14 @@ def test_a_pose_that_misses_more_than_hoped_is_sought_again(monkeypatch: pytest.
         return solve_ik(*given, options=options, **more)
 
     monkeypatch.setattr(bench_module, "solve_ik", watched)
-    poor = bench.reached(layout, None, iterations=0)
+    poor = bench.reach_poses(layout, None, iterations=0)
     assert good is not None
     assert poor is not None
     assert poor.error > 1.2 * good.error
     assert asked == [0, 0]
-    bench.reached(layout, None, hoped=poor)
+    bench.reach_poses(layout, None, hoped=poor)
     assert asked == [0, 0] * 2
-    bench.reached(layout, None, iterations=0, hoped=good)
+    bench.reach_poses(layout, None, iterations=0, hoped=good)
     assert 1 in asked[4:]
 
 
@@ -97,11 +97,11 @@ def test_poses_from_rest_are_told(unchecked: None) -> None:
     layout, bench = robot_and_bench()
     graph = route_graph(bench.source, body_region(bench.source.body, LIMITS.clearance), LIMITS, spacing=0.03)
     growth = Growth(Proposals(bench, graph, RouteOptions(), 0.05), lambda *_: None)
-    found = bench.reached(layout, None)
+    found = bench.reach_poses(layout, None)
     assert isinstance(found, Trial)
     assert not found.from_rest
-    assert growth.truly(found).from_rest
-    assert growth.truly(found, worst=0.5 * found.error).error == np.inf
+    assert growth.resolve_from_rest(found).from_rest
+    assert growth.resolve_from_rest(found, worst=0.5 * found.error).error == np.inf
 
 
 def test_markers_that_a_pose_does_not_name_count_a_hundredth(unchecked: None) -> None:

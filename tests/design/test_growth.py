@@ -26,9 +26,9 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
     graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     # Far apart, so that paths of two hops stay straight and no point is moved.
     growth = Growth(Proposals(bench, graph, RouteOptions(hops=2, trials=6, steps=0, starts=1), 0.06), lambda *_: None)
-    start = growth.bare(Layout(robot, LIMITS, (), ()))
+    start = growth.evaluate(Layout(robot, LIMITS, (), ()))
     assert start is not None
-    (grown, *_) = growth.grown([start], winches=1, cables=1)
+    (grown, *_) = growth.grow_networks([start], winches=1, cables=1)
     joined = {tuple(pair) for pair in graph.edges.tolist()}
     errors = []
     for first, last in permutations(range(len(graph.points)), 2):
@@ -36,7 +36,7 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
             continue
         stand = WinchSite(Winch(name="one", at=tuple(map(float, graph.points[first]))))
         line = CableRoute(0, graph.points[[first, last]])
-        found = bench.reached(Layout(robot, LIMITS, (stand,), (line,)), start, iterations=6)
+        found = bench.reach_poses(Layout(robot, LIMITS, (stand,), (line,)), start, iterations=6)
         if found is not None:
             errors.append(found.error)
     assert len(errors) > 20
@@ -54,11 +54,11 @@ def test_growth_stops_at_the_count(cables: int, unchecked: None) -> None:
         Proposals(bench, graph, RouteOptions(hops=4, trials=2, steps=1, starts=1), 0.05),
         lambda _, trial: noted.append(len(trial.layout.routes)),
     )
-    start = growth.bare(Layout(robot, LIMITS, (), ()))
+    start = growth.evaluate(Layout(robot, LIMITS, (), ()))
     assert start is not None
-    networks = growth.grown([start], winches=1, cables=cables)
+    networks = growth.grow_networks([start], winches=1, cables=cables)
     assert {len(grown.layout.sites) for grown in networks} == {1}
     assert sorted({len(grown.layout.routes) for grown in networks}) == list(range(1, cables + 1))
     assert noted == list(range(1, cables + 1))
     assert [grown.cost for grown in networks] == sorted(grown.cost for grown in networks)
-    assert np.isfinite(growth.truly(networks[0]).error)
+    assert np.isfinite(growth.resolve_from_rest(networks[0]).error)

@@ -8,7 +8,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.routes.begin import flipped, layout_of, mirrored
+from hydrostat.design.routes.begin import add_mirror_image, layout_of, reflect_points
 from hydrostat.design.routes.growth import without
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.robot import Mount, Winch
@@ -92,7 +92,7 @@ def assert_symmetric(found: Layout) -> None:
     for index, line in enumerate(found.routes):
         if line.twin is not None:
             twin = found.routes[line.twin]
-            assert flipped(found, twin.points) == pytest.approx(line.points, abs=1e-15)
+            assert reflect_points(found, twin.points) == pytest.approx(line.points, abs=1e-15)
             assert (line.slack, line.ratio, line.lead) == (twin.slack, twin.ratio, twin.lead)
             assert np.array_equal(line.points[0], found.sites[found.routes[index].winch].winch.at)
 
@@ -100,7 +100,7 @@ def assert_symmetric(found: Layout) -> None:
 @pytest.mark.parametrize("at", [(0.02, 0.012), (0.02, 0.004)])
 def test_mirrored_parts_follow_their_twins(at: tuple[float, float]) -> None:
     """Beside the mirror there are two winches; near it there is one, which stays in it."""
-    both = mirrored(one_cable(at=at, winch_gap=0.02, slack=0.01, spool_ratio=2.0))
+    both = add_mirror_image(one_cable(at=at, winch_gap=0.02, slack=0.01, spool_ratio=2.0))
     assert len(both.sites) == (2 if at[1] > 0.01 else 1)
     assert len(both.routes) == 2
     assert_symmetric(both)
@@ -115,9 +115,9 @@ def test_mirrored_parts_follow_their_twins(at: tuple[float, float]) -> None:
 
 
 def test_a_second_pair_hangs_on_the_same_winches() -> None:
-    one = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
+    one = add_mirror_image(one_cable(at=(0.02, 0.012), winch_gap=0.02))
     line = CableRoute(1, np.array([one.sites[1].winch.at, (0.06, -0.008), (0.1, -0.009)]))
-    two = mirrored(replace(one, routes=(*one.routes, line)))
+    two = add_mirror_image(replace(one, routes=(*one.routes, line)))
     assert [line.winch for line in two.routes] == [0, 1, 1, 0]
     assert [line.twin for line in two.routes] == [None, 0, None, 2]
     assert_symmetric(two)
@@ -128,7 +128,7 @@ def test_a_second_pair_hangs_on_the_same_winches() -> None:
 
 def test_a_symmetric_robot_is_tied_together() -> None:
     """As its own network is improved, a symmetric one stays so."""
-    made = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
+    made = add_mirror_image(one_cable(at=(0.02, 0.012), winch_gap=0.02))
     again = layout_of(made.robot(), made.constraints)
     assert [stand.twin for stand in again.sites] == [None, 0]
     assert [line.twin for line in again.routes] == [None, 0]
@@ -139,10 +139,10 @@ def test_a_symmetric_robot_is_tied_together() -> None:
 
 
 def test_without_a_cable_its_twin_and_idle_winches_go() -> None:
-    one = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
+    one = add_mirror_image(one_cable(at=(0.02, 0.012), winch_gap=0.02))
     assert without(one, 0) is None
     line = CableRoute(1, np.array([one.sites[1].winch.at, (0.06, -0.008), (0.1, -0.009)]))
-    two = mirrored(replace(one, routes=(*one.routes, line)))
+    two = add_mirror_image(replace(one, routes=(*one.routes, line)))
     left = without(two, 0)
     assert left is not None
     assert len(left.sites) == 2

@@ -10,7 +10,7 @@ from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import body_region
 from hydrostat.design.request import RouteOptions
-from hydrostat.design.routes.begin import layout_of, mirrored
+from hydrostat.design.routes.begin import add_mirror_image, layout_of
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certificate import certify
 from hydrostat.design.routes.layout import CableRoute, Layout
@@ -52,7 +52,7 @@ def of_a_pair() -> Layout:
     source = strip()
     winch = layout_of(source, LOOSE).sites[0]
     line = CableRoute(0, np.array(source.cables[0].points)[[0, 2, 4, 6]], slack=0.002, ratio=1.2)
-    return mirrored(Layout(source, replace(LOOSE, mirror="y"), (winch,), (line,)))
+    return add_mirror_image(Layout(source, replace(LOOSE, mirror="y"), (winch,), (line,)))
 
 
 def of_its_own() -> Layout:
@@ -106,7 +106,7 @@ def hidden() -> tuple[Bench, Layout, Trial]:
     numbers = layout.numbers.copy()
     numbers[: len(shifts)] += shifts
     displaced = layout.at(numbers)
-    trial = bench.reached(displaced, None)
+    trial = bench.reach_poses(displaced, None)
     assert trial is not None
     return bench, displaced, trial
 
@@ -156,7 +156,7 @@ def test_the_slope_falls_towards_an_optimum(unchecked: None) -> None:
     bench, _, trial = hidden()
     targets = {**bench.targets[0].targets, "tip": (0.18, 0.04)}
     bench = Bench(bench.source, [PoseTarget(name="other", targets=targets)], bench.constraints)
-    start = bench.reached(trial.layout, None)
+    start = bench.reach_poses(trial.layout, None)
     assert start is not None
     region = body_region(bench.source.body, bench.constraints.clearance)
     ended = refine(bench, region, start, RefineOptions(iterations=60, effort=0.0, progress=1e-7))
@@ -173,17 +173,17 @@ def test_what_one_more_cable_promises_comes_true(unchecked: None) -> None:
     shifts = {"tip": (-0.0006, -0.0008), "mid": (0.0, -0.0004), "low": (-0.0004, 0.0002)}
     targets = {name: tuple(map(float, np.add(place, shifts[name]))) for name, place in reached.items()}
     bench = Bench(source, [PoseTarget(name="near", targets=targets)], Constraints(winch_clearance=0.006))
-    trial = bench.reached(layout_of(source, bench.constraints), None)
+    trial = bench.reach_poses(layout_of(source, bench.constraints), None)
     assert trial is not None
     priced = proposals(bench)
     promised = certify(priced, trial).further
-    (best,) = priced.priced(trial, count=1)
+    (best,) = priced.price_paths(trial, count=1)
     points = priced.graph.points
     line = CableRoute(1, points[list(best.nodes)])
     stand = replace(trial.layout.sites[0], winch=replace(source.winches[0], name="new", at=tuple(points[best.winch])))
     added = replace(trial.layout, sites=(*trial.layout.sites, stand), routes=(*trial.layout.routes, line))
     assert best.lead == (best.winch,)
-    found = bench.reached(added, trial)
+    found = bench.reach_poses(added, trial)
     assert found is not None
     drop = trial.error**2 - found.error**2
     assert drop > 0.2 * trial.error**2

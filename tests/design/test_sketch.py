@@ -28,7 +28,7 @@ def _begun(robot, constraints: Constraints, poses) -> tuple[Proposals, Trial]:
     spacing = float(robot.body.mesh.edge_lengths.mean())
     graph = route_graph(robot, body_region(robot.body, constraints.clearance), constraints, spacing=spacing)
     proposals = Proposals(bench, graph, RouteOptions(), 2 * spacing)
-    bare = Growth(proposals, lambda *_: None).bare(Layout(robot, constraints, (), ()))
+    bare = Growth(proposals, lambda *_: None).evaluate(Layout(robot, constraints, (), ()))
     assert bare is not None
     return proposals, bare
 
@@ -118,7 +118,7 @@ def test_sketches_are_within_the_counts_and_cross_nothing(starfish: tuple[Propos
             for other in layout.routes[index + 1 :]:
                 if route.winch != other.winch:
                     assert _apart(route.points, other.points) >= bare.layout.constraints.cable_gap - 2e-5
-    costs = [trial.cost for layout in drawn if (trial := proposals.bench.reached(layout, None)) is not None]
+    costs = [trial.cost for layout in drawn if (trial := proposals.bench.reach_poses(layout, None)) is not None]
     assert min(costs) < 0.5 * bare.cost
 
 
@@ -128,7 +128,7 @@ def test_there_are_no_sketches_beside_cables_or_in_the_mirror(
     proposals, bare = starfish
     assert not sketches(*_begun(bare.layout.source, Constraints(mirror="x"), proposals.bench.targets), **COUNTS)
     (drawn,) = sketches(proposals, bare, **COUNTS)
-    trial = proposals.bench.reached(drawn, None)
+    trial = proposals.bench.reach_poses(drawn, None)
     assert trial is not None
     assert not sketches(proposals, trial, **COUNTS)
 

@@ -1,4 +1,4 @@
-"""`layout_of`, `mirrored`: the network of a robot as a layout, and parts with their images on the other side."""
+"""`layout_of`, `add_mirror_image`: the network of a robot as a layout, and parts with their mirror images."""
 
 from dataclasses import replace
 
@@ -10,8 +10,8 @@ from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.robot import Cable, Mount, Robot
 
 
-def mirrored(layout: Layout) -> Layout | None:
-    """The layout with the mirror image of its last line, and of that line's winch where that has none yet.
+def add_mirror_image(layout: Layout) -> Layout | None:
+    """Add the mirror image of the last line, and of that line's winch where that has none yet.
 
     A new winch nearer to the mirror than half the gap that two winches keep is put into it and pulls both lines. None
     where that winch is locked, or where the world has no winch for the other side.
@@ -23,7 +23,7 @@ def mirrored(layout: Layout) -> Layout | None:
     if twin is None and any(other.twin == number for other in sites):
         twin = next(index for index, other in enumerate(sites) if other.twin == number)
     elif twin is None:
-        image = flipped(layout, np.array([site.winch.at]))[0]
+        image = reflect_points(layout, np.array([site.winch.at]))[0]
         gap = float(np.linalg.norm(image - site.winch.at))
         other = _site_at(sites, image, number)
         world = site.winch.mount is Mount.WORLD
@@ -55,14 +55,14 @@ def mirrored(layout: Layout) -> Layout | None:
     own = replace(route, points=points)
     make = None if route.make is None else replace(route.make, name="")
     image_route = CableRoute(
-        twin, flipped(layout, points), lead=route.lead, slack=route.slack, ratio=route.ratio, make=make,
+        twin, reflect_points(layout, points), lead=route.lead, slack=route.slack, ratio=route.ratio, make=make,
         twin=len(layout.routes) - 1,
     )  # fmt: skip
     return replace(layout, sites=tuple(sites), routes=(*layout.routes[:-1], own, image_route))
 
 
-def flipped(layout: Layout, points: Points) -> Points:
-    """Points on the other side of the mirror."""
+def reflect_points(layout: Layout, points: Points) -> Points:
+    """Return points on the other side of the mirror."""
     return points * layout.constraints.flip(layout.dim)
 
 
@@ -115,15 +115,15 @@ def layout_of(robot: Robot, constraints: Constraints) -> Layout:
         for number, winch in enumerate(robot.winches)
     ]
     layout = Layout(robot, constraints, tuple(sites), tuple(routes))
-    return layout if constraints.mirror is None else _tied(layout)
+    return layout if constraints.mirror is None else _tie_twins(layout)
 
 
-def _tied(layout: Layout) -> Layout:
-    """The layout whose parts know their mirror images; what has none is left free."""
+def _tie_twins(layout: Layout) -> Layout:
+    """Link each part to its mirror image; parts without one stay free."""
     sites, routes = list(layout.sites), list(layout.routes)
     places = np.array([site.winch.at for site in sites], dtype=float).reshape(-1, layout.dim)
     images: dict[int, int] = {}
-    for index, image in enumerate(flipped(layout, places)):
+    for index, image in enumerate(reflect_points(layout, places)):
         away = np.linalg.norm(places - image, axis=1)
         if away.min() <= _NEAR:
             images[index] = int(away.argmin())
@@ -145,7 +145,7 @@ def _are_twins(layout: Layout, first: CableRoute, second: CableRoute, images: di
         images.get(first.winch) == second.winch
         and first.points.shape == second.points.shape
         and first.lead == second.lead
-        and float(np.abs(flipped(layout, first.points) - second.points).max()) <= _NEAR
+        and float(np.abs(reflect_points(layout, first.points) - second.points).max()) <= _NEAR
     )
 
 

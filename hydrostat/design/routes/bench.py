@@ -34,14 +34,14 @@ class Trial:
     near: float = 1.0  # factor of the cost, at least 1: the less its markers reach elsewhere, the more
 
     @property
-    def built(self) -> float:
-        """The error expected of a robot as it is built: root of the mean square, to second moments [m]."""
+    def built_error(self) -> float:
+        """Error expected of a robot as it is built: root of the mean square, to second moments [m]."""
         return float(np.hypot(self.error, self.spread))
 
     @property
     def cost(self) -> float:
         """The error as built, more where cables bear too much, and where little else is in reach [m]."""
-        return self.built * max(self.pull, 1.0) * self.near
+        return self.built_error * max(self.pull, 1.0) * self.near
 
 
 @dataclass(eq=False)
@@ -91,7 +91,7 @@ class Bench:
         places = simulation.marker_anchors.positions(nodes)[self.markers[pose]]
         return self.weights[pose] * (self.goals[pose] - places).ravel()
 
-    def reached(
+    def reach_poses(
         self,
         layout: Layout,
         before: Trial | None,
@@ -100,7 +100,7 @@ class Bench:
         worst: float = np.inf,
         hoped: Trial | None = None,
     ) -> Trial | None:
-        """The layout brought nearest to every pose, from a trial whose winches are its first.
+        """Bring a layout nearest to every pose, from a trial whose winches are its first.
 
         Where a pose misses more than in a trial `hoped` for, it is sought from other beginnings too.
         None: no equilibrium, or an error above `worst` [m]; poses that are left when it is sure of that are not solved.
@@ -112,16 +112,16 @@ class Bench:
         limits = Limits(tension=self.constraints.tension_limit)
         found = []
         for index, target in enumerate(self.targets):
-            start = None if before is None else self._begun(simulation, before, index)
+            start = None if before is None else self._relax_start(simulation, before, index)
             try:
                 if start is None:
-                    pose = reached_from_rest(simulation, target, limits, options).pose
+                    pose = reach_from_rest(simulation, target, limits, options).pose
                 else:
                     pose = solve_ik(simulation, target, start=start, limits=limits, options=options).pose
-                if hoped is not None and self._missed(simulation, index, pose) > self._short_of(hoped, index):
+                if hoped is not None and self._pose_error(simulation, index, pose) > self._short_of(hoped, index):
                     more = replace(options, restarts=_RESTARTS)
                     with suppress(NotConvergedError):  # then the first one stands
-                        pose = reached_from_rest(simulation, target, limits, more, start=start).pose
+                        pose = reach_from_rest(simulation, target, limits, more, start=start).pose
                 found.append(pose)
             except NotConvergedError:
                 return None
@@ -129,12 +129,12 @@ class Bench:
                 return None
         return self._within(layout, simulation, found, worst)
 
-    def held(
+    def hold_contractions(
         self, layout: Layout, contractions: Sequence[Vector], before: Trial, *, worst: float = np.inf
     ) -> Trial | None:
-        """The layout at given contractions of each pose [m].
+        """Solve a layout at given contractions of each pose [m].
 
-        None where Newton does not find an equilibrium at once, or the error is above `worst` [m].
+        None where Newton does not find an equilibrium directly, or the error is above `worst` [m].
         """
         self.look()
         self.solves += 1
@@ -156,12 +156,12 @@ class Bench:
             trial = self.trial(layout, simulation, poses)
         except NotConvergedError:  # about to snap
             return None
-        return trial if trial.built <= worst else None
+        return trial if trial.built_error <= worst else None
 
-    def scattered(
+    def solve_variation(
         self, layout: Layout, near: Equilibrium, contractions: Vector, index: int
     ) -> tuple[Simulation, Nodes, CableSensitivities] | None:
-        """A layout built otherwise, near a pose: its nodes there [m], and slopes; None where it has no equilibrium."""
+        """Solve a layout built otherwise, near a pose: nodes [m] and sensitivities; None if it has no equilibrium."""
         try:
             simulation = Simulation(layout.robot(), body=self.body)
             result = simulation.solver.relax(near.nodes, contractions, iterations=15)
@@ -172,15 +172,15 @@ class Bench:
         except (InputError, NotConvergedError):  # a hole outside the body, or about to snap
             return None
 
-    def _missed(self, simulation: Simulation, index: int, pose: Equilibrium) -> float:
+    def _pose_error(self, simulation: Simulation, index: int, pose: Equilibrium) -> float:
         return float(np.linalg.norm(self.residual(simulation, index, pose.nodes)))
 
     def _short_of(self, hoped: Trial, index: int) -> float:
         """Error that a pose may have to be as good as in another trial, but for a share of the error of all [m]."""
-        return self._missed(hoped.simulation, index, hoped.poses[index]) + _SHORT * hoped.error
+        return self._pose_error(hoped.simulation, index, hoped.poses[index]) + _SHORT * hoped.error
 
-    def _begun(self, simulation: Simulation, before: Trial, index: int) -> Equilibrium | None:
-        """A pose of the new robot near one of the old; None where there is none."""
+    def _relax_start(self, simulation: Simulation, before: Trial, index: int) -> Equilibrium | None:
+        """Relax the new robot from a pose of the old; None where that finds no equilibrium."""
         pose = before.poses[index]
         pulled = np.zeros(len(simulation.robot.winches))
         shared = min(len(pulled), len(pose.contractions))
@@ -223,7 +223,7 @@ class Bench:
         return float(np.sqrt(sum(squares)))
 
 
-def reached_from_rest(
+def reach_from_rest(
     simulation: Simulation,
     target: PoseTarget,
     limits: Limits,

@@ -19,7 +19,7 @@ def certify(proposals: Proposals, trial: Trial) -> Certificate:
     each edge, so what it finds is a lower bound of what the best of all paths would gain.
     """
     unbiased = replace(proposals, options=replace(proposals.options, lead_penalty=0.0))
-    paths = unbiased.priced(trial, count=1)
+    paths = unbiased.price_paths(trial, count=1)
     gain = paths[0].gain if paths else 0.0
     model = linear_model(proposals.bench, proposals.graph.region, trial, effort=0.0, reach=_HOLDS)
     return Certificate(

@@ -115,15 +115,15 @@ class RouteSearch:
         self.deadline = math.inf
         timed_out = not complete and time.monotonic() >= deadline
         try:
-            network, alternatives = self._finished(complete)
+            network, alternatives = self._judge_networks(complete)
             certificate = self._certificate(network) if complete else None
         except KeyboardInterrupt:
             complete, certificate, self.found = False, None, self.found[:1]
-            network, alternatives = self._finished(complete)
+            network, alternatives = self._judge_networks(complete)
         return Network(
             robot=network.robot,
             source=self.robot,
-            request=replace(self.request, constraints=self._kept),
+            request=replace(self.request, constraints=self._fitting_constraints),
             reached=network.reached,
             built=network.built,
             alternatives=tuple(alternatives),
@@ -145,21 +145,21 @@ class RouteSearch:
         spacing = float(self.robot.body.mesh.edge_lengths.mean())
         graph = route_graph(self.robot, self.region, self.constraints, spacing=spacing)
         self.proposals = Proposals(self.bench, graph, self.options, self.options.spacing * spacing)
-        self.growth = growth = Growth(self.proposals, self._noted)
+        self.growth = growth = Growth(self.proposals, self._note_network)
         self.progress("Growing networks", 0, self._total)
-        begun = growth.bare(self._beginning())
+        begun = growth.evaluate(self._beginning())
         if begun is None:
             raise HydrostatError("the network to begin with has no equilibrium in reach of its poses; start without it")
         if begun.layout.routes:
-            self._noted("as it was", begun)
-        grown = self._sketched(growth, begun)
+            self._note_network("as it was", begun)
+        grown = self._sketch_networks(growth, begun)
         if not grown:
-            grown = growth.grown([begun], winches=self.winches, cables=self.cables)
+            grown = growth.grow_networks([begun], winches=self.winches, cables=self.cables)
             if not any(growth.enough(trial, self.winches) for trial in grown):
-                grown += [*self._by_force(growth, begun), *self._hinted(growth)]
+                grown += [*self._by_force(growth, begun), *self._refine_hints(growth)]
         grown.sort(key=lambda trial: trial.cost)
         whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
-        self.found = [growth.truly(trial) for trial in whole[: _REFINED + 1]]
+        self.found = [growth.resolve_from_rest(trial) for trial in whole[: _REFINED + 1]]
         if not self.found:
             raise HydrostatError(
                 "no network could be built: no cable keeps clear of the edge, of forbidden zones and of other cables; "
@@ -168,54 +168,54 @@ class RouteSearch:
         self.found.sort(key=lambda trial: trial.cost)
         for rank, trial in enumerate(self.found[:_REFINED]):
             self.progress("Refining", rank, _REFINED)
-            self.found[rank] = growth.polished(trial)
-            self._noted("via points moved", self.found[rank])
+            self.found[rank] = growth.refine(trial)
+            self._note_network("via points moved", self.found[rank])
         self.found.sort(key=lambda trial: trial.cost)
         left = self.options.exchanges
         while left > 0 and not growth.enough(best := self.found[0], self.winches):
             self.progress("Exchanging cables", self.options.exchanges - left, self.options.exchanges)
-            better = growth.exchanged(best, winches=self.winches, most=left)
+            better = growth.exchange_cables(best, winches=self.winches, most=left)
             left -= len(best.layout.routes)
             if better is best:
                 break
-            self.found.insert(0, growth.polished(better))
-            self._noted("cables exchanged, via points moved", self.found[0])
+            self.found.insert(0, growth.refine(better))
+            self._note_network("cables exchanged, via points moved", self.found[0])
             self.found.sort(key=lambda trial: trial.cost)
             if self.found[0].cost > (1 - _ANOTHER) * best.cost:
                 break
         self.progress("Exchanging cables", 1, 1)
-        self.found[0] = self._thinned(growth, growth.pruned(self.found[0]))
-        self._noted("holes left out", self.found[0])
+        self.found[0] = self._thin_network(growth, growth.prune_cables(self.found[0]))
+        self._note_network("holes left out", self.found[0])
 
-    def _sketched(self, growth: Growth, bare: Trial) -> list[Trial]:
-        """Networks drawn along the limbs, the best of them with the further cables that help."""
+    def _sketch_networks(self, growth: Growth, bare: Trial) -> list[Trial]:
+        """Draw networks along the limbs, and grow the best of them by further cables that help."""
         count = self.options.starts + 1
         drawn = sketches(self.proposals, bare, winches=self.winches, cables=self.cables, count=_DRAWN * count)
-        trials = [self.bench.reached(layout, None, iterations=_GLANCE) for layout in drawn]
+        trials = [self.bench.reach_poses(layout, None, iterations=_GLANCE) for layout in drawn]
         rough: list[Trial] = []
         for number, trial in enumerate(trials):
             self.progress("Drawing networks", number, len(trials))
             if trial is not None:
-                rough.append(growth.short(trial, directions=0))
+                rough.append(growth.refine_briefly(trial, directions=0))
                 if rough[-1].cost < (1 - _HELPS) * bare.cost and rough[-1].cost <= min(one.cost for one in rough):
-                    self._noted("drawn along the limbs", rough[-1])
+                    self._note_network("drawn along the limbs", rough[-1])
         self.progress("Drawing networks", len(trials), len(trials))
         rough.sort(key=lambda trial: trial.cost)
         helpful: list[Trial] = []
-        for trial in map(growth.short, rough[: _LIKELY * count]):
+        for trial in map(growth.refine_briefly, rough[: _LIKELY * count]):
             if trial.cost < (1 - _HELPS) * bare.cost:
                 helpful.append(trial)
-                self._noted("drawn along the limbs", trial)
+                self._note_network("drawn along the limbs", trial)
         helpful.sort(key=lambda trial: trial.cost)
-        return growth.grown(helpful[:count], winches=self.winches, cables=self.cables)
+        return growth.grow_networks(helpful[:count], winches=self.winches, cables=self.cables)
 
     def _by_force(self, growth: Growth, begun: Trial) -> list[Trial]:
         """Networks grown along stronger paths, where none can be drawn."""
-        strong = Growth(replace(growth.proposals, effort=_STRONG), self._noted)
-        return strong.grown([begun], winches=self.winches, cables=self.cables)
+        strong = Growth(replace(growth.proposals, effort=_STRONG), self._note_network)
+        return strong.grow_networks([begun], winches=self.winches, cables=self.cables)
 
-    def _hinted(self, growth: Growth) -> list[Trial]:
-        """Networks that others found, moved to where they can be built, and refined."""
+    def _refine_hints(self, growth: Growth) -> list[Trial]:
+        """Move networks that others found to where they can be built, and refine them."""
         trials = []
         for hint in (
             self.hints(self.physics)
@@ -226,19 +226,19 @@ class RouteSearch:
             fits = len(hint.winches) <= self.winches and len(hint.cables) <= self.cables
             if not fits or pushed is None or violations(pushed.robot(digits=DIGITS), self.constraints, self.region):
                 continue
-            trial = self.bench.reached(pushed, None)
+            trial = self.bench.reach_poses(pushed, None)
             if trial is not None:
-                trials.append(growth.polished(trial))
-                self._noted("winch trees, their via points moved", trials[-1])
+                trials.append(growth.refine(trial))
+                self._note_network("winch trees, their via points moved", trials[-1])
         return trials
 
     @staticmethod
-    def _thinned(growth: Growth, trial: Trial) -> Trial:
-        """A network with no more holes than it needs, refined once more."""
-        thinner = growth.thinned(trial)
+    def _thin_network(growth: Growth, trial: Trial) -> Trial:
+        """Leave out holes that a network does not need, and refine it once more."""
+        thinner = growth.remove_via_points(trial)
         if thinner is trial:
             return trial
-        thinner = growth.polished(growth.truly(thinner))
+        thinner = growth.refine(growth.resolve_from_rest(thinner))
         return thinner if thinner.cost < (1 + _LOOSER) * trial.cost else trial
 
     @cached_property
@@ -288,27 +288,27 @@ class RouteSearch:
                     f"{present}"
                 )
 
-    def _noted(self, words: str, trial: Trial) -> None:
-        """A network on the way: the best so far is kept, to be returned if the search is interrupted."""
+    def _note_network(self, words: str, trial: Trial) -> None:
+        """Note a network on the way: the best so far is returned if the search is interrupted."""
         if words.startswith(("cable", "the first")):
             self.grown += 1
             self.progress("Growing networks", min(self.grown, self._total), self._total)
         size = len(trial.layout.sites), len(trial.layout.routes)
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
-        stage = DesignStage(words=words, robot=trial.layout.robot(digits=DIGITS), error=trial.built)
+        stage = DesignStage(words=words, robot=trial.layout.robot(digits=DIGITS), error=trial.built_error)
         self.stages.append(stage)
         self.passed.append((trial.cost, trial.layout))
         if self.best is None or trial.cost < self.best.cost:
             self.best = trial
             self.watch(stage)
 
-    def _finished(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
-        """The networks found, judged as their user will find them, the best first."""
+    def _judge_networks(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
+        """Judge the networks found as their user will find them, the best first."""
         judged = self.finalists.judge_all(self.found if complete else [self.best])
         if not any(kit_fits(network) for network in judged):
             judged += self.finalists.with_room(
-                self.found if complete else [self.best], self.growth.polished if complete else self.growth.short
+                self.found if complete else [self.best], self.growth.refine if complete else self.growth.refine_briefly
             )
             known = [trial.layout for trial in self.found]
             others = [pair for pair in self.passed if not any(pair[1] is layout for layout in known)]
@@ -323,7 +323,7 @@ class RouteSearch:
         return judged[first], [*judged[:first], *judged[first + 1 :]]
 
     @property
-    def _kept(self) -> Constraints:
+    def _fitting_constraints(self) -> Constraints:
         """Return the request with the torque of the motors that fit."""
         own = self.constraints
         return replace(self.request.constraints, torque=own.torque, cables_per_winch=own.cables_per_winch)

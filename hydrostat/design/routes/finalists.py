@@ -9,7 +9,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Network
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
-from hydrostat.design.routes.bench import Bench, Trial, reached_from_rest
+from hydrostat.design.routes.bench import Bench, Trial, reach_from_rest
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.errors import NotConvergedError
@@ -34,13 +34,13 @@ class Finalists:
 
     def judge(self, layout: Layout) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
-        robot = self._safe(self._numbered(layout).robot(digits=DIGITS))
+        robot = self._safe(self._number_winches(layout).robot(digits=DIGITS))
         if violations(robot, self.constraints, self.region):
             return None
         simulation = Simulation(robot, body=self.bench.body)
         limits = Limits(tension=self.constraints.tension_limit)
         try:
-            reached = [reached_from_rest(simulation, pose, limits, IKOptions()) for pose in self.request.poses]
+            reached = [reach_from_rest(simulation, pose, limits, IKOptions()) for pose in self.request.poses]
         except NotConvergedError:
             return None
         if pulls(robot, reached, self.constraints):
@@ -70,8 +70,8 @@ class Finalists:
         ]
         return network.built * self.bench.nearness(network.robot, slopes)
 
-    def _numbered(self, layout: Layout) -> Layout:
-        """The layout with its new winches numbered in their order; those of the robot keep their names."""
+    def _number_winches(self, layout: Layout) -> Layout:
+        """Number new winches in their order; those of the robot keep their names."""
         own = {winch.name for winch in self.robot.winches}
         free = (name for number in range(1, 99) if (name := f"winch_{number}") not in own)
         sites = tuple(
@@ -91,7 +91,7 @@ class Finalists:
             for trial in trials:
                 layout = None if trial is None else replace(trial.layout, constraints=limits)
                 pushed = layout and pushed_back(layout, self.region, 0.03 * self.robot.body.mesh.size)
-                moved = self.bench.reached(pushed, trial) if pushed else None
+                moved = self.bench.reach_poses(pushed, trial) if pushed else None
                 judged = None if moved is None else self.judge(refined(moved).layout)
                 if judged is not None and kit_fits(judged):
                     return [judged]

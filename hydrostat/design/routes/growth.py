@@ -13,7 +13,7 @@ from hydrostat.design.routes.refine import RefineOptions, pushed_back, refine
 from hydrostat.robot import Mount
 from hydrostat.simulation import Simulation
 
-Noted = Callable[[str, Trial], None]  # told what was done, and the network after it
+Note = Callable[[str, Trial], None]  # receives the change, and the network after it
 
 
 @dataclass(eq=False)
@@ -21,22 +21,22 @@ class Growth:
     """Grows, refines and exchanges."""
 
     proposals: Proposals  # where cables may be added
-    noted: Noted  # told of every network on the way
+    note: Note  # receives every network on the way
 
     @property
     def bench(self) -> Bench:
         """The bench that solves layouts."""
         return self.proposals.bench
 
-    def bare(self, layout: Layout) -> Trial | None:
+    def evaluate(self, layout: Layout) -> Trial | None:
         """The trial of a layout as it is, even one without cables."""
         if layout.routes:
-            return self.bench.reached(layout, None)
+            return self.bench.reach_poses(layout, None)
         simulation = Simulation(layout.robot(), body=self.bench.body)
         return self.bench.trial(layout, simulation, [simulation.rest] * len(self.bench.targets))
 
-    def grown(self, begun: Sequence[Trial], *, winches: int, cables: int) -> list[Trial]:
-        """Networks with one cable more than those to begin with, and more again, the best first (beam search).
+    def grow_networks(self, begun: Sequence[Trial], *, winches: int, cables: int) -> list[Trial]:
+        """Add cables one by one to the first networks, the best first (beam search).
 
         Of all networks with a cable more than those that are kept the best few are refined, and the best of these kept.
         It ends with as many cables as there may be, or when enough is reached, or cables no longer help.
@@ -53,11 +53,11 @@ class Growth:
             for trial in front:
                 needed = cables - len(trial.layout.routes)
                 if needed > 0:
-                    more += self._tried(trial, winches, needed, count=count, best=best)
-            rough = [self.short(one, directions=0) for one in self._unlike(more, len(front) * best)]
-            front = self._unlike([self.short(one) for one in self._unlike(rough, _LIKELY * width)], width)
+                    more += self._try_cables(trial, winches, needed, count=count, best=best)
+            rough = [self.refine_briefly(one, directions=0) for one in self._unlike(more, len(front) * best)]
+            front = self._unlike([self.refine_briefly(one) for one in self._unlike(rough, _LIKELY * width)], width)
             for trial in front:
-                self.noted(_words(trial), trial)
+                self.note(_words(trial), trial)
             least = min((trial.cost for trial in found), default=np.inf)
             found += front
             if any(self.enough(trial, winches) for trial in front):
@@ -69,49 +69,51 @@ class Growth:
     def _unlike(self, trials: list[Trial], count: int) -> list[Trial]:
         """The first few, the best first, no two of the same cost."""
         kept: list[Trial] = []
-        for trial in sorted(trials, key=self._rated):
+        for trial in sorted(trials, key=self._rate):
             if len(kept) < count and all(abs(trial.cost - other.cost) > 1e-3 * trial.cost for other in kept):
                 kept.append(trial)
         return kept
 
     def with_one_more(self, trial: Trial, *, winches: int, needed: int) -> Trial | None:
         """The best network with one cable more (two where it is mirrored); None if there is none."""
-        tried = self._tried(trial, winches, needed, count=self.proposals.options.trials, best=1)
-        return self.short(tried[0]) if tried else None
+        tried = self._try_cables(trial, winches, needed, count=self.proposals.options.trials, best=1)
+        return self.refine_briefly(tried[0]) if tried else None
 
-    def polished(self, trial: Trial) -> Trial:
-        """The network refined in rounds, each of which must hold from rest on."""
+    def refine(self, trial: Trial) -> Trial:
+        """Refine a network in rounds, each of which must hold from rest on."""
         steps = self.proposals.options.polish
-        best = trial if trial.from_rest else self.truly(trial)
+        best = trial if trial.from_rest else self.resolve_from_rest(trial)
         effort, round_size = 1.0, _ROUND
         done = failed = 0
         while done < steps and failed < _FAILURES and best.cost > self._options(0).enough:
             size = min(round_size, steps - done)
             options = replace(self._options(size), effort=effort * self._options(size).effort)
-            found = self.truly(refine(self.bench, self.proposals.graph.region, best, options), worst=best.cost)
+            found = self.resolve_from_rest(
+                refine(self.bench, self.proposals.graph.region, best, options), worst=best.cost
+            )
             done += size
             if found.cost < best.cost:
                 gain = 1.0 - found.cost / best.cost
                 best = found
-                if gain < _IDLE or best.built <= options.enough:
+                if gain < _IDLE or best.built_error <= options.enough:
                     break
             else:
                 effort, round_size, failed = 4.0 * effort, max(round_size // 2, 1), failed + 1
         return best
 
-    def truly(self, trial: Trial, *, worst: float = np.inf) -> Trial:
+    def resolve_from_rest(self, trial: Trial, *, worst: float = np.inf) -> Trial:
         """The same network with poses found from rest: what its user will find; infinite errors above `worst` [m]."""
-        found = self.bench.reached(trial.layout, None, iterations=60, worst=worst, hoped=trial)
+        found = self.bench.reach_poses(trial.layout, None, iterations=60, worst=worst, hoped=trial)
         return replace(trial, error=np.inf) if found is None else replace(found, from_rest=True)
 
-    def exchanged(self, trial: Trial, *, winches: int, most: int) -> Trial:
-        """The network after up to `most` cables were taken out in turn, and the best put in where that is better."""
+    def exchange_cables(self, trial: Trial, *, winches: int, most: int) -> Trial:
+        """Take out up to `most` cables in turn, and put in the best where that is better."""
         for number in range(min(len(trial.layout.routes), most)):
             route = trial.layout.routes[number]
             if route.kept is not None or route.twin is not None or len(trial.layout.routes) < 2:
                 continue
             rest = without(trial.layout, number)
-            before = None if rest is None else self.bench.reached(rest, None)
+            before = None if rest is None else self.bench.reach_poses(rest, None)
             if before is None:
                 continue
             missing = len(trial.layout.routes) - len(before.layout.routes)
@@ -119,24 +121,24 @@ class Growth:
             if found is None:
                 continue
             needed = (1 - _WORTH) * trial.cost
-            found = self.truly(found, worst=needed)
+            found = self.resolve_from_rest(found, worst=needed)
             if found.cost < needed:
                 trial = found
-                self.noted("a cable exchanged", trial)
+                self.note("a cable exchanged", trial)
         return trial
 
-    def pruned(self, trial: Trial) -> Trial:
-        """The network less cables that do not earn their place: without them the cost stays the same, or enough."""
+    def prune_cables(self, trial: Trial) -> Trial:
+        """Remove cables that do not earn their place: without them the cost stays the same, or enough."""
         for number in reversed(range(len(trial.layout.routes))):
             route = trial.layout.routes[number]
             if route.kept is not None or route.twin is not None or len(trial.layout.routes) < 2:
                 continue
             rest = without(trial.layout, number)
             allowed = max((1 + self._worth(trial, rest)) * trial.cost, self._options(0).enough)
-            found = None if rest is None else self.bench.reached(rest, None, worst=allowed)
+            found = None if rest is None else self.bench.reach_poses(rest, None, worst=allowed)
             if found is not None and found.cost <= allowed:
                 trial = found
-                self.noted("a cable that does nothing left out", trial)
+                self.note("a cable that does nothing left out", trial)
         return trial
 
     def _worth(self, trial: Trial, rest: Layout | None) -> float:
@@ -144,8 +146,8 @@ class Growth:
         winch = rest is not None and len(rest.sites) < len(trial.layout.sites)
         return self.proposals.options.simplicity * (_MOTOR if winch else _CABLE)
 
-    def thinned(self, trial: Trial) -> Trial:
-        """The network less via points that do not earn their stitch, those first whose place matters most as built.
+    def remove_via_points(self, trial: Trial) -> Trial:
+        """Remove via points that do not earn their stitch, those first whose place matters most as built.
 
         Each hole is sewn a little beside its mark, and each rubs: with fewer, less goes wrong.
         """
@@ -192,7 +194,7 @@ class Growth:
         if less is None:
             return None
         allowed = (1 + self.proposals.options.simplicity * _HOLE) * trial.cost
-        found = self.bench.reached(less, trial, iterations=_GLANCE, worst=allowed)
+        found = self.bench.reach_poses(less, trial, iterations=_GLANCE, worst=allowed)
         return found if found is not None and found.cost <= allowed else None
 
     def enough(self, trial: Trial, winches: int) -> bool:
@@ -200,27 +202,27 @@ class Growth:
         enough = self.proposals.options.enough * self.proposals.graph.size
         return len(trial.layout.sites) >= winches and trial.cost <= enough
 
-    def _tried(self, trial: Trial, winches: int, needed: int, *, count: int, best: int) -> list[Trial]:
-        """The `best` of about `count` networks with one cable more; those that cannot be are not solved to their end.
+    def _try_cables(self, trial: Trial, winches: int, needed: int, *, count: int, best: int) -> list[Trial]:
+        """Solve about `count` networks with one cable more and return the `best`; hopeless ones are cut short.
 
         Marker errors add up over the poses, so those of the first poses bound them from below.
         """
         kept: list[Trial] = []
-        layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=count)
+        layouts = self.proposals.grow_layouts(trial, winches=winches, needed=needed, count=count)
         if not layouts:  # the best paths cannot be built: look at others
-            layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=_FURTHER * count)
+            layouts = self.proposals.grow_layouts(trial, winches=winches, needed=needed, count=_FURTHER * count)
         for layout in layouts:
-            worst = self._rated(kept[-1]) / self._weighed(layout) if len(kept) == best else np.inf
-            found = self.bench.reached(layout, trial, iterations=_GLANCE, worst=worst)
+            worst = self._rate(kept[-1]) / self._effort_factor(layout) if len(kept) == best else np.inf
+            found = self.bench.reach_poses(layout, trial, iterations=_GLANCE, worst=worst)
             if found is not None:
-                kept = sorted([*kept, found], key=self._rated)[:best]
+                kept = sorted([*kept, found], key=self._rate)[:best]
         return kept
 
-    def _rated(self, trial: Trial) -> float:
-        """The cost [m], more for networks that are worse to build."""
-        return trial.cost * self._weighed(trial.layout)
+    def _rate(self, trial: Trial) -> float:
+        """Return the cost [m], more for networks that are worse to build."""
+        return trial.cost * self._effort_factor(trial.layout)
 
-    def _weighed(self, layout: Layout) -> float:
+    def _effort_factor(self, layout: Layout) -> float:
         """Factor on the cost: above 1 for winches that are not deep in the body (R12) and cables that turn (E14)."""
         inner = [site.winch.at for site in layout.sites if site.winch.mount is Mount.BODY]
         depths = self.proposals.graph.region.depths(np.array(inner)) if inner else np.zeros(0)
@@ -228,8 +230,8 @@ class Growth:
         turned = np.mean([turns(route.points).sum() for route in layout.routes])
         return 1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned)
 
-    def short(self, trial: Trial, *, directions: int = 2) -> Trial:
-        """The network after a few steps of refinement."""
+    def refine_briefly(self, trial: Trial, *, directions: int = 2) -> Trial:
+        """Refine a network by a few steps."""
         options = replace(self._options(self.proposals.options.steps), directions=directions)
         return refine(self.bench, self.proposals.graph.region, trial, options)
 

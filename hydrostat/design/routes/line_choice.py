@@ -133,11 +133,11 @@ class LineChoice:
         fits &= ~np.isin(self._places, places[counts >= most])
         if len(places) >= self.winches:
             return fits & there
-        crowded: np.ndarray = np.any(self._crowded[:, self._places[own]], axis=1)
+        crowded: np.ndarray = np.any(self._crowded_pairs[:, self._places[own]], axis=1)
         return fits & (there | ~crowded[self._places])
 
     @cached_property
-    def _crowded(self) -> Bool[np.ndarray, "points points"]:
+    def _crowded_pairs(self) -> Bool[np.ndarray, "points points"]:
         """Graph points too near to one another for two winches."""
         graph = self.proposals.graph
         used = np.unique(self._places)

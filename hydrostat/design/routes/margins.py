@@ -23,7 +23,7 @@ class Margins(NamedTuple):
 
 def margins(layout: Layout, region: Region, *, reach: float) -> Margins:
     """All limits that a layout is within `reach` [m] of, as far as anything will move, with a hair of margin each."""
-    return _MarginRows(layout, region, reach).found()
+    return _MarginRows(layout, region, reach).collect()
 
 
 class _MarginRows:
@@ -33,8 +33,8 @@ class _MarginRows:
         self.found_rows: list[np.ndarray] = []
         self.found_left: list[Vector] = []
 
-    def found(self) -> Margins:
-        """All of them: by depth and zones, between parts of the network, and of slack and spools."""
+    def collect(self) -> Margins:
+        """Collect all margins: by depth and zones, between parts of the network, and of slack and spools."""
         self._depths()
         for part in (self._between_parts(), self._bounds()):
             self.found_rows.append(part.rows)
@@ -55,8 +55,8 @@ class _MarginRows:
         depths, ways = self.region.depths_and_ways(np.concatenate([winches, places]))
         if len(inner):
             need = max(self.constraints.winch_clearance, self.constraints.clearance)
-            self._add_spots(_held(dim * inner), depths[: len(inner)] - need - _HAIR, ways[: len(inner)])
-            self._zones(winches, _held(dim * inner))
+            self._add_spots(_winch_spots(dim * inner), depths[: len(inner)] - need - _HAIR, ways[: len(inner)])
+            self._zones(winches, _winch_spots(dim * inner))
         if len(places):
             self._edges(spots, depths[len(inner) :], ways[len(inner) :])
 
@@ -80,12 +80,12 @@ class _MarginRows:
         for zone in self.constraints.keep_out:
             self._outside(zone, spots)
         for zone in self.constraints.still:
-            self._outside(zone, spots.chosen(np.flatnonzero(spots.bare)))
+            self._outside(zone, spots.select(np.flatnonzero(spots.bare)))
 
     def _within(self, spots: "_Spots", lefts: Vector, ways: Points) -> None:
         """Rows for places that are near a limit, but for those where a cable may be as near the edge as it likes."""
         free = np.flatnonzero(~spots.entry)
-        self._add_spots(spots.chosen(free), lefts[free], ways[free])
+        self._add_spots(spots.select(free), lefts[free], ways[free])
 
     def _outside(self, zone: Zone, spots: "_Spots") -> None:
         """Those places, and between them the ones nearest to the zone: a small zone would pass between two."""
@@ -98,7 +98,7 @@ class _MarginRows:
         near = np.flatnonzero(lefts <= self.reach)
         if not len(near):
             return
-        spots, lefts, ways = spots.chosen(near), lefts[near], ways[near]
+        spots, lefts, ways = spots.select(near), lefts[near], ways[near]
         rows = np.zeros((len(lefts), self.layout.size))
         every = np.arange(len(lefts))[:, None], np.arange(self.layout.dim)
         rows[every[0], spots.starts[:, None] + every[1]] -= (1 - spots.shares)[:, None] * ways
@@ -150,13 +150,13 @@ class _Spots(NamedTuple):
         starts, ends = (numbers[side[:, None] + np.arange(dim)] for side in (self.starts, self.ends))
         return starts + self.shares[:, None] * (ends - starts)
 
-    def chosen(self, which: np.ndarray) -> "_Spots":
-        """Some of them."""
+    def select(self, which: np.ndarray) -> "_Spots":
+        """Select some spots."""
         return _Spots(*(part[which] for part in self))
 
 
-def _held(starts: Int[np.ndarray, " winches"]) -> _Spots:
-    """Winches as places whose numbers begin there."""
+def _winch_spots(starts: Int[np.ndarray, " winches"]) -> _Spots:
+    """Return winches as spots whose numbers begin there."""
     none, flags = np.zeros(len(starts)), np.zeros(len(starts), dtype=bool)
     return _Spots(starts, starts, none, flags, flags, none)
 

@@ -85,7 +85,7 @@ def price_paths(
     order = np.argsort(-gains, kind="stable")
     order = order[gains[order] > 0.0]
     picked = _pick(graph, starts, paths[order], count)
-    return [search.priced(paths[order[index]], lead, float(gains[order[index]])) for index, lead in picked]
+    return [search.price_path(paths[order[index]], lead, float(gains[order[index]])) for index, lead in picked]
 
 
 _ALIKE = 0.7  # two paths that share more than this part of their edges are variants of one
@@ -151,7 +151,7 @@ class _PathSearch:
         begins = np.where(blocked, 0.0, starts.factors)
         none = np.zeros(len(begins))
         for gains, paths in self._grow(begins, starts.rooms, blocked, none + 1.0, none):
-            yield gains, _turned(paths)
+            yield gains, _reverse_paths(paths)
 
     def to_winches(self, starts: _LeadStarts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
         """Gains and points of the best path that begins with each directed edge."""
@@ -198,8 +198,8 @@ class _PathSearch:
         native.walk_back(parents, graph.sources, graph.targets, self.slots, hops, ends, paths)
         yield flat[np.arange(len(which)), which], paths
 
-    def priced(self, path: Int[np.ndarray, " points"], lead: tuple[int, ...], gain: float) -> PricedPath:
-        """All that there is to know of a path."""
+    def price_path(self, path: Int[np.ndarray, " points"], lead: tuple[int, ...], gain: float) -> PricedPath:
+        """Return the record of a path."""
         points = path[path >= 0]
         edges = _edges(self.graph, points)
         moves = self.moves[edges].sum(axis=0)
@@ -253,8 +253,8 @@ def _by_pose(
     return split
 
 
-def _turned(paths: Int[np.ndarray, "paths points"]) -> Int[np.ndarray, "paths points"]:
-    """Each path the other way round, with what lies beyond it still at the end."""
+def _reverse_paths(paths: Int[np.ndarray, "paths points"]) -> Int[np.ndarray, "paths points"]:
+    """Reverse each path; entries beyond its end stay there."""
     counts = (paths >= 0).sum(axis=1)
     places = counts[:, None] - 1 - np.arange(paths.shape[1])
     return np.where(places >= 0, np.take_along_axis(paths, np.maximum(places, 0), axis=1), -1)

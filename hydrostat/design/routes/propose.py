@@ -10,7 +10,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.design.polyline import Route, nearest_shares, resample
 from hydrostat.design.request import RouteOptions
-from hydrostat.design.routes.begin import mirrored
+from hydrostat.design.routes.begin import add_mirror_image
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
@@ -35,10 +35,10 @@ class Proposals:
         inner = self.graph.points[~self.graph.world]
         return max(float(self.graph.region.depths(inner).max(initial=0.0)), 1e-9)
 
-    def priced(
+    def price_paths(
         self, trial: Trial, *, count: int, winches: Sequence[int] | None = None, shared: int | None = None
     ) -> list[PricedPath]:
-        """Paths that promise most beside the network there is, at the equilibria where it is.
+        """Find the most promising paths next to the present network, at its equilibria.
 
         What the present winches can do by themselves is taken out of residual and moves, as they are free to follow.
         A cable of its own winch has a tension for each pose; one of the `shared` winch is pulled in all of them as that
@@ -128,8 +128,8 @@ class Proposals:
         low, high = np.minimum(start, end) - gap, np.maximum(start, end) + gap
         return ((runs.max(axis=1) >= low) & (runs.min(axis=1) <= high)).all(axis=1)
 
-    def grown(self, trial: Trial, *, winches: int, needed: int, count: int) -> list[Layout]:
-        """Layouts with one cable more, that can be built, the most promising first.
+    def grow_layouts(self, trial: Trial, *, winches: int, needed: int, count: int) -> list[Layout]:
+        """Add one cable in ways that can be built, the most promising first.
 
         `needed` cables are still to come, this one included; `count` is of layouts from new winches, and of those from
         winches that there are.
@@ -139,7 +139,7 @@ class Proposals:
         found = []
         if missing > 0:
             places = self._vacant(layout, alone=missing == 1)
-            paths = self.priced(trial, count=_CHOICE * count, winches=places) if places else []
+            paths = self.price_paths(trial, count=_CHOICE * count, winches=places) if places else []
             deep = sorted(paths, key=lambda path: -path.gain * self._depth(path.winch))[:count]
             others = [path for path in paths if path not in deep][: count // 2]
             found += [(path, None) for path in (*deep, *others)]
@@ -147,7 +147,7 @@ class Proposals:
             free = [index for index in range(len(layout.sites)) if self._has_room(layout, index)]
             for index in free:
                 place = [self._near(layout.sites[index])]
-                paths = self.priced(trial, count=-(-count // len(free)), winches=place, shared=index)
+                paths = self.price_paths(trial, count=-(-count // len(free)), winches=place, shared=index)
                 found += [(path, index) for path in paths]
         found.sort(key=lambda pair: -pair[0].gain)
         layouts = [self._with(layout, path, winch) for path, winch in found]
@@ -198,7 +198,7 @@ class Proposals:
             return None
         added = replace(layout, sites=sites, routes=(*layout.routes, route))
         if layout.constraints.mirror is not None:
-            image = mirrored(added)
+            image = add_mirror_image(added)
             if image is None:
                 return None
             added = image
@@ -272,7 +272,7 @@ def route_along(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vecto
         return CableRoute(winch, run)
     way = np.vstack([place, lead[1:], run[:1]])
     keep = 2 if graph.world[winch_point] else 1
-    straight = _straightened(way, graph, keep)
+    straight = _straighten_route(way, graph, keep)
     return CableRoute(winch, np.vstack([straight, run]), lead=len(straight))
 
 
@@ -284,8 +284,8 @@ def _smooth(route: Route, spacing: float) -> Route:
     return resample(fine, spacing)
 
 
-def _straightened(way: Route, graph: RouteGraph, keep: int) -> Route:
-    """The first `keep` points of a way, then as few as see one another; without its end."""
+def _straighten_route(way: Route, graph: RouteGraph, keep: int) -> Route:
+    """Keep the first `keep` points of a way, then as few as see one another; without its end."""
     kept = list(range(keep))
     while kept[-1] < len(way) - 1:
         ahead = np.arange(len(way) - 1, kept[-1], -1)

@@ -58,12 +58,14 @@ class _Refinement:
     def run(self, trial: Trial) -> Trial:
         idle = 0
         for _ in range(self.options.iterations):
-            if trial.built <= self.options.enough:
+            if trial.built_error <= self.options.enough:
                 break
             effort = (
-                self.options.effort * trial.built / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.routes)))
+                self.options.effort
+                * trial.built_error
+                / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.routes)))
             )
-            bend = self.options.straightness * trial.built / np.sqrt(max(len(turns(trial.layout)), 1))
+            bend = self.options.straightness * trial.built_error / np.sqrt(max(len(turns(trial.layout)), 1))
             found = self._step(trial, effort, bend)
             if found is None:
                 break
@@ -76,7 +78,7 @@ class _Refinement:
 
     def _merit(self, trial: Trial, effort: float, bend: float) -> float:
         """Squares of the error as built, effort and turns, and of what tensions exceed."""
-        total = trial.built**2 + float(((bend * turns(trial.layout)) ** 2).sum())
+        total = trial.built_error**2 + float(((bend * turns(trial.layout)) ** 2).sum())
         for pose in trial.poses:
             over = np.maximum(pose.tensions - self.limit, 0.0)
             total += float((effort**2) * (pose.tensions**2).sum() + (_OVER * effort) ** 2 * (over**2).sum())
@@ -90,8 +92,8 @@ class _Refinement:
         )  # fmt: skip
         before = self._merit(trial, effort, bend)
         for _ in range(_TRIES):
-            step = self._damped(model)
-            found = None if step is None else self._tried(trial, step, model.free, (before, bend))
+            step = self._solve_damped(model)
+            found = None if step is None else self._try_step(trial, step, model.free, (before, bend))
             if step is not None and found is not None and (after := self._merit(found, effort, bend)) < before:
                 promised = before - float(((model.right + model.matrix @ step) ** 2).sum())
                 kept = (before - after) / max(promised, 1e-300)
@@ -104,7 +106,7 @@ class _Refinement:
         self.damping = _DAMPING
         return None
 
-    def _damped(self, model: Model) -> Vector | None:
+    def _solve_damped(self, model: Model) -> Vector | None:
         matrix = model.matrix * model.scale
         damping = self.damping * float(np.linalg.norm(matrix[:, : model.free], axis=0).max(initial=1e-12))
         ridge = np.full(len(model.scale), damping)
@@ -117,8 +119,8 @@ class _Refinement:
             step = least_squares(stacked, aim, rows, np.maximum(model.left, 0.0))
         return None if step is None else model.scale * step
 
-    def _tried(self, trial: Trial, step: Vector, free: int, beaten: tuple[float, float]) -> Trial | None:
-        """The trial after a step; None if it has none, or none below the merit `beaten` at that weight of turns."""
+    def _try_step(self, trial: Trial, step: Vector, free: int, beaten: tuple[float, float]) -> Trial | None:
+        """Try a step; None without equilibrium, or if the merit is not below `beaten` at that weight of turns."""
         layout = trial.layout
         longest = np.abs(layout.ties @ step[:free])[: layout.starts[-2]].max(initial=0.0)
         if longest > 2 * self.reach:
@@ -134,7 +136,7 @@ class _Refinement:
             contractions.append(np.clip(pose.contractions + change, low, high))
         merit, bend = beaten
         room = merit - float(((bend * turns(moved)) ** 2).sum())
-        return self.bench.held(moved, contractions, trial, worst=float(np.sqrt(max(room, 0.0))))
+        return self.bench.hold_contractions(moved, contractions, trial, worst=float(np.sqrt(max(room, 0.0))))
 
 
 def linear_model(
@@ -161,7 +163,7 @@ def linear_model(
         markers = len(own) - len(layout.routes)
         matrix += [-bench.weights[index][:, None] * own[:markers], effort * own[markers:]]
         right += [bench.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
-        for moved, changed in _scattered(bench, trial, index, directions):
+        for moved, changed in _solve_variations(bench, trial, index, directions):
             scattered = np.zeros((markers, count))
             scattered[:, :free] = changed[:, winches:] @ layout.ties
             scattered[:, begin : begin + winches] = changed[:, :winches]
@@ -198,8 +200,10 @@ def linear_model(
     )  # fmt: skip
 
 
-def _scattered(bench: Bench, trial: Trial, index: int, most_directions: int) -> Iterator[tuple[Vector, np.ndarray]]:
-    """Moves of the markers of a pose as built otherwise, and their slopes by contractions, then numbers of the layout.
+def _solve_variations(
+    bench: Bench, trial: Trial, index: int, most_directions: int
+) -> Iterator[tuple[Vector, np.ndarray]]:
+    """Yield marker moves of a pose as built otherwise, and their Jacobians by contractions, then layout numbers.
 
     The variance is the sum of squares of the singular values of the tolerances' columns. Its slope is exact where each
     right singular vector is held: then it is that of the move from here to a robot built with these tolerances. Only
@@ -212,12 +216,12 @@ def _scattered(bench: Bench, trial: Trial, index: int, most_directions: int) -> 
         return
     columns = weight[:, None] * trial.columns[index][:, which]
     _, values, right = np.linalg.svd(columns, full_matrices=False)
-    most = _SCATTERED * trial.built
+    most = _SCATTERED * trial.built_error
     for direction in range(min(most_directions, int((values > most).sum()))):
         numbers = layout.numbers.copy()
         numbers[:places] += bench.uncertainty.sewing * right[direction, :places]
         scale = 1.0 + bench.uncertainty.spool * right[direction, places:]
-        found = bench.scattered(layout.at(numbers), pose, scale * pose.contractions, index)
+        found = bench.solve_variation(layout.at(numbers), pose, scale * pose.contractions, index)
         if found is None:
             continue
         simulation, nodes, slopes = found

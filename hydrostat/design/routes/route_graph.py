@@ -112,7 +112,7 @@ def route_graph(robot: Robot, region: Region, constraints: Constraints, *, spaci
             f"there is no room for cables {1e3 * constraints.clearance:g} mm inside the edge; lower the clearance or "
             f"make the keep-out zones smaller"
         )
-    edges = _joined(points, _near(points, nodes, mesh.edges, spacing), region, constraints)
+    edges = _join_points(points, _near(points, nodes, mesh.edges, spacing), region, constraints)
     anchors = locate(mesh, points)
     if _in_world(robot, constraints):
         winches = np.array([winch.at for winch in robot.winches], dtype=float)
@@ -178,8 +178,8 @@ def _near(points: Points, nodes: Int[np.ndarray, " points"], mesh_edges: Pairs, 
     return np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0).astype(np.int64)
 
 
-def _joined(points: Points, pairs: Pairs, region: Region, constraints: Constraints) -> Pairs:
-    """The pairs between which a cable may run."""
+def _join_points(points: Points, pairs: Pairs, region: Region, constraints: Constraints) -> Pairs:
+    """Return the pairs between which a cable may run."""
     pairs = pairs[~_meets(points, pairs, constraints.keep_out)]
     return pairs[region.sees(points[pairs[:, 0]], points[pairs[:, 1]])]
 

@@ -52,7 +52,7 @@ def _layout(proposals: Proposals, layout: Layout, lines: Sequence[Line]) -> Layo
 def _lines(proposals: Proposals, bare: Trial) -> Iterator[Line]:
     """Lines from each of a few winch places to each marker, on each side."""
     graph = proposals.graph
-    places = _spread(graph.points[graph.winch_places], _PLACES)
+    places = _spread_points(graph.points[graph.winch_places], _PLACES)
     costs = csr_array(
         (np.tile(graph.lengths * _shallow(proposals), 2), (np.append(*graph.edges.T), np.append(*graph.edges.T[::-1]))),
         shape=(len(graph.points),) * 2,
@@ -83,8 +83,8 @@ def _shallow(proposals: Proposals) -> Vector:
     return 1.0 + _INWARD * np.maximum(1.0 - ends / proposals.deepest, 0.0) ** 2 + _STILL * graph.still
 
 
-def _spread(points: Points, count: int) -> Int[np.ndarray, " chosen"]:
-    """A few points far from one another, the middle one first."""
+def _spread_points(points: Points, count: int) -> Int[np.ndarray, " chosen"]:
+    """Choose a few points far from one another, the middle one first."""
     chosen = [int(np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1)))]
     away = np.linalg.norm(points - points[chosen[0]], axis=1)
     while len(chosen) < min(count, len(points)) and away.max() > 0:
