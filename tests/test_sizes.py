@@ -61,8 +61,6 @@ PLAIN_ROOMS = {
     "training",
 }
 """Rooms in which no docstring begins with a question word or a fragment; "" for the modules outside rooms."""
-VERB_ROOMS = (PLAIN_ROOMS | {"cli", "control", "plot", "teleop"}) - {"design"}
-"""Rooms in which no public function is named by a bare participle; the routes of design still hold some."""
 HEADLESS = re.compile(r"(What|How|Whether|Where|Which|Of|That|As)\b")
 PARTICIPLE = re.compile(
     r"(?!(feed|need|seed|speed)$)[a-z]+ed|found|held|made|told|seen|felt|given|taken|begun|kept|chosen"
@@ -195,16 +193,13 @@ def headless(texts: dict[str, str], rooms: set[str]) -> list[str]:
     return found
 
 
-def participles(texts: dict[str, str], rooms: set[str]) -> list[str]:
-    """Public functions and methods of some rooms named by one bare participle; properties may be states."""
+def participles(texts: dict[str, str]) -> list[str]:
+    """Functions and methods named by one bare participle, also private ones; properties may be states."""
     found = []
     for path, text in texts.items():
-        folders = path.split("/")[1:-1]
-        if (folders[0] if folders else "") not in rooms:
-            continue
-        classes = [node for node in syntax(text).body if isinstance(node, ast.ClassDef) and node.name[0] != "_"]
+        classes = [node for node in syntax(text).body if isinstance(node, ast.ClassDef)]
         for function in [node for owner in [syntax(text), *classes] for node in owner.body]:
-            if isinstance(function, Function) and PARTICIPLE.fullmatch(function.name):
+            if isinstance(function, Function) and PARTICIPLE.fullmatch(function.name.strip("_")):
                 state = any("property" in ast.unparse(decorator) for decorator in function.decorator_list)
                 found += [f"{path}: {function.name}"] * (not state)
     return found
@@ -268,8 +263,7 @@ def test_docstrings_begin_with_a_verb_or_a_noun(texts: dict[str, str]) -> None:
 
 
 def test_functions_have_a_verb(texts: dict[str, str]) -> None:
-    """In the rooms that are done; the others follow."""
-    assert participles(texts, VERB_ROOMS) == []
+    assert participles(texts) == []
 
 
 def test_only_mechanics_asks_what_an_energy_is(texts: dict[str, str]) -> None:
@@ -293,9 +287,9 @@ def test_the_checks_can_fail() -> None:
     assert headless({"h/a/b.py": asking}, {""}) == []
     assert sorted(headless({"h/a/b.py": asking}, {"a"})) == ["h/a/b.py: How.", "h/a/b.py: Where.", "h/a/b.py: x: of y."]
     assert headless({"h/b.py": '"""What."""'}, {""}) == ["h/b.py: What."]
-    named = "def moved():\n    def turned(): ...\ndef move(): ...\nclass _B:\n    def held(self): ...\n"
+    named = "def moved():\n    def turned(): ...\ndef move(): ...\nclass _B:\n    def _held(self): ...\n"
     named += "class A:\n    @property\n    def closed(self): ...\n    def found(self): ...\n    def seed(self): ...\n"
-    assert participles({"h/b.py": named, "h/a/b.py": named}, {"a"}) == ["h/a/b.py: moved", "h/a/b.py: found"]
+    assert participles({"h/b.py": named}) == ["h/b.py: moved", "h/b.py: _held", "h/b.py: found"]
     made = "class Energy: ...\nclass Spring(Energy): ...\nclass Stiff(Spring): ...\nclass Other: ..."
     assert energies({"p": made}) == {"Energy", "Spring", "Stiff"}
     asking = "isinstance(a, Other)\nisinstance(a, Stiff | Other)\n"

@@ -60,7 +60,7 @@ def _follow(simulation: "Simulation", found: "Multistability") -> "list[tuple[st
     first = continue_branch(simulation, simulation.solve({}), found.contractions, around_folds=True)
     followed = [("from rest", first)]
     for number, one in enumerate(found.poses, 1):
-        if not first.arrived or largest_distance(first.end.nodes, one.pose.nodes) > found.near:
+        if not first.reaches_goal or largest_distance(first.end.nodes, one.pose.nodes) > found.near:
             back = continue_branch(simulation, one.pose, {}, around_folds=True)
             followed.append((f"back from pose {number}", back))
     return followed

@@ -194,6 +194,6 @@ def _words(name: str, value: Any) -> str:
     if isinstance(value, tuple):
         return ", ".join(value) if name.startswith("locked") else str(len(value) or "")
     if isinstance(value, float):
-        factor, unit = RANGES[name].shown
+        factor, unit = RANGES[name].display_unit
         return f"{factor * value:g}{'°' if unit == 'degrees' else f' {unit}'.rstrip()}"
     return "" if value is None else str(value)

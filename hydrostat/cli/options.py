@@ -70,7 +70,7 @@ class DefaultText(str):
         if not isinstance(value, float):
             return format(str(value), spec)
         allowed = design.RANGES.get(field) if record == "Constraints" else None
-        scale, unit = (allowed or design.Range()).shown
+        scale, unit = (allowed or design.Range()).display_unit
         return format(f"{scale * value:g} {unit}".rstrip(), spec)
 
 

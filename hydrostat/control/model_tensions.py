@@ -54,9 +54,9 @@ class TensionLookup:
     def add(self, pose: Equilibrium) -> None:
         """Remember a pose; one that is no equilibrium is left out."""
         if pose.result.converged:
-            self.put(pose.contractions, winch_tensions(self._robot, pose.tensions))
+            self.store(pose.contractions, winch_tensions(self._robot, pose.tensions))
 
-    def put(self, contractions: Vector, pulls: Vector) -> None:
+    def store(self, contractions: Vector, pulls: Vector) -> None:
         """Remember what winches pull [N] at contractions [m]."""
         places, known = self._known
         more = np.concatenate([known, pulls[None]]) if len(known) else pulls[None]

@@ -51,13 +51,15 @@ def pulls(robot: Robot, reached: Sequence[IKResult], constraints: Constraints) -
     Tensions and torques may exceed their limit by 0.1 %, contractions by 0.02 mm. Travel and release are each winch's
     own. Each sentence names the pose, the part, its value and the limit.
     """
-    return [sentence for number, one in enumerate(reached) for sentence in _pulled(robot, number, one, constraints)]
+    return [
+        sentence for number, one in enumerate(reached) for sentence in _check_pulls(robot, number, one, constraints)
+    ]
 
 
 _SHARE = 1.001  # forces may be so many times their limit: solvers end near it
 
 
-def _pulled(robot: Robot, number: int, reached: IKResult, constraints: Constraints) -> list[str]:
+def _check_pulls(robot: Robot, number: int, reached: IKResult, constraints: Constraints) -> list[str]:
     name = f'pose "{reached.target.name}"' if reached.target is not None else f"pose {number}"
     tensions, contractions = reached.pose.tensions, reached.pose.contractions
     most, found = constraints.tension_limit, []
@@ -79,11 +81,11 @@ def _pulled(robot: Robot, number: int, reached: IKResult, constraints: Constrain
                 f"{which}: payout too large ({mm(-contraction)}). Maximum release: {mm(winch.release)}. "
                 "Ease the pose or raise release."
             )
-    return found + _turned(robot, name, tensions, constraints)
+    return found + _check_torques(robot, name, tensions, constraints)
 
 
-def _turned(robot: Robot, name: str, tensions: np.ndarray, constraints: Constraints) -> list[str]:
-    """Motors that would have to give more than they can."""
+def _check_torques(robot: Robot, name: str, tensions: np.ndarray, constraints: Constraints) -> list[str]:
+    """Check motors for torques above their limit."""
     if constraints.torque is None:
         return []
     found = []

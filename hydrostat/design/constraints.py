@@ -51,8 +51,8 @@ class Range:
         return f"{words}{end}" if self.most == inf else f"{words} and at most {scale * self.most:g}{end}"
 
     @property
-    def shown(self) -> tuple[float, str]:
-        """Factor and unit of the values as people read them: millimetres for metres."""
+    def display_unit(self) -> tuple[float, str]:
+        """Factor and unit of the values as people read them: millimeters for meters."""
         return (1e3, "mm") if self.unit == "m" else (1.0, self.unit)
 
 

@@ -46,12 +46,12 @@ def places_in(text: str, robot: Robot) -> tuple[Place, ...]:
     runs = [tuple(map(int, match.groups())) for match in _RUN.finditer(text)]
     if len(runs) == 2 and all(_is_run(robot, *run) for run in runs):
         return (_nearest(robot, *runs),)
-    found = {place.part: place for place in _named(text, robot)}
+    found = {place.part: place for place in _find_named_parts(text, robot)}
     given = _GIVEN.search(text)
     if given:
         at = tuple(1e-3 * float(value) for value in given[1].split(","))
         worst = _WORST.search(text)
-        parts = [*(_named(worst[1], robot) if worst else ()), *found.values()]
+        parts = [*(_find_named_parts(worst[1], robot) if worst else ()), *found.values()]
         return (Place(part=parts[0].part if parts else "body", at=at),)
     return tuple(found.values())
 
@@ -67,8 +67,8 @@ _PART = re.compile(
 )
 
 
-def _named(text: str, robot: Robot) -> Iterator[Place]:
-    """A place for each part, where it is known."""
+def _find_named_parts(text: str, robot: Robot) -> Iterator[Place]:
+    """Yield a place for each named part, where it is known."""
     winches = {winch.name: winch for winch in robot.winches}
     for match in _PART.finditer(text):
         place = _part(robot, {name: value for name, value in match.groupdict().items() if value is not None})

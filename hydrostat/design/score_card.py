@@ -22,11 +22,11 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error_at_rest": rest_error(network),
         "craft": build_effort(robot, network.reached).as_values,
         "tension_limit": network.constraints.tension_limit,
-        "poses": {pose.pose_target.name: _reached(robot, pose) for pose in network.reached},
+        "poses": {pose.pose_target.name: _pose_results(robot, pose) for pose in network.reached},
         "winches": _winches(robot),
         "cables": _cables(robot),
         **_trace(network.trace),
-        **_filled(network),
+        **_filled_results(network),
         "alternatives": [_alternative(other) for other in network.alternatives],
         "networks_tried": network.tried,
         "cpu_seconds": network.seconds,
@@ -96,7 +96,7 @@ def _trace(trace: TreeTrace | RouteTrace) -> dict[str, Any]:
     }
 
 
-def _filled(network: Network) -> dict[str, Any]:
+def _filled_results(network: Network) -> dict[str, Any]:
     """Return the results on the filled body; empty if not requested."""
     filled = network.filled
     if filled is None:
@@ -127,7 +127,7 @@ def _alternative(other: Alternative) -> dict[str, Any]:
     }
 
 
-def _reached(robot: Robot, reached: IKResult) -> dict[str, Any]:
+def _pose_results(robot: Robot, reached: IKResult) -> dict[str, Any]:
     pose = reached.pose
     return {
         "rms_error": reached.rms_error,

@@ -85,7 +85,7 @@ class BuildTolerances:
         for winch in robot.winches:
             offset, scale = self.sewing * chance.standard_normal(dim), np.exp(self.spool * chance.standard_normal())
             held = winch.mount is Mount.WORLD
-            at = winch.at if held else _moved(robot.body, np.array([winch.at]), offset[None])[0]
+            at = winch.at if held else _move_within(robot.body, np.array([winch.at]), offset[None])[0]
             winches.append((replace(winch, at=tuple(map(float, at))), float(scale)))
         places = {winch.name: (winch, scale) for winch, scale in winches}
         knots = self._knots(robot, chance)
@@ -95,7 +95,7 @@ class BuildTolerances:
             offsets = self.sewing * chance.standard_normal(points.shape)
             stiff = float(np.exp(self.stiffness * chance.standard_normal()))
             winch, scale = places[cable.winch]
-            points[1:] = _moved(robot.body, points[1:], offsets[1:])
+            points[1:] = _move_within(robot.body, points[1:], offsets[1:])
             points[0] += np.subtract(winch.at, robot.winch(cable.winch).at)
             cables.append(
                 replace(
@@ -157,8 +157,8 @@ def _band(given: object) -> tuple[float, float]:
     return low, high
 
 
-def _moved(body: Body, places: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Places moved by offsets, by less where they would leave the body."""
+def _move_within(body: Body, places: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """Move places by offsets, by less where they would leave the body."""
     offsets = offsets.copy()
     for _ in range(_HALVINGS):
         out = body.distances(places + offsets) > 0

@@ -75,12 +75,12 @@ def _room(body: Body, box: Cuboid) -> BaseGeometry:
         middle = box.high[2] / 2
         low, high = box.low[2] - middle, box.high[2] - middle
         sides += [((low, box.low[1]), (high, box.high[1])), ((-high, box.low[1]), (-low, box.high[1]))]
-    found = [_eroded(seam, low, high, math.radians(turn)) for low, high in sides for turn in range(0, 360, _HOUR)]
+    found = [_erode(seam, low, high, math.radians(turn)) for low, high in sides for turn in range(0, 360, _HOUR)]
     return shapely.union_all(found) if found else shapely.Polygon()
 
 
-def _eroded(seam: BaseGeometry, low: tuple[float, ...], high: tuple[float, ...], turn: float) -> BaseGeometry:
-    """Region of the middle of a turned rectangle with all of its rim within the seam (Minkowski) [mm]."""
+def _erode(seam: BaseGeometry, low: tuple[float, ...], high: tuple[float, ...], turn: float) -> BaseGeometry:
+    """Erode the seam's region to middles of a turned rectangle that is inside with all of its rim (Minkowski) [mm]."""
     corners = np.array([low[:2], (high[0], low[1]), high[:2], (low[0], high[1])], dtype=float)
     right, up = np.array([math.sin(turn), -math.cos(turn)]), np.array([math.cos(turn), math.sin(turn)])
     corners = corners[:, :1] * right + corners[:, 1:] * up

@@ -53,11 +53,11 @@ class Zone:
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
         """Distance of points from the rim of the zone [m]; negative inside."""
-        return self._measured(points)[0]
+        return self._measure(points)[0]
 
     def away(self, points: Points) -> Float[np.ndarray, "points dim"]:
         """Unit vectors in which `distances` grows the fastest, its gradient."""
-        return self._measured(points)[1]
+        return self._measure(points)[1]
 
     def least(
         self,
@@ -70,7 +70,7 @@ class Zone:
         """The least of `distances` along each straight segment [m], if it is below a limit (`least_along`)."""
         return least_along(self.distances, starts, ends, limit, resolution=resolution)
 
-    def _measured(self, points: Points) -> tuple[Float[np.ndarray, " points"], Float[np.ndarray, "points dim"]]:
+    def _measure(self, points: Points) -> tuple[Float[np.ndarray, " points"], Float[np.ndarray, "points dim"]]:
         if self.at is not None and self.radius is not None:
             offsets = points - np.array(self.at)
             lengths = np.linalg.norm(offsets, axis=1)

@@ -59,7 +59,7 @@ def anchor_untargeted_markers(
         history = found.state.history if simulation.assembly.has_history else None
         begun = wary.problem.state(found.state.values, found.state.result, history)
         calmer = descend(wary, begun)
-        if calmer.allowed < found.allowed:
+        if calmer.within_limits < found.within_limits:
             break
         wary.solves += search.solves
         search, found = wary, calmer.after(found.iterations + calmer.iterations)
@@ -217,8 +217,8 @@ _ENDS = (IKStatus.REACHED, IKStatus.TIME_LIMIT)
 def _better(search: InverseSearch, found: Descent, other: Descent, *, share: float = 1.0) -> Descent:
     """Return the other result if it alone keeps to the limits, or if its objective is below a share of this one's."""
     new, old = (search.problem.objective(one.state, found.weight) for one in (other, found))
-    less = other.allowed >= found.allowed and new < share * old
-    return other if less or (other.allowed and not found.allowed) else found
+    less = other.within_limits >= found.within_limits and new < share * old
+    return other if less or (other.within_limits and not found.within_limits) else found
 
 
 def restarts(search: InverseSearch, best: Callable[[], InverseState]) -> Iterator[InverseState]:

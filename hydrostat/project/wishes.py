@@ -130,7 +130,7 @@ def _check(name: str, value: Any) -> None:
     words = name.replace("_", " ")
     if not allowed.unit:
         raise InputError(f"{words} must be {allowed}, not {value}")
-    scale, unit = allowed.shown
+    scale, unit = allowed.display_unit
     is_number = isinstance(value, Real) and not isinstance(value, bool)
     told = f"{scale * float(value):g} {unit}" if is_number else "nothing" if value is None else quote(value)
     raise InputError(f"{words} must be {allowed.words(scale, unit)}, not {told}")

@@ -106,7 +106,7 @@ class Jobs:
                 return
             if self._closed or self.slots is not None:
                 return
-            self._spare = _Worker.started()
+            self._spare = _Worker.start()
             self._spare.pipe.send(("import", modules))
 
     def start(
@@ -164,7 +164,7 @@ class Jobs:
     def _ready(self) -> "_Worker":
         """A process to work in."""
         spare, self._spare = self._spare, None
-        return spare if spare is not None and spare.process.is_alive() else _Worker.started()
+        return spare if spare is not None and spare.process.is_alive() else _Worker.start()
 
     def _follow(
         self,
@@ -271,8 +271,8 @@ class _Worker:
     begun: bool = field(default=False)  # whether it was handed its work
 
     @classmethod
-    def started(cls) -> "_Worker":
-        """A new one. Its work is sent later, through the pipe: what a process is begun with must wait for its birth."""
+    def start(cls) -> "_Worker":
+        """Start a process. Its work follows through the pipe: arguments would have to wait until it runs."""
         context = get_context("spawn")
         here, there = context.Pipe()
         process = context.Process(target=run_work, args=(there,), daemon=True)

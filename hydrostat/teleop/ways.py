@@ -93,7 +93,7 @@ class WinchMapper(CommandMapper):
             self._poses.close()
 
     def _hear(self, found: PoseOnWay) -> None:
-        self.known.put(found.contractions, found.pulls)
+        self.known.store(found.contractions, found.pulls)
 
 
 class MarkerMapper(CommandMapper):
@@ -175,7 +175,7 @@ class MarkerMapper(CommandMapper):
             self.contractions = found.contractions if there else found.outlook.towards(self._targets)
 
     def _hear(self, found: PoseOnWay) -> None:
-        self.known.put(found.contractions, found.pulls)
+        self.known.store(found.contractions, found.pulls)
         self._markers = found.markers
         with self._lock:
             self._found = found

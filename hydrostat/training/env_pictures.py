@@ -57,7 +57,7 @@ class ThingPictures(_EnvPictures):
 
     def draw(self, world: ThingWorld, words: str) -> Picture:
         """Draw robot and object where they are, with words below the name of the robot."""
-        return self._pictures.draw(Frame.of(world.motion, words=words, things=world.drawn()))
+        return self._pictures.draw(Frame.of(world.motion, words=words, things=world.visible_obstacles()))
 
 
 class WalkPictures(_EnvPictures):

@@ -101,8 +101,8 @@ class GoalEnv(gymnasium.Env, ABC):
         return False
 
     @abstractmethod
-    def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:
-        """Draw an episode: `options` for `reset`; None where what was drawn has no equilibrium."""
+    def sample_episode(self, random: np.random.Generator) -> dict[str, Any] | None:
+        """Draw an episode at random: `options` for `reset`; None where it has no equilibrium."""
 
     @abstractmethod
     def compute_reward(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> float | np.ndarray:

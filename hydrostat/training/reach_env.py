@@ -120,7 +120,7 @@ class ReachEnv(GoalEnv):
         self.world.begin()
         given = dict(options or {})
         while "goal" not in given:
-            given = {**(self.drawn(self.np_random) or {}), **given}
+            given = {**(self.sample_episode(self.np_random) or {}), **given}
         goal = finite_numbers(given["goal"], len(self.seen), "a goal", "coordinates [m]")
         self._goal, self.taken_steps = self.rest.copy(), 0
         self._goal[self.seen] = goal
@@ -191,8 +191,8 @@ class ReachEnv(GoalEnv):
         """Equilibria of the exact simulator that were asked for."""
         return self.world.equilibria
 
-    def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:
-        """A goal: where contractions at random lead from rest."""
+    def sample_episode(self, random: np.random.Generator) -> dict[str, Any] | None:
+        """Draw a goal: where random contractions lead from rest."""
         self.world.back()
         reached = self.world.reach(self.anywhere(random))
         return None if reached is None else {"goal": reached[self.seen]}
@@ -340,9 +340,9 @@ class HysteresisEnv(ReachEnv):
         more = given.select_given("friction", "contact")
         return cls(robot, options=reach_options(given), **more)
 
-    def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:
-        """A goal, and contractions in which the episode begins [m]."""
-        goal = super().drawn(random)
+    def sample_episode(self, random: np.random.Generator) -> dict[str, Any] | None:
+        """Draw a goal, and the contractions in which the episode begins [m]."""
+        goal = super().sample_episode(random)
         return None if goal is None else {**goal, "start": self.anywhere(random)}
 
     def _check(self, model: LearnedModel) -> None:

@@ -148,8 +148,8 @@ class ThingEnv(GoalEnv):
         """Time steps of the exact simulator that were asked for."""
         return self.world.time_steps
 
-    def drawn(self, random: np.random.Generator) -> dict[str, Any] | None:
-        """A goal, and a thing: friction and radius as times its own, and where it begins [m]; None: in the body."""
+    def sample_episode(self, random: np.random.Generator) -> dict[str, Any] | None:
+        """Draw a goal and an object: factors of its friction and radius, its start [m]; None: in the body."""
         options, pick = self.options, random.uniform
         state = ThingState(
             friction=1 + options.friction * pick(-1, 1),
@@ -170,7 +170,7 @@ class ThingEnv(GoalEnv):
         super().reset(seed=seed)
         given = dict(options or {})
         while "goal" not in given:
-            given = {**(self.drawn(self.np_random) or {}), **given}
+            given = {**(self.sample_episode(self.np_random) or {}), **given}
         goal, start = finite_numbers(given["goal"], self.goal_size, "a goal", "numbers"), tuple(given.get("start", ()))
         if len(start) not in (0, self._dim):
             raise InputError(f"a start has {self._dim} coordinates, not {len(start)}")

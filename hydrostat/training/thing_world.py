@@ -137,8 +137,8 @@ class ThingWorld:
         assert self.motion.carried is not None
         return self.motion.carried[0][: len(self._carriage.rows)]
 
-    def drawn(self) -> tuple[Obstacle, ...]:
-        """The thing where it is, with dots on it, which show how it turns."""
+    def visible_obstacles(self) -> tuple[Obstacle, ...]:
+        """The object in its place, with dots on it, which show its rotation."""
         axes, radius = self.axes, self.thing.radius or float(np.sqrt(self.thing.second_moments().max()))
         sides = axes[:1] if len(axes) == 2 else np.concatenate([axes, -axes])
         out = 0.6 if len(axes) == 2 else 0.94

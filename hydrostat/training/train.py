@@ -115,7 +115,7 @@ def held_out_goals(env: GoalEnv, count: int, seed: int, *, progress: Progress = 
     random = np.random.default_rng([seed, 77])
     while len(goals) < count:
         progress("unseen goals drawn", len(goals), count)
-        goal = env.drawn(random)
+        goal = env.sample_episode(random)
         if goal is not None:
             goals.append(goal)
     env.uncounted += env.equilibria - before

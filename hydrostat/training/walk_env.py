@@ -200,7 +200,7 @@ class WalkEnv(GoalEnv):
     ) -> tuple[dict[str, Vector], dict[str, Any]]:
         """Stand at the beginning, with a new way and friction; or with "goal" [m] and "friction" of `options`."""
         super().reset(seed=seed)
-        given = {**self.drawn(self.np_random), **(options or {})}
+        given = {**self.sample_episode(self.np_random), **(options or {})}
         wanted = finite_numbers(given["goal"], 1, "a goal", "way [m]")
         self._wanted, self._fallen, self.taken_steps = float(wanted[0]), False, 0
         self._simulation = Simulation(with_friction(self.robot, float(given["friction"])))
@@ -247,8 +247,8 @@ class WalkEnv(GoalEnv):
         """Time steps of the simulator that were asked for; none costs more than another."""
         return self._made
 
-    def drawn(self, random: np.random.Generator) -> dict[str, Any]:
-        """A way, from none to the longest that is wanted [m], and the friction of the ground."""
+    def sample_episode(self, random: np.random.Generator) -> dict[str, Any]:
+        """Draw a distance up to the longest [m], and the friction of the ground."""
         longest = self.options.speed * self.unit * self.steps * self.beat * STEP
         share = self.options.spread * random.uniform(-1.0, 1.0)
         return {"goal": [random.uniform(0.0, longest)], "friction": self.friction * (1.0 + share)}

@@ -76,8 +76,8 @@ def compare(
         if name not in METHODS:
             raise InputError(f'unknown method "{name}". Available: {", ".join(METHODS)}.')
     asked = {way_of(name) for name in methods}
-    for found in _learned(train, test, asked, options or LearnOptions()):
-        yield from _rolled(simulation, test, found, set(methods))
+    for found in _fit_models(train, test, asked, options or LearnOptions()):
+        yield from _roll_out(simulation, test, found, set(methods))
 
 
 def way_of(method: str) -> str:
@@ -91,7 +91,7 @@ def targets_of(samples: Samples) -> list[dict[str, Point]]:
     return [dict(zip(names, (tuple(place) for place in places.tolist()), strict=True)) for places in samples.markers]
 
 
-def _learned(train: Samples, test: Samples, asked: set[str], options: LearnOptions) -> Iterator[Compared]:
+def _fit_models(train: Samples, test: Samples, asked: set[str], options: LearnOptions) -> Iterator[Compared]:
     """Compute the answers of each method; not rolled out."""
     goals, none = test.markers.reshape(len(test), -1), np.full(test.markers.shape[:2], np.nan)
 
@@ -108,7 +108,7 @@ def _learned(train: Samples, test: Samples, asked: set[str], options: LearnOptio
         yield told("thesis", network.answers(goals), time.process_time() - began, curve=network.curve)
     if "values" in asked:
         model = learn_model(train, options=replace(options, slopes=0.0))
-        yield told("values", _searched(model, test)[0], model.card.seconds)
+        yield told("values", _search_answers(model, test)[0], model.card.seconds)
     if asked & set(OURS):
         model = learn_model(train, options=options)
         seconds = model.card.seconds
@@ -119,11 +119,11 @@ def _learned(train: Samples, test: Samples, asked: set[str], options: LearnOptio
             each = 1e6 * (time.process_time() - began) / len(test)
             yield told("inverse", answers, seconds, facts={"microseconds": each})
         if "search" in asked:
-            answers, doubts, facts = _searched(model, test)
+            answers, doubts, facts = _search_answers(model, test)
             yield told("search", answers, seconds, facts=facts, doubts=doubts)
 
 
-def _searched(model: LearnedModel, test: Samples) -> tuple[Answers, Distances, dict[str, float]]:
+def _search_answers(model: LearnedModel, test: Samples) -> tuple[Answers, Distances, dict[str, float]]:
     """Answers of the search on the networks, what they doubt, and means of what they expect and of their time."""
     targets = targets_of(test)
     model.solve(targets[0])
@@ -136,7 +136,7 @@ def _searched(model: LearnedModel, test: Samples) -> tuple[Answers, Distances, d
     return np.array([answer.contractions for answer in answers]), expected + spread, facts
 
 
-def _rolled(simulation: Simulation, test: Samples, found: Compared, methods: set[str]) -> Iterator[Compared]:
+def _roll_out(simulation: Simulation, test: Samples, found: Compared, methods: set[str]) -> Iterator[Compared]:
     """Return the answers that the simulator checks: from rest, and after one exact step for each target."""
     poses = list[Equilibrium]()
     for row in found.contractions:

@@ -107,7 +107,7 @@ def _nearer(one: str, other: str) -> Callable[[Mapping[str, Ran]], np.ndarray]:
 
 def _finer(one: str, other: str) -> Callable[[Mapping[str, Ran]], np.ndarray]:
     """By how many millimetres the smallest tolerance that one run mastered is below another's."""
-    return lambda ran: 10.0 * (_bounded(least(ran[other])) - _bounded(least(ran[one])))
+    return lambda ran: 10.0 * (_clip_lengths(least(ran[other])) - _clip_lengths(least(ran[one])))
 
 
 def _first_action(ran: Mapping[str, Ran]) -> np.ndarray:
@@ -149,7 +149,7 @@ def _curricula(options: DdpgOptions, layers: str) -> Experiment:
             ),
             Claim(
                 text="c does not master 0.81 cm (R83)",
-                measure=lambda ran: 10.0 * _bounded(least(ran["c: b, critic 0.01"])),
+                measure=lambda ran: 10.0 * _clip_lengths(least(ran["c: b, critic 0.01"])),
                 above=8.101,
                 unit="mm",
             ),
@@ -236,7 +236,7 @@ EXPERIMENTS: Mapping[str, Experiment] = {
 """By their names for `hydrostat reproduce`."""
 
 
-def _bounded(lengths: np.ndarray) -> np.ndarray:
+def _clip_lengths(lengths: np.ndarray) -> np.ndarray:
     """Tolerances [cm] where none was mastered: more than the first."""
     return np.where(np.isfinite(lengths), lengths, 1.0 / 0.9)
 

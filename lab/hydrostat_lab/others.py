@@ -30,7 +30,7 @@ def nearest_with_slopes(train: Samples, goals: Goals) -> Answers:
     for goal, place in zip(goals, _nearest(train, goals), strict=True):
         begun, markers = train.contractions[place], train.markers[place].ravel()
         slopes = train.jacobians[place].reshape(len(goal), -1)
-        rows.append(begun + _bounded(slopes, markers - goal, low - begun, high - begun))
+        rows.append(begun + _solve_bounded(slopes, markers - goal, low - begun, high - begun))
     return np.array(rows)
 
 
@@ -75,7 +75,7 @@ def _squares(some: Goals, others: Goals) -> Float[np.ndarray, "some others"]:
     return np.maximum(np.square(some).sum(1)[:, None] + np.square(others).sum(1) - 2.0 * some @ others.T, 0.0)
 
 
-def _bounded(slopes: np.ndarray, residual: Vector, low: Vector, high: Vector) -> Vector:
+def _solve_bounded(slopes: np.ndarray, residual: Vector, low: Vector, high: Vector) -> Vector:
     """The change within limits that best undoes what is missed; the shortest where several do."""
     low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
     some = _SHORT * np.sqrt(np.square(slopes).sum(axis=0).max(initial=0.0))

@@ -91,10 +91,10 @@ def clone_actions(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Ac
     """A network that repeats the actions of the pairs: behaviour cloning, by the square of the action's error."""
 
     def loss(network: "_Network", rows: Tensor) -> Tensor:
-        wanted, reached = (_taken(part, rows) for part in (pairs.acts, pairs.reached))
+        wanted, reached = (_take_rows(part, rows) for part in (pairs.acts, pairs.reached))
         return (network(reached) - wanted).square().sum(-1)
 
-    return _learned(trials, pairs, effort, loss)
+    return _fit_policy(trials, pairs, effort, loss)
 
 
 def gradient(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
@@ -108,24 +108,24 @@ def gradient(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
         goals = trials.reach(2.0 * torch.rand(*rows.shape, trials.actions, generator=draw) - 1.0)
         return trials.distances(trials.places(trials.contractions(network(goals))), goals)
 
-    return _learned(trials, pairs, effort, loss)
+    return _fit_policy(trials, pairs, effort, loss)
 
 
 def trial_and_error(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """The thesis's method, with its small networks and a shaped reward."""
-    return _tried(trials, pairs, effort, fill=False)
+    return _fit_tries(trials, pairs, effort, fill=False)
 
 
 def learn_from_filled_buffer(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """The same, with the pairs in its replay buffer before it begins."""
-    return _tried(trials, pairs, effort, fill=True)
+    return _fit_tries(trials, pairs, effort, fill=True)
 
 
 def residual(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """Trial and error about what cloning does: actions are a tenth of the learned ones, beside those of the clone."""
     base = clone_actions(trials, pairs, effort)
     around = _Around(trials, base)
-    found = _tried(around, pairs, effort, fill=False)
+    found = _fit_tries(around, pairs, effort, fill=False)
     return lambda states, goals: around.whole(found(states, goals), goals)
 
 
@@ -163,7 +163,7 @@ class _Network:
         return (_BEYOND * torch.tanh(raw)).clamp(-1.0, 1.0)
 
 
-def _learned(
+def _fit_policy(
     trials: NetworkReach, pairs: TriedPairs, effort: Budget, loss: Callable[[_Network, Tensor], Tensor]
 ) -> Act:
     """Networks by Adam on batches of pairs, with a rate that falls as a cosine."""
@@ -188,7 +188,7 @@ def _learned(
     return act
 
 
-def _tried(trials: Trials, pairs: TriedPairs, effort: Budget, *, fill: bool) -> Act:
+def _fit_tries(trials: Trials, pairs: TriedPairs, effort: Budget, *, fill: bool) -> Act:
     learner = HindsightDdpg(trials, SMALL, seeds=len(pairs.acts), epochs=effort.epochs, room=pairs.acts.shape[1])
     if fill:
         learner.fill(pairs.acts, pairs.reached)
@@ -228,7 +228,7 @@ class _Around(Trials):
         return (self._base(goals, goals) + _SMALL * acts).clamp(-1.0, 1.0)
 
 
-def _taken(values: Tensor, rows: Tensor) -> Tensor:
+def _take_rows(values: Tensor, rows: Tensor) -> Tensor:
     """Rows of values for each seed."""
     return values.gather(1, rows[..., None].expand(-1, -1, values.shape[-1]))
 

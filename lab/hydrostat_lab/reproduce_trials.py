@@ -83,7 +83,7 @@ def reproduce_trials(
     count = usual.seeds if much.seeds is None else much.seeds
     for name in names:
         if name == SHARED:
-            _shared(networks, simulation, out, seeds=count, usual=usual)
+            _write_shared(networks, simulation, out, seeds=count, usual=usual)
             continue
         if name in (POLICIES, GRADIENT):
             _policies(name, networks, simulation, out, seeds=count, usual=usual)
@@ -113,7 +113,9 @@ def reproduce_trials(
         print(f"Wrote {save_png(drawn_runs(experiment, runs), out / f'{name}.png')} and {name}.json")
 
 
-def _shared(networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials") -> None:
+def _write_shared(
+    networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials"
+) -> None:
     """Trial and error beside others, of the pairs that it tried and of pairs drawn evenly."""
     from hydrostat_lab.policies import Budget
     from hydrostat_lab.run_experiment import finger_pairs
@@ -164,7 +166,7 @@ def _policies(
         for many in usual.pairs if name in PAIRS_ALONE else usual.pairs[-1:]:
             act = way(trials, every.first(many), effort)
             exact = 10.0 * exact_distances(simulation, trials, act, seeds, asked, progress=report_progress())
-            report(name, many, _used(name, many, known, usual), exact)
+            report(name, many, _count_equilibria(name, many, known, usual), exact)
     replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}
     for row in rows:
@@ -172,7 +174,7 @@ def _policies(
     print(f"Wrote {save_png(draw_costs(curves), out / f'{table}.png')} and {table}.json")
 
 
-def _used(name: str, pairs: int, known: int, usual: "_Trials") -> int:
+def _count_equilibria(name: str, pairs: int, known: int, usual: "_Trials") -> int:
     """Equilibria that a way would have cost in the simulator: its pairs, its own trials, or those of the networks."""
     from hydrostat_lab.policies import PAIRS_ALONE, UNFILLED
 

@@ -86,10 +86,10 @@ def compare_on_shared_data(
             ways |= {f"{name}, {data}": way(trials, pairs, budget) for name, way in OTHERS.items()}
         for name, act in ways.items():
             exact = exact_distances(simulation, trials, act, seeds, asked) if at == marks[-1] else None
-            yield OfPairs(way=name, pairs=each * at, expected=_expected(trials, act, seeds), exact=exact)
+            yield OfPairs(way=name, pairs=each * at, expected=_expected_errors(trials, act, seeds), exact=exact)
 
 
-def _expected(trials: NetworkReach, act: Act, seeds: int) -> np.ndarray:
+def _expected_errors(trials: NetworkReach, act: Act, seeds: int) -> np.ndarray:
     """Distances [cm] in the networks from goals that none learns from, (seeds, goals)."""
     states, _, goals = trials.begin_alike(torch.Generator().manual_seed(_GOALS), (seeds, _MANY))
     with torch.no_grad():

@@ -153,33 +153,33 @@ class GymnasiumTrials(Trials):
 
     def begin(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
         """Begin an episode in each."""
-        return self._begun(torch.randint(_SEEDS, shape, generator=draw))
+        return self._begin(torch.randint(_SEEDS, shape, generator=draw))
 
     def begin_alike(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
         """Begin the same episodes for every seed, each in a copy of its own."""
-        return self._begun(torch.randint(_SEEDS, (1, shape[1]), generator=draw).expand(shape))
+        return self._begin(torch.randint(_SEEDS, (1, shape[1]), generator=draw).expand(shape))
 
     def act(self, acts: Tensor) -> tuple[Tensor, Tensor]:
         """Do a step of each."""
         rows = acts.flatten(0, 1).numpy()
         seen = [env.step(row)[0] for env, row in zip(self._envs, rows, strict=False)]
-        return self._told(seen, "observation", acts.shape), self._told(seen, "achieved_goal", acts.shape)
+        return self._gather(seen, "observation", acts.shape), self._gather(seen, "achieved_goal", acts.shape)
 
     def distances(self, reached: Tensor, goals: Tensor) -> Tensor:
         """Norms of what is missed [m], which is the tasks' own measure."""
         return (reached - goals).norm(dim=-1)
 
-    def _begun(self, seeds: Tensor) -> Begun:
+    def _begin(self, seeds: Tensor) -> Begun:
         self._envs += [self._make() for _ in range(seeds.numel() - len(self._envs))]
         rows = zip(self._envs, seeds.flatten().tolist(), strict=False)
         seen = [env.reset(seed=seed)[0] for env, seed in rows]
         states, reached, goals = (
-            self._told(seen, name, seeds.shape) for name in ("observation", "achieved_goal", "desired_goal")
+            self._gather(seen, name, seeds.shape) for name in ("observation", "achieved_goal", "desired_goal")
         )
         return states, reached, goals
 
     @staticmethod
-    def _told(seen: Sequence[Mapping[str, np.ndarray]], name: str, shape: Sequence[int]) -> Tensor:
+    def _gather(seen: Sequence[Mapping[str, np.ndarray]], name: str, shape: Sequence[int]) -> Tensor:
         rows = torch.tensor(np.array([each[name] for each in seen]), dtype=torch.float32)
         return rows.unflatten(0, tuple(shape[:2]))
 

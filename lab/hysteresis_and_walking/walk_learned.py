@@ -85,7 +85,7 @@ def search(draws: Draws, budget: int, seed: int) -> tuple[np.ndarray, int, str]:
     while env.equilibria + env.steps * env.beat <= budget:
         drawn = best + reach * random.normal(size=3) if most > -np.inf else best
         action = np.clip(drawn, -1.0, 1.0)
-        draw = {"goal": [0.0], "friction": env.drawn(random)["friction"]}
+        draw = {"goal": [0.0], "friction": env.sample_episode(random)["friction"]}
         counted = env.uncounted
         way = float(ways(env, lambda _, action=action: action, [draw])[0])
         env.uncounted = counted  # these are the cost

@@ -54,7 +54,7 @@ def test_load_steps_from_both_sides_end_on_the_same_branch(simulation: Simulatio
     assert np.linalg.norm(up.markers["top"] - down.markers["top"]) > 0.01
     for start, pose in ((rest, up), (full, down)):
         found = continue_branch(simulation, start, {"down": BETWEEN})
-        assert found.arrived
+        assert found.reaches_goal
         assert found.critical == ()
         assert np.abs(found.end.nodes - pose.nodes).max() < 1e-8
         assert found.end.energy == pytest.approx(pose.energy, rel=1e-9)
@@ -136,7 +136,7 @@ def test_the_tension_is_the_derivative_of_the_energy(simulation: Simulation, bra
 
 def test_the_way_back_is_the_way_there(simulation: Simulation, branch: Branch) -> None:
     back = continue_branch(simulation, branch.end, {}, around_folds=True)
-    assert back.arrived
+    assert back.reaches_goal
     assert [1 - share for share in back.folds[::-1]] == pytest.approx(branch.folds, abs=1e-8)
     assert np.abs(back.end.nodes - branch.points[0].pose.nodes).max() < 1e-9
     assert [stable for _, stable in back.runs()] == [True, False, True]
@@ -155,7 +155,7 @@ def test_a_goal_between_the_folds_is_reached_on_the_branch_first_met(simulation:
     """A long step may lead around the fold beyond the goal; the branch still ends before it."""
     fold = 0.15078
     found = continue_branch(simulation, simulation.solve({}), {"down": fold - 1e-5}, around_folds=True)
-    assert found.arrived
+    assert found.reaches_goal
     assert found.critical == ()
     assert all(point.stable for point in found.points)
 
@@ -171,7 +171,7 @@ def test_a_fold_in_the_last_step_is_found(simulation: Simulation, branch: Branch
     assert [point.kind for point in back.critical] == [CriticalKind.FOLD]
     assert back.points[1].pose.contractions == pytest.approx([fold.share * GOAL], abs=1e-9)
     stable = continue_branch(simulation, branch.points[0].pose, start.contractions)
-    assert stable.arrived
+    assert stable.reaches_goal
     assert np.abs(back.end.nodes - stable.end.nodes).max() < 1e-8
     assert np.abs(back.end.nodes - start.nodes).max() > 1e-6
     assert continue_branch(simulation, start, {"down": GOAL}).reason is BranchReason.FOLD
@@ -183,7 +183,7 @@ def test_a_bifurcation_in_the_last_step_is_found() -> None:
     rest = simulation.solve({})
     load = continue_branch(simulation, rest, np.full(2, 0.014)).points[-1].share * 0.014
     found = continue_branch(simulation, rest, np.full(2, 1.001 * load), around_folds=True)
-    assert found.arrived
+    assert found.reaches_goal
     assert [point.kind for point in found.critical] == [CriticalKind.BIFURCATION]
     assert found.critical[0].index == len(found.points) - 2
     assert found.critical[0].share == pytest.approx(1 / 1.001, abs=1e-8)
@@ -210,7 +210,7 @@ def test_a_beam_has_no_fold() -> None:
     simulation = Simulation(strip_robot())
     goal = np.array([0.03, 0.0])
     found = continue_branch(simulation, simulation.solve({}), goal, around_folds=True)
-    assert found.arrived
+    assert found.reaches_goal
     assert found.critical == ()
     assert all(point.stable for point in found.points)
     assert np.abs(found.end.nodes - simulation.solve(goal).nodes).max() < 1e-9
@@ -223,7 +223,7 @@ def test_a_column_splits_where_its_straight_shape_becomes_a_saddle() -> None:
     simulation = Simulation(column(4))
     goal = np.full(2, 0.014)
     found = continue_branch(simulation, simulation.solve({}), goal, around_folds=True)
-    assert found.arrived
+    assert found.reaches_goal
     assert [point.kind for point in found.critical] == [CriticalKind.BIFURCATION]
     load = found.critical[0].share * 0.014
     beside = np.array([load - 1e-6, load + 1e-6])
@@ -273,7 +273,7 @@ def test_what_cannot_be_followed_is_refused(simulation: Simulation) -> None:
 def test_a_way_of_no_length_is_a_point(simulation: Simulation) -> None:
     rest = simulation.solve({})
     found = continue_branch(simulation, rest, {})
-    assert found.arrived
+    assert found.reaches_goal
     assert len(found.points) == 1
     assert found.runs() == []
 

@@ -87,7 +87,7 @@ def test_a_slot_is_given_back_where_no_process_can_be_begun(monkeypatch: pytest.
 
     slots = Slots(1)
     heard = Heard(Jobs(Bell(), slots))
-    monkeypatch.setattr("hydrostat.studio.jobs._Worker.started", refuse)
+    monkeypatch.setattr("hydrostat.studio.jobs._Worker.start", refuse)
     assert "cannot start a process (too many processes)" in heard.begin(works.add, 1).end().error
     assert slots.wait(lambda: True, print)
 

@@ -180,7 +180,7 @@ def test_a_gripper_turns_its_disc() -> None:
         for key in keys:
             info = env.step(key)[-1]
         turned.append(info["turned"])
-        dot = np.array(env.world.drawn()[1].at) - env.world.place
+        dot = np.array(env.world.visible_obstacles()[1].at) - env.world.place
         angle = np.arctan2(dot[1], dot[0])  # it began on the x axis
         assert angle == pytest.approx(info["turned"], abs=1e-6)
         assert (env.render() != begun).any()

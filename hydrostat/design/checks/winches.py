@@ -13,7 +13,7 @@ def winch_violations(parts: Parts) -> Iterator[str]:
     """Winches outside their zones, near the edge or each other, of other sizes, or with too many cables."""
     yield from standing_violations(parts)
     yield from _of_other_makes(parts)
-    yield from _crowded(parts)
+    yield from _overfull_winches(parts)
 
 
 def standing_violations(parts: Parts) -> Iterator[str]:
@@ -80,7 +80,7 @@ def _of_other_makes(parts: Parts) -> Iterator[str]:
             yield f"{name}: wrong spool_radius ({mm(winch.spool_radius)}). Allowed: {allowed}. Change it."
 
 
-def _crowded(parts: Parts) -> Iterator[str]:
+def _overfull_winches(parts: Parts) -> Iterator[str]:
     most = parts.constraints.cables_per_winch
     changed = {parts.robot.cables[index].winch for index in parts.new_cables}
     for index, winch in enumerate(parts.robot.winches):

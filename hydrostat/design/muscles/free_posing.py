@@ -76,20 +76,20 @@ class FreePosing:
         Points of `calm` are those that nobody holds and that should rather stay.
         """
         aims = self._aims(held, goals, calm)
-        wanted, rho = self._wanted(aims)
+        wanted, rho = self._solve_tensions(aims)
         change = wanted - self.tensions
         farthest = self._farthest(change)
         before = self._objective(self.nodes, self.tensions, aims, rho)
         for _ in range(_TRIES):
             length = min(1.0, self._radius / farthest) if farthest > 0 else 1.0
             tensions = self.tensions + length * change
-            found = self._relaxed(tensions, _ITERATIONS)
+            found = self._relax(tensions, _ITERATIONS)
             if self._objective(found.nodes, tensions, aims, rho) <= before:
                 self._radius = min(2.0 * self._radius, _LARGEST)
                 return self._settle(found, tensions)
             self._radius = max(0.25 * length * farthest, _SMALLEST)
         # The body may be so far from rest that nothing can be predicted: first let it settle as it is pulled now.
-        return self._settle(self._relaxed(self.tensions, _PATIENT), self.tensions)
+        return self._settle(self._relax(self.tensions, _PATIENT), self.tensions)
 
     def _begin(self) -> NewtonResult:
         """Return the equilibrium at rest, from a start with all of the weight."""
@@ -124,8 +124,8 @@ class FreePosing:
             aims.append(_Aim(calm, calm.positions(self._resting.nodes), weight))
         return aims
 
-    def _wanted(self, aims: list["_Aim"]) -> tuple[Vector, float]:
-        """Tensions that the linearised problem asks for, and the weight of their squares [m^2/N^2].
+    def _solve_tensions(self, aims: list["_Aim"]) -> tuple[Vector, float]:
+        """Solve the linearized problem for tensions; return them and the weight of their squares [m^2/N^2].
 
         Effort weighs more for a goal out of reach, so that the strongest fibre pulls as hard as it can and the others
         by their leverage; were all of them at their bounds, the body would be crushed.
@@ -166,8 +166,8 @@ class FreePosing:
     def _pulls(self, nodes: Nodes, tensions: Vector) -> csc_array:
         return self._assembly.control_derivative(nodes, tensions)
 
-    def _relaxed(self, tensions: Vector, iterations: int) -> NewtonResult:
-        """A few steps of Newton at these tensions; the first costs no factorisation."""
+    def _relax(self, tensions: Vector, iterations: int) -> NewtonResult:
+        """Take a few Newton steps at these tensions; the first costs no factorization."""
         return minimise(
             self._assembly,
             self.nodes,

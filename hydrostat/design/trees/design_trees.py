@@ -64,7 +64,7 @@ def propose_trees(
     No pose is solved, so it takes a fraction of a second; what the network reaches is for others to find out. `body` is
     the physics of the body, if it is made already. Raises InputError as `design_trees` does.
     """
-    found = _TreeDesign(robot, request, no_progress, unseen, body or BodyPhysics(robot)).proposed(tuple(activations))
+    found = _TreeDesign(robot, request, no_progress, unseen, body or BodyPhysics(robot)).propose(tuple(activations))
     return None if found is None else found[1]
 
 
@@ -146,8 +146,8 @@ class _TreeDesign:
             seconds=time.process_time() - began,
         )
 
-    def proposed(self, activations: tuple[Activation, ...]) -> tuple["_TreePlan", Robot] | None:
-        """The first of the best plans that can be built, with its robot; none is judged by the pose that it reaches."""
+    def propose(self, activations: tuple[Activation, ...]) -> tuple["_TreePlan", Robot] | None:
+        """Propose the first of the best plans that can be built, with its robot, without solving its poses."""
         robots = ((plan, self._build(plan.trees, plan.chosen)) for plan in _shortlist(self._plans(activations)))
         return next(((plan, robot) for plan, robot in robots if robot is not None), None)
 

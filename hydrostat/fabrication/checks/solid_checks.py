@@ -23,7 +23,7 @@ def watertight_problems(printed: Printed) -> tuple[str, ...]:
     """
     if printed.solid.status() != Error.NoError:
         return (f"{printed.name}: the solid is no solid ({printed.solid.status().name})",)
-    vertices, triangles = printed.written
+    vertices, triangles = printed.file_mesh
     if len(triangles) == 0:
         return (f"{printed.name}: the solid is empty",)
     problems = []

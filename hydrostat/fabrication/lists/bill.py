@@ -136,7 +136,7 @@ class Item:
         return self.quantity * self.price.amount
 
     @property
-    def spent(self) -> float:
+    def cost_packs(self) -> float:
         """Cost of the whole packs, in the currency of its price."""
         return self.price.of_packs(self.quantity)
 
@@ -200,7 +200,7 @@ def _item_row(item: Item) -> BillRow:
         mass=item.mass,
         price=item.price.amount,
         cost_used=item.cost,
-        cost_packs=item.spent,
+        cost_packs=item.cost_packs,
         source=item.price.words,
         short_name=kind or item.what,
     )
@@ -214,7 +214,7 @@ def _total_row(group: str, items: Iterable[Item]) -> BillRow:
         what="total",
         mass=float(sum(item.mass or 0.0 for item in items)),
         cost_used=cost_of(items),
-        cost_packs=float(sum(item.spent for item in items)),
+        cost_packs=float(sum(item.cost_packs for item in items)),
         short_name="total",
         is_total=True,
     )

@@ -47,7 +47,7 @@ class CableCut:
         return sum(parts)
 
     @property
-    def cut(self) -> float:
+    def cut_length(self) -> float:
         """The length to cut it to: the next full step."""
         return STEP * math.ceil(self.length / STEP - 1e-9)
 
@@ -123,7 +123,7 @@ def cable_table(cuts: tuple[CableCut, ...]) -> Table[CableRow]:
                 knot=cut.knot,
                 tail=cut.tail,
                 total=cut.length,
-                cut=cut.cut,
+                cut=cut.cut_length,
                 spool_mark=cut.spool_mark,
             )
             for cut in cuts

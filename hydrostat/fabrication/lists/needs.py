@@ -90,7 +90,7 @@ def _foam(plan: KitPlan, foam: FoamNeeds) -> list[Item]:
 
 
 def _cables(plan: KitPlan, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]) -> list[Item]:
-    length, tube = sum(cut.cut for cut in cuts), sum(cut.length for cut in tubes)
+    length, tube = sum(cut.cut_length for cut in cuts), sum(cut.length for cut in tubes)
     # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
     polyethylene = 0.97e-3
     thread = polyethylene * math.pi / 4 * line.diameter**2 * length

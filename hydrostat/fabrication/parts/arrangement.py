@@ -78,7 +78,7 @@ class _Ways:
         """Return the best place next to others, and the areas shared with them [mm^2]: not stackable, and stackable."""
         hard, soft = np.zeros(len(self.places)), np.zeros(len(self.places))
         for other in others:
-            _, without, above = self._shared(other)
+            _, without, above = self._overlap_areas(other)
             hard += without
             soft += above
         number = min(
@@ -93,7 +93,7 @@ class _Ways:
         least = min(place.depth for place in inside)
         return _Ways([place for place in inside if place.depth <= least + 1e-9], self._thickness)
 
-    def _shared(self, other: UnitPlace) -> tuple[UnitPlace, Vector, Vector]:
+    def _overlap_areas(self, other: UnitPlace) -> tuple[UnitPlace, Vector, Vector]:
         """Areas shared with another unit for each placement [mm^2]: where stacking is impossible, and possible."""
         if id(other) not in self._shares:
             near = shapely.intersects(self._footprints, other.footprint)

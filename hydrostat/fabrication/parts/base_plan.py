@@ -77,8 +77,8 @@ class Hole:
         return tuple((x + self.radius * math.cos(angle), y + self.radius * math.sin(angle)) for angle in angles)
 
     @property
-    def raised(self) -> Construction:
-        """Shape that is taken away for it."""
+    def solid(self) -> Construction:
+        """Shape of the hole, to be subtracted."""
         return Cylinder(SHEET + 2, self.radius).move(*self.middle, -1)
 
 
@@ -163,13 +163,13 @@ class BaseTile:
         return (*self.cuts, *(hole.ring for hole in self.holes))
 
     @property
-    def raised(self) -> Construction:
-        """Shape of it as it lies on the bed."""
+    def solid(self) -> Construction:
+        """Shape of the tile as it lies on the bed."""
         body: Construction = Prism(_rectangle(self.low, self.high), SHEET)
         for cut in self.cuts:
             body = body - Prism(cut, SHEET + 2).move(0, 0, -1)
         for hole in self.holes:
-            body = body - hole.raised
+            body = body - hole.solid
         return body.move(-self.low[0], -self.low[1], 0)
 
 

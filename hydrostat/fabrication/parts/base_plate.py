@@ -55,7 +55,7 @@ def base_plate(
     plan = BasePlan.of(outside, options, bed)
     tiles = [
         Printed.of(
-            tile.raised,
+            tile.solid,
             name=f"base_{letter_label(place)}" if len(plan.tiles) > 1 else "base",
             title="Base",
             note="Flat on the bed, no support. Or cut the whole base from acrylic, 4 mm.",

@@ -159,7 +159,7 @@ class Housing:
         return Screw(title=title, length=length, core=1.5, pilot=1.7, passage=2.4, head=3.8, head_height=1.2)
 
     @property
-    def sunk(self) -> float:
+    def head_depth(self) -> float:
         """Depth of the heads of these screws below the upper side of the roof [mm]."""
         return 0.0 if self.outside else max(0.0, self.top - 0.3 - self.screw.length)
 
@@ -241,7 +241,7 @@ class Housing:
         body: Construction = Box((2 * half, 2 * half, top - low)).move(-half, -half, low)
         body = body - Cylinder(self.under_roof - low + 1, self.cavity).move(0, 0, low - 1)
         body = body - Cylinder(self.roof + 2, self.spool.pin + self.options.clearance).move(0, 0, self.under_roof - 1)
-        screw, sunk = self.screw, self.sunk
+        screw, sunk = self.screw, self.head_depth
         cone = (screw.head - screw.passage) / 2 + 0.1
         hole: Construction = Cylinder(top - low + 2, screw.passage / 2).move(0, 0, low - 1)
         hole = hole + Cylinder(cone, screw.passage / 2, screw.head / 2 + 0.1).move(0, 0, top - sunk - cone)

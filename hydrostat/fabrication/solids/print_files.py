@@ -15,7 +15,7 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 
 def stl_bytes(printed: Printed) -> bytes:
     """A part as binary STL in millimetres; the header names it. One copy: STL knows no count."""
-    vertices, triangles = printed.written
+    vertices, triangles = printed.file_mesh
     corners = vertices[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -128,7 +128,7 @@ def _file(parts: tuple[Printed, ...], plate: tuple[PartOnBed, ...], title: str) 
 
 
 def _object(number: int, part: Printed) -> str:
-    vertices, triangles = part.written
+    vertices, triangles = part.file_mesh
     corners = "".join(
         f'<vertex x="{_number(x)}" y="{_number(y)}" z="{_number(z)}"/>\n' for x, y, z in vertices.tolist()
     )

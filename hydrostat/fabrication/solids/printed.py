@@ -140,7 +140,7 @@ class Printed:
         return triangles_of(self.solid)
 
     @cached_property
-    def written(self) -> FileMesh:
+    def file_mesh(self) -> FileMesh:
         """Its vertices [mm] and triangles, as every file lists them."""
         return file_mesh(self.solid)
 

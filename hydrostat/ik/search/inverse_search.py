@@ -304,7 +304,7 @@ class Descent:
     weight: float  # weight of the effort at the end
 
     @property
-    def allowed(self) -> bool:
+    def within_limits(self) -> bool:
         """True if all tensions are within their limits."""
         return self.state.excess <= EXCESS
 

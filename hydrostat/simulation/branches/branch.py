@@ -87,7 +87,7 @@ class Branch:
         return f"<Branch of {plural(len(self.points), 'pose')}: {self.reason}>"
 
     @property
-    def arrived(self) -> bool:
+    def reaches_goal(self) -> bool:
         """True if the branch reaches the goal."""
         return self.reason is BranchReason.ARRIVED
 

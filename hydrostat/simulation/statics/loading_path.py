@@ -24,7 +24,7 @@ class _PathState:
     result: NewtonResult | None = None
 
     @property
-    def arrived(self) -> bool:
+    def reaches_goal(self) -> bool:
         return self.result is not None and self.result.converged
 
 
@@ -76,7 +76,7 @@ class LoadingPath:
             state = self._advance(state, goal if step == steps else begin + (goal - begin) * (step / steps))
             assert state.result is not None
             iterations += state.result.iterations
-            if not state.arrived:
+            if not state.reaches_goal:
                 break
         assert state.result is not None
         return replace(state.result, iterations=iterations), state.assembly.history
@@ -101,14 +101,14 @@ class LoadingPath:
     def _advance(self, state: _PathState, goal: Vector, halvings: int = 0) -> _PathState:
         """Next equilibrium: by half increments where it is not found, and by sliding where these fail too."""
         found = self._solve(state, goal)
-        if found.arrived or _late(found) or (goal == state.contractions).all():
+        if found.reaches_goal or _late(found) or (goal == state.contractions).all():
             return found
         if halvings:
             slid = self._slide(state, goal)
-            if slid.arrived or _late(slid) or halvings == _HALVINGS:
+            if slid.reaches_goal or _late(slid) or halvings == _HALVINGS:
                 return slid
         middle = self._advance(state, 0.5 * (state.contractions + goal), halvings + 1)
-        return self._advance(middle, goal, halvings + 1) if middle.arrived else found
+        return self._advance(middle, goal, halvings + 1) if middle.reaches_goal else found
 
     def _slide(self, state: _PathState, goal: Vector) -> _PathState:
         """Next equilibrium after a snap-through: friction follows behind it, and slipped points stick.
@@ -127,7 +127,7 @@ class LoadingPath:
             found = self._solve(state, goal)
             assert found.result is not None
             iterations += found.result.iterations
-            if found.arrived:
+            if found.reaches_goal:
                 break
         return _with_count(found, iterations)
 

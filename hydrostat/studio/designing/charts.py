@@ -41,8 +41,8 @@ class Chart:
         """A line through pairs of values, for the attribute `points`."""
         return " ".join("{:.1f},{:.1f}".format(*self.place(x, y)) for x, y in points)
 
-    def drawn(self, inside: str, *, label: str) -> str:
-        """The chart with some SVG drawn inside, and a label for who cannot see it."""
+    def render(self, inside: str, *, label: str) -> str:
+        """Render the chart around some SVG, with a label for screen readers."""
         parts = [
             f'<svg viewBox="0 0 {self.width:g} {self.height:g}" class="chart" role="img" aria-label="{label}">',
             f'<text x="0" y="12" class="chart-word">{self.name}</text>',
@@ -108,7 +108,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint],
     parts += _counts(candidates, places, chosen)
     counts = sorted({len(one.robot.winches) for one in candidates})
     keys = [(winch_count_colour(count), plural(count, "winch")) for count in counts]
-    return chart.drawn("".join([*parts, _legend(keys)]), label="expected as-built error against sewing time")
+    return chart.render("".join([*parts, _legend(keys)]), label="expected as-built error against sewing time")
 
 
 def _counts(candidates: Sequence[Candidate], places: Sequence[Place], chosen: int | None) -> Iterator[str]:
@@ -168,4 +168,4 @@ def growth_chart(run: DesignRun, seconds: float) -> str:
         f'<polygon points="{area}" class="chart-area"/><polyline points="{line}" class="chart-line"/>'
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" class="chart-now"/>'
     )
-    return chart.drawn(inside, label=f"error of the best network, now {errors[-1]:.1f} mm")
+    return chart.render(inside, label=f"error of the best network, now {errors[-1]:.1f} mm")

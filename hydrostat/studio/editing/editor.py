@@ -256,7 +256,7 @@ class Editor(Stage):
             return
         try:
             robot, hold = self._hold.drawn_out(self._document.robot)
-            moved = self._drag(robot, hold, hold.asked(robot, hit.world, self.snap))
+            moved = self._drag(robot, hold, hold.goal_at(robot, hit.world, self.snap))
         except InputError as error:
             self._refused = str(error)
             return

@@ -80,8 +80,8 @@ class Hold:
             return {self.key: at, self.twin: self.mirror.point(at)}
         return {self.key: at}
 
-    def asked(self, robot: Robot, world: Point, snap: float = 0.0) -> Point:
-        """The place [m] that a pointer asks for, on a grid; inside the body, but for pins and winches beside it."""
+    def goal_at(self, robot: Robot, world: Point, snap: float = 0.0) -> Point:
+        """Position [m] that a pointer asks for, on a grid; inside the body, except pins and winches next to it."""
         at = snap_to_grid(tuple((np.array(world) + self.grip).tolist()) if self.grip else world, snap)
         part = find_part(robot, self.key)
         if part is not None and part.kind is Kind.WINCH and robot.winches[part.index].mount is Mount.WORLD:

@@ -85,8 +85,8 @@ class PoseState:
     shape: RobotShape  # where its body is
     ghost: Ghost | None = None  # a shape to compare with, if any
 
-    def known(self, name: str) -> str:
-        """The name, if a point that is held or a marker has it, else ""."""
+    def find_name(self, name: str) -> str:
+        """Return the name if a held point or a marker has it, else ""."""
         found = name in self.targets.held or any(marker.name == name for marker in self.robot.markers)
         return name if found else ""
 

@@ -84,7 +84,7 @@ class Poser(Stage):
         return self._fit().targets.held
 
     @property
-    def armed(self) -> bool:
+    def is_armed(self) -> bool:
         """True if the next click or drag moves the chosen point."""
         return bool(self._armed)
 
@@ -171,7 +171,7 @@ class Poser(Stage):
                 self._hold_at(name, point_of(now, name, hit), np.array(hit.world))
                 return
             kind, _, name = hit.key.partition(":")
-            self._chosen = now.known(name) if kind in ("marker", "target", "point") else ""
+            self._chosen = now.find_name(name) if kind in ("marker", "target", "point") else ""
 
     def key(self, name: str) -> bool:
         """Heed r: rest; delete: let go of what is chosen; g: the next click or drag moves it; escape: choose none."""
@@ -189,7 +189,7 @@ class Poser(Stage):
 
     def choose(self, name: str) -> None:
         """Select a held point or marker."""
-        self._chosen = self._fit().known(name)
+        self._chosen = self._fit().find_name(name)
         self._document.bell.ring(Topic.THINGS)
 
     def set_mode(self, mode: Mode | str) -> None:
@@ -380,11 +380,11 @@ class Poser(Stage):
     def _rename(self, before: PoseState, now: PoseState) -> None:
         """Follow the new names of markers; let go of those that are gone."""
         names, hold = renamed_markers(before.robot, now.robot), self._hold
-        self._chosen = now.known(names.get(self._chosen, self._chosen))
-        self._armed = now.known(names.get(self._armed, self._armed))
+        self._chosen = now.find_name(names.get(self._chosen, self._chosen))
+        self._armed = now.find_name(names.get(self._armed, self._armed))
         if hold is not None:
             name = names.get(hold.name, hold.name)
-            gone = hold.point.marker and not now.known(name)
+            gone = hold.point.marker and not now.find_name(name)
             self._hold = None if gone else replace(hold, name=name)
 
     def _place(self, now: PoseState, name: str, point: HeldPoint) -> tuple[float, ...]:

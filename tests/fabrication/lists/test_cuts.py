@@ -32,8 +32,8 @@ def test_sum_of_a_cable_of_known_points() -> None:
     assert cut.wraps == pytest.approx(20 * math.pi)
     assert cut.length == pytest.approx(80 + 7 + 300 + 12 + 20 * math.pi + 10 + KNOT + TAIL)
     assert cut.spool_mark == pytest.approx(TAIL + 7 + 80 + 300 + 12)
-    assert cut.length <= cut.cut < cut.length + STEP
-    assert cut.cut % STEP == 0
+    assert cut.length <= cut.cut_length < cut.length + STEP
+    assert cut.cut_length % STEP == 0
 
 
 def test_in_the_body_the_spool_is_where_the_cable_is_counted_from():

@@ -9,7 +9,7 @@ from hydrostat.fabrication.solids.printed import Printed
 
 def overhang(printed: Printed, *, steepest: float = 50.5) -> float:
     """Area above the bed that faces down and leans further than an angle from upright [degrees], in mm^2."""
-    vertices, triangles = printed.written
+    vertices, triangles = printed.file_mesh
     corners = vertices[triangles]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
     size = np.linalg.norm(areas, axis=1)

@@ -118,7 +118,7 @@ def test_screws_of_the_box_do_not_meet_cables_or_motor(made: Housing):
 @every
 def test_screws_of_the_box_hold(made: Housing):
     """Oracle: lengths along the screw: it ends in the plate, or a nut has room below the base."""
-    end = made.top - made.sunk - made.screw.length
+    end = made.top - made.head_depth - made.screw.length
     if made.outside:
         assert end <= -SHEET - 1.6
     else:

@@ -95,7 +95,7 @@ def test_volume_agrees_with_trimesh():
     """Oracle: trimesh."""
     for spool in spools()[:3]:
         part = printed(spool)
-        mesh = trimesh.Trimesh(*part.written, process=False)
+        mesh = trimesh.Trimesh(*part.file_mesh, process=False)
         assert mesh.is_watertight
         assert mesh.volume == pytest.approx(part.volume, rel=1e-4)
 

@@ -14,13 +14,13 @@ def printed(solid: Manifold) -> Printed:
 
 
 CUBE = solid_of(Box((10, 10, 10)))
-CORNERS, FACES = printed(CUBE).written
+CORNERS, FACES = printed(CUBE).file_mesh
 
 
 def written_as(faces: np.ndarray) -> Printed:
     """A sound solid, of which its engine says that all is well, with other triangles in its files."""
     part = printed(CUBE)
-    vars(part)["written"] = CORNERS, faces
+    vars(part)["file_mesh"] = CORNERS, faces
     return part
 
 

@@ -65,7 +65,7 @@ def test_a_chart_is_as_large_as_its_values() -> None:
     chart = Chart(width=300, height=120, across=10, up=4, name="a", below="b")
     assert chart.x(10) == 290
     assert chart.y(0) > chart.y(4) == 20
-    assert parsed(chart.drawn("", label="words")).get("aria-label") == "words"
+    assert parsed(chart.render("", label="words")).get("aria-label") == "words"
 
 
 def marks(*errors: float) -> tuple[ProgressPoint, ...]:

@@ -89,7 +89,7 @@ def test_what_was_chosen_may_be_gone_when_it_should_move(
     marker = starfish.markers[0]
     poser.click(Hit(key=f"marker:{marker.name}", world=marker.at))
     poser.key("g")
-    assert poser.armed
+    assert poser.is_armed
     document.change("edit", robot=change(starfish, marker.name))  # type: ignore[operator]
     poser.click(Hit(world=(0.5, 0.5)))
     assert marker.name not in poser.held

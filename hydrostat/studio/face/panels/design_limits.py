@@ -113,7 +113,7 @@ def _more(title: str) -> ui.expansion:
 def number_box(page: WindowPage, words: str, name: str, unit: str = "") -> Show:
     """Build a box for a number that can be wished, in the unit of its range; empty where it is left open."""
     designer, allowed = page.session.designer, WISH_RANGES[name]
-    scale, own_unit = allowed.shown
+    scale, own_unit = allowed.display_unit
     unit, whole, optional = unit or own_unit, allowed.whole, allowed.optional
     box = ui.number(words, suffix=unit or None, format="%.6g").props("dense outlined hide-bottom-space stack-label")
     box.classes("flex-1 studio-figure").style("min-width: 0").props(f'data-testid="wish-{name}"')

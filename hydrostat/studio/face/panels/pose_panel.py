@@ -92,7 +92,7 @@ def pose_panel(page: WindowPage) -> None:
 
     def show() -> None:
         choice.set_value(poser.mode)
-        hint.set_text("Click the target position." if poser.armed else HINTS[poser.mode])
+        hint.set_text("Click the target position." if poser.is_armed else HINTS[poser.mode])
 
     choice.on_value_change(choose)
     page.on(Topic.THINGS, show)
