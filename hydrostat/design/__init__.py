@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hydrostat.design.filled_reach import FilledReach, out_of_plane
     from hydrostat.design.finding import Diagnostic, Severity, places_in
     from hydrostat.design.judgement import review_robot
-    from hydrostat.design.muscles.activation import Activation, FibreKind, Fibres, activate, edge_fibres, element_fibres
+    from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
     from hydrostat.design.network import (
         Alternative,
@@ -71,7 +71,6 @@ __all__ = [
     "DesignStage",
     "Diagnostic",
     "FibreKind",
-    "Fibres",
     "FilledReach",
     "FreePosing",
     "Layout",
@@ -98,7 +97,6 @@ __all__ = [
     "cable_name",
     "design_cables",
     "edge_fibres",
-    "element_fibres",
     "expected_error",
     "find_network",
     "front",

@@ -18,11 +18,10 @@ if TYPE_CHECKING:
     from hydrostat.plot.healing_figure import draw_healing
     from hydrostat.plot.learning_curves import draw_curves
     from hydrostat.plot.live_page import LivePage
-    from hydrostat.plot.motion import motion_frames, motion_svg
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
     from hydrostat.plot.picture_file import drawing, inline_svg, save_png
     from hydrostat.plot.reach_figure import draw_reach
-    from hydrostat.plot.report import report_text, write_report
+    from hydrostat.plot.report import write_report
     from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
     from hydrostat.plot.report_tables import Chapter, cable_table, fact, page, section, table
     from hydrostat.plot.robot_figures import (
@@ -76,8 +75,6 @@ __all__ = [
     "film",
     "find_ffmpeg",
     "inline_svg",
-    "motion_frames",
-    "motion_svg",
     "network_part",
     "new_chart",
     "new_figure",
@@ -89,7 +86,6 @@ __all__ = [
     "reach",
     "reached_part",
     "reached_title",
-    "report_text",
     "save_gif",
     "save_glb",
     "save_mp4",

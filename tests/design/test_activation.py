@@ -5,8 +5,8 @@ import pytest
 from builders import strip_robot
 from scipy.optimize import nnls
 
-from hydrostat.design import activate, edge_fibres, element_fibres
-from hydrostat.design.muscles.activation import _Activation, least_effort, wanted_directions
+from hydrostat.design import activate, edge_fibres
+from hydrostat.design.muscles.activation import _Activation, element_fibres, least_effort, wanted_directions
 from hydrostat.mechanics import NewtonOptions, minimise
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import BodyPhysics

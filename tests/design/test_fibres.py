@@ -5,8 +5,8 @@ import pytest
 import shapely
 from builders import box_mesh, strip_mesh, strip_robot
 
-from hydrostat.design import edge_fibres, element_fibres
-from hydrostat.design.muscles.activation import wanted_directions
+from hydrostat.design import edge_fibres
+from hydrostat.design.muscles.activation import element_fibres, wanted_directions
 from hydrostat.mechanics import NewtonOptions, minimise
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import BodyPhysics

@@ -16,6 +16,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, triangulate
 from hydrostat.ik import IKStatus
 from hydrostat.plot import reached_title
+from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Mount, PoseTarget
 
@@ -153,10 +154,10 @@ def test_every_public_name_exists() -> None:
 
 def test_motion_begins_and_ends_at_rest() -> None:
     robot = hostile_robot()
-    frames = plot.motion_frames(robot, [np.array([0.005, 0.0])], steps=3)
+    frames = motion_frames(robot, [np.array([0.005, 0.0])], steps=3)
     assert frames[0] is robot.body.mesh.nodes
     assert frames[-1] is robot.body.mesh.nodes
-    root = ElementTree.fromstring(plot.motion_svg(robot, frames, label=SCRIPT))
+    root = ElementTree.fromstring(motion_svg(robot, frames, label=SCRIPT))
     values = [len(element.get("values", "").split(";")) for element in root.iter() if element.get("values")]
     assert set(values) == {len(frames)}
 

@@ -9,7 +9,8 @@ import pytest
 from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_trace
 
 from hydrostat.errors import InputError
-from hydrostat.plot import report_text, write_report
+from hydrostat.plot import write_report
+from hydrostat.plot.report import report_text
 from hydrostat.plot.report_tables import millimetres
 from hydrostat.robot import robot_hash
 

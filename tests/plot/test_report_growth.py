@@ -9,8 +9,9 @@ from plot.test_report import Page
 
 from hydrostat.design import Alternative, Certificate, DesignStage, Network, best_errors, on_front, sewing_minutes
 from hydrostat.drawing import WINCHES
-from hydrostat.plot import inline_svg, report_text
+from hydrostat.plot import inline_svg
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
+from hydrostat.plot.report import report_text
 from hydrostat.plot.report_chapters import alternative_chapters, certificate_words, evenly
 from hydrostat.plot.robot_figures import draw_stage, stage_frame
 from hydrostat.robot import Robot

@@ -15,6 +15,7 @@ from plot.designs import space_network, space_trace
 from hydrostat import plot
 from hydrostat.drawing import FELT, mix
 from hydrostat.plot.open_sheet import open_sheet
+from hydrostat.plot.report import report_text
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Winch
 
@@ -175,7 +176,7 @@ def test_winches_far_away_are_on_the_picture() -> None:
 
 @pytest.mark.slow
 def test_the_report_of_a_body_in_space() -> None:
-    text = plot.report_text(space_network())
+    text = report_text(space_network())
     assert "tetrahedra" in text
     assert "<animate" not in text
     assert text.count("data:image/png;base64,") >= 10
