@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
     from hydrostat.design.routes.price import PricedPath
     from hydrostat.design.routes.propose import route_along
+    from hydrostat.design.routes.quick_search import QuickSearch, RouteProposal, propose_routes
     from hydrostat.design.routes.route_graph import RouteGraph, route_graph
     from hydrostat.design.score_card import rest_error, score_card
     from hydrostat.design.trees.design_trees import propose_trees
@@ -76,10 +77,12 @@ __all__ = [
     "Layout",
     "Network",
     "PricedPath",
+    "QuickSearch",
     "Range",
     "Region",
     "RouteGraph",
     "RouteOptions",
+    "RouteProposal",
     "RouteTrace",
     "Severity",
     "SewingTimes",
@@ -104,6 +107,7 @@ __all__ = [
     "on_front",
     "out_of_plane",
     "places_in",
+    "propose_routes",
     "propose_trees",
     "read_constraints",
     "read_uncertainty",

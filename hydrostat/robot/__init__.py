@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
-    from hydrostat.robot.risks import find_risks, safe_travels
+    from hydrostat.robot.risks import find_risks, limit_travels
     from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
     from hydrostat.robot.robot import LARGEST_STEP, Robot
     from hydrostat.robot.scaled import scaled_robot
@@ -87,6 +87,7 @@ __all__ = [
     "inflate_outline",
     "inflated_robot",
     "is_of_gallery",
+    "limit_travels",
     "list_gallery",
     "load_robot",
     "lost_comments",
@@ -99,7 +100,6 @@ __all__ = [
     "rims",
     "robot_hash",
     "robot_text",
-    "safe_travels",
     "save_robot",
     "scaled_robot",
     "sewn_robot",

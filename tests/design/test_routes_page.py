@@ -8,6 +8,7 @@ import pytest
 from jaxtyping import config
 
 from hydrostat.design.buildable import violations
+from hydrostat.design.constraints import Constraints
 from hydrostat.design.constraints_file import read_constraints
 from hydrostat.design.region import body_region
 from hydrostat.robot import load_robot
@@ -21,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 def page(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """The names that the blocks of code leave behind, run one after the other, and unchecked, as a reader would."""
     blocks = (ROOT / "docs" / "theory" / "routes.md").read_text().split("```python\n")[1:]
-    assert len(blocks) == 5
+    assert len(blocks) == 6
     folder = tmp_path_factory.mktemp("page")
     (folder / "examples").symlink_to(ROOT / "examples")
     names: dict[str, Any] = {"__name__": "page"}
@@ -48,6 +49,14 @@ def test_the_designs_of_the_page_are_what_was_asked_for(page: dict[str, Any]) ->
     assert network.rms_error == pytest.approx(np.sqrt(np.mean(squares)), rel=1e-6)
     assert network.rms_error < network.built < 1e-2
     assert (page["folder"] / "build" / "designed_starfish" / "robot.toml").exists()
+
+
+def test_the_proposal_of_the_page_can_be_built(page: dict[str, Any]) -> None:
+    proposal = page["proposal"]
+    assert proposal.is_refined
+    assert proposal.is_buildable
+    limits = Constraints()
+    assert violations(proposal.robot, limits, body_region(proposal.robot.body, limits.clearance)) == []
 
 
 def test_the_constraints_of_the_page_hold(page: dict[str, Any]) -> None:

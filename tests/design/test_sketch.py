@@ -17,7 +17,7 @@ from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.route_graph import route_graph
-from hydrostat.design.routes.sketch import LineChoice, _lines, sketches
+from hydrostat.design.routes.sketch import LineChoice, draw_lines, sketches
 from hydrostat.robot import Cable, PoseTarget, load_robot
 from hydrostat.simulation import Simulation
 
@@ -38,7 +38,7 @@ def test_what_a_sketch_promises_is_what_small_contractions_do(unchecked: None) -
     proposals, bare = _begun(
         strip_robot(columns=12, rows=4), constraints, [PoseTarget(name="up", targets={"tip": (0.2, 0.03)})]
     )
-    lines = list(_lines(proposals, bare))
+    lines = list(draw_lines(proposals, [marker.at for marker in bare.layout.source.markers]))
     choice = LineChoice(proposals, bare, lines, 1, 1)
     index = min(range(len(lines)), key=lambda one: choice.cost([one]))
     simulation = Simulation(proposals.with_line(bare.layout, lines[index].place, lines[index].points).robot())
@@ -58,7 +58,7 @@ def test_the_error_of_a_set_of_lines_is_that_of_nonnegative_least_squares(
 ) -> None:
     """Oracle: SciPy's `nnls` on the moves of the markers, lines that would push left out round by round."""
     proposals, bare = starfish
-    lines = list(_lines(proposals, bare))
+    lines = list(draw_lines(proposals, [marker.at for marker in bare.layout.source.markers]))
     choice = LineChoice(proposals, bare, lines, 3, 5)
     missed = [proposals.bench.residual(bare.simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
     chance = np.random.default_rng(5)
@@ -96,7 +96,7 @@ def starfish() -> tuple[Proposals, Trial]:
 def test_lines_keep_the_clearance_and_go_along_both_sides(starfish: tuple[Proposals, Trial], unchecked: None) -> None:
     proposals, bare = starfish
     region = proposals.graph.region
-    lines = list(_lines(proposals, bare))
+    lines = list(draw_lines(proposals, [marker.at for marker in bare.layout.source.markers]))
     assert len(lines) > 20
     for line in lines:
         assert region.depths(line.points[1:]).min() >= region.clearance

@@ -15,7 +15,7 @@ from hydrostat.design.routes.refine import pushed_back
 from hydrostat.errors import NotConvergedError
 from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import IKOptions, Limits
-from hydrostat.robot import Robot, safe_travels
+from hydrostat.robot import Robot, limit_travels
 from hydrostat.simulation import Simulation, cable_sensitivities
 
 DIGITS = 5
@@ -34,7 +34,7 @@ class Finalists:
 
     def judge(self, layout: Layout) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
-        robot = self._safe(self._number_winches(layout).robot(digits=DIGITS))
+        robot = self.safe_robot(layout)
         if violations(robot, self.constraints, self.region):
             return None
         simulation = Simulation(robot, body=self.bench.body)
@@ -48,16 +48,10 @@ class Finalists:
         built = expected_error(simulation, reached, self.bench.uncertainty)
         return Alternative(robot=robot, reached=tuple(reached), built=built)
 
-    def _safe(self, robot: Robot) -> Robot:
-        """The robot with new winches that neither use up a cable nor squeeze the body too far, to a millimetre."""
-        locked, most = {winch.name for winch in self.constraints.staying(self.robot)[0]}, safe_travels(robot)
-        winches = [
-            winch
-            if winch.name in locked or most[winch.name] >= winch.travel
-            else replace(winch, travel=max(1e-3 * int(1e3 * most[winch.name]), 1e-3))
-            for winch in robot.winches
-        ]
-        return robot.with_network(winches, robot.cables)
+    def safe_robot(self, layout: Layout) -> Robot:
+        """The robot of a layout, coordinates rounded, new winches with travels that are safe."""
+        locked = {winch.name for winch in self.constraints.staying(self.robot)[0]}
+        return limit_travels(self._number_winches(layout).robot(digits=DIGITS), locked)
 
     def cost(self, network: Alternative) -> float:
         """The error as built, more where little else is in reach [m]."""

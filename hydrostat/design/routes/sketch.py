@@ -15,18 +15,23 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.line_choice import Line, LineChoice
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
+from hydrostat.robot import Point
 
 
-def sketches(proposals: Proposals, bare: Trial, *, winches: int, cables: int, count: int) -> list[Layout]:
+def sketches(
+    proposals: Proposals, bare: Trial, *, winches: int, cables: int, count: int, lines: Sequence[Line] | None = None
+) -> list[Layout]:
     """Layouts of lines that no other crosses, by a linear model at rest, the most promising first.
 
     Candidates run from a few winch places to every marker, along each side of the limb that it is on. For each of many
     sets of winch places lines are chosen greedily; the best sets are gone over line by line, each exchanged for another
-    while that helps. `bare` is the trial of a layout without winches and cables. Empty where some stay, or there
-    should be mirror images.
+    while that helps. `bare` is the trial of a layout without winches and cables; `lines` are those to choose from, if
+    they are drawn already. Empty where some parts stay, or there should be mirror images.
     """
-    mirrored = bare.layout.constraints.mirror is not None
-    lines = [] if mirrored or bare.layout.sites else list(_lines(proposals, bare))
+    if bare.layout.constraints.mirror is not None or bare.layout.sites:
+        return []
+    if lines is None:
+        lines = list(draw_lines(proposals, [marker.at for marker in bare.layout.source.markers]))
     if not lines:
         return []
     choice = LineChoice(proposals, bare, lines, winches, cables)
@@ -49,8 +54,8 @@ def _layout(proposals: Proposals, layout: Layout, lines: Sequence[Line]) -> Layo
     return pushed_back(layout, proposals.graph.region, _REACH * proposals.graph.size)
 
 
-def _lines(proposals: Proposals, bare: Trial) -> Iterator[Line]:
-    """Lines from each of a few winch places to each marker, on each side."""
+def draw_lines(proposals: Proposals, ends: Sequence[Point]) -> Iterator[Line]:
+    """Draw lines from each of a few winch places to each end [m], on each side."""
     graph = proposals.graph
     places = _spread_points(graph.points[graph.winch_places], _PLACES)
     costs = csr_array(
@@ -59,8 +64,7 @@ def _lines(proposals: Proposals, bare: Trial) -> Iterator[Line]:
     )
     inner = np.flatnonzero(~graph.world)
     goals = np.unique([
-        inner[np.argmin(np.linalg.norm(graph.points[inner] - marker.at, axis=1))]
-        for marker in bare.layout.source.markers
+        inner[np.argmin(np.linalg.norm(graph.points[inner] - end, axis=1))] for end in ends
     ])  # fmt: skip
     for place in graph.winch_places[places]:
         _, before = dijkstra(costs, indices=place, return_predecessors=True)

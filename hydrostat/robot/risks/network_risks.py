@@ -1,6 +1,7 @@
 """Risks of winches and cables."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -168,13 +169,28 @@ def _length_inside(robot: Robot, cable: Cable) -> float:
     return length - float(cable.segments[0]) * float((robot.body.distances(way) > 0).mean())
 
 
-def safe_travels(robot: Robot) -> dict[str, float]:
+def _safe_travels(robot: Robot) -> dict[str, float]:
     """Largest travel of each winch that neither uses up a cable nor squeezes the body too far [m]."""
     found = {winch.name: winch.travel for winch in robot.winches}
     for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
         most = _squeezing_travel(robot, cable, float(ratio))
         found[cable.winch] = min(found[cable.winch], most)
     return found
+
+
+def limit_travels(robot: Robot, kept: Collection[str] = ()) -> Robot:
+    """The robot with travels that neither use up a cable nor squeeze the body too far, rounded down to a millimetre.
+
+    Winches that are kept, by name, stay as they are.
+    """
+    most = _safe_travels(robot)
+    winches = [
+        winch
+        if winch.name in kept or most[winch.name] >= winch.travel
+        else replace(winch, travel=max(1e-3 * int(1e3 * most[winch.name]), 1e-3))
+        for winch in robot.winches
+    ]
+    return robot.with_network(winches, robot.cables)
 
 
 def _squeezing_travel(robot: Robot, cable: Cable, ratio: float) -> float:

@@ -1,0 +1,62 @@
+"""Networks for the pose of a moment. Oracles: checks of designs, fresh inverse kinematics, a new search."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import gallery_robot
+
+from hydrostat.design import (
+    BuildTolerances,
+    Constraints,
+    DesignRequest,
+    QuickSearch,
+    assign_cable_sides,
+    expected_error,
+    propose_routes,
+    violations,
+)
+from hydrostat.design.region import body_region
+from hydrostat.ik import Limits, solve_ik
+from hydrostat.robot import Marker, limit_travels
+from hydrostat.simulation import Simulation
+
+pytestmark = pytest.mark.slow
+
+
+def test_networks_keep_all_limits_and_have_the_error_that_is_told() -> None:
+    """The refined one misses in the model what inverse kinematics finds, and as built what the tolerances add."""
+    robot = assign_cable_sides(gallery_robot("pig"))
+    pose = robot.pose("hello")
+    limits = Constraints(tension=15.0)
+    first, last = propose_routes(robot, DesignRequest(poses=(pose,), winches=2, cables=4, constraints=limits))
+    assert (first.is_refined, last.is_refined, last.is_buildable) == (False, True, True)
+    for one in (first, last):
+        assert violations(one.robot, limits, body_region(robot.body, limits.clearance)) == []
+        assert limit_travels(one.robot).winches == one.robot.winches
+    simulation = Simulation(last.robot)
+    reached = solve_ik(simulation, pose, limits=Limits(tension=15.0))
+    assert last.error == pytest.approx(reached.rms_error, rel=0.02)
+    assert last.built == pytest.approx(expected_error(simulation, [reached], BuildTolerances.of(robot.body)), rel=0.02)
+    places = {marker.name: marker.at for marker in robot.markers}
+    at_rest = [np.sum(np.subtract(places[name], goal) ** 2) for name, goal in pose.targets.items()]
+    assert last.built < first.built < 0.5 * np.sqrt(np.mean(at_rest))
+
+
+def test_what_is_kept_between_poses_changes_no_result() -> None:
+    """A search that has seen other poses and other markers proposes what a new one does, to the last digit."""
+    robot = gallery_robot("pig")
+    hello, nod = (DesignRequest(poses=(robot.pose(name),), winches=2, cables=4) for name in ("hello", "nod"))
+    used = QuickSearch(robot, nod)
+    used.prepare()
+    next(used.with_markers((*robot.markers, Marker(name="more", at=robot.winches[0].at))).propose(nod.poses))
+    for one, other in zip(used.propose(hello.poses), propose_routes(robot, hello), strict=True):
+        assert one.robot.cables == other.robot.cables
+        assert (one.built, one.error) == (other.built, other.error)
+
+
+def test_parts_that_stay_and_mirrors_are_left_to_the_whole_search() -> None:
+    robot = gallery_robot("starfish")
+    request = DesignRequest(poses=(robot.pose("wave"),), winches=3, cables=6)
+    for limits in (Constraints(mirror="x"), Constraints(locked_winches=(robot.winches[0].name,))):
+        assert list(propose_routes(robot, replace(request, constraints=limits))) == []
