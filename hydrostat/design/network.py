@@ -45,6 +45,7 @@ class DesignStage:
     words: str  # what was done, such as "a cable added to winch_1"
     robot: Robot  # with the network as it was then
     error: float  # rms marker error over all poses: for routes that expected once built, for trees in the model [m]
+    tried: int = 0  # number of networks with solved poses until then
 
 
 @dataclass(frozen=True, kw_only=True)

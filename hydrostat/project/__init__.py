@@ -6,7 +6,7 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.project.project_file import PROJECT_FILE, read_project_file, write_project_file
-    from hydrostat.project.wishes import WISH_RANGES, Paint, Wishes, moved_zone, wished_constraints
+    from hydrostat.project.wishes import WISH_RANGES, Paint, Wishes, moved_zone, wished_constraints, wished_poses
     from hydrostat.project.work_folder import (
         Work,
         after_design,
@@ -42,6 +42,7 @@ __all__ = [
     "save_work",
     "text_of",
     "wished_constraints",
+    "wished_poses",
     "write_project_file",
 ]
 

@@ -22,7 +22,7 @@ from hydrostat.design import (
     Zone,
 )
 from hydrostat.errors import InputError
-from hydrostat.robot import Point, Robot
+from hydrostat.robot import Point, PoseTarget, Robot
 from hydrostat.units import quote
 
 
@@ -152,3 +152,11 @@ def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
         locked_winches=tuple(name for name in wishes.kept_winches if name in names),
         locked_cables=tuple(cable.name for cable in robot.cables if cable.name in wishes.kept_cables),
     )
+
+
+def wished_poses(robot: Robot, wishes: Wishes) -> tuple[PoseTarget, ...]:
+    """The poses to reach: those that are named and still there; all if none is (InputError: the robot has no pose)."""
+    if not robot.poses:
+        raise InputError("no poses to design for. Drag the body in Pose and store a pose")
+    named = [pose for name, pose in robot.poses.items() if name in wishes.poses]
+    return tuple(named or robot.poses.values())

@@ -4,7 +4,8 @@
 
 A marker goes from rest to its place in the robot's first pose in 60 moves, with proposals off and on in turn. A step is
 what the stage "pose" does for a move; wall time, as another process works beside it, and CPU time of the thread alone.
-A proposal is timed in this process, at four places of the way, by the wall: the median, and the longest.
+A proposal is timed in this process, at four places of the way, by the wall until the last network: the median, and the
+longest.
 """
 
 import argparse
@@ -17,7 +18,6 @@ from machine import machine
 import numpy as np  # isort: skip
 from hydrostat.project import Wishes, Work
 from hydrostat.robot import Robot, gallery_folder, load_robot
-from hydrostat.simulation import BodyPhysics
 from hydrostat.studio import (
     Bell,
     Document,
@@ -26,10 +26,11 @@ from hydrostat.studio import (
     Jobs,
     Mode,
     MuscleMover,
+    MusclePulls,
     Poser,
     ProposalInput,
+    Proposer,
     held_of,
-    propose_network,
 )
 
 MOVES, PAUSE, START = 60, 0.005, 5.0  # moves of a drag, between two of them [s], until the process has begun [s]
@@ -86,7 +87,7 @@ def steps(robot: Robot, rounds: int) -> dict[bool, list[tuple[float, float]]]:
 
 def proposals(robot: Robot) -> list[float]:
     """Time of each proposal on the way [s]."""
-    mover, body, times = MuscleMover(robot), BodyPhysics(robot), []
+    mover, proposer, times = MuscleMover(robot), Proposer(robot), []
     for share in SHARES:
         held = part_way(wanted(robot), share)
         for _ in range(MOVES):
@@ -94,7 +95,8 @@ def proposals(robot: Robot) -> list[float]:
                 break
         nodes, tensions = mover.pulls
         began = time.perf_counter()
-        propose_network(robot, ProposalInput(held=held, nodes=nodes, tensions=tensions, wishes=Wishes()), body)
+        muscles = MusclePulls(nodes=nodes, tensions=tensions)
+        list(proposer.propose(ProposalInput(held=held, wishes=Wishes(), markers=robot.markers, muscles=muscles)))
         times.append(time.perf_counter() - began)
     return times
 

@@ -296,7 +296,9 @@ class RouteSearch:
         size = len(trial.layout.sites), len(trial.layout.routes)
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
-        stage = DesignStage(words=words, robot=trial.layout.robot(digits=DIGITS), error=trial.built_error)
+        stage = DesignStage(
+            words=words, robot=trial.layout.robot(digits=DIGITS), error=trial.built_error, tried=self.bench.solves
+        )
         self.stages.append(stage)
         self.passed.append((trial.cost, trial.layout))
         if self.best is None or trial.cost < self.best.cost:

@@ -58,14 +58,17 @@ def design_trees(
 
 def propose_trees(
     robot: Robot, request: DesignRequest, activations: Sequence[Activation], *, body: BodyPhysics | None = None
-) -> Robot | None:
-    """The best winch trees by their score alone, of muscles that are known already (X1); None if none can be built.
+) -> Robot:
+    """The best winch trees by their score alone, of muscles that are known already (X1).
 
     No pose is solved, so it takes a fraction of a second; what the network reaches is for others to find out. `body` is
-    the physics of the body, if it is made already. Raises InputError as `design_trees` does.
+    the physics of the body, if it is made already. Raises as `design_trees` does.
     """
-    found = _TreeDesign(robot, request, no_progress, unseen, body or BodyPhysics(robot)).propose(tuple(activations))
-    return None if found is None else found[1]
+    design = _TreeDesign(robot, request, no_progress, unseen, body or BodyPhysics(robot))
+    found = design.propose(tuple(activations))
+    if found is None:
+        raise HydrostatError(design.refusal)
+    return found[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,11 +114,7 @@ class _TreeDesign:
         activations = self._activations()
         built = self._build_all(_shortlist(self._plans(activations)))
         if not built:
-            raise HydrostatError(
-                f"no network of {plural(self.winches, 'winch')} and up to {plural(self.cables, 'cable')} can be built. "
-                f"Rejected: {self._reasons}. "
-                "Ask for fewer winches, lower that limit, or choose a pose that bends the body more."
-            )
+            raise HydrostatError(self.refusal)
         best, reached = judge(
             [robot for _, robot in built],
             self.request.poses,
@@ -150,6 +149,15 @@ class _TreeDesign:
         """Propose the first of the best plans that can be built, with its robot, without solving its poses."""
         robots = ((plan, self._build(plan.trees, plan.chosen)) for plan in _shortlist(self._plans(activations)))
         return next(((plan, robot) for plan, robot in robots if robot is not None), None)
+
+    @property
+    def refusal(self) -> str:
+        """Why no network can be built."""
+        return (
+            f"no network of {plural(self.winches, 'winch')} and up to {plural(self.cables, 'cable')} can be built. "
+            f"Rejected: {self._reasons}. "
+            "Ask for fewer winches, lower that limit, or choose a pose that bends the body more."
+        )
 
     @property
     def _reasons(self) -> str:

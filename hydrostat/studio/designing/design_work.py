@@ -12,6 +12,7 @@ from hydrostat.design import (
     DesignRequest,
     DesignStage,
     Network,
+    assign_cable_sides,
     build_effort,
     find_network,
     rms_error,
@@ -83,6 +84,21 @@ class Candidate:
         return next((reach for reach in self.reaches if reach.pose.name == pose), None)
 
 
+def make_candidate(solution: Solution, source: Robot, *, number: int, complete: bool) -> Candidate:
+    """Return a network that a design process has sent as a candidate for the robot that it was designed for."""
+    return Candidate(
+        number=number,
+        source=source,
+        robot=assign_cable_sides(source).with_network(solution.winches, solution.cables),
+        reaches=solution.reaches,
+        error=solution.error,
+        built=solution.built,
+        craft=solution.craft,
+        demand=solution.demand,
+        complete=complete,
+    )
+
+
 def network_words(robot: Robot) -> str:
     """Numbers of winches and cables of a robot, in words."""
     return f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
@@ -122,6 +138,8 @@ class BestSoFar:
     winches: tuple[Winch, ...]  # of it
     cables: tuple[Cable, ...]  # of it
     error: float  # rms marker error over all poses: for routes that expected once built, for trees in the model [m]
+    words: str  # what was done last, such as "a cable exchanged"
+    tried: int  # number of networks with solved poses until then
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -137,8 +155,9 @@ def design_work(report: Report, robot: Robot, request: DesignRequest) -> Designs
     """Search, tell of each better network, and return what there is; interrupted, the best so far."""
 
     def watch(stage: DesignStage) -> None:
-        found = stage.robot
-        report.part(BestSoFar(winches=found.winches, cables=found.cables, error=stage.error))
+        found, error = stage.robot, stage.error
+        best = BestSoFar(winches=found.winches, cables=found.cables, error=error, words=stage.words, tried=stage.tried)
+        report.part(best)
 
     network = find_network(robot, request, progress=report.progress, watch=watch)
     report.finish()

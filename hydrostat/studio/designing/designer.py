@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design import DesignRequest, RouteOptions, assign_cable_sides, sewing_minutes
+from hydrostat.design import KNOB_RANGES, DesignRequest, RouteOptions
 from hydrostat.drawing import INK, pose_colours
 from hydrostat.errors import InputError
-from hydrostat.project import Paint, Wishes, after_design
+from hydrostat.project import Paint, Wishes, after_design, wished_poses
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.cards_file import cards_content, read_cards
@@ -21,6 +21,7 @@ from hydrostat.studio.designing.design_work import (
     DesignsFound,
     PoseResult,
     design_work,
+    make_candidate,
     network_words,
 )
 from hydrostat.studio.designing.painter import Painter
@@ -29,7 +30,6 @@ from hydrostat.studio.designing.run import (
     ProgressPoint,
     error_at_rest,
     starting_robot,
-    wished_poses,
     wished_request,
 )
 from hydrostat.studio.designing.sketch import BodySketch, Ease
@@ -43,6 +43,9 @@ from hydrostat.units import plural
 TITLE = "Designing cables"
 
 MODULE = "hydrostat.studio.designing.design_work"
+
+LIVE = frozenset({"method", "winches", "cables", *KNOB_RANGES})
+"""Wishes that act immediately where the thesis's search is chosen."""
 
 
 class Designer(Stage):
@@ -62,6 +65,9 @@ class Designer(Stage):
         self._all: tuple[Candidate, ...] = ()
         self._numbered = 0
         self.running = False  # whether a design goes on
+        self._live: int | None = None  # number of the network of the last live design
+        self._is_asked_again = False  # whether a live design follows the one that runs
+        self._is_taken = False  # whether the best network is accepted when the design ends
         self._ease: Ease | None = None
         self._sketch: BodySketch | None = None
         self._kept = b""
@@ -106,8 +112,11 @@ class Designer(Stage):
     def wish(self, **wishes: Any) -> None:
         """Change what is asked for; one step to undo (InputError: a number out of its range)."""
         wanted = self.wishes.with_values(**wishes)
-        if wanted != self.wishes:
-            self._document.change("change design settings", wishes=wanted, merge=f"wish {' '.join(wishes)}")
+        if wanted == self.wishes:
+            return
+        self._document.change("change design settings", wishes=wanted, merge=f"wish {' '.join(wishes)}")
+        if wanted.method.grows_trees and not LIVE.isdisjoint(wishes) and self._document.robot.poses:
+            self._design_live()
 
     def wish_pose(self, name: str, wanted: bool) -> None:
         """Include a pose in the design or leave it out (InputError: it would be the last one)."""
@@ -135,8 +144,11 @@ class Designer(Stage):
         self.chosen, self.pose = number, pose
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
 
-    def design(self) -> None:
-        """Begin a design in a process of its own (InputError: no pose, wishes that do not fit, or other work)."""
+    def design(self, *, is_live: bool = False) -> None:
+        """Begin a design in a process of its own (InputError: no pose, wishes that do not fit, or other work).
+
+        The network of one that is live takes the place of that of the live one before.
+        """
         robot = self._document.robot
         request = wished_request(robot, self.wishes, self._options)
         before = self.run, self.running, self.outcome
@@ -146,8 +158,9 @@ class Designer(Stage):
             began=time.monotonic(),
             rest=error_at_rest(robot, request.poses),
             best=starting_robot(robot, request),
+            is_live=is_live,
         )
-        self.running, self.outcome = True, ""
+        self.running, self.outcome, self._is_taken = True, "", False
         ended = partial(self._on_end, request)
         calls: dict[str, Any] = {"on_part": self._on_better, "on_done": self._on_found, "on_end": ended}
         try:
@@ -157,9 +170,30 @@ class Designer(Stage):
             raise
         self.show(None)
 
+    def _design_live(self) -> None:
+        """Design at once for a knob of the thesis's search, which takes a second; another one that runs is ended."""
+        if not self.running:
+            self._begin_live()
+        elif self.run is not None and self.run.is_live and not self._is_asked_again:
+            self._is_asked_again = True
+            self._jobs.stop()
+
+    def _begin_live(self) -> None:
+        try:
+            self.design(is_live=True)
+        except InputError as error:
+            self.outcome, self.running = str(error), False
+            self._document.bell.ring(Topic.JOB)
+
     def stop(self) -> None:
         """End the design with the best network so far; asked again, with none."""
         if self.running:
+            self._jobs.stop()
+
+    def take_best(self) -> None:
+        """End the design, and put its best network so far into the robot as soon as it is judged."""
+        if self.running:
+            self._is_taken = True
             self._jobs.stop()
 
     def accept(self) -> None:
@@ -306,15 +340,7 @@ class Designer(Stage):
         run = self.run
         if run is None:
             return
-        best = assign_cable_sides(run.robot).with_network(glimpse.winches, glimpse.cables)
-        mark = ProgressPoint(
-            seconds=time.monotonic() - run.began,
-            error=glimpse.error,
-            winches=len(glimpse.winches),
-            cables=len(glimpse.cables),
-            minutes=sewing_minutes(best),
-        )
-        self.run = replace(run, best=best, trail=(*run.trail, mark))
+        self.run = run.with_better(glimpse)
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
 
     def _on_found(self, found: DesignsFound) -> None:
@@ -325,23 +351,9 @@ class Designer(Stage):
         source, made = run.robot, []
         for solution in found.solutions:
             self._numbered += 1
-            made.append(
-                Candidate(
-                    number=self._numbered,
-                    source=source,
-                    robot=assign_cable_sides(source).with_network(solution.winches, solution.cables),
-                    reaches=solution.reaches,
-                    error=solution.error,
-                    built=solution.built,
-                    craft=solution.craft,
-                    demand=solution.demand,
-                    complete=found.complete,
-                )
-            )
+            made.append(make_candidate(solution, source, number=self._numbered, complete=found.complete))
             self._document.judge.learn(made[-1].robot, demand=solution.demand)
-        most = 60  # so many candidates are kept; the oldest go
-        self._all = (*made, *self._all)[:most]
-        self._keep()
+        self._shelve(made, is_live=run.is_live)
         best = made[0]
         seconds = time.monotonic() - run.began
         early = "" if found.complete else "stopped early, best so far: "
@@ -350,6 +362,17 @@ class Designer(Stage):
             f"({plural(found.tried, 'candidate')}, {seconds:.0f} s)"
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name
+        if self._is_taken and self.candidate is not None:
+            self.accept()
+
+    def _shelve(self, made: Sequence[Candidate], *, is_live: bool) -> None:
+        """Put networks before the others; that of the last live design goes where a live one ends."""
+        most = 60  # so many candidates are kept; the oldest go
+        others = tuple(one for one in self._all if not is_live or one.number != self._live)
+        if is_live:
+            self._live = made[0].number if made else None
+        self._all = (*made, *others)[:most]
+        self._keep()
 
     def _on_end(self, request: DesignRequest, error: str) -> None:
         """Called in a thread of the jobs, whatever came of it."""
@@ -357,6 +380,12 @@ class Designer(Stage):
             return  # the next design has begun
         if error:
             self.outcome = "stopped before a network was found" if error == "stopped" else error
+            if self.run.is_live:
+                self._shelve((), is_live=True)
+        if self._is_asked_again:
+            self._is_asked_again = False
+            self._begin_live()
+            return
         self.running = False
         self._jobs.warm(MODULE)
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)

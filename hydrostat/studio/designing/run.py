@@ -1,13 +1,14 @@
 """`DesignRun`: a design that goes on, or has just ended."""
 
-from dataclasses import dataclass, field
+import time
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrostat.design import AUTO, DesignMethod, DesignRequest, RouteOptions
-from hydrostat.errors import InputError
-from hydrostat.project import Wishes, wished_constraints
+from hydrostat.design import AUTO, DesignMethod, DesignRequest, RouteOptions, assign_cable_sides, sewing_minutes
+from hydrostat.project import Wishes, wished_constraints, wished_poses
 from hydrostat.robot import PoseTarget, Robot
+from hydrostat.studio.designing.design_work import BestSoFar
 
 
 def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> DesignRequest:
@@ -16,26 +17,17 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
     The options are of the search for routes; if left out its usual ones, with the wished tolerance and simplicity.
     Winch trees are grown as the thesis does it, by one value of each of its knobs (R46).
     """
-    trees = wishes.method is DesignMethod.TREES
     request = DesignRequest(
         poses=wished_poses(robot, wishes),
         winches=wishes.winches or AUTO,
         cables=wishes.cables,
         constraints=wished_constraints(robot, wishes),
-        method=wishes.method,
-        options=wishes.tree_options if trees else options or wishes.options,
+        method=DesignMethod.CHANG2018 if wishes.method.grows_trees else wishes.method,
+        options=wishes.tree_options if wishes.method.grows_trees else options or wishes.options,
         improve=wishes.improve,
     )
     request.fit_robot(robot)  # raises InputError for what does not fit
     return request
-
-
-def wished_poses(robot: Robot, wishes: Wishes) -> tuple[PoseTarget, ...]:
-    """The poses to reach: those that are named and still there; all if none is (InputError: the robot has no pose)."""
-    if not robot.poses:
-        raise InputError("no poses to design for. Drag the body in Pose and store a pose")
-    named = [pose for name, pose in robot.poses.items() if name in wishes.poses]
-    return tuple(named or robot.poses.values())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +39,8 @@ class ProgressPoint:
     winches: int  # how many it has
     cables: int  # how many it has
     minutes: float  # of cutting and stitching it [min]
+    words: str = ""  # what was done to get it, such as "a cable exchanged"
+    tried: int = 0  # number of networks tried until then
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,6 +53,54 @@ class DesignRun:
     rest: float  # error if nothing moved [m]
     best: Robot  # the robot with the best network so far; with what stays of its own before the first
     trail: tuple[ProgressPoint, ...] = field(default=())  # of the best network, in time
+    is_live: bool = False  # whether a knob began it, rather than the button
+
+    def with_better(self, found: BestSoFar) -> "DesignRun":
+        """Return the run with a better network, found now."""
+        best = assign_cable_sides(self.robot).with_network(found.winches, found.cables)
+        mark = ProgressPoint(
+            seconds=time.monotonic() - self.began,
+            error=found.error,
+            winches=len(found.winches),
+            cables=len(found.cables),
+            minutes=sewing_minutes(best),
+            words=found.words,
+            tried=found.tried,
+        )
+        return replace(self, best=best, trail=(*self.trail, mark))
+
+
+def share_done(request: DesignRequest, stage: str, done: int, total: int) -> float | None:
+    """Share of a search that is done, 0 to 1, by typical times of its stages; None where it cannot be told.
+
+    The stages of a search whose number of winches is open repeat.
+    """
+    if request.winches == AUTO or (stage == "Growing networks" and not done):
+        return None
+    start, end = SHARES.get(stage, (0.0, 0.0))
+    return start + (end - start) * min(done / total if total else 0.0, 1.0) if end else None
+
+
+SHARES = {
+    "Drawing networks": (0.08, 0.45),
+    "Growing networks": (0.45, 0.57),
+    "Refining": (0.57, 0.62),
+    "Exchanging cables": (0.62, 0.84),
+    "Activating muscles": (0.0, 0.35),
+    "Growing winch trees": (0.35, 0.55),
+    "Judging networks": (0.55, 0.9),
+}
+"""Share of the time of a search at which each of its stages begins and ends, as measured on gallery robots."""
+
+
+def time_left(seconds: float, share: float | None) -> str:
+    """Time that a search still takes, in words, from that since it began [s]; "" where it cannot be told yet."""
+    known = 0.1  # share of the search before which nothing can be said
+    if share is None or share < known:
+        return ""
+    left = seconds * (1.0 - share) / share
+    step = 5 if left < 60 else 15
+    return f"about {max(round(left / step), 1) * step:.0f} s left"
 
 
 def starting_robot(robot: Robot, request: DesignRequest) -> Robot:

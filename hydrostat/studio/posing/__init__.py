@@ -5,10 +5,16 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.studio.posing.cable_proposals import ProposalInput, propose_network
     from hydrostat.studio.posing.movers import STRIDE, CableMover, MuscleMover
     from hydrostat.studio.posing.pose_state import HeldPoint, Mode, held_of, same_as
     from hydrostat.studio.posing.poser import Poser
+    from hydrostat.studio.posing.proposal_work import (
+        MusclePulls,
+        Proposal,
+        ProposalInput,
+        Proposer,
+        propose_network,
+    )
 
 __all__ = [
     "STRIDE",
@@ -16,8 +22,11 @@ __all__ = [
     "HeldPoint",
     "Mode",
     "MuscleMover",
+    "MusclePulls",
     "Poser",
+    "Proposal",
     "ProposalInput",
+    "Proposer",
     "held_of",
     "propose_network",
     "same_as",

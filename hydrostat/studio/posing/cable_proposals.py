@@ -1,121 +1,21 @@
-"""`propose_work`: winch trees for the muscles that pull just now, again and again, in a process of its own (X1)."""
+"""`CableProposals`: cables for the pose that is held just now, found again and again by a process of its own (X1)."""
 
-import os
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from threading import Condition, Thread
-from typing import Any
 
-from hydrostat.arrays import Nodes, Vector
-from hydrostat.design import (
-    Activation,
-    DesignMethod,
-    DesignRequest,
-    TreeOptions,
-    edge_fibres,
-    propose_trees,
-)
-from hydrostat.errors import HydrostatError, InputError
-from hydrostat.ik import IKOptions, solve_ik
-from hydrostat.project import Wishes, after_design
-from hydrostat.robot import Cable, Robot, Winch
-from hydrostat.simulation import BodyPhysics, Simulation
+from hydrostat.design import DesignMethod, assign_cable_sides
+from hydrostat.errors import InputError
+from hydrostat.project import after_design, wished_poses
+from hydrostat.robot import Mount, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Slots
-from hydrostat.studio.posing.movers import same_physics
-from hydrostat.studio.posing.pose_state import Anchored, HeldPoint, Mode, with_pose
-
-POSE = "held"  # name of the pose that is held, in that process alone
-STEPS = 12  # of inverse kinematics: enough to say what a network is worth
-OPTIONS = IKOptions(iterations=STEPS, restarts=0, min_tension=False)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ProposalInput:
-    """A body as muscles hold it."""
-
-    held: Mapping[str, HeldPoint]  # points by name, with where they should be
-    nodes: Nodes  # where the body is [m]
-    tensions: Vector  # of the muscle on each edge of its mesh [N]
-    wishes: Wishes  # for a design: counts, limits, knobs
-
-
-@dataclass(frozen=True, kw_only=True)
-class Proposal:
-    """Result of one proposal input: a network, or why there is none."""
-
-    winches: tuple[Winch, ...] = ()  # of the network
-    cables: tuple[Cable, ...] = ()  # of the network
-    error: float | None = None  # rms error of the held points that it reaches [m]; None: not known
-    words: str = ""  # why there is no network; "" if there is one
-
-
-def asked_of_trees(robot: Robot, wishes: Wishes) -> DesignRequest:
-    """Build the request to the thesis's search for the held pose; the search ignores painted zones and a mirror.
-
-    Raises InputError for counts that do not fit each other.
-    """
-    winches = 2  # where their number is left open
-    shares = 12  # ways to share the cables among the winches that are tried until a network can be built
-    return DesignRequest(
-        poses=(robot.pose(POSE),),
-        winches=wishes.winches or min(winches, wishes.cables),
-        cables=wishes.cables,
-        method=DesignMethod.TREES,
-        constraints=wishes.constraints.restrict_to_trees(),
-        options=replace(wishes.tree_options, shares=shares),
-    ).fit_robot(robot)
-
-
-def propose_network(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal:
-    """Find the network for one proposal input, with the pose that it reaches."""
-    posed = with_pose(robot, POSE, moment.held)
-    activation = Activation(
-        target=posed.pose(POSE),
-        fibres=edge_fibres(robot.body.mesh),
-        tensions=moment.tensions,
-        nodes=moment.nodes,
-        errors=Anchored(robot.body.mesh).errors(moment.held, moment.nodes),
-    )
-    request = asked_of_trees(posed, moment.wishes)
-    found = propose_trees(posed, request, [activation], body=body)
-    if found is None:  # the knobs as wished give none that can be built
-        usual = replace(TreeOptions(), phis=request.tree_options.phis)
-        found = propose_trees(posed, replace(request, options=usual), [activation], body=body)
-    if found is None:
-        return Proposal(words="no cables found for these muscles. Bend the body more, or ask for fewer in Design")
-    reached = solve_ik(Simulation(found, body=body), posed.pose(POSE), options=OPTIONS)
-    return Proposal(winches=found.winches, cables=found.cables, error=reached.rms_error)
-
-
-def propose_work(pipe: Connection) -> None:
-    """Answer each `ProposalInput` from the pipe with a `Proposal`; a `Robot` in the pipe replaces the robot."""
-    polite = 10  # the process steps back by so much, so that what a person drags comes first
-    if hasattr(os, "nice"):
-        os.nice(polite)
-    robot: Robot | None = None
-    body: BodyPhysics | None = None
-    try:
-        while True:
-            given: Any = pipe.recv()
-            if isinstance(given, Robot):
-                robot, body = given, None
-            elif robot is not None:
-                body = body or BodyPhysics(robot)
-                pipe.send(_answer(robot, given, body))
-    except (EOFError, OSError, KeyboardInterrupt):
-        return
-
-
-def _answer(robot: Robot, moment: ProposalInput, body: BodyPhysics) -> Proposal:
-    try:
-        return propose_network(robot, moment, body)
-    except HydrostatError as error:
-        return Proposal(words=str(error))
-
+from hydrostat.studio.posing.movers import MuscleMover, same_physics
+from hydrostat.studio.posing.pose_state import Mode, PoseTargets
+from hydrostat.studio.posing.proposal_work import MusclePulls, Proposal, ProposalInput, propose_work
+from hydrostat.units import plural
 
 LOST = "the proposal process crashed. Switch proposals off and on again"
 
@@ -126,23 +26,31 @@ class _Question:
 
     robot: Robot
     moment: ProposalInput
+    is_settled: bool  # whether the body has come to rest, so that its muscles stay as they are
+
+    def asks_same(self, other: "_Question") -> bool:
+        """True if routes have the same answer to both."""
+        return _same_body(self.robot, other.robot) and self.moment.asks_same(other.moment)
 
 
 class CableProposals:
     """A thread hands the newest moment to a process of its own and takes in what it finds; older moments are lost.
 
-    Asking costs the thread that moves the body nothing but two assignments.
+    Asking costs the thread that moves the body nothing but a comparison and two assignments.
     """
 
     def __init__(self, document: Document, slots: Slots | None = None) -> None:
         """None are made before they are switched on; then slots, if any, say whether they may."""
         self._document, self._slots = document, slots
         self._news = Condition()
-        self._newest: _Question | None = None
+        self._newest: _Question | None = None  # to be asked
+        self._asked: _Question | None = None  # last
         self._found: tuple[Robot, Proposal] | None = None
         self._made: tuple[Robot, Proposal, Robot] | None = None
         self._run = 0  # counts how often it was switched; a thread of another number ends
         self.on = False  # whether networks are proposed
+        self.with_poses = False  # whether they should reach the stored poses, too
+        self.searching = False  # whether an answer is awaited
 
     def switch(self, on: bool) -> None:
         """Begin to propose networks, or end it and forget what there is (InputError: too many rooms do)."""
@@ -151,20 +59,56 @@ class CableProposals:
                 return
             if self._slots is not None:
                 (self._slots.take_live if on else self._slots.give_live)()
-            self.on, self._newest, self._found = on, None, None
+            self.on, self.searching = on, False
+            self._newest = self._asked = self._found = None
             self._run += 1
             self._news.notify_all()
         if on:
             Thread(target=self._follow, args=(self._run,), name="proposals", daemon=True).start()
         self._document.bell.ring(Topic.THINGS)
 
-    def ask(self, robot: Robot, moment: ProposalInput) -> None:
-        """Want a network for this moment, rather than for any before."""
+    def include_poses(self, on: bool) -> None:
+        """Let networks reach the stored poses that Design is to reach, too, or the held one alone."""
+        self.with_poses = on
+        self._document.bell.ring(Topic.THINGS)
+
+    def follow(self, robot: Robot, targets: PoseTargets, muscles: MuscleMover | None, *, is_settled: bool) -> None:
+        """Want a network for the pose that is held now; where nothing is held, the process prepares for the body."""
         if not self.on:
             return
+        if not targets.held:
+            self.forget()
+        wishes, pulls = self._document.work.wishes, None
+        if targets.held and targets.mode is Mode.MUSCLES and muscles is not None:
+            nodes, tensions = muscles.pulls
+            pulls = MusclePulls(nodes=nodes, tensions=tensions)
+        poses = wished_poses(robot, wishes) if self.with_poses and robot.poses else ()
+        moment = ProposalInput(held=targets.held, wishes=wishes, markers=robot.markers, poses=poses, muscles=pulls)
+        self.ask(robot, moment, is_settled=is_settled)
+
+    def ask(self, robot: Robot, moment: ProposalInput, *, is_settled: bool = False) -> None:
+        """Want a network for this moment, rather than for any before; asked again, nothing is done twice.
+
+        Winch trees are asked again once the body has settled: they follow its muscles.
+        """
+        if not self.on:
+            return
+        question = _Question(robot, moment, is_settled)
         with self._news:
-            self._newest = _Question(robot, moment)
+            asked = self._asked
+            if asked is not None and question.asks_same(asked):
+                has_muscles = is_settled and not asked.is_settled and moment.muscles is not None
+                if self.searching or self._is_by_routes or not has_muscles:
+                    return
+            self._newest = self._asked = question
+            self.searching = bool(moment.held)
             self._news.notify_all()
+
+    @property
+    def _is_by_routes(self) -> bool:
+        """True if the last answer is a network by routes."""
+        found = self._found
+        return found is not None and bool(found[1].cables) and found[1].method is DesignMethod.ROUTES
 
     def latest_proposal(self, robot: Robot) -> Proposal | None:
         """Return the latest proposal, if it is for a body as this robot has it."""
@@ -180,21 +124,33 @@ class CableProposals:
             return None
         made = self._made  # asked for with every frame, and the checks of a robot take a while
         if made is None or made[0] is not robot or made[1] is not found:
-            self._made = made = robot, found, robot.with_network(found.winches, found.cables)
+            proposed = assign_cable_sides(robot).with_network(found.winches, found.cables)
+            self._made = made = robot, found, proposed
         return made[2]
 
-    def keep(self) -> None:
-        """Put the proposed network into the robot, one step to undo (InputError: there is none)."""
+    def is_kept(self, robot: Robot) -> bool:
+        """True if the robot has the network proposed last."""
+        found = self.network(robot)
+        return found is not None and (found.winches, found.cables) == (robot.winches, robot.cables)
+
+    def keep(self) -> str:
+        """Put the proposed network into the robot, one step to undo; a word on it (InputError: there is none)."""
         work = self._document.work
         robot = self.network(work.robot)
         if robot is None:
             raise InputError("no network proposed yet. Drag the body until one appears")
         self._document.change("keep proposed cables", robot=robot, wishes=after_design(work, robot))
+        self._document.bell.ring(Topic.THINGS)
+        counts = f"{plural(len(robot.winches), 'winch')} and {plural(len(robot.cables), 'cable')}"
+        return f"kept {counts}. Undo takes them back"
 
     def forget(self) -> None:
         """Show no network until the next moment."""
         with self._news:
-            self._newest = self._found = None
+            if self._found is None and (self._asked is None or not self._asked.moment.held):
+                return
+            self._newest = self._asked = self._found = None
+            self.searching = False
         self._document.bell.ring(Topic.THINGS)
 
     def close(self) -> None:
@@ -211,20 +167,33 @@ class CableProposals:
         known: Robot | None = None
         try:
             while (question := self._next(run)) is not None:
-                if known is not question.robot:
+                if known is None or not _same_body(known, question.robot):
                     known = question.robot
                     here.send(known)
                 here.send(question.moment)
-                while not here.poll(0.1):
-                    if self._run != run:
-                        return
-                self._take(run, question.robot, here.recv())
+                self._hear(run, here, question.robot)
         except (EOFError, OSError):
             self._take(run, self._document.robot, Proposal(words=LOST))
         finally:
             here.close()
             process.kill()
             process.join()
+
+    def _hear(self, run: int, pipe: Connection, robot: Robot) -> None:
+        """Take what is found until the answer is complete; where something else is asked, it ends early."""
+        tick, is_called_off = 0.02, False  # seconds between two looks at what is asked
+        while self._run == run:
+            if pipe.poll(tick):
+                proposal = pipe.recv()
+                if proposal is None:
+                    break
+                self._take(run, robot, proposal)
+            elif self._newest is not None and not is_called_off:
+                is_called_off = True
+                pipe.send(None)
+        with self._news:
+            self.searching = self.searching and self._newest is not None and self._run == run
+        self._document.bell.ring(Topic.THINGS)
 
     def _next(self, run: int) -> _Question | None:
         """Wait for the next question; None: it is over."""
@@ -235,6 +204,16 @@ class CableProposals:
 
     def _take(self, run: int, robot: Robot, found: Proposal) -> None:
         with self._news:
-            if self._run == run:
+            is_wanted = self._asked is not None and bool(self._asked.moment.held)
+            if self._run == run and (is_wanted or found.words == LOST):
                 self._found = (robot, found)
         self._document.bell.ring(Topic.THINGS, Topic.SHAPE)
+
+
+def _same_body(one: Robot, other: Robot) -> bool:
+    """True if networks for both are the same: all that matters but markers, poses and winches in the body."""
+    if one is other:
+        return True
+    worlds = [[winch for winch in robot.winches if winch.mount is Mount.WORLD] for robot in (one, other)]
+    same = (one.contact, one.obstacles, one.face, worlds[0]) == (other.contact, other.obstacles, other.face, worlds[1])
+    return same and same_physics(one, other, Mode.MUSCLES)

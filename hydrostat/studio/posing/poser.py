@@ -13,7 +13,7 @@ from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.cable_proposals import CableProposals, ProposalInput
+from hydrostat.studio.posing.cable_proposals import CableProposals
 from hydrostat.studio.posing.movers import Movers, same_body
 from hydrostat.studio.posing.pose_state import (
     Anchored,
@@ -35,7 +35,15 @@ from hydrostat.studio.posing.pose_state import (
 )
 from hydrostat.studio.posing.reach import MarkerReach
 from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.view.robot_things import MARKER, Bar, prediction_things, robot_things, target_things, winch_bars
+from hydrostat.studio.view.robot_things import (
+    MARKER,
+    Bar,
+    prediction_things,
+    proposed_things,
+    robot_things,
+    target_things,
+    winch_bars,
+)
 from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
 from hydrostat.studio.view.touching import touch_things
 
@@ -109,12 +117,14 @@ class Poser(Stage):
         cloud = self.reach.cloud(robot)
         if cloud is not None:
             found.append(cloud)
-        proposed = self.proposals.network(robot) if targets.mode is Mode.MUSCLES else None
-        if proposed is None:
+        proposed = None if self.proposals.is_kept(robot) else self.proposals.network(robot)
+        if proposed is not None and targets.mode is Mode.MUSCLES:  # own cables pull nothing: show the proposed alone
+            found += robot_things(robot.with_network([], []), chosen=keys)
+        else:
             options = {"scale": limit, "carried": shape.carried}
             found += robot_things(robot, tensions=shape.tensions, chosen=keys, **options)
-        else:
-            found += robot_things(proposed, chosen=keys)
+        if proposed is not None:
+            found += proposed_things(proposed)
         markers = {marker.name for marker in robot.markers}
         found += [
             Dot(key=f"point:{name}", at=point.at, look=Look.HANDLE, colour=MARKER, chosen=f"point:{name}" in keys)
@@ -270,6 +280,7 @@ class Poser(Stage):
         if self._done is not None and all(
             old is new for old, new in zip(self._done, (robot, targets, tension), strict=True)
         ):
+            self.proposals.follow(robot, targets, self._movers.muscles, is_settled=True)
             return False
         if not self._movers.ready(robot, targets.mode) and not self._announced:
             self._announced = True
@@ -287,7 +298,7 @@ class Poser(Stage):
             mover.rest()
         shape, more = mover.update(targets.held)
         self._publish(robot, shape)
-        self._propose(robot, targets)
+        self.proposals.follow(robot, targets, self._movers.muscles, is_settled=not more)
         if not more:
             self._done = (robot, targets, tension)
         return more or self._fit().targets is not targets
@@ -323,18 +334,6 @@ class Poser(Stage):
     def _note(self, label: str) -> None:
         """Note for undo that the held points change now."""
         self._trail.note(label, self._fit().targets.held)
-
-    def _propose(self, robot: Robot, targets: PoseTargets) -> None:
-        """Want cables for what the muscles do just now."""
-        muscles = self._movers.muscles
-        if not self.proposals.on or targets.mode is not Mode.MUSCLES or muscles is None:
-            return
-        if not targets.held:
-            self.proposals.forget()
-            return
-        nodes, tensions = muscles.pulls
-        moment = ProposalInput(held=targets.held, nodes=nodes, tensions=tensions, wishes=self._document.work.wishes)
-        self.proposals.ask(robot, moment)
 
     def _publish(self, robot: Robot, shape: RobotShape) -> None:
         with self._lock:

@@ -179,9 +179,13 @@ def _style(thing: Thing) -> dict[str, Any]:
         return {
             "key": thing.key, "look": str(thing.look), "colour": thing.colour, "label": thing.label,
             "short": thing.short, "chosen": thing.chosen, "radius": thing.radius, "about": thing.about,
+            "faint": thing.faint,
         }  # fmt: skip
     if isinstance(thing, Strand):
-        return {"key": thing.key, "stroke": str(thing.stroke), "colour": thing.colour, "chosen": thing.chosen}
+        return {
+            "key": thing.key, "stroke": str(thing.stroke), "colour": thing.colour, "chosen": thing.chosen,
+            "faint": thing.faint,
+        }  # fmt: skip
     if isinstance(thing, Area):
         return {
             "key": thing.key, "colour": thing.colour, "radius": thing.radius, "label": thing.label,

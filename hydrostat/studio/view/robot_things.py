@@ -1,7 +1,7 @@
 """`robot_things`, `winch_bars`: pins, winches, cables and markers of a robot as dots and lines, its winches as bars."""
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
 
@@ -12,7 +12,7 @@ from hydrostat.design import Diagnostic, Severity
 from hydrostat.drawing import DARK, INK, MUTED, SEAM, winch_colours
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import Mesh
-from hydrostat.robot import Cable, Mount, Pin, Point, Robot, in_words, obstacle_lines
+from hydrostat.robot import Cable, Mount, Pin, Point, Robot, Winch, in_words, obstacle_lines
 from hydrostat.simulation import obstacles_in_pose
 from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, Stroke, Thing
 
@@ -77,23 +77,41 @@ def robot_things(
         things += _vias(index, cable, colours[cable.winch], chosen, every=vias)
     for winch in robot.winches:
         key = f"winch:{winch.name}"
-        things.append(
-            Dot(
-                key=key,
-                at=winch.at,
-                look=Look.WINCH,
-                colour=colours[winch.name],
-                label=winch.name,
-                short=marks[winch.name],
-                stuck=winch.mount is Mount.BODY,
-                chosen=key in chosen,
-            )
-        )
+        things.append(_winch(winch, colours[winch.name], marks[winch.name], chosen=key in chosen))
     for marker in robot.markers:
         key = f"marker:{marker.name}"
         dot = Dot(key=key, at=marker.at, look=Look.MARKER, colour=MARKER, label=marker.name, chosen=key in chosen)
         things.append(dot)
     return things
+
+
+def proposed_things(robot: Robot) -> list[Thing]:
+    """Cables and winches of a network that is proposed, faintly; none can be picked."""
+    colours, marks = winch_colours(robot.winches), winch_marks_of(robot)
+    things: list[Thing] = []
+    for index, cable in enumerate(robot.cables):
+        things += _cable(robot, index, cable, colours[cable.winch], 0.0, ())
+    for index, cable in enumerate(robot.cables):
+        things += _vias(index, cable, colours[cable.winch], (), every=False)
+    things += [_winch(winch, colours[winch.name], marks[winch.name], chosen=False) for winch in robot.winches]
+    return [
+        replace(thing, key="", label="", faint=True) if isinstance(thing, Dot) else replace(thing, key="", faint=True)
+        for thing in things
+        if isinstance(thing, Dot | Strand)
+    ]
+
+
+def _winch(winch: Winch, colour: str, mark: str, *, chosen: bool) -> Dot:
+    return Dot(
+        key=f"winch:{winch.name}",
+        at=winch.at,
+        look=Look.WINCH,
+        colour=colour,
+        label=winch.name,
+        short=mark,
+        stuck=winch.mount is Mount.BODY,
+        chosen=chosen,
+    )
 
 
 def _drawing_things(robot: Robot) -> list[Thing]:

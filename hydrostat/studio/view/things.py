@@ -83,6 +83,7 @@ class Dot:
     stuck: bool = True  # whether it moves with the body
     chosen: bool = False  # whether it is selected
     radius: float = 0.0  # in metres, for pins that reach so far; 0: just the sign
+    faint: bool = False  # whether it is proposed only
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +97,7 @@ class Strand:
     loose: int = 0  # how many points at its beginning are not stuck to the body; -1: none is
     load: float = 0.0  # tension as a share of the largest on the scale, 0 to 1
     chosen: bool = False  # whether it is selected
+    faint: bool = False  # whether it is proposed only
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

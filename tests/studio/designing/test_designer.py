@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design import RouteOptions, design_cables
+from hydrostat.design import Constraints, DesignRequest, RouteOptions, TreeOptions, design_cables
 from hydrostat.drawing import INK, pose_colours
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
@@ -18,7 +18,7 @@ from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
-from hydrostat.studio.designing.run import error_at_rest
+from hydrostat.studio.designing.run import error_at_rest, share_done, time_left
 from hydrostat.studio.designing.sketch import DURATION
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -290,3 +290,57 @@ def test_targets_of_several_poses_are_told_apart(fresh: Studio) -> None:
     colours = pose_colours(["up", "down"])
     assert rings() == {(0.18, 0.06): colours["up"], (0.185, -0.05): colours["down"]}
     assert len({*colours.values(), INK}) == 3
+
+
+@pytest.mark.slow
+def test_the_best_so_far_can_be_taken_at_any_moment(fresh: Studio, strip: Robot) -> None:
+    """One press ends the search, and the network that is listed is in the robot; undo takes it back."""
+    designer, document = fresh.designer, fresh.session.document
+    designer.design()
+    fresh.until(lambda: designer.run is not None and designer.run.trail)
+    assert designer.run is not None
+    best = designer.run.trail[-1]
+    assert best.words
+    assert best.tried > 0
+    designer.take_best()
+    fresh.until(lambda: not designer.running)
+    taken = designer.candidates[0]
+    assert not taken.complete
+    assert document.robot.cables == taken.robot.cables != strip.cables
+    assert document.undo()
+    assert document.robot.cables == strip.cables
+
+
+@pytest.mark.slow
+def test_knobs_of_the_thesis_search_act_immediately(strip: Robot, unchecked: None) -> None:
+    """A change leaves one network, which `design_cables` returns for these knobs; one that gives none says why."""
+    studio = Studio(strip, FAST)
+    designer = studio.designer
+    designer.wish(method="chang2018", clearance=0.004)
+    for threshold in (4, 6, 8):
+        designer.wish(threshold=threshold)
+    studio.until(lambda: not designer.running)
+    knobs = TreeOptions.single(threshold=8)
+    limits = Constraints(clearance=0.004)
+    expected = design_cables(
+        strip, [strip.pose("up")], winches=1, cables=2, method="chang2018", options=knobs, constraints=limits
+    )
+    assert [one.robot.cables for one in designer.candidates] == [expected.robot.cables]
+    designer.wish(threshold=20)
+    studio.until(lambda: not designer.running)
+    assert designer.candidates == ()
+    assert "Rejected: " in designer.outcome
+    studio.session.close()
+
+
+def test_a_search_tells_how_much_of_it_is_done() -> None:
+    """Shares rise from stage to stage; what is left follows by the rule of three."""
+    routes = DesignRequest(poses=(PoseTarget(name="up", targets={"tip": (0.0, 0.0)}),), winches=1, cables=2)
+    stages = [("Drawing networks", 0, 6), ("Drawing networks", 3, 6), ("Growing networks", 1, 6), ("Refining", 1, 2)]
+    shares = [share_done(routes, *stage) for stage in (*stages, ("Exchanging cables", 1, 1))]
+    assert shares == sorted(shares)
+    assert 0.0 < shares[0] < shares[-1] < 1.0
+    assert share_done(replace(routes, winches="auto"), *stages[1]) is None
+    assert time_left(10.0, 0.5) == "about 10 s left"
+    assert time_left(100.0, 0.5) == "about 105 s left"
+    assert time_left(10.0, 0.05) == time_left(10.0, None) == ""

@@ -1,58 +1,22 @@
 """The panel of the stage "design": what is asked for, the search while it runs, and the networks to choose from."""
 
 from functools import partial
-from typing import Any
 
 from nicegui import ui
 
 from hydrostat.design import DesignMethod
 from hydrostat.drawing import pose_colours
+from hydrostat.project import wished_poses
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
 from hydrostat.studio.designing.design_work import Candidate
-from hydrostat.studio.designing.run import wished_poses
+from hydrostat.studio.designing.run import ProgressPoint, share_done, time_left
 from hydrostat.studio.face.page import WindowPage, pressable
-from hydrostat.studio.face.panels.design_limits import design_limits, design_paint, number_box
+from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
+from hydrostat.studio.face.panels.design_method import design_method
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName, told_error
 from hydrostat.units import plural
-
-METHODS = {DesignMethod.ROUTES: "routes", DesignMethod.TREES: "winch trees"}
-
-HINT = "Search of Chang (2018): trees of cables grow from the strongest muscles. It returns one network."
-
-
-def design_method(page: WindowPage) -> None:
-    """Build the rows; the knobs are there for winch trees alone."""
-    designer = page.session.designer
-    with ui.element("div").classes("studio-row"):
-        ui.label("Search").classes("flex-1")
-        choice = ui.toggle(METHODS, value=designer.wishes.method).props('dense no-caps unelevated padding="2px 10px"')
-        choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
-        choice.classes("design-toggle").props('data-testid="wish-method"')
-    with ui.column().classes("w-full").style("gap: 8px") as room:
-        ui.label(HINT).classes("studio-hint")
-        with ui.element("div").classes("studio-row"):
-            shows = [number_box(page, "Fibers kept", "threshold"), number_box(page, "phi, 0 to 1", "phi")]
-        with ui.element("div").classes("studio-row"):
-            shows += [
-                number_box(page, "Maximum gap", "distance", "edges"),
-                number_box(page, "Fibers joined", "steps"),
-            ]
-
-    def send(value: Any) -> None:
-        if value is not None and value != designer.wishes.method:
-            page.act(lambda: designer.wish(method=value))
-
-    def show() -> None:
-        wishes = designer.wishes
-        choice.set_value(wishes.method)
-        room.set_visibility(wishes.method is DesignMethod.TREES)
-        for refresh in shows:
-            refresh(wishes)
-
-    choice.on_value_change(lambda event: send(event.value))
-    page.on(Topic.ROBOT, show)
 
 
 def design_panel(page: WindowPage) -> None:
@@ -202,11 +166,18 @@ def _progress(page: WindowPage) -> None:
                 error = ui.label().classes("design-figure").props('data-testid="design-error"')
                 count = ui.label().classes("studio-hint")
             stop = ui.button("Stop", icon="stop", on_click=page.doing(designer.stop))
-            stop.props('unelevated no-caps color=negative data-testid="design-stop"')
+            stop.props('flat no-caps color=negative data-testid="design-stop"')
+            stop.tooltip("End the search and list its best network")
         chart = ui.html("", sanitize=False).classes("w-full")
         bar = ui.linear_progress(value=0.0, show_value=False).props("rounded size=6px")
-        stage = ui.label().classes("studio-hint")
+        with ui.element("div").classes("studio-row").style("align-items: flex-start"):
+            stage = ui.label().classes("studio-hint flex-1").style("min-width: 0").props('data-testid="design-stage"')
+            left = ui.label().classes("studio-hint studio-figure").props('data-testid="design-left"')
+        take = ui.button("Take best", icon="check", on_click=page.doing(designer.take_best)).classes("w-full")
+        take.props('unelevated no-caps data-testid="design-take"')
+        take.tooltip("End the search and put its best network into the robot")
     outcome = ui.label().props('data-testid="design-outcome"')
+    told: dict[float, float] = {}  # share of the search that was shown, by when it began: it never falls
 
     def show() -> None:
         state, run = jobs.state, designer.run
@@ -221,12 +192,28 @@ def _progress(page: WindowPage) -> None:
         error.set_text("Searching" if best is None else f"{told_error(best.error)} as-built error")
         count.set_text(_so_far(best.winches, best.cables) if best else f"{1e3 * run.rest:.3g} mm error at rest")
         chart.set_content(growth_chart(run, designer.seconds))
-        bar.set_value(state.done / state.total if state.total else 0.0)
-        stage.set_text("Finishing with the best so far" if state.stopping else state.stage)
+        share = share_done(run.request, state.stage, state.done, state.total)
+        if told.get(run.began, 0.0) > (share or 0.0):
+            share = told[run.began]
+        told.clear()
+        told[run.began] = share or 0.0
+        bar.props(add="indeterminate" if share is None else "", remove="" if share is None else "indeterminate")
+        bar.set_value(share or 0.0)
+        stage.set_text("Finishing with the best so far" if state.stopping else _stage(state.stage, best))
+        left.set_text("" if state.stopping else time_left(designer.seconds, share))
         stop.set_text("Stop now" if state.stopping else "Stop")
+        take.set_enabled(best is not None and not state.stopping)
 
     page.on(Topic.JOB, show)
     ui.timer(1.0, lambda: show() if designer.running else None)
+
+
+def _stage(stage: str, best: ProgressPoint | None) -> str:
+    """What the search does, and what gave its best network."""
+    if best is None or not best.words:
+        return stage
+    tried = f" ({best.tried} networks tried)" if best.tried else ""
+    return f"{stage}. Last gain{tried}: {best.words}"
 
 
 def _so_far(winches: int, cables: int) -> str:

@@ -4,7 +4,7 @@ import pytest
 from builders import gallery_robot
 from desk import Desk, at_desk, is_shown
 
-from hydrostat.design import DesignMethod
+from hydrostat.design import DesignMethod, TreeOptions
 from hydrostat.project import Paint
 from hydrostat.robot import Robot
 from hydrostat.studio.stage import StageName
@@ -42,19 +42,38 @@ def test_the_thesis_search_has_its_knobs(starfish: Robot) -> None:
         desk.go(StageName.DESIGN)
         designer = desk.session.designer
         assert not is_shown(desk.one("wish-phi"))
-        await desk.choose("wish-method", DesignMethod.TREES)
-        assert designer.wishes.method is DesignMethod.TREES
+        await desk.choose("wish-method", DesignMethod.CHANG2018)
+        assert designer.wishes.method is DesignMethod.CHANG2018
         assert is_shown(desk.one("wish-phi"))
         assert not is_shown(desk.one("wish-simplicity"))
-        for knob, value in (("threshold", 40), ("distance", 2.5), ("steps", 8), ("phi", 0.3)):
+        for count, (knob, value) in enumerate((("threshold", 40), ("distance", 2.5), ("steps", 8), ("phi", 0.3)), 1):
+            assert len(desk.begun) == count  # each knob acts immediately
+            designer._on_end(desk.begun[-1][1][1], "")
             await desk.type(f"wish-{knob}", value)
             assert designer.wishes.value(knob) == pytest.approx(value)
+        asked = desk.begun[-1][1][1]
+        assert asked.method is DesignMethod.CHANG2018
+        assert asked.options == TreeOptions.single(threshold=40, distance=2.5, steps=8, phi=0.3)
         await desk.type("wish-phi", 1.5)  # refused
         assert desk.one("wish-phi").value == pytest.approx(0.3)
+        designer._on_end(asked, "")
+        await desk.follow()
         await desk.press("design-go")
-        assert len(desk.begun) == 1
+        assert len(desk.begun) == 6
         await desk.press("Undo")
         assert designer.wishes.knobs.phi == pytest.approx(0.5)
+
+    at_desk(starfish, act)
+
+
+def test_a_knob_without_effect_says_so(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.DESIGN)
+        await desk.choose("wish-method", DesignMethod.CHANG2018)
+        assert not is_shown(desk.one("design-no-spread"))
+        desk.session.designer.wish(winches=3, cables=3)
+        await desk.follow()
+        assert is_shown(desk.one("design-no-spread"))
 
     at_desk(starfish, act)
 

@@ -4,8 +4,8 @@ import pytest
 from desk import Desk, at_desk, is_shown
 
 from hydrostat.robot import Robot
-from hydrostat.studio.posing.cable_proposals import Proposal
 from hydrostat.studio.posing.pose_state import Mode
+from hydrostat.studio.posing.proposal_work import Proposal
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.view.colouring import Colouring
 from hydrostat.units import plural
@@ -31,13 +31,18 @@ def test_muscles_are_shown_and_cables_proposed(starfish: Robot, monkeypatch: pyt
         assert not is_shown(desk.one("pose-keep"))
         robot = desk.robot
         cables = tuple(cable for cable in robot.cables if cable.winch == robot.winches[0].name)
-        found = Proposal(winches=robot.winches[:1], cables=cables, error=0.0123)
+        found = Proposal(winches=robot.winches[:1], cables=cables, built=0.0123)
+        poser.show_pose("wave")
+        poser.step(0.0)  # says that physics are made
+        poser.step(0.0)
         poser.proposals._take(poser.proposals._run, robot, found)
         await desk.follow()
-        assert desk.one("pose-proposed").text == f"1 winch, {plural(len(cables), 'cable')}, error 12 mm"
+        assert desk.one("pose-proposed").text == f"1 winch, {plural(len(cables), 'cable')}"
+        assert desk.one("pose-proposed-error").text == "12 mm as-built error"
         await desk.press("pose-keep")
         assert desk.robot.cables == cables
-        assert not desk.one("pose-keep").enabled
+        assert desk.told[-1] == f"kept 1 winch and {plural(len(cables), 'cable')}. Undo takes them back"
+        assert (desk.one("pose-keep").text, desk.one("pose-keep").enabled) == ("Kept", False)
         await desk.press("Undo")
         assert desk.robot.cables == robot.cables
         await desk.choose("pose-propose", False)
@@ -53,8 +58,12 @@ def test_what_stands_in_the_way_of_cables_is_told(starfish: Robot, monkeypatch: 
         monkeypatch.setattr(poser.proposals, "_follow", lambda run: None)
         poser.set_mode(Mode.MUSCLES)
         poser.proposals.switch(True)
+        poser.show_pose("wave")
+        poser.step(0.0)  # says that physics are made
+        poser.step(0.0)
         poser.proposals._take(poser.proposals._run, desk.robot, Proposal(words="no cables fit these muscles"))
         await desk.follow()
-        assert desk.one("pose-proposed").text == "No cables fit these muscles"
+        assert desk.one("pose-proposed-why").text == "No cables fit these muscles."
+        assert not is_shown(desk.one("pose-keep"))
 
     at_desk(starfish, act)

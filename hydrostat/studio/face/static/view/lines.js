@@ -1,6 +1,6 @@
 // Cables, sheaths, paths and what is still missed, with widths in pixels.
 
-import { mix, ramp, veil } from "./theme.js";
+import { FAINT, mix, ramp, veil } from "./theme.js";
 
 const PIECE = 7; // a line in space is looked at so often [px]
 const FRONT = 0, INSIDE = 1, BEHIND = 2;
@@ -62,14 +62,15 @@ export function drawLines(pen, view) {
   const layers = [[], [], [], [], [], []];
   for (const line of view.lines) {
     const own = runs(view, line);
-    for (const [layer, width, colour, dash] of strips(view, line)) layers[layer].push({ layer, own, width, colour, dash });
+    const veiled = line.faint ? FAINT : 1;
+    for (const [layer, width, colour, dash] of strips(view, line)) layers[layer].push({ layer, own, width, colour, dash, veiled });
   }
   const inside = 0.55 + 0.35 * (1 - view.opacity);
   for (const kind of [BEHIND, INSIDE, FRONT]) {
     for (const layer of layers) {
-      for (const { layer: level, own, width, colour, dash } of layer) {
+      for (const { layer: level, own, width, colour, dash, veiled } of layer) {
         if (kind !== FRONT && level === 2) continue; // only what is before the body needs a rim
-        pen.globalAlpha = kind === FRONT ? 1 : kind === INSIDE ? inside : 0.55 * inside;
+        pen.globalAlpha = veiled * (kind === FRONT ? 1 : kind === INSIDE ? inside : 0.55 * inside);
         pen.lineWidth = width;
         pen.strokeStyle = colour;
         pen.lineCap = kind === FRONT && !dash ? "round" : "butt";

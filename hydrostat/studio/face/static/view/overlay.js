@@ -2,7 +2,7 @@
 
 import { drawFelt, drawGhosts, drawGrid, drawOutline } from "./felt.js";
 import { drawClouds, drawLines } from "./lines.js";
-import { mix, veil } from "./theme.js";
+import { FAINT, mix, veil } from "./theme.js";
 
 export class Overlay {
   /**
@@ -119,7 +119,7 @@ export class Overlay {
     const { pen } = this;
     const { x, y, look } = dot;
     const lively = dot.key && dot.key === view.hover;
-    pen.globalAlpha = dot.depth > 1 ? 0.45 : 1;
+    pen.globalAlpha = (dot.faint ? FAINT : 1) * (dot.depth > 1 ? 0.45 : 1);
     if (look === "winch") {
       this.halo(view, dot, 18);
       this.disc(x, y, lively ? 13 : 12, dot.colour, "#ffffff", 2);

@@ -15,6 +15,9 @@ export function theme(dark) {
   return dark ? DARK : LIGHT;
 }
 
+/** Opacity of what is proposed only. */
+export const FAINT = 0.5;
+
 /**
  * Red, green and blue, 0 to 1, of a colour such as "#0b5fa5".
  * @returns {[number, number, number]}
