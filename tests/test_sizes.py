@@ -1,4 +1,4 @@
-"""What keeps the house legible: sizes, names and first words. Oracle: the syntax tree of each file."""
+"""Limits of sizes, names and docstrings. Oracle: the syntax tree of each file."""
 
 import ast
 import inspect
@@ -42,25 +42,6 @@ MANY_PARAMETERS = {
 }
 """What may be larger, with the reason."""
 
-PLAIN_ROOMS = {
-    "",
-    "design",
-    "drawing",
-    "fabrication",
-    "geometry",
-    "grasp",
-    "hydrostat_lab",
-    "ik",
-    "learning",
-    "mechanics",
-    "project",
-    "robot",
-    "shapes",
-    "simulation",
-    "testing",
-    "training",
-}
-"""Rooms in which no docstring begins with a question word or a fragment; "" for the modules outside rooms."""
 HEADLESS = re.compile(r"(What|How|Whether|Where|Which|Of|That|As)\b")
 PARTICIPLE = re.compile(
     r"(?!(feed|need|seed|speed)$)[a-z]+ed|found|held|made|told|seen|felt|given|taken|begun|kept|chosen"
@@ -180,13 +161,31 @@ def half_entries(docstring: str) -> list[str]:
     return found
 
 
-def headless(texts: dict[str, str], rooms: set[str]) -> list[str]:
-    """First lines and entries of docstrings of some rooms that begin with a question word or a fragment."""
+def unknown_entries(texts: dict[str, str]) -> list[str]:
+    """Entries of the lists of attributes and arguments that are no name in the class or function."""
     found = []
     for path, text in texts.items():
-        folders = path.split("/")[1:-1]
-        if (folders[0] if folders else "") not in rooms:
-            continue
+        for node in ast.walk(syntax(text)):
+            if isinstance(node, Function | ast.ClassDef) and (docstring := ast.get_docstring(node)):
+                sections = re.split(r"^(\w+):$", docstring, flags=re.MULTILINE)
+                for heading, entries in zip(sections[1::2], sections[2::2], strict=True):
+                    known = (
+                        re.findall(r"^    (\w+): ", entries, re.MULTILINE) if heading in {"Args", "Attributes"} else []
+                    )
+                    found += [f"{path}: {node.name}: {name}" for name in known if name not in names]
+    return found
+
+
+def _names(node: ast.AST) -> list[str]:
+    """Names that a node introduces: parameters, variables, attributes, methods."""
+    values = (getattr(node, key, None) for key in ("arg", "id", "attr", "name"))
+    return [value for value in values if isinstance(value, str)]
+
+
+def headless(texts: dict[str, str]) -> list[str]:
+    """First lines and entries of docstrings that begin with a question word or a fragment."""
+    found = []
+    for path, text in texts.items():
         for docstring in docstrings(syntax(text)):
             first = docstring.split("\n")[0]
             found += [f"{path}: {line}" for line in [first] * bool(HEADLESS.match(first)) + half_entries(docstring)]
@@ -258,8 +257,11 @@ def test_first_lines_stand_alone(texts: dict[str, str]) -> None:
 
 
 def test_docstrings_begin_with_a_verb_or_a_noun(texts: dict[str, str]) -> None:
-    """In the rooms that are done; the others follow."""
-    assert headless(texts, PLAIN_ROOMS) == []
+    assert headless(texts) == []
+
+
+def test_docstrings_list_names_that_exist(texts: dict[str, str]) -> None:
+    assert unknown_entries(texts) == []
 
 
 def test_functions_have_a_verb(texts: dict[str, str]) -> None:
@@ -284,9 +286,10 @@ def test_the_checks_can_fail() -> None:
     assert fragments({"p": told}) == ["p: As told.", "p: That is it."]
     asking = 'class A:\n    """Ok.\n\n    Attributes:\n        x: of y.\n        z: a thing of y.\n    """\n'
     asking += '\n    def _f(): "How."\n\n\nX = 1\n"""Where."""\nY = 1\n"""Whereabouts."""\n'
-    assert headless({"h/a/b.py": asking}, {""}) == []
-    assert sorted(headless({"h/a/b.py": asking}, {"a"})) == ["h/a/b.py: How.", "h/a/b.py: Where.", "h/a/b.py: x: of y."]
-    assert headless({"h/b.py": '"""What."""'}, {""}) == ["h/b.py: What."]
+    assert sorted(headless({"h/a/b.py": asking})) == ["h/a/b.py: How.", "h/a/b.py: Where.", "h/a/b.py: x: of y."]
+    assert headless({"h/b.py": '"""What."""'}) == ["h/b.py: What."]
+    listed = 'def f(a):\n    """Do.\n\n    Args:\n        a: one.\n        b: two.\n    """\n'
+    assert unknown_entries({"p": listed}) == ["p: f: b"]
     named = "def moved():\n    def turned(): ...\ndef move(): ...\nclass _B:\n    def _held(self): ...\n"
     named += "class A:\n    @property\n    def closed(self): ...\n    def found(self): ...\n    def seed(self): ...\n"
     assert participles({"h/b.py": named}) == ["h/b.py: moved", "h/b.py: _held", "h/b.py: found"]

@@ -26,8 +26,8 @@ def run_bounded(work: Callable[[], _Result], *, file: str, words: str, seconds: 
     Ctrl-C ends it at once. Where processes cannot be forked the work is done here, without a limit.
 
     Args:
-        work: what it gives can be pickled.
-        file: that it is about, in complaints.
+        work: function to run; its result can be pickled.
+        file: name of the file for error messages.
         words: said when it takes long.
         seconds: the most processor time.
         memory: the most [bytes].

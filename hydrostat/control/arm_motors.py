@@ -29,10 +29,10 @@ def arm_motors(
     """Motors that turn as they are told from now on, watched by a deadline and a guard.
 
     Args:
-        folder: of the robot, with its motors.toml; emulated motors need none.
-        robot: whose winches they turn.
-        port: of the motors, as for `open_bus`.
-        pulls: what the cables of each winch pull together [N], by contractions [m].
+        folder: robot folder with motors.toml; emulated motors need none.
+        robot: robot whose winches the motors turn.
+        port: motor connection, as for `open_bus`.
+        pulls: total cable tension of each winch [N] by contractions [m].
         known: the same for the guard, NaN where it shall not judge; the same ones if left out.
         log: hears each line about them.
 

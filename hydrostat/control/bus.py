@@ -21,10 +21,10 @@ class MotorFacts:
     """Identification answer of one motor.
 
     Attributes:
-        number: of the motor on its bus.
+        number: motor number on its bus.
         model: in words.
         firmware: its version.
-        watchdog: whether it was seen, just now, to stop by itself when it was told nothing.
+        watchdog: True if the motor passed the watchdog trial at this connection.
         constant: torque by current, of its stall [N m/A]; NaN where that is not known.
     """
 
@@ -40,12 +40,12 @@ class Reading:
     """Latest state of each motor; quantities that a motor never reported are NaN.
 
     Attributes:
-        angles: of the spools, rising as they take cable in [rad].
+        angles: spool angles, rising with contraction [rad].
         currents: positive as they take cable in [A].
         temperatures: [degree C].
-        volts: of the supply [V].
+        volts: supply voltage [V].
         stamps: when each was heard, by the clock of the bus [s].
-        faults: what each reports, in words; empty for none.
+        faults: fault of each motor in words; empty for none.
     """
 
     angles: Vector
@@ -84,7 +84,7 @@ class Bus(ABC):
 
     Attributes:
         kind: words that begin every line about it.
-        forgot: whether its motors have lost their count since they were calibrated, as far as is known.
+        lost_position: True if motors are known to have lost their count since calibration.
     """
 
     kind: ClassVar[str]

@@ -49,8 +49,8 @@ class LinkLimits:
     """Speed and acceleration limits of the motors.
 
     Attributes:
-        speed: of cables, at most [m/s].
-        rise: of that speed [m/s^2].
+        speed: maximum cable speed [m/s].
+        rise: maximum cable acceleration [m/s^2].
     """
 
     speed: float = 0.06
@@ -70,13 +70,13 @@ class BusLink(Link):
     hot or at fault, a deadline that is missed, and a guard that objects stop all motors; the words say why.
 
     Attributes:
-        state: of it.
-        facts: of the motors, once identified.
+        state: state of the link.
+        facts: motor facts, once identified.
         why: it stopped, in words.
         reading: the newest.
-        limits: of speeds.
-        near: what steps of motors and friction may leave [m].
-        guard: what compares currents with a model, if there is one.
+        limits: speed limits.
+        near: position tolerance for motor steps and friction [m].
+        guard: tension guard, if any.
     """
 
     near = 3e-4

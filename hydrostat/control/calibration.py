@@ -26,14 +26,14 @@ class WinchMotor:
 
     Attributes:
         winch: its name.
-        number: of the motor on its bus.
+        number: motor number on its bus.
         zero: angle at which the winch has taken in nothing [rad]; None: not calibrated yet.
         turns: 1 where rising angles take cable in, -1 where they let it out.
-        radius: of the spool at the zero [m].
+        radius: spool radius at the zero [m].
         curve: angles turned since the zero [rad] and cable taken in there [m], rising, as layers make them; straight
             between and beyond. Empty: the radius alone.
         current: the most that the motor may draw [A].
-        counts: of its encoder in a turn of the spool; only for motors on a board with our firmware.
+        counts: encoder counts per spool turn; only for motors on a board with our firmware.
         board: or line that it hangs on, from 1, where there are several.
     """
 

@@ -22,8 +22,8 @@ class DynamixelModel:
     """Ratings and capabilities of a servo model.
 
     Attributes:
-        title: as it is sold.
-        measures: whether it measures its current, and bounds it; else it tells its load, of the stall current.
+        title: product name.
+        measures: True if it measures and limits its current; else it reports load as a share of the stall current.
         stall: current at stall [A].
         torque: at stall [N m].
     """

@@ -17,9 +17,9 @@ class Packet(NamedTuple):
     """A whole packet.
 
     Attributes:
-        number: of the motor.
-        instruction: what it is; `STATUS` for an answer.
-        content: what follows, without stuffing; of an answer first its error.
+        number: motor number.
+        instruction: kind of packet; `STATUS` for an answer.
+        content: parameters without stuffing; an answer begins with its error.
     """
 
     number: int

@@ -20,7 +20,7 @@ class EmulatedLine:
 
     Attributes:
         chain: the servos.
-        path: what to open in place of a serial port.
+        path: pseudo-terminal to open in place of a serial port.
         moved: when each servo last moved, by the time of the chain [s].
     """
 

@@ -58,12 +58,12 @@ class EmulatedServo:
     Attributes:
         number: on its bus.
         model: number of the model.
-        angle: of its spool [rad].
+        angle: spool angle [rad].
         speed: [rad/s].
         origin: angle from which it counts: 0, or begin of the turn in which it was switched on last [rad].
         load: torque of its cable by angle [N m], which pulls it back.
         constant: torque by current [N m/A].
-        ails: what is wrong with it.
+        ails: injected faults.
     """
 
     number: int
@@ -167,7 +167,7 @@ class EmulatedChain:
     Attributes:
         servos: at the other end.
         now: its time [s].
-        gone: whether the line is unplugged.
+        gone: True if the line is unplugged.
     """
 
     timeout: float | None = 0.0

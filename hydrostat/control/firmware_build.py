@@ -56,11 +56,11 @@ def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float, sta
     """The text of settings.h for one board of a robot.
 
     Args:
-        robot: whose limits they are.
-        calibration: which motors hang on which board, and what they may draw.
-        rpm: of the motors without load.
-        stall: what they draw when they are held [A]: they gain speed so that half of their bound is left for the load.
-        board: which one.
+        robot: robot with the limits.
+        calibration: boards and maximum currents of the motors.
+        rpm: no-load speed [turns/min].
+        stall: stall current [A]; acceleration leaves half of the current limit for the load.
+        board: board number.
 
     Raises:
         InputError: motors that are not numbered from 1 without a gap, turn the wrong way, or have no counts.

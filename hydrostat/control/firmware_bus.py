@@ -41,10 +41,10 @@ class FirmwareBus(Bus):
 
         Args:
             port: an open serial line, at 250,000 baud.
-            counts: of each motor's encoder in a turn of its spool.
-            numbers: of the motors on the board, each once from 1 on; in their order if left out.
-            robot: that the board must have been built for, as in its settings; any if left out.
-            clock: that only runs forward [s].
+            counts: encoder counts per spool turn of each motor.
+            numbers: motor numbers on the board, each once from 1 on; default in order.
+            robot: identity in the settings of the board's firmware; default any.
+            clock: monotonic clock [s].
             wait: lets so much time pass [s].
             answer: longest time for an answer [s].
         """

@@ -32,7 +32,7 @@ def not_judged(constants: Vector, names: Sequence[str]) -> str:
 
     Args:
         constants: torque of each motor by its current [N m/A]; NaN where it is not known.
-        names: of the winches.
+        names: winch names.
     """
     blind = [name for name, constant in zip(names, constants.tolist(), strict=True) if np.isnan(constant)]
     whose = "" if len(blind) == len(names) else f" of {', '.join(blind)}"
@@ -53,10 +53,10 @@ class TensionGuard:
         """A guard of winches.
 
         Args:
-            tensions: what the cables of each winch pull together [N], by contractions [m].
+            tensions: total cable tension of each winch [N] by contractions [m].
             constants: torque of each motor by its current [N m/A].
-            names: of the winches.
-            limits: how far they may differ.
+            names: winch names.
+            limits: allowed differences.
         """
         self._tensions, self._constants, self._names = tensions, constants, names
         self._limits = limits or GuardLimits()
@@ -70,8 +70,8 @@ class TensionGuard:
         """Return the fault in words; empty for none.
 
         Args:
-            contractions: that the winches have [m].
-            currents: that their motors draw [A]; what is not known is NaN, and not judged.
+            contractions: present contractions [m].
+            currents: motor currents [A]; NaN if unknown, then not judged.
             radii: at which the cables run on [m].
             now: clock that only runs forward [s].
         """

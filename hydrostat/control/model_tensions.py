@@ -22,7 +22,7 @@ class WinchPull:
     Attributes:
         taut: contraction at which its first cable begins to pull at rest [m].
         places: contractions, rising, two at least [m].
-        pulls: what its cables pull there together [N].
+        pulls: total cable tensions of the winches there [N].
     """
 
     taut: float

@@ -24,13 +24,13 @@ class Motors:
     `hold` when nothing shall any more.
 
     Attributes:
-        names: of the winches.
+        names: winch names.
         low: the least that each can take in [m]; below 0 it lets out.
         high: the most that each can take in [m].
-        command: what each shall take in [m].
-        places: what each had taken in when it was last read [m].
+        command: commanded contractions [m].
+        places: contractions at the last reading [m].
         fastest: largest speed of their cables [m/s].
-        link: that turns them.
+        link: link to the motors.
         patience: from one `drive` to the next, before they hold for want of commands [s].
     """
 

@@ -52,9 +52,9 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
 
     Args:
         text: KIND:PORT or KIND:PORT@BAUD, with a comma between the ports of several boards; or "emulated".
-        robot: whose motors they are.
-        calibration: of the motors.
-        tensions: what the cables of each winch pull together [N], by contractions [m]: the load of emulated motors.
+        robot: robot with the winches.
+        calibration: motor calibration.
+        tensions: total cable tension of each winch [N] by contractions [m], the load of emulated motors.
 
     Raises:
         InputError: no such kind, or not a port for each board of the calibration.

@@ -39,8 +39,8 @@ class ServoBus(Bus):
 
         Args:
             port: an open serial line.
-            numbers: of the servos.
-            clock: that only runs forward [s].
+            numbers: servo numbers.
+            clock: monotonic clock [s].
             wait: lets so much time pass [s].
             answer: longest time for answers [s].
         """

@@ -31,7 +31,7 @@ class SpoolCurve:
         motor: with its radius and curve.
         turned: angles of the spool since its zero at each reading [rad].
         readings: cable taken in by the mark, from the first on [m].
-        before: what the motor's old radius and curve say there [m].
+        before: lengths by the motor's old radius and curve [m].
     """
 
     motor: WinchMotor
@@ -74,11 +74,11 @@ def measure_spool(
 
     Args:
         link: to all motors, identified and calibrated.
-        motor: of this winch, as calibrated.
-        place: of the winch among the motors.
+        motor: calibrated motor of this winch.
+        place: index of the winch among the motors.
         most: cable to take in at most [m], of the winch's travel.
         read: given what the cable should have taken in [m], asks where the mark is on the ruler [m].
-        clock: that only runs forward [s].
+        clock: monotonic clock [s].
         wait: lets so much time pass [s].
 
     Raises:

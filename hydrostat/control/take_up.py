@@ -41,12 +41,12 @@ class SlackCalibration:
     Attributes:
         motor: with its zero.
         slack: cable that was taken up from where the motor stood [m]; below 0: it was let out.
-        apart: how far its measurements lie from one another [m].
+        apart: spread of its measurements [m].
         gain: current by what the model pulls with [A/N].
         places: cable taken in from the edge at each step of the last measurement [m].
         currents: there [A].
         floor: current of the motor while its cable is slack [A].
-        seconds: that it took [s].
+        seconds: duration [s].
     """
 
     motor: WinchMotor
@@ -72,12 +72,12 @@ def take_up_slack(
     """Find the zeros of all motors, one after the other, while the others stand; all stand at their zeros at the end.
 
     Args:
-        bus: whose motors have been identified.
-        motors: of the winches, in the order of the bus.
-        model: what each winch should feel: where its cables begin to pull, and how that rises; its size is measured.
+        bus: bus with identified motors.
+        motors: motors of the winches, in the order of the bus.
+        model: simulated tension of each winch: its onset and its rise; its scale is measured.
         found: told of each winch as soon as it is known.
         most: cable that may be taken up or let out at most [m].
-        clock: that only runs forward [s].
+        clock: monotonic clock [s].
         wait: lets so much time pass [s].
 
     Raises:

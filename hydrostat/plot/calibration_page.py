@@ -29,14 +29,14 @@ def write_calibration_page(
     """Write a page: a table of the winches, what each felt beside what the simulation says, notes, and spools.
 
     Args:
-        robot: that was calibrated.
+        robot: calibrated robot.
         found: on each winch.
-        model: of each winch.
+        model: simulated tension of each winch.
         constants: torque of each motor by its current [N m/A]; NaN where it is not known.
-        notes: what a person should look at.
-        path: of the page.
-        curves: of the spools that were measured by a ruler.
-        emulated: whether the motors were not there, but emulated.
+        notes: notes for the reader.
+        path: path of the page.
+        curves: curves of the spools measured with a ruler.
+        emulated: True if the motors were emulated.
     """
     rows, pictures = [], []
     for index, (each, wanted, constant) in enumerate(zip(found, model, constants.tolist(), strict=True)):

@@ -25,10 +25,10 @@ def draw_pull(
 
     Args:
         robot: without the thing.
-        pull: what came out.
+        pull: result of the pull.
         cases: with one thing changed each.
         title: name of the robot if left out.
-        width: of the figure [inch].
+        width: figure width [inch].
     """
     hardest = int(np.argmax(pull.forces))
     rows = {"grasped": 0, f"hardest pull, {pull.peak:.3g} N": hardest, pull.reason: len(pull.poses) - 1}

@@ -52,7 +52,7 @@ class BodyPhysics:
         own_contact: index of the self-contact energy among all energies of a simulation; None if self-contact is
             disabled.
         obstacles: indices of the energies of the obstacles.
-        begin: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the moving obstacles.
+        rest_unknowns: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the moving obstacles.
     """
 
     def __init__(self, robot: Robot, *, in_time: bool = False) -> None:

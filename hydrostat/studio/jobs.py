@@ -45,7 +45,7 @@ class Slots:
         """Stand in line until one is free; whether it came to that. Each is given back.
 
         Args:
-            given_up: whether nobody wants it any more, asked twice a second.
+            given_up: function that returns True once the job is abandoned; called twice a second.
             tell: is told how many are before this one, at first and whenever that changes; not if one is free.
         """
         turn, told = object(), -1

@@ -66,8 +66,8 @@ class EmulatedGlove:
     """The other end of a line to a glove that is not there.
 
     Attributes:
-        values: of the hand in it, each from 0 to 1.
-        spoil: what happens to each answer on its way.
+        values: sensor values of the hand, each from 0 to 1.
+        spoil: function that alters each answer.
     """
 
     timeout: float | None = 0.0
@@ -104,7 +104,7 @@ class EmulatedPerson:
     """A hand in an emulated glove, whose sensors follow the contractions of a robot by a fixed mixture.
 
     Attributes:
-        glove: that it wears.
+        glove: emulated glove.
     """
 
     def __init__(
@@ -115,9 +115,9 @@ class EmulatedPerson:
         Args:
             low: least contractions [m].
             high: largest [m].
-            noise: of the sensors, one standard deviation; half a step of the glove if left out.
-            bent: how far the sensors are from straight.
-            seed: of the mixture.
+            noise: standard deviation of the sensors; default half a step of the glove.
+            bent: nonlinearity of the sensors.
+            seed: random seed of the mixture.
         """
         random = np.random.default_rng(seed)
         self._low, self._span, self._bent = low, np.maximum(high - low, 1e-9), bent

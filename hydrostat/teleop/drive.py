@@ -21,7 +21,7 @@ class DriveLoop:
     """Loop that drives motors, step by step, as a person commands.
 
     Attributes:
-        silent: whether nobody is heard just now; motors hold.
+        silent: True without input; motors hold.
         wish: the newest.
         pause: to be made before the next step [s]: goals that nobody waited for an answer to must have left the line,
             or a stop would come after all of them.
@@ -92,10 +92,10 @@ def drive(
     Args:
         motors: within whose limits all stays.
         way: from what is asked for to contractions.
-        source: what asks.
+        source: input device.
         seconds: it ends after so long [s].
         tell: called after each command.
-        clock: that only runs forward [s].
+        clock: monotonic clock [s].
 
     Raises:
         HydrostatError: of the source, of the motors, or of what solves poses.

@@ -91,7 +91,7 @@ class LessonPoses:
 
     Attributes:
         made: the pairs so far.
-        span: of the ranges of the outputs [m], by which errors are made comparable with the thesis's from -1 to 1.
+        span: output ranges [m]; they scale errors to the thesis's range from -1 to 1.
     """
 
     def __init__(self, made: Mimicry, pool: Table, answers: Table) -> None:

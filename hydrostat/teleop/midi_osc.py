@@ -33,11 +33,11 @@ class MidiKnobs(DriveSource):
         """Knobs of a MIDI port.
 
         Args:
-            channels: what they turn.
+            channels: channels that the messages move.
             name: part of the name of the port; any port if it is empty.
             first: controller number of the knob of the first channel; the others follow.
             port: an open port of mido, in place of a name.
-            clock: that only runs forward [s].
+            clock: monotonic clock [s].
 
         Raises:
             InputError: more channels than controller numbers.

@@ -119,7 +119,7 @@ def write_mcap(path: Path, mimicry: Mimicry) -> Path:
     """Write pairs as MCAP with JSON schemas, which Foxglove and ROS 2 tools read; a channel each for glove and robot.
 
     Args:
-        path: of the file.
+        path: path of the file.
         mimicry: the pairs.
 
     Raises:

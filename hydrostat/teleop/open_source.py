@@ -28,10 +28,10 @@ def open_source(
 
     Args:
         text: KIND or KIND:PLACE, of a kind of `SOURCES`.
-        channels: what it may turn.
+        channels: channels that the source may move.
         known: the map of a hand; gloves and cameras need one.
         person: who wears an emulated glove.
-        smoothing: of what a hand tells; None for none.
+        smoothing: smoothing of hand readings; None for none.
 
     Raises:
         InputError: no such kind, or a wrong place.

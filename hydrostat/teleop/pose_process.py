@@ -31,12 +31,12 @@ class PoseOnWay:
 
     Attributes:
         job: number of the job that it is of.
-        contractions: of it [m].
-        pulls: of the cables of each winch together [N].
+        contractions: contractions of the pose [m].
+        pulls: total cable tension of each winch [N].
         markers: their coordinates, one after the other [m].
         error: largest distance of a marker from its target [m].
-        outlook: what contractions do about it, to first order, where markers have targets.
-        done: whether there is nothing more to do for its job.
+        outlook: first-order answer of the contractions, where markers have targets.
+        done: True if its job is finished.
     """
 
     job: int

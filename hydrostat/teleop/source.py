@@ -14,7 +14,7 @@ class HandReading:
     """Sensor reading of a hand.
 
     Attributes:
-        values: of its sensors, each from 0 to 1.
+        values: sensor values, each from 0 to 1.
         stamp: when they were heard, by a clock that only runs forward [s].
     """
 
@@ -26,7 +26,7 @@ class HandSource(ABC):
     """Contract of what tells where a hand is: a glove, a camera, a gamepad. A new kind is one class.
 
     Attributes:
-        names: of its sensors.
+        names: sensor names.
     """
 
     names: tuple[str, ...]
@@ -45,7 +45,7 @@ class DriveChannels:
     """Channels that a person may command: winches, or coordinates of fingertips.
 
     Attributes:
-        names: of them.
+        names: channel names.
         low: least value of each [m].
         high: largest [m].
         rest: value where the body is at rest [m].
@@ -70,10 +70,10 @@ class DriveWish:
 
     Attributes:
         stamp: when the person was last heard, by a clock that only runs forward [s].
-        places: where channels shall be, by name [m]; others stay.
-        steps: how far channels shall go on since the wish before, by name [m].
-        hold: whether motors shall stand.
-        over: whether the person wants to end.
+        places: target positions of channels by name [m]; others stay.
+        steps: increments of channels since the last request, by name [m].
+        hold: True to hold the motors.
+        over: True to end.
         words: to be shown beside the motors.
     """
 
@@ -93,7 +93,7 @@ class DriveSource(ABC):
     Attributes:
         silence: a stamp that is older than this means that nobody drives, so motors hold [s]; infinite where a word
             holds until the next, as that of a knob.
-        news: set as soon as there is a newer wish, if somebody waits for it and the source can tell.
+        updated: event set on a newer request, if somebody waits for it and the source can tell.
     """
 
     silence: float = inf

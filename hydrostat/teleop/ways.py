@@ -27,11 +27,11 @@ class CommandMapper(ABC):
     """Contract of how what a person asks for becomes contractions; what is slow is done by a process of its own.
 
     Attributes:
-        channels: what may be asked for.
+        channels: channels that can be moved.
         contractions: the newest that follow from it [m].
-        known: what the cables pull in the poses on the way, for a guard.
-        news: set as soon as there are newer contractions, if somebody waits for it.
-        words: what is to be said of the pose; empty for nothing.
+        known: cable tensions of the poses so far, for a guard.
+        updated: event set on newer contractions, if somebody waits for it.
+        words: message about the pose; empty for none.
     """
 
     channels: DriveChannels

@@ -66,10 +66,10 @@ class Layout:
     line, the ratio of each line.
 
     Attributes:
-        source: the robot that it is for.
+        source: robot of the network.
         constraints: constraints of the network.
-        stands: its winches.
-        lines: its cables.
+        sites: winches.
+        routes: cables.
     """
 
     source: Robot

@@ -43,9 +43,9 @@ class Hardware:
     nobody looks at the page, when the robot is changed, and when they are told to; then they must be armed anew.
 
     Attributes:
-        allowed: whether this person may turn motors of this machine; guests may not.
-        words: what has become of them, for people.
-        port: that they were found at last; "" before.
+        allowed: True if this user may turn motors of this machine; guests may not.
+        words: status of the motors for users.
+        port: last port with motors; "" before.
     """
 
     def __init__(

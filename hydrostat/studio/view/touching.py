@@ -31,8 +31,8 @@ def touch_things(shape: RobotShape, size: float) -> list[Thing]:
     """A dot where it touches, with an arrow along the force, longer for more; a ring where it crosses itself.
 
     Args:
-        shape: of the body.
-        size: of the body [m].
+        shape: shape of the body.
+        size: size of the body [m].
     """
     things: list[Thing] = []
     hardest = max((touch.strength for touch in shape.touches), default=0.0)
