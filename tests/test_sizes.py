@@ -168,11 +168,14 @@ def unknown_entries(texts: dict[str, str]) -> list[str]:
         for node in ast.walk(syntax(text)):
             if isinstance(node, Function | ast.ClassDef) and (docstring := ast.get_docstring(node)):
                 sections = re.split(r"^(\w+):$", docstring, flags=re.MULTILINE)
-                for heading, entries in zip(sections[1::2], sections[2::2], strict=True):
-                    known = (
-                        re.findall(r"^    (\w+): ", entries, re.MULTILINE) if heading in {"Args", "Attributes"} else []
-                    )
-                    found += [f"{path}: {node.name}: {name}" for name in known if name not in names]
+                listed = [
+                    name
+                    for heading, entries in zip(sections[1::2], sections[2::2], strict=True)
+                    for name in re.findall(r"^    (\w+): ", entries, re.MULTILINE)
+                    if heading in {"Args", "Attributes"}
+                ]
+                names = {word for each in ast.walk(node) for word in _names(each)} if listed else set()
+                found += [f"{path}: {node.name}: {name}" for name in listed if name not in names]
     return found
 
 
