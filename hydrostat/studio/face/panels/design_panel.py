@@ -209,7 +209,7 @@ def _progress(page: WindowPage) -> None:
 
 
 def _stage(stage: str, best: ProgressPoint | None) -> str:
-    """What the search does, and what gave its best network."""
+    """Status of the search, and the source of its best network."""
     if best is None or not best.words:
         return stage
     tried = f" ({best.tried} networks tried)" if best.tried else ""
