@@ -10,6 +10,7 @@ import ezdxf
 import pypdf
 import pytest
 import trimesh
+from page_words import read_words
 from plush_robots import crossed, drawn_body, plush_robot
 
 import hydrostat as hs
@@ -31,11 +32,6 @@ from hydrostat.robot import MATERIALS, gallery_folder, robot_hash
 
 TOO_NEAR = [(-20, -10), (5, 12), (49.5, 22)]
 """A route [mm] whose last hole would be half a millimetre from the seam of the square."""
-
-
-def words_of(content: bytes) -> str:
-    """All text of a PDF, by another program."""
-    return " ".join(" ".join(page.extract_text().split()) for page in pypdf.PdfReader(io.BytesIO(content)).pages)
 
 
 @pytest.fixture(params=["plush_kit", "foam_kit"])
@@ -91,7 +87,7 @@ def test_the_sheet_has_four_pages_for_plush_and_five_for_foam(kit):
 
 def test_every_check_stands_on_the_sheet(kit):
     """Oracle: pypdf's text of the pages."""
-    words = words_of(kit.files["assembly_sheet.pdf"]).replace(" ", "")
+    words = read_words(kit.files["assembly_sheet.pdf"]).replace(" ", "")
     for check in kit.checks:
         assert typeset(check.measured).replace(" ", "")[:40] in words, check.what
 
@@ -113,7 +109,7 @@ def test_by_force_it_is_built_with_the_reasons_on_the_sheet():
     robot = plush_robot(drawn_body("M0 0H100V100H0Z"), TOO_NEAR)
     kit = build_kit(robot, options=KitOptions(force=True))
     assert len(kit.problems) == 1
-    assert "cable 1, point 3" in words_of(kit.files["assembly_sheet.pdf"]).lower()
+    assert "cable 1, point 3" in read_words(kit.files["assembly_sheet.pdf"]).lower()
 
 
 def test_a_spool_too_small_for_the_shaft_is_refused():

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from manifold3d import Manifold
+from page_words import read_words
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from shapely import LineString
 
@@ -32,8 +33,9 @@ def starfish(face: Face | None) -> Robot:
 
 
 @pytest.fixture(scope="module")
-def single() -> Kit:
-    return build_kit(starfish(None))
+def single(plush_kit: Kit) -> Kit:
+    assert plush_kit.robot.face is None
+    return plush_kit
 
 
 @pytest.fixture(scope="module")
@@ -144,9 +146,7 @@ def test_motors_are_asked_for_the_same_and_each_line_for_half(pairs: Kit) -> Non
 
 @pytest.mark.slow
 def test_the_sheet_tells_of_pairs(pairs: Kit) -> None:
-    from test_kit import words_of
-
-    words = words_of(pairs.files["assembly_sheet.pdf"])
+    words = read_words(pairs.files["assembly_sheet.pdf"])
     for told in (
         "10 cables in 5 pairs",
         "C1 C6",

@@ -49,9 +49,11 @@ def interferences(assembly: PartAssembly, *, least: float = LEAST) -> tuple[Inte
     for one, other in combinations(assembly.pieces, 2):
         if not _near(one.solid, other.solid):
             continue
-        volume = float(one.solid.volume() + other.solid.volume() - (one.solid + other.solid).volume())
         area = float((one.solid ^ other.solid).surface_area())
-        if area > 0 and 2 * volume / area > least:
+        if area <= 0:
+            continue  # most pairs whose boxes meet: a union costs as much as an intersection
+        volume = float(one.solid.volume() + other.solid.volume() - (one.solid + other.solid).volume())
+        if 2 * volume / area > least:
             found.append(Interference(one.name, other.name, volume))
     return tuple(found)
 

@@ -13,7 +13,7 @@ from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds
 from hydrostat.fabrication.lists.lists import make_lists
 from hydrostat.fabrication.patterns.stitches import cable_stitches
-from hydrostat.robot import Robot, list_gallery
+from hydrostat.robot import Robot
 
 
 def stitches(robot: Robot) -> tuple:
@@ -61,7 +61,7 @@ def test_the_same_bytes_twice() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", list_gallery())
+@pytest.mark.parametrize("name", ["starfish", "letter_s", "puppy", "squid", "bear", "trunk", "cupping_hand"])
 def test_gallery_robots_have_sound_lists(name: str, unchecked: None) -> None:
     robot = gallery_robot(name)
     flat = robot.body.mesh.dim == 2

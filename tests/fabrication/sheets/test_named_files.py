@@ -1,10 +1,9 @@
 """Every file that the assembly sheet names is in the kit."""
 
-import io
 import re
 
-import pypdf
 import pytest
+from page_words import read_words
 from plush_robots import crossed
 
 from hydrostat.fabrication import Kit, KitOptions, Method, MouldKind, MouldOptions, build_kit
@@ -15,8 +14,7 @@ FOLDER = re.compile(r"\b(?:lists|parts|pattern|mould|positive)/(?=\W|$)")
 
 def named(kit: Kit) -> set[str]:
     """All paths on the pages, by another program."""
-    pages = pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages
-    text = " ".join(" ".join(page.extract_text().split()) for page in pages)
+    text = read_words(kit.files["assembly_sheet.pdf"])
     return {*NAMED.findall(text), *FOLDER.findall(text)}
 
 
