@@ -1,6 +1,7 @@
 """`cut_skin`: the skin of a body in as few patches as lie flat well enough, and what is wrong with them."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -181,8 +182,17 @@ class Cutting:
 def cut_skin(mesh: SkinMesh) -> Cutting:
     """Cut front and back where cloth would give too much, or a seam's sides differ, while patches are few enough.
 
-    Where to cut is seen on patches of least mean distortion: once evened out they have no worst place.
+    Where to cut is seen on patches of least mean distortion: once evened out they have no worst place. The results of
+    the last skins are kept: other cables on a body need no new search.
     """
+    return _cut_skin(mesh.vertices.tobytes(), mesh.triangles.tobytes(), mesh.patch.tobytes())
+
+
+@lru_cache(maxsize=4)
+def _cut_skin(vertices: bytes, triangles: bytes, patch: bytes) -> Cutting:
+    """Cut a skin whose arrays are given as bytes."""
+    corners = np.frombuffer(triangles, int).reshape(-1, 3)
+    mesh = SkinMesh(vertices=np.frombuffer(vertices).reshape(-1, 3), triangles=corners, patch=np.frombuffer(patch, int))
     mesh = front_and_back(mesh)
     back = [False, True]
     plain = [flatten(disc_of(mesh, number)) for number in (0, 1)]

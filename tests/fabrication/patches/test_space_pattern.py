@@ -8,6 +8,7 @@ from patch_bodies import cushion, ellipsoid_body
 from hydrostat.errors import InputError
 from hydrostat.fabrication.checks.pattern_checks import patch_checks
 from hydrostat.fabrication.kit_options import PatternOptions
+from hydrostat.fabrication.patches import cutting
 from hydrostat.fabrication.patches.space_pattern import SpacePattern, find_sewing, space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.shape import PatternPart
@@ -45,6 +46,7 @@ def test_all_checks_hold(bear, pattern):
 
 @pytest.mark.slow
 def test_the_same_bytes_again(bear, pattern):
+    cutting._cut_skin.cache_clear()
     again = space_pattern(bear, PatternOptions())
     assert pattern_svg(again) == pattern_svg(pattern)
     assert pattern_dxf(again) == pattern_dxf(pattern)
