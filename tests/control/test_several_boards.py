@@ -19,13 +19,13 @@ from hydrostat.errors import HydrostatError
 pytestmark = pytest.mark.usefixtures("unchecked")
 
 
-@pytest.mark.parametrize("count", [600, pytest.param(10_000, marks=pytest.mark.slow)])
-def test_faults_on_several_boards_leave_motors_within_limits_standing_in_time_and_told(count: int) -> None:
-    campaign = BoardsCampaign(np.random.default_rng(20), seconds=2.0, share=0.25)
-    while campaign.injected < count:
+@pytest.mark.slow
+def test_faults_on_several_boards_leave_motors_within_limits_standing_in_time_and_told() -> None:
+    campaign = BoardsCampaign(np.random.default_rng(20), seconds=1.0, share=0.25)
+    while campaign.injected < 3000:
         campaign.run()
     assert not campaign.wrong
-    assert count < 10_000 or min(campaign.count[kind] for kind in (*HARMS, "host dies", "host sleeps")) > 3
+    assert min(campaign.count[kind] for kind in (*HARMS, "host dies", "host sleeps")) > 3
 
 
 def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:

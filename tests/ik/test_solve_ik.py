@@ -225,11 +225,14 @@ def test_a_good_start_saves_solves() -> None:
 @pytest.mark.parametrize("folder", example_folders(), ids=lambda folder: folder.name)
 @pytest.mark.slow
 def test_all_poses_of_all_examples(folder, unchecked: None) -> None:
-    """They end at an optimum no worse than rest, at an equilibrium that can be solved for again and crosses nothing."""
+    """They end at an optimum no worse than rest, at an equilibrium that can be solved for again and crosses nothing.
+
+    Of a body in space the first two: each takes a second.
+    """
     robot = load_robot(folder)
     simulation = Simulation(robot)
     places = {marker.name: np.array(marker.at) for marker in robot.markers}
-    for pose in robot.poses.values():
+    for pose in list(robot.poses.values())[: 2 if robot.body.mesh.dim == 3 else None]:
         reached = solve_ik(simulation, pose)
         rest = np.sqrt(np.mean([np.sum((places[name] - at) ** 2) for name, at in pose.targets.items()]))
         assert reached.status in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM)

@@ -1,6 +1,7 @@
 """Pictures of a robot in space: the same calls as for flat bodies."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -25,6 +26,11 @@ FIGURES = (
 )  # fmt: skip
 
 
+TWICE = ("draw_pose", "draw_activation", "draw_portrait")
+"""Figures that are drawn a second time: with cables and targets, with lines of muscles, without axes."""
+
+
+@cache
 def figure(kind: str) -> Figure:
     network, trace = space_network(), space_trace()
     activation, reached = trace.activations[0], network.reached[0]
@@ -44,19 +50,21 @@ def figure(kind: str) -> Figure:
 @pytest.mark.slow
 def test_png_and_svg_twice_the_same_with_all_words_inside(kind: str, tmp_path: Path) -> None:
     """Oracle: a second figure; and matplotlib's own measure of every text."""
-    figures = [figure(kind), figure(kind)]
-    one, two = (plot.save_png(drawn, tmp_path / f"{place}.png", dpi=60) for place, drawn in enumerate(figures))
-    assert one.read_bytes() == two.read_bytes()
+    drawn = figure(kind)
+    one = plot.save_png(drawn, tmp_path / "one.png", dpi=60)
+    text = plot.inline_svg(drawn, name="it", label="a box")
+    if kind in TWICE:
+        other = figure.__wrapped__(kind)
+        assert plot.save_png(other, tmp_path / "two.png", dpi=60).read_bytes() == one.read_bytes()
+        assert plot.inline_svg(other, name="it", label="a box") == text
     with Image.open(one) as image:
         assert min(image.size) > 50
         assert len(image.convert("RGB").getcolors(1 << 20) or []) > 100
-    text, again = (plot.inline_svg(drawn, name="it", label="a box") for drawn in figures)
-    assert text == again
     root = ElementTree.fromstring(text)
     names = [element.get("id") for element in root.iter() if element.get("id")]
     assert len(names) == len(set(names))
     assert any(element.tag.endswith("image") for element in root.iter())
-    check_words(figures[0])
+    check_words(drawn)
 
 
 @pytest.mark.slow
