@@ -25,7 +25,7 @@ FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 
 SIZE = {"width": 1280, "height": 800}
 
-COLOURS = 128
+COLORS = 128
 """Of a picture; felt and paper are few."""
 
 
@@ -91,7 +91,7 @@ def keep(page: Page, name: str) -> None:
     settle(page)
     file = PICTURES / f"studio_{name}.png"
     page.screenshot(path=file)
-    few = Image.open(file).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    few = Image.open(file).convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
     few.save(file, optimize=True)
     print(f"{file.name}: {file.stat().st_size / 1e3:.0f} kB")
 
@@ -178,7 +178,7 @@ def take_kit(browser: Browser) -> None:
 
 
 def take_hand(browser: Browser) -> None:
-    """A body in space, in the dark, coloured by strain."""
+    """A body in space, in the dark, colored by strain."""
     with window(browser, "cupping_hand", dark=True) as page:
         drag(page, "marker:index", 30, 110)
         page.get_by_label("Colors").click()

@@ -71,7 +71,7 @@ def test_slopes_of_markers_are_those_of_finite_differences(simulation: hs.Simula
 
 
 def test_strain_and_stress_of_a_pose(pose: hs.Equilibrium) -> None:
-    """Oracle: every node moved apart by a tenth along x. The closed forms of the fields are in test_colouring."""
+    """Oracle: every node moved apart by a tenth along x. The closed forms of the fields are in test_coloring."""
     stretched = replace(pose, nodes=pose.robot.body.mesh.nodes * [1.1, 1.0])
     assert stretched.strains == pytest.approx(0.1, rel=1e-9)
     mu, _ = pose.robot.body.material.lame

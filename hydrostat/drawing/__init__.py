@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         LIGHT,
         MESH,
         MUTED,
-        PAGE_COLOURS,
+        PAGE_COLORS,
         PAPER,
         SEAM,
         STITCH,
@@ -48,8 +48,8 @@ if TYPE_CHECKING:
         WINCHES,
         channels,
         mix,
-        pose_colours,
-        winch_colours,
+        pose_colors,
+        winch_colors,
     )
     from hydrostat.drawing.render import CREASE, Render, render, silhouette
 
@@ -68,7 +68,7 @@ __all__ = [
     "MIDDLE",
     "MUTED",
     "NAMESPACE",
-    "PAGE_COLOURS",
+    "PAGE_COLORS",
     "PAPER",
     "PIXELS",
     "SEAM",
@@ -98,7 +98,7 @@ __all__ = [
     "mix",
     "number",
     "path",
-    "pose_colours",
+    "pose_colors",
     "render",
     "shape",
     "silhouette",
@@ -107,7 +107,7 @@ __all__ = [
     "text_size",
     "three_quarter",
     "upright",
-    "winch_colours",
+    "winch_colors",
 ]
 
 open_package(__name__)

@@ -123,13 +123,13 @@ class Canvas:
         grey: float = 0.0,
         dash: tuple[float, float] | None = None,
         closed: bool = False,
-        colour: str | None = None,
+        color: str | None = None,
     ) -> None:
-        """Lines through spots; `grey` from 0 for black to 1, or a colour; `dash`: length of strokes and gaps [mm]."""
+        """Lines through spots; `grey` from 0 for black to 1, or a color; `dash`: length of strokes and gaps [mm]."""
         drawn = path((way for way in ways if len(way) > 1), digits=2, closed=closed)
         if drawn:
             dashes = {"stroke_dasharray": f"{dash[0]:g} {dash[1]:g}", "stroke_linecap": "butt"} if dash else {}
-            self._parts.append(shape("path", d=drawn, stroke=colour or _ink(grey), stroke_width=f"{width:g}", **dashes))
+            self._parts.append(shape("path", d=drawn, stroke=color or _ink(grey), stroke_width=f"{width:g}", **dashes))
 
     def fill(self, rings: Iterable[Sequence[Spot]], *, grey: float) -> None:
         """Fill the area enclosed by rings, by the even-odd rule."""
@@ -158,7 +158,7 @@ class Canvas:
         bold: bool = False,
         grey: float = 0.0,
         halo: bool = False,
-        colour: str | None = None,
+        color: str | None = None,
     ) -> None:
         """Words of a size [pt], their middle at the height of `at`; with `halo` lines behind them stop short."""
         if halo:
@@ -167,7 +167,7 @@ class Canvas:
             self.box((left - 0.3, at[1] - high / 2, left + wide + 0.3, at[1] + high / 2), grey=1.0)
         x, y, height = (number(value, 2) for value in (at[0], at[1] + 0.32 * size * POINT, size * POINT))
         face = {"font_size": height, "font_weight": "bold" if bold else None}
-        self._parts.append(tag("text", words, x=x, y=y, text_anchor=anchor, **face, fill=colour or _ink(grey)))
+        self._parts.append(tag("text", words, x=x, y=y, text_anchor=anchor, **face, fill=color or _ink(grey)))
 
     def balloon(self, at: Spot, words: str, *, dark: bool = False, size: float = 9.0) -> None:
         """Words in a circle, white on black if `dark`."""

@@ -1,4 +1,4 @@
-"""The colours of every picture: one language, safe for colour-blind eyes, at home on light and on dark pages."""
+"""The colors of every picture: one language, safe for color-blind eyes, at home on light and on dark pages."""
 
 from collections.abc import Iterable
 from typing import Protocol, runtime_checkable
@@ -61,8 +61,8 @@ GHOST_FILL = "#f3f1f5"
 PAPER = "#ffffff"
 ERROR = "#c8243f"
 
-PAGE_COLOURS = {INK: "ink", MUTED: "muted", GRID: "grid", GHOST: "ghost", GHOST_FILL: "ghost-fill", PAPER: "paper"}
-"""Colours that follow the page: there they become CSS variables of these names, which dark pages change."""
+PAGE_COLORS = {INK: "ink", MUTED: "muted", GRID: "grid", GHOST: "ghost", GHOST_FILL: "ghost-fill", PAPER: "paper"}
+"""Colors that follow the page: there they become CSS variables of these names, which dark pages change."""
 
 SHADE = "#7d4527"
 FELT = "#f0c29c"
@@ -74,7 +74,7 @@ DARK = "#2a2732"
 LIGHT = "#fffdfb"
 
 WINCHES = ("#0b5fa5", "#00795f", "#a8256f", "#5a3da6", "#7a4a12", "#1787b8", "#5f6d0c", "#8b1b34")
-"""A colour for each winch, in order; all stand out on felt and carry white letters."""
+"""A color for each winch, in order; all stand out on felt and carry white letters."""
 
 TENSION = ("#efa35c", "#e56a4f", "#c33c6a", "#842681", "#40156b", "#150b37")
 """From little tension to much: as even in lightness as magma, without its ends that felt or paper would swallow."""
@@ -90,24 +90,24 @@ class Named(Protocol):
         ...
 
 
-def winch_colours(winches: Iterable[Named]) -> dict[str, str]:
-    """Colour of each of a robot's winches, by name; darker ones from the ninth on, and again from the 17th."""
+def winch_colors(winches: Iterable[Named]) -> dict[str, str]:
+    """Color of each of a robot's winches, by name; darker ones from the ninth on, and again from the 17th."""
     count = len(WINCHES)
-    colours = [*WINCHES, *(mix(colour, INK, 0.55) for colour in WINCHES)]
-    return {winch.name: colours[index % (2 * count)] for index, winch in enumerate(winches)}
+    colors = [*WINCHES, *(mix(color, INK, 0.55) for color in WINCHES)]
+    return {winch.name: colors[index % (2 * count)] for index, winch in enumerate(winches)}
 
 
-def pose_colours(names: Iterable[str]) -> dict[str, str]:
+def pose_colors(names: Iterable[str]) -> dict[str, str]:
     """Color of each of a robot's poses: the winch colors in reverse, as few robots have that many winches."""
     return {name: WINCHES[-1 - index % len(WINCHES)] for index, name in enumerate(names)}
 
 
-def mix(colour: str, other: str, share: float) -> str:
-    """Colour with a share, 0 to 1, of another."""
-    pairs = zip(channels(colour), channels(other), strict=True)
+def mix(color: str, other: str, share: float) -> str:
+    """Color with a share, 0 to 1, of another."""
+    pairs = zip(channels(color), channels(other), strict=True)
     return "#" + "".join(f"{round((1 - share) * first + share * second):02x}" for first, second in pairs)
 
 
-def channels(colour: str) -> list[int]:
-    """Red, green and blue of a colour, 0 to 255."""
-    return [int(colour[start : start + 2], 16) for start in (1, 3, 5)]
+def channels(color: str) -> list[int]:
+    """Red, green and blue of a color, 0 to 255."""
+    return [int(color[start : start + 2], 16) for start in (1, 3, 5)]

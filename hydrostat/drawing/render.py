@@ -27,14 +27,14 @@ from hydrostat.drawing.palette import (
 FINER = 2  # samples along each side of a pixel
 CREASE = 42.0  # a sharper bend than this between two facets is drawn as an edge [degree]
 RAMP = ((0.0, SHADE), (0.30, SEAM), (0.52, mix(SEAM, FELT, 0.62)), (0.74, FELT), (0.92, FELT_LIGHT), (1.0, STITCH))
-"""Colours of felt from deep shade to full light."""
+"""Colors of felt from deep shade to full light."""
 
 
 @dataclass(frozen=True, eq=False)
 class Render:
     """Image of a body."""
 
-    colours: Float[np.ndarray, "height width 4"]  # red, green, blue, cover, 0 to 1; the lowest row first
+    colors: Float[np.ndarray, "height width 4"]  # red, green, blue, cover, 0 to 1; the lowest row first
     buffer: DepthBuffer  # depth of the surface at each pixel
 
     @property
@@ -51,7 +51,7 @@ class Render:
 
     def rings(self) -> list[Polyline]:
         """Silhouette as rings [mm], the widest first."""
-        rings = [ring[:-1] for ring in self.buffer.rings(self.colours[..., 3], 0.5, tolerance=0.15)]
+        rings = [ring[:-1] for ring in self.buffer.rings(self.colors[..., 3], 0.5, tolerance=0.15)]
         return sorted(rings, key=lambda ring: float(np.prod(np.ptp(ring, axis=0))), reverse=True)
 
 
@@ -129,10 +129,10 @@ def _unit(vectors: Float[np.ndarray, "height width 3"]) -> np.ndarray:
 
 
 def _table(pale: float) -> Float[np.ndarray, "256 3"]:
-    """Colours of felt from deep shade to full light."""
+    """Colors of felt from deep shade to full light."""
     stops = [stop for stop, _ in RAMP]
-    colours = np.array([_shares(mix(colour, PAPER, pale)) for _, colour in RAMP])
-    return np.column_stack([np.interp(np.linspace(0, 1, 256), stops, colours[:, channel]) for channel in range(3)])
+    colors = np.array([_shares(mix(color, PAPER, pale)) for _, color in RAMP])
+    return np.column_stack([np.interp(np.linspace(0, 1, 256), stops, colors[:, channel]) for channel in range(3)])
 
 
 def _smooth(image: np.ndarray) -> np.ndarray:
@@ -144,6 +144,6 @@ def _smooth(image: np.ndarray) -> np.ndarray:
     return image
 
 
-def _shares(colour: str) -> np.ndarray:
-    """Red, green and blue of a colour, 0 to 1."""
-    return np.array(channels(colour)) / 255
+def _shares(color: str) -> np.ndarray:
+    """Red, green and blue of a color, 0 to 1."""
+    return np.array(channels(color)) / 255

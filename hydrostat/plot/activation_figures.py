@@ -69,15 +69,15 @@ def draw_candidates(
 
 
 def draw_trees(robot: Robot, trees: Iterable[Spread], *, title: str | None = None, width: float = WIDTH) -> Figure:
-    """Routes [m] that grew from the candidates, on the rest shape, a colour each (Fig 3.9c); width in inches."""
+    """Routes [m] that grew from the candidates, on the rest shape, a color each (Fig 3.9c); width in inches."""
     trees = list(trees)
     note = f"{plural(len(trees), 'route')} grown from the candidates"
     sheet, panes = _pale_sheet(robot, "Trees" if title is None else title, note, width, bar=title == "")
     for pane, (index, tree) in product(panes, enumerate(trees)):
-        colour, route = WINCHES[index % len(WINCHES)], pane.places(np.asarray(tree))
+        color, route = WINCHES[index % len(WINCHES)], pane.places(np.asarray(tree))
         sheet.curve(route, color=LIGHT, linewidth=3.6, alpha=0.9, zorder=7)
-        sheet.curve(route, color=colour, linewidth=1.8, zorder=8)
-        sheet.dots(route, 3.0, color=colour, markeredgecolor=LIGHT, markeredgewidth=0.6, zorder=9)
+        sheet.curve(route, color=color, linewidth=1.8, zorder=8)
+        sheet.dots(route, 3.0, color=color, markeredgecolor=LIGHT, markeredgewidth=0.6, zorder=9)
     return sheet.figure
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import UInt8
 
-from hydrostat.drawing import DARK, ERROR, INK, MUTED, PAPER, channels, winch_colours
+from hydrostat.drawing import DARK, ERROR, INK, MUTED, PAPER, channels, winch_colors
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.frame_pictures import FramePictures, Picture
@@ -19,15 +19,15 @@ from hydrostat.progress import Progress
 from hydrostat.robot import Robot, replace_file
 
 STAYS = 3.0
-"""A pixel keeps its colour until it is off by more than this (of 255, in the channel that differs most): no eye tells,
+"""A pixel keeps its color until it is off by more than this (of 255, in the channel that differs most): no eye tells,
 and smooth shades of a body that moves do not flicker."""
 
-Palette = UInt8[np.ndarray, "colours 3"]
+Palette = UInt8[np.ndarray, "colors 3"]
 Indices = UInt8[np.ndarray, "_ _"]
 
 
 def gif_bytes(pictures: Iterable[Picture], palette: Palette, times: Sequence[int]) -> bytes:
-    """A GIF of pictures of one size and their times [1/100 s] that plays for ever, in at most 255 colours.
+    """A GIF of pictures of one size and their times [1/100 s] that plays for ever, in at most 255 colors.
 
     Pillow's own writer would repeat the palette in every frame and store pixels that stay, which makes files of this
     kind two to three times as large; the pixels of a frame are packed by it.
@@ -51,13 +51,13 @@ def gif_bytes(pictures: Iterable[Picture], palette: Palette, times: Sequence[int
 
 
 def _nearest(picture: Picture, palette: Palette) -> Indices:
-    """The number of the nearest colour for each pixel; without dithering, so that what rests keeps its pixels."""
+    """The number of the nearest color for each pixel; without dithering, so that what rests keeps its pixels."""
     from scipy.spatial import KDTree
 
     packed = picture.astype(np.int64) @ np.array([65536, 256, 1])
     values, places = np.unique(packed, return_inverse=True)
-    colours = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=1)
-    nearest = KDTree(palette.astype(float)).query(colours.astype(float))[1].astype(np.uint8)
+    colors = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=1)
+    nearest = KDTree(palette.astype(float)).query(colors.astype(float))[1].astype(np.uint8)
     return np.take(nearest, places).reshape(picture.shape[:2])
 
 
@@ -74,7 +74,7 @@ def _changed_box(indices: Indices, last: Indices, clear: int) -> tuple[tuple[int
 
 def _head(width: int, height: int, palette: Palette) -> bytes:
     """Size, palette, and that it plays for ever."""
-    bits = max(int(np.ceil(np.log2(len(palette) + 1))), 2)  # one number more than colours, for pixels that stay
+    bits = max(int(np.ceil(np.log2(len(palette) + 1))), 2)  # one number more than colors, for pixels that stay
     table = palette.tobytes().ljust(3 << bits, b"\0")
     size = width.to_bytes(2, "little") + height.to_bytes(2, "little")
     return b"GIF89a" + size + bytes([0x80 | (bits - 1), 0, 0]) + table + b"!\xff\x0bNETSCAPE2.0\x03\x01\0\0\0"
@@ -131,7 +131,7 @@ def save_gif(
     """
     _check(robot, frames, step, width)
     pictures = list(_draw_frames(robot, frames, width, progress))
-    samples = 10  # so many frames, evenly chosen, tell which colours are needed
+    samples = 10  # so many frames, evenly chosen, tell which colors are needed
     some = sorted({int(index) for index in np.linspace(0, len(frames) - 1, samples).round()})
     palette = _palette(robot, [_unpack_frame(pictures[index]) for index in some])
     runs = _runs(pictures)
@@ -223,18 +223,18 @@ def _runs(pictures: Sequence[tuple[bytes, tuple]]) -> list[tuple[tuple[bytes, tu
 
 
 def _palette(robot: Robot, pictures: Sequence[Picture]) -> Palette:
-    """Colours that suit all pictures: those that tell something as they are, the rest by what is there."""
+    """Colors that suit all pictures: those that tell something as they are, the rest by what is there."""
     from PIL import Image
 
     scale = TensionScale(most=1.0)
-    fixed = [PAPER, INK, MUTED, DARK, ERROR, *winch_colours(robot.winches).values()]
-    fixed += [scale.colour(share) for share in np.linspace(0, 1, 9)]
-    told = np.array([channels(colour) for colour in fixed], dtype=np.uint8)
+    fixed = [PAPER, INK, MUTED, DARK, ERROR, *winch_colors(robot.winches).values()]
+    fixed += [scale.color(share) for share in np.linspace(0, 1, 9)]
+    told = np.array([channels(color) for color in fixed], dtype=np.uint8)
     told = np.unique(told, axis=0)
     strip = Image.fromarray(np.concatenate([picture[::2, ::2].reshape(-1, 3) for picture in pictures])[None])
-    colours = 72  # colours of a GIF, all frames together: what lies between two of felt is not to be told
-    found = strip.quantize(colours - len(told), method=Image.Quantize.MEDIANCUT).getpalette() or []
-    return np.unique(np.concatenate([told, np.array(found, dtype=np.uint8).reshape(-1, 3)])[:colours], axis=0)
+    colors = 72  # colors of a GIF, all frames together: what lies between two of felt is not to be told
+    found = strip.quantize(colors - len(told), method=Image.Quantize.MEDIANCUT).getpalette() or []
+    return np.unique(np.concatenate([told, np.array(found, dtype=np.uint8).reshape(-1, 3)])[:colors], axis=0)
 
 
 def _even(picture: Picture) -> Picture:

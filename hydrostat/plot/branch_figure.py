@@ -90,7 +90,7 @@ def _displacement(robot: Robot, pose: Equilibrium, name: str) -> float:
     return float(np.linalg.norm(pose.markers[name] - np.array(at)))
 
 
-def _colour(index: int) -> str:
+def _color(index: int) -> str:
     return WINCHES[index % len(WINCHES)]
 
 
@@ -102,11 +102,11 @@ def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[Equilibrium]) -
             pane.draw_body(sheet, pose.nodes, pale=0.35)
         if len(poses) > 1:
             rings = pane.outline(sheet, pose.nodes)
-            colour = _colour(index)
-            fill = "none" if index == 0 else mix(colour, PAPER, 0.75)
+            color = _color(index)
+            fill = "none" if index == 0 else mix(color, PAPER, 0.75)
             sheet.area(rings, facecolor=fill, alpha=0.55, edgecolor="none", joinstyle="round", zorder=2.5)
             sheet.area(
-                rings, facecolor="none", edgecolor=colour, linewidth=1.3, joinstyle="round", zorder=8 - 0.1 * index
+                rings, facecolor="none", edgecolor=color, linewidth=1.3, joinstyle="round", zorder=8 - 0.1 * index
             )
 
 
@@ -116,8 +116,8 @@ def _name_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[Equilibrium], n
     places = pane.places(points)
     labels = Labels(sheet, rings=pane.outline(sheet, poses[0].nodes), avoid=places)
     for index, (place, pose) in enumerate(zip(places, poses, strict=True)):
-        sheet.dots(place[None], 5, color=_colour(index), markeredgecolor="white", markeredgewidth=0.8, zorder=12)
-        labels.flag(place, f"{index + 1}: {pose.energy:.4g} J", _colour(index))
+        sheet.dots(place[None], 5, color=_color(index), markeredgecolor="white", markeredgewidth=0.8, zorder=12)
+        labels.flag(place, f"{index + 1}: {pose.energy:.4g} J", _color(index))
 
 
 def _farthest(poses: Sequence[Equilibrium], pose: Equilibrium) -> Vector:
@@ -160,8 +160,8 @@ def _draw_chart(axes: Axes, robot: Robot, name: str, found: Multistability, bran
         shares = 100 * np.array([_share(point.pose, found.contractions) for point in branch.points])
         moved = MILLIMETRES * np.array([_displacement(robot, point.pose, name) for point in branch.points])
         for part, stable in branch.runs():
-            dashes, colour, order = ("-", INK, 3.0) if stable else ((0, (2.5, 1.8)), ERROR, 2.5)
-            axes.plot(shares[part], moved[part], linewidth=1.4, linestyle=dashes, color=colour, zorder=order)
+            dashes, color, order = ("-", INK, 3.0) if stable else ((0, (2.5, 1.8)), ERROR, 2.5)
+            axes.plot(shares[part], moved[part], linewidth=1.4, linestyle=dashes, color=color, zorder=order)
         for point in branch.critical:
             marker = "o" if point.kind == "fold" else "D"
             axes.plot(
@@ -214,11 +214,11 @@ def _number_poses(axes: Axes, heights: Sequence[float]) -> None:
     point = (high - low) / (72 * (ROW - EDGES))
     last = -np.inf
     for index in np.argsort(heights):
-        at, colour = heights[index], _colour(int(index))
+        at, color = heights[index], _color(int(index))
         last = max(at, last + 9 * point)
-        axes.plot(100, at, marker="o", markersize=6, color=colour, zorder=5, clip_on=False)
+        axes.plot(100, at, marker="o", markersize=6, color=color, zorder=5, clip_on=False)
         axes.annotate(
-            f"{index + 1}", (100, at), xytext=(7, (last - at) / point), textcoords="offset points", color=colour,
+            f"{index + 1}", (100, at), xytext=(7, (last - at) / point), textcoords="offset points", color=color,
             fontsize=8, fontweight="bold", va="center",
         )  # fmt: skip
 

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from hydrostat.drawing import GRID, INK, MUTED
 from hydrostat.plot.sheet import WIDTH, new_figure
 
-DASHES = ("-", "--", ":", "-.")  # lines of one colour, one after the other
+DASHES = ("-", "--", ":", "-.")  # lines of one color, one after the other
 
 
 def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0) -> tuple[Figure, Axes]:

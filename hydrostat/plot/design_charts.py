@@ -41,9 +41,9 @@ def draw_growth(
     axes.plot(numbers[~chosen], errors[~chosen], markersize=3.2, color="white", markeredgewidth=0.9, **look)
     axes.plot(numbers[chosen], errors[chosen], markersize=6.0, color=SEAM, markeredgewidth=0.0, **look)
     levels = {"at rest": (rest, ERROR, -3), "returned": (final, INK, 3)}
-    for words, (error, colour, lift) in levels.items():
+    for words, (error, color, lift) in levels.items():
         if error is not None:
-            _draw_level(axes, MILLIMETRES * error, words, colour, lift)
+            _draw_level(axes, MILLIMETRES * error, words, color, lift)
     _scale(axes, np.concatenate([errors, [MILLIMETRES * error for error in (rest, final) if error is not None]]))
     edge = 0.02 * max(len(stages) - 1, 1)
     axes.set_xlim(1.0 - edge, len(stages) + edge)
@@ -63,12 +63,12 @@ def stage_runs(stages: Sequence[DesignStage]) -> list[list[int]]:
     return runs
 
 
-def _draw_level(axes: Axes, error: float, words: str, colour: str, lift: int) -> None:
+def _draw_level(axes: Axes, error: float, words: str, color: str, lift: int) -> None:
     """A line across at an error [mm], with its words below or above it."""
-    axes.axhline(error, color=colour, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
+    axes.axhline(error, color=color, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
     axes.annotate(
         f"{words}: {error:.3g} mm", (1.0, error), xycoords=("axes fraction", "data"), xytext=(-2, lift),
-        textcoords="offset points", fontsize=8, color=colour, ha="right", va="top" if lift < 0 else "bottom",
+        textcoords="offset points", fontsize=8, color=color, ha="right", va="top" if lift < 0 else "bottom",
         weight="bold" if lift > 0 else "normal",
     )  # fmt: skip
 
@@ -89,7 +89,7 @@ def _scale(axes: Axes, errors: np.ndarray) -> None:
 def draw_front(
     alternatives: Iterable[Alternative], chosen: Network, *, tolerance: float | None = None, width: float = WIDTH
 ) -> Figure:
-    """Error as built over minutes of sewing: a dot for each network in the colour of its number of winches.
+    """Error as built over minutes of sewing: a dot for each network in the color of its number of winches.
 
     The number above a dot counts cables. A filled dot is on the Pareto front, which a line joins: nothing that is sewn
     as fast is better. A ring marks the chosen one, a dashed line the tolerance that was asked for [m]. Width in inches.
@@ -121,12 +121,12 @@ def _draw_dots(axes: Axes, networks: Sequence[Alternative | Network], dots: Sequ
     """All dots; a line of the legend for each number of winches."""
     counts = [len(one.robot.winches) for one in networks]
     for number, count in enumerate(sorted(set(counts))):
-        colour, name = WINCHES[number % len(WINCHES)], plural(count, "winch")
-        axes.plot([], [], marker="o", markersize=5.5, linestyle="none", color=colour, label=name)
+        color, name = WINCHES[number % len(WINCHES)], plural(count, "winch")
+        axes.plot([], [], marker="o", markersize=5.5, linestyle="none", color=color, label=name)
         for index in (index for index, other in enumerate(counts) if other == count):
             axes.plot(
-                *dots[index], marker="o", markersize=5.5, color=colour if index in best else "white",
-                markeredgecolor=colour, zorder=4, clip_on=False,
+                *dots[index], marker="o", markersize=5.5, color=color if index in best else "white",
+                markeredgecolor=color, zorder=4, clip_on=False,
             )  # fmt: skip
 
 

@@ -25,7 +25,7 @@ Picture = UInt8[np.ndarray, "_ _ 3"]  # red, green and blue of each pixel, the t
 
 
 class FramePictures:
-    """A sheet on which one frame after another is drawn; camera, frame and colours of tension are those of all."""
+    """A sheet on which one frame after another is drawn; camera, frame and colors of tension are those of all."""
 
     def __init__(self, robot: Robot, frames: Sequence[Frame], *, width: int) -> None:
         """Room for all of the frames, in pictures of a width [pixels]."""
@@ -77,8 +77,8 @@ class FramePictures:
     def _draw(self, frame: Frame) -> None:
         sheet, pane, robot, carried = self._sheet, self._pane, self._robot, self._carried
         surface = pane.draw_body(sheet, frame.nodes, pale=0.25, pins=True, things=frame.things)
-        colours = [self._scale.colour(float(tension)) for tension in frame.tensions]
-        look = {"colours": colours, "width": 2.6, "contractions": frame.contractions}
+        colors = [self._scale.color(float(tension)) for tension in frame.tensions]
+        look = {"colors": colors, "width": 2.6, "contractions": frame.contractions}
         draw_hardware(sheet, pane, surface, carried, frame.nodes, **look)
         names = [marker.name for marker in robot.markers]
         markers = dict(zip(names, carried.markers(frame.nodes), strict=True))

@@ -20,7 +20,7 @@ class GlbPart:
     triangles: Int[np.ndarray, "triangles 3"]  # corners of each, counter-clockwise seen from outside, (triangles, 3)
     places: Float[np.ndarray, "keys vertices 3"]  # of the vertices in every key, (keys, vertices, 3) [m]
     normals: Float[np.ndarray, "keys vertices 3"]  # of length 1, (keys, vertices, 3)
-    colours: Float[np.ndarray, "some vertices 3"]  # linear red, green, blue, in every key or one for all
+    colors: Float[np.ndarray, "some vertices 3"]  # linear red, green, blue, in every key or one for all
     opacity: float = 1.0  # 1, or less for what things within shine through
 
 
@@ -83,7 +83,7 @@ class Glb:
         attributes = {
             "POSITION": self._array(shape.places[0], bounds=True),
             "NORMAL": self._array(shape.normals[0]),
-            "COLOR_0": self._array(shape.colours[0]),
+            "COLOR_0": self._array(shape.colors[0]),
         }
         corners = shape.triangles.astype("<u4").reshape(-1, 1)
         indices = self._accessor(corners, UNSIGNED, bounds=False, use=INDICES)
@@ -133,8 +133,8 @@ class Glb:
             "POSITION": self._array(shape.places[key] - base, bounds=True),
             "NORMAL": self._array(shape.normals[key] - shape.normals[0].astype(np.float32)),
         }
-        if len(shape.colours) > 1:
-            target["COLOR_0"] = self._array(shape.colours[key] - shape.colours[0].astype(np.float32))
+        if len(shape.colors) > 1:
+            target["COLOR_0"] = self._array(shape.colors[key] - shape.colors[0].astype(np.float32))
         return target
 
     def _material(self, shape: GlbPart) -> int:

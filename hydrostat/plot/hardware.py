@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing import DARK, FELT, LIGHT, MUTED, mix, winch_colours
+from hydrostat.drawing import DARK, FELT, LIGHT, MUTED, mix, winch_colors
 from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import Labels, shorten
@@ -46,20 +46,20 @@ def draw_hardware(
     carried: Attachments,
     nodes: Nodes,
     *,
-    colours: Sequence[str] | None = None,
+    colors: Sequence[str] | None = None,
     width: float = 2.0,
     contractions: Vector | None = None,
 ) -> DrawnRobot:
     """Draw cables and winches on a body whose nodes are at `nodes` [m].
 
-    Cables have the colours of the winches if left out, and a width in points; contractions [m] are told by hands on the
+    Cables have the colors of the winches if left out, and a width in points; contractions [m] are told by hands on the
     spools, and without them there are none.
     """
     cables, winches = [body.cable(points) for points in carried.cables(nodes)], carried.winches(nodes)
     drawn = DrawnRobot(pane, body, cables, pane.places(winches))
     for line in obstacle_lines(carried.robot):
         sheet.curve(pane.places(line), color=MUTED, linewidth=1.2, clip_on=True)
-    _draw_cables(sheet, carried.robot, cables, colours=colours, width=width)
+    _draw_cables(sheet, carried.robot, cables, colors=colors, width=width)
     _draw_winches(sheet, carried.robot, drawn.winches, body.fades(winches), contractions=contractions)
     return drawn
 
@@ -81,23 +81,23 @@ def _draw_cables(
     robot: Robot,
     runs: list[DrawnCable],
     *,
-    colours: Sequence[str] | None = None,
+    colors: Sequence[str] | None = None,
     width: float = 2.0,
 ) -> None:
     """Cables along their runs: sheaths as pale pipes, a bead at each via point, a bar as the stopper.
 
-    What the body covers is thinner and of the colour of the body, the more so the deeper it lies.
+    What the body covers is thinner and of the color of the body, the more so the deeper it lies.
     """
-    by_winch = winch_colours(robot.winches)
+    by_winch = winch_colors(robot.winches)
     for index, (cable, run) in enumerate(zip(robot.cables, runs, strict=True)):
-        colour = colours[index] if colours is not None else by_winch[cable.winch]
+        color = colors[index] if colors is not None else by_winch[cable.winch]
         for start, end in cable.sheathed:
-            _draw_sheath(sheet, run.points[start : end + 1], colour, width, float(run.fades[start : end + 1].mean()))
+            _draw_sheath(sheet, run.points[start : end + 1], color, width, float(run.fades[start : end + 1].mean()))
         for fade in sorted({fade for _, fade in run.parts}):
             alike = [part for part, own in run.parts if own == fade]
-            _draw_part(sheet, join_lines(alike), colour, width, fade)
-        _draw_beads(sheet, run, colour)
-        _draw_stopper(sheet, run, colour, width)
+            _draw_part(sheet, join_lines(alike), color, width, fade)
+        _draw_beads(sheet, run, color)
+        _draw_stopper(sheet, run, color, width)
 
 
 def _draw_winches(
@@ -107,30 +107,30 @@ def _draw_winches(
 
     There are hands only where `contractions` [m] are given.
     """
-    colours = winch_colours(robot.winches)
+    colors = winch_colors(robot.winches)
     for index, (winch, centre, fade) in enumerate(zip(robot.winches, centres, fades, strict=True)):
-        _draw_spool(sheet, winch, centre, colours[winch.name], float(fade))
+        _draw_spool(sheet, winch, centre, colors[winch.name], float(fade))
         if contractions is not None:
             turn = float(contractions[index]) / winch.spool_radius
-            _draw_hand(sheet, winch, centre, turn, _fade_colour(DARK, float(fade)), 20.3 if fade == 0 else 10.8)
+            _draw_hand(sheet, winch, centre, turn, _fade_color(DARK, float(fade)), 20.3 if fade == 0 else 10.8)
 
 
 def name_winches(labels: Labels, robot: Robot, centres: Places, notes: Sequence[str] = ()) -> None:
     """The name of each winch, and a note behind it, on a flag at its spool with the centre [mm]."""
-    colours = winch_colours(robot.winches)
+    colors = winch_colors(robot.winches)
     for centre in centres:
         labels.reserve(centre, 18)
     for index, (winch, centre) in enumerate(zip(robot.winches, centres, strict=True)):
         note = f"\N{EN SPACE}{notes[index]}" if notes else ""
-        labels.flag(centre, shorten(winch.name) + note, colours[winch.name])
+        labels.flag(centre, shorten(winch.name) + note, colors[winch.name])
 
 
-def draw_numbers(sheet: PictureSheet, runs: list[Places], colours: Sequence[str], labels: Labels) -> list[Place]:
+def draw_numbers(sheet: PictureSheet, runs: list[Places], colors: Sequence[str], labels: Labels) -> list[Place]:
     """The number of each cable, from 1, as a bead on it; returns where the beads are."""
     beads = _beads(runs, 13 * sheet.scale)
-    for number, (at, colour) in enumerate(zip(beads, colours, strict=True), start=1):
+    for number, (at, color) in enumerate(zip(beads, colors, strict=True), start=1):
         labels.reserve(at, 11)
-        sheet.dots(at[None], 11, color=colour, markeredgecolor=LIGHT, markeredgewidth=1.0, zorder=12)
+        sheet.dots(at[None], 11, color=color, markeredgecolor=LIGHT, markeredgewidth=1.0, zorder=12)
         sheet.text(
             (at[0], at[1]), str(number), fontsize=6.5, color=LIGHT, weight="bold", ha="center", va="center_baseline",
             zorder=13,
@@ -170,57 +170,57 @@ def _along(run: Places, share: float) -> Place:
     return np.array([np.interp(share * places[-1], places, run[:, side]) for side in range(2)])
 
 
-def _draw_spool(sheet: PictureSheet, winch: Winch, centre: Place, colour: str, fade: float) -> None:
+def _draw_spool(sheet: PictureSheet, winch: Winch, centre: Place, color: str, fade: float) -> None:
     """Flange, drum and axle; a winch outside the body sits on a square plate, a covered one beneath markers."""
-    size, light, colour = spool_size(winch, sheet.scale), _fade_colour(LIGHT, fade), _fade_colour(colour, fade)
+    size, light, color = spool_size(winch, sheet.scale), _fade_color(LIGHT, fade), _fade_color(color, fade)
     order = 19.0 if fade == 0 else 9.5
     if winch.mount is Mount.WORLD:
         sheet.curve(
             centre[None], linestyle="none", marker="s", markersize=1.5 * size, color=light,
-            markeredgecolor=_fade_colour(DARK, fade), markeredgewidth=0.9, zorder=order,
+            markeredgecolor=_fade_color(DARK, fade), markeredgewidth=0.9, zorder=order,
         )  # fmt: skip
-    sheet.dots(centre[None], size, color=colour, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
-    sheet.dots(centre[None], 0.58 * size, color=mix(colour, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
-    sheet.dots(centre[None], 0.2 * size, color=colour, markeredgecolor="none", zorder=order + 1.2)
+    sheet.dots(centre[None], size, color=color, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
+    sheet.dots(centre[None], 0.58 * size, color=mix(color, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
+    sheet.dots(centre[None], 0.2 * size, color=color, markeredgecolor="none", zorder=order + 1.2)
 
 
-def _draw_hand(sheet: PictureSheet, winch: Winch, centre: Place, turn: float, colour: str, order: float) -> None:
+def _draw_hand(sheet: PictureSheet, winch: Winch, centre: Place, turn: float, color: str, order: float) -> None:
     """A hand on a spool, upright at rest, that goes round to the right by `turn` [rad]."""
     reach = 0.44 * spool_size(winch, sheet.scale) * sheet.scale
     end = centre + reach * np.array([np.sin(turn), np.cos(turn)])
-    sheet.curve(np.array([centre, end]), color=colour, linewidth=1.2, zorder=order)
+    sheet.curve(np.array([centre, end]), color=color, linewidth=1.2, zorder=order)
 
 
-def _draw_sheath(sheet: PictureSheet, pipe: Places, colour: str, width: float, fade: float) -> None:
+def _draw_sheath(sheet: PictureSheet, pipe: Places, color: str, width: float, fade: float) -> None:
     """A pale pipe around a piece of a cable, beneath all cables where the body covers it."""
-    wall, order = _fade_colour(colour, fade), 6.0 if fade > 0 else 8.2
+    wall, order = _fade_color(color, fade), 6.0 if fade > 0 else 8.2
     sheet.curve(pipe, color=mix(wall, LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=order)
     sheet.curve(pipe, color=mix(wall, LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=order + 0.1)
 
 
-def _draw_part(sheet: PictureSheet, part: Places, colour: str, width: float, fade: float) -> None:
+def _draw_part(sheet: PictureSheet, part: Places, color: str, width: float, fade: float) -> None:
     """Pieces of a cable: with a pale border where they lie in front, thinner where the body covers them."""
     if fade > 0:
-        sheet.curve(part, color=_fade_colour(LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade)
-        sheet.curve(part, color=_fade_colour(colour, fade), linewidth=0.8 * width, zorder=7 - fade)
+        sheet.curve(part, color=_fade_color(LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade)
+        sheet.curve(part, color=_fade_color(color, fade), linewidth=0.8 * width, zorder=7 - fade)
     else:
         sheet.curve(part, color=LIGHT, linewidth=width + 1.8, alpha=0.85, zorder=8)
-        sheet.curve(part, color=colour, linewidth=width, zorder=9)
+        sheet.curve(part, color=color, linewidth=width, zorder=9)
 
 
-def _draw_beads(sheet: PictureSheet, run: DrawnCable, colour: str) -> None:
+def _draw_beads(sheet: PictureSheet, run: DrawnCable, color: str) -> None:
     fades = run.fades[1:-1]
     for fade in np.unique(fades):
-        look = {"color": _fade_colour(LIGHT, fade), "markeredgecolor": _fade_colour(colour, fade)}
+        look = {"color": _fade_color(LIGHT, fade), "markeredgecolor": _fade_color(color, fade)}
         beads = run.points[1:-1][fades == fade]
         sheet.dots(beads, 2.2 if fade else 3.0, markeredgewidth=0.6 if fade else 0.9, zorder=9.2 - 2 * fade, **look)
 
 
-def _draw_stopper(sheet: PictureSheet, run: DrawnCable, colour: str, width: float) -> None:
+def _draw_stopper(sheet: PictureSheet, run: DrawnCable, color: str, width: float) -> None:
     bar, fade = stopper_bar(run.points, sheet.scale), float(run.fades[-1])
-    sheet.curve(bar, color=_fade_colour(LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
-    sheet.curve(bar, color=_fade_colour(colour, fade), linewidth=width + 0.8, zorder=9.4)
+    sheet.curve(bar, color=_fade_color(LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
+    sheet.curve(bar, color=_fade_color(color, fade), linewidth=width + 0.8, zorder=9.4)
 
 
-def _fade_colour(colour: str, fade: float) -> str:
-    return mix(colour, FELT, fade) if fade > 0 else colour
+def _fade_color(color: str, fade: float) -> str:
+    return mix(color, FELT, fade) if fade > 0 else color

@@ -121,12 +121,12 @@ def _both_sides(spots: Spots, triangles: Int[np.ndarray, "triangles 3"], pixel: 
     inside = render(spots, triangles[:, ::-1], pixel=pixel, up=camera.sky)
     red = np.array(channels(ERROR)) / 255
     nearer = inside.buffer.depth > outside.buffer.depth
-    tinted = inside.colours.copy()
+    tinted = inside.colors.copy()
     redness = 0.72  # how red the inside of a surface is drawn where it is seen
     tinted[..., :3] += redness * (red - tinted[..., :3])
-    colours = np.where(nearer[..., None], tinted, outside.colours)
+    colors = np.where(nearer[..., None], tinted, outside.colors)
     depth = np.maximum(outside.buffer.depth, inside.buffer.depth)
-    return Render(colours, replace(outside.buffer, depth=depth))
+    return Render(colors, replace(outside.buffer, depth=depth))
 
 
 def _pixel(sheet: PictureSheet, spots: Spots) -> float:

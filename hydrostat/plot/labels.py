@@ -31,14 +31,14 @@ class Labels:
             va="center_baseline", gid=HALO, zorder=30,
         )  # fmt: skip
 
-    def flag(self, at: Place, words: str, colour: str) -> None:
-        """Write words on a coloured flag that is tied to a point."""
+    def flag(self, at: Place, words: str, color: str) -> None:
+        """Write words on a colored flag that is tied to a point."""
         extent = np.array([0.71 * len(words) + 1.2, 1.9]) * 7 * self._sheet.scale
         centre = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0), 0.0)
-        self._sheet.curve(np.array([at, centre]), color=colour, linewidth=0.9, zorder=10)
+        self._sheet.curve(np.array([at, centre]), color=color, linewidth=0.9, zorder=10)
         self._sheet.text(
             (centre[0], centre[1]), words, fontsize=7, color=LIGHT, weight="bold", ha="center", va="center_baseline",
-            zorder=25, bbox={"boxstyle": "round,pad=0.32,rounding_size=0.6", "facecolor": colour, "edgecolor": LIGHT,
+            zorder=25, bbox={"boxstyle": "round,pad=0.32,rounding_size=0.6", "facecolor": color, "edgecolor": LIGHT,
             "linewidth": 0.7},
         )  # fmt: skip
 

@@ -28,10 +28,10 @@ def draw_curves(panes: Mapping[str, Mapping[str, tuple[np.ndarray, np.ndarray]]]
         axes = figure.add_axes((0.09 + 0.5 * number, lower, 0.39, tall))
         plain_axes(axes)
         for place, (name, (actions, numbers)) in enumerate(curves.items()):
-            colour = WINCHES[place % len(WINCHES)]
+            color = WINCHES[place % len(WINCHES)]
             middle = trim_mean(numbers, 0.25, axis=1)
-            axes.plot(actions, middle, color=colour, linewidth=1.4, label=name)
-            axes.fill_between(actions, numbers.min(1), numbers.max(1), color=colour, alpha=0.15, linewidth=0)
+            axes.plot(actions, middle, color=color, linewidth=1.4, label=name)
+            axes.fill_between(actions, numbers.min(1), numbers.max(1), color=color, alpha=0.15, linewidth=0)
         most = max(float(numbers.max()) for _, numbers in curves.values())
         axes.set_ylim(0.0, 1.05 * (most or 1.0))
         axes.set_xlabel("actions", color=INK, fontsize=8.5)

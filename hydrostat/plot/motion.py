@@ -17,7 +17,7 @@ from hydrostat.drawing import (
     path,
     shape,
     tag,
-    winch_colours,
+    winch_colors,
 )
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import spool_size, stopper_bar
@@ -75,13 +75,13 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str) -> Html:
 
 
 def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
-    colours, runs = winch_colours(robot.winches), list(map(Attachments(robot).cables, frames))
+    colors, runs = winch_colors(robot.winches), list(map(Attachments(robot).cables, frames))
     lines = []
     for index, cable in enumerate(robot.cables):
         bars = [_outline([stopper_bar(MILLIMETRES * run[index], SCALE) / MILLIMETRES], closed=False) for run in runs]
         paths = [_outline([run[index]], closed=False) for run in runs]
-        for colour, width in ((LIGHT, 3.2), (colours[cable.winch], 1.7)):
-            look = {"fill": "none", "stroke": colour, "stroke_linecap": "round"}
+        for color, width in ((LIGHT, 3.2), (colors[cable.winch], 1.7)):
+            look = {"fill": "none", "stroke": color, "stroke_linecap": "round"}
             lines.append(_moving(paths, seconds, stroke_width=f"{width}", **look))
             lines.append(_moving(bars, seconds, stroke_width=f"{width + 0.5}", **look))
     return lines
@@ -90,11 +90,11 @@ def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]
 def _winches(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
     places = [MILLIMETRES * place for place in map(Attachments(robot).winches, frames)]
     spools = []
-    for index, (winch, colour) in enumerate(zip(robot.winches, winch_colours(robot.winches).values(), strict=True)):
+    for index, (winch, color) in enumerate(zip(robot.winches, winch_colors(robot.winches).values(), strict=True)):
         radius = spool_size(winch, SCALE) * SCALE / 2
         discs = [
             shape("circle", r=f"{radius * share:.2f}", fill=fill)
-            for share, fill in ((1.12, LIGHT), (1, colour), (0.58, mix(colour, LIGHT, 0.75)), (0.2, colour))
+            for share, fill in ((1.12, LIGHT), (1, color), (0.58, mix(color, LIGHT, 0.75)), (0.2, color))
         ]
         way = [f"{place[index][0]:.2f} {-place[index][1]:.2f}" for place in places]
         move = _animation("animateTransform", "transform", way, seconds, type="translate")

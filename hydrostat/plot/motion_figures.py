@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing import ERROR, GHOST, INK, MUTED, WINCHES, winch_colours
+from hydrostat.drawing import ERROR, GHOST, INK, MUTED, WINCHES, winch_colors
 from hydrostat.ik import KeyPose, Trajectory
 from hydrostat.plot.chart import DASHES, plain_axes
 from hydrostat.plot.frame import Attachments
@@ -23,7 +23,7 @@ from hydrostat.simulation import Equilibrium, MotionTable
 def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """Draw marker displacements, winch contractions and cable tensions over time.
 
-    Displacements are from the first instant. A marker with the name of a winch has its colour.
+    Displacements are from the first instant. A marker with the name of a winch has its color.
     The title is the robot's name if left out; width in inches.
     """
     figure = Figure(figsize=(width, 0.95 * width), layout="constrained")
@@ -32,33 +32,33 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
     head = shorten(robot.name) if title is None else title
     if head:
         upper.set_title(head, loc="left", color=INK, fontsize=11, fontweight="bold")
-    colours = winch_colours(robot.winches)
+    colors = winch_colors(robot.winches)
     way = MILLIMETRES * np.linalg.norm(table.markers - table.markers[0], axis=2)
     names = [marker.name for marker in robot.markers]
-    others = cycle([colour for colour in WINCHES if colour not in colours.values()] or WINCHES)
-    _lines(upper, table.times, way, names, [colours.get(name) or next(others) for name in names])
+    others = cycle([color for color in WINCHES if color not in colors.values()] or WINCHES)
+    _lines(upper, table.times, way, names, [colors.get(name) or next(others) for name in names])
     upper.set_ylabel("marker moved [mm]")
     winches = [winch.name for winch in robot.winches]
-    _lines(middle, table.times, MILLIMETRES * table.contractions, winches, [colours[name] for name in winches])
+    _lines(middle, table.times, MILLIMETRES * table.contractions, winches, [colors[name] for name in winches])
     middle.set_ylabel("cable taken in [mm]")
     cables = [f"{index + 1} {cable.winch}" for index, cable in enumerate(robot.cables)]
-    _lines(lower, table.times, table.tensions, cables, [colours[cable.winch] for cable in robot.cables])
+    _lines(lower, table.times, table.tensions, cables, [colors[cable.winch] for cable in robot.cables])
     lower.set_ylabel("tension [N]")
     lower.set_xlabel("time [s]", color=INK)
     lower.set_xlim(table.times[0], max(table.times[-1], table.times[0] + 1e-9))
     return figure
 
 
-def _lines(axes: Axes, times: np.ndarray, values: np.ndarray, names: list[str], colours: list[str]) -> None:
+def _lines(axes: Axes, times: np.ndarray, values: np.ndarray, names: list[str], colors: list[str]) -> None:
     """A line for each column; those that move most are named beside their ends, as many as there is place for."""
     plain_axes(axes)
     axes.yaxis.label.set_color(INK)
     dashes = {}
-    for column, (name, colour) in enumerate(zip(names, colours, strict=True)):
-        count = dashes.setdefault(colour, 0)
-        dashes[colour] += 1
+    for column, (name, color) in enumerate(zip(names, colors, strict=True)):
+        count = dashes.setdefault(color, 0)
+        dashes[color] += 1
         line = values[:, column]
-        axes.plot(times, line, color=colour, linewidth=1.4, linestyle=DASHES[count % len(DASHES)], label=name)
+        axes.plot(times, line, color=color, linewidth=1.4, linestyle=DASHES[count % len(DASHES)], label=name)
     most_names = 12  # so many lines are named; of more, the others are only drawn
     if names:
         most = np.argsort(-np.ptp(values, axis=0), kind="stable")[:most_names]
@@ -139,7 +139,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         ("speed [mm/s]", trajectory.speeds, trajectory.limits.speed),
         ("acceleration [mm/s\N{SUPERSCRIPT TWO}]", trajectory.accelerations, trajectory.limits.acceleration),
     )
-    colours = winch_colours(robot.winches)
+    colors = winch_colors(robot.winches)
     right = 0.5 + 0.068 * max((len(shorten(name)) for name in trajectory.winches), default=0)
     first = None
     for row, (label, values, limits) in enumerate(rows):
@@ -152,7 +152,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         _events(axes, trajectory)
         for column, name in enumerate(trajectory.winches):
             axes.plot(
-                trajectory.times, MILLIMETRES * values[:, column], color=colours[name], linewidth=1.4,
+                trajectory.times, MILLIMETRES * values[:, column], color=colors[name], linewidth=1.4,
                 linestyle=DASHES[column // len(WINCHES) % len(DASHES)], label=shorten(name),
             )  # fmt: skip
         if limits is not None:

@@ -28,7 +28,7 @@ def open_sheet(
 
     A flat body has one pane; a body in space has a three-quarter view and, beside or below it, a view along the axis
     that shows most. All shapes and points [m] are seen. The subtitle is left out with the title; the bar is room for
-    one of colours; without millimetres (`ruled`) one pane is all there is; width in inches.
+    one of colors; without millimetres (`ruled`) one pane is all there is; width in inches.
     """
     if robot.body.mesh.dim == 2:
         skin = FlatSkin.of(robot.body)

@@ -138,7 +138,7 @@ class FlatPane(Pane):
         pins: bool = False,
         things: Sequence[Obstacle] = (),
     ) -> DrawnBody:
-        fill, light, seam = (mix(colour, PAPER, pale) for colour in (FELT, FELT_LIGHT, SEAM))
+        fill, light, seam = (mix(color, PAPER, pale) for color in (FELT, FELT_LIGHT, SEAM))
         rings, seams = self.outline(sheet, nodes), [MILLIMETRES * ring for ring in self.skin.seam(nodes)]
         sheet.area(rings, facecolor=fill, edgecolor=seam, linewidth=1.3, joinstyle="round", zorder=3)
         if seams:
@@ -221,7 +221,7 @@ def lay_image(sheet: PictureSheet, image: Render, shift: Place, *, seam: str = S
     x, y = shift
     left, right, low, high = image.extent
     sheet.axes.imshow(
-        image.colours, extent=(left + x, right + x, low + y, high + y), origin="lower", aspect="auto", zorder=3,
+        image.colors, extent=(left + x, right + x, low + y, high + y), origin="lower", aspect="auto", zorder=3,
         interpolation="antialiased", clip_on=False, label=BODY,
     )  # fmt: skip
     rings = [ring + shift for ring in image.rings()]

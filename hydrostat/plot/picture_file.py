@@ -18,7 +18,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 
-from hydrostat.drawing import PAGE_COLOURS, PAPER
+from hydrostat.drawing import PAGE_COLORS, PAPER
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.sheet import BODY
 from hydrostat.robot import replace_file
@@ -33,7 +33,7 @@ def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
 
 
 def inline_svg(figure: Figure, *, name: str, label: str) -> str:
-    """A figure as an `<svg>` element; its quiet colours and its letters follow the page.
+    """A figure as an `<svg>` element; its quiet colors and its letters follow the page.
 
     The name is unique in the page, so that inner references do not meet; the label is for who cannot see it.
     """
@@ -51,8 +51,8 @@ def inline_svg(figure: Figure, *, name: str, label: str) -> str:
     text = re.sub(r"<style.*?</style>", "", text, flags=re.DOTALL)
     text = re.sub(r' (d|points|transform)="([^"]*)"', _shorter, text)
     text = re.sub(r">\s+<", "><", text).replace("<g/>", "").replace("<defs></defs>", "")
-    for colour, variable in PAGE_COLOURS.items():
-        text = text.replace(colour, f"var(--{variable}, {colour})")
+    for color, variable in PAGE_COLORS.items():
+        text = text.replace(color, f"var(--{variable}, {color})")
     box = re.search(r'viewBox="[^"]*"', text)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" {box[0] if box else ""}'
     head += f' class="figure" role="img" aria-label="{html.escape(label)}">'

@@ -18,7 +18,7 @@ from hydrostat.robot import Robot
 def draw_reach(
     robot: Robot, reaches: Sequence[FoundReach], *, title: str | None = None, width: float = WIDTH
 ) -> Figure:
-    """The rest shape with what each marker reaches in a colour of its own: a field where it is flat, else places.
+    """The rest shape with what each marker reaches in a color of its own: a field where it is flat, else places.
 
     The title is the robot's name if left out, nothing if empty; width in inches.
     """
@@ -27,14 +27,14 @@ def draw_reach(
     head = shorten(robot.name) if title is None else title
     sheet, panes = open_sheet(robot, [nodes], points, title=head, subtitle="all that markers reach", width=width)
     for index, part in enumerate(reaches):
-        colour = WINCHES[index % len(WINCHES)]
+        color = WINCHES[index % len(WINCHES)]
         for pane in panes:
             if index == 0:
                 pane.draw_body(sheet, nodes, pins=True, pale=0.35)
             if flat:
-                _draw_fields(sheet, [pane.places(cell) for cell in part.cells], colour)
+                _draw_fields(sheet, [pane.places(cell) for cell in part.cells], color)
             elif len(part.places):
-                sheet.dots(pane.places(part.places), 2.6, color=colour, zorder=12)
+                sheet.dots(pane.places(part.places), 2.6, color=color, zorder=12)
     rest = rest_markers(robot)
     for pane in panes:
         draw_markers(sheet, pane.locate_points(rest))
@@ -44,9 +44,9 @@ def draw_reach(
     return sheet.figure
 
 
-def _draw_fields(sheet: PictureSheet, cells: Sequence[Places], colour: str) -> None:
+def _draw_fields(sheet: PictureSheet, cells: Sequence[Places], color: str) -> None:
     """Draw the union of convex cells [mm]; a line where a marker only moves to and fro."""
     hulls = [shapely.buffer(shapely.convex_hull(shapely.MultiPoint(cell)), 0.6 * sheet.scale) for cell in cells]
     for field in shapely.get_parts(shapely.union_all(hulls)):
         rings = [field.exterior, *field.interiors]
-        sheet.area([np.array(ring.coords) for ring in rings], facecolor=colour, alpha=0.45, linewidth=0.0, zorder=12)
+        sheet.area([np.array(ring.coords) for ring in rings], facecolor=color, alpha=0.45, linewidth=0.0, zorder=12)

@@ -285,7 +285,7 @@ def alternative_chapters(network: Network) -> list[Chapter]:
             "on the Pareto front: no network that is sewn as fast is better."
         )
         figure = draw_front(others, network, tolerance=network.request.route_options.tolerance, width=CHART)
-        note = ", a colour for each number of winches"
+        note = ", a color for each number of winches"
         parts.append(grid(picture(figure, "front", "Error against minutes of sewing", note)))
     most_alternatives = 12  # so many alternatives have a picture
     shown = [others[index] for index in evenly(len(others), most_alternatives)]

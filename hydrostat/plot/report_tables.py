@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.design import Network, TreeTrace
-from hydrostat.drawing import Html, tag, winch_colours
+from hydrostat.drawing import Html, tag, winch_colors
 from hydrostat.ik import IKResult
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.sheet import MILLIMETRES
@@ -78,15 +78,15 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[object]], *, numbers: It
     return tag("div", tag("table", head, tag("tbody", *(line("td", row) for row in rows))), class_="table")
 
 
-def bar(share: float, colour: str) -> Html:
+def bar(share: float, color: str) -> Html:
     """A bar filled to a share, 0 to 1."""
     width = 100 * min(max(share, 0.0), 1.0)
-    return tag("span", tag("i", style=f"width:{width:.1f}%;background:{colour}"), class_="bar")
+    return tag("span", tag("i", style=f"width:{width:.1f}%;background:{color}"), class_="bar")
 
 
-def swatch(colour: str) -> Html:
-    """A dot of a colour."""
-    return tag("i", class_="swatch", style=f"background:{colour}")
+def swatch(color: str) -> Html:
+    """A dot of a color."""
+    return tag("i", class_="swatch", style=f"background:{color}")
 
 
 def marker_table(robot: Robot, reached: IKResult) -> Html:
@@ -103,10 +103,10 @@ def marker_table(robot: Robot, reached: IKResult) -> Html:
 
 def contraction_table(robot: Robot, reached: IKResult) -> Html:
     """Contraction of each winch against what it can take in."""
-    colours = winch_colours(robot.winches)
+    colors = winch_colors(robot.winches)
     rows = [
-        ([swatch(colours[winch.name]), winch.name], number(MILLIMETRES * contraction, 2),
-         bar(abs(contraction) / (winch.travel if contraction >= 0 else winch.release or np.inf), colours[winch.name]),
+        ([swatch(colors[winch.name]), winch.name], number(MILLIMETRES * contraction, 2),
+         bar(abs(contraction) / (winch.travel if contraction >= 0 else winch.release or np.inf), colors[winch.name]),
          f"{MILLIMETRES * (winch.travel if contraction >= 0 else -winch.release):.0f}".replace("-", "\N{MINUS SIGN}"))
         for winch, contraction in zip(robot.winches, map(float, reached.pose.contractions), strict=True)
     ]  # fmt: skip
@@ -116,10 +116,10 @@ def contraction_table(robot: Robot, reached: IKResult) -> Html:
 def tension_table(robot: Robot, reached: IKResult) -> Html:
     """Tension of each cable."""
     scale = TensionScale.of(reached.pose.tensions)
-    colours = winch_colours(robot.winches)
+    colors = winch_colors(robot.winches)
     rows = [
-        (str(count), [swatch(colours[cable.winch]), cable.winch], f"{tension:.2f}" if tension > 0 else "slack",
-         bar(tension / scale.most, scale.colour(tension)))
+        (str(count), [swatch(colors[cable.winch]), cable.winch], f"{tension:.2f}" if tension > 0 else "slack",
+         bar(tension / scale.most, scale.color(tension)))
         for count, (cable, tension) in enumerate(zip(robot.cables, map(float, reached.pose.tensions), strict=True), 1)
     ]  # fmt: skip
     return table(("cable", "winch", "tension [N]", ""), rows, numbers=(2,))
@@ -179,9 +179,9 @@ def place_table(robot: Robot) -> Html:
 
 def winch_table(robot: Robot) -> Html:
     """Place and limits of each winch."""
-    colours = winch_colours(robot.winches)
+    colors = winch_colors(robot.winches)
     rows = [
-        ([swatch(colours[winch.name]), winch.name], place(winch.at), number(MILLIMETRES * winch.spool_radius, 1),
+        ([swatch(colors[winch.name]), winch.name], place(winch.at), number(MILLIMETRES * winch.spool_radius, 1),
          number(MILLIMETRES * winch.travel, 0), number(MILLIMETRES * winch.release, 0))
         for winch in robot.winches
     ]  # fmt: skip
@@ -191,9 +191,9 @@ def winch_table(robot: Robot) -> Html:
 
 def cable_table(robot: Robot) -> Html:
     """Length, via points and stopper of each cable; its spool's radius if that of one is not its winch's."""
-    colours, steps = winch_colours(robot.winches), any(cable.spool_radius is not None for cable in robot.cables)
+    colors, steps = winch_colors(robot.winches), any(cable.spool_radius is not None for cable in robot.cables)
     rows = [
-        (str(count), [swatch(colours[cable.winch]), cable.winch], number(MILLIMETRES * cable.length, 1),
+        (str(count), [swatch(colors[cable.winch]), cable.winch], number(MILLIMETRES * cable.length, 1),
          str(len(cable.points) - 2), place(cable.points[-1]), f"{cable.stiffness / 1e3:.3g}",
          *([number(MILLIMETRES * (cable.spool_radius or robot.winch(cable.winch).spool_radius), 1)] if steps else []))
         for count, cable in enumerate(robot.cables, 1)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing import ERROR, LIGHT, winch_colours
+from hydrostat.drawing import ERROR, LIGHT, winch_colors
 from hydrostat.geometry import Outline, Ring
 from hydrostat.given import check_type
 from hydrostat.ik import IKResult, IKStatus
@@ -84,8 +84,8 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
     head = shorten(robot.name) if title is None else title
     sheet, panes, bodies = _at_rest(robot, head, count, width)
     drawn, labels = _draw_parts(sheet, robot, panes, bodies, width=2.4, size=4.0)
-    colours = winch_colours(robot.winches)
-    draw_numbers(sheet, drawn.runs, [colours[cable.winch] for cable in robot.cables], labels)
+    colors = winch_colors(robot.winches)
+    draw_numbers(sheet, drawn.runs, [colors[cable.winch] for cable in robot.cables], labels)
     name_winches(labels, robot, drawn.winches)
     return sheet.figure
 
@@ -129,7 +129,7 @@ SMALL = 2.7  # width of such a picture [inch]
 
 
 def draw_stage(robot: Robot, *, like: Robot, frame: Spread) -> Figure:
-    """A network on the rest shape, each cable in the colour of its winch, without words.
+    """A network on the rest shape, each cable in the color of its winch, without words.
 
     All are seen from the best side of the robot `like`, in a picture that holds the points of `stage_frame` [m].
     """
@@ -154,7 +154,7 @@ def stage_frame(robots: Iterable[Robot]) -> Spread:
 def draw_pose(
     robot: Robot, pose: Equilibrium, *, title: str | None = None, note: str | None = None, width: float = WIDTH
 ) -> Figure:
-    """A simulated pose over the ghost of the rest shape; cables coloured by tension, winches with their contraction.
+    """A simulated pose over the ghost of the rest shape; cables colored by tension, winches with their contraction.
 
     The title is the robot's name if left out, nothing if empty; the note below tells, if left out, whether it rests
     under its contractions; width in inches.
@@ -269,17 +269,17 @@ def _in_pose(
         bar=bool(robot.cables),
     )
     scale = TensionScale.of(pose.tensions)
-    colours = [scale.colour(float(tension)) for tension in pose.tensions]
+    colors = [scale.color(float(tension)) for tension in pose.tensions]
     drawn = []
     for pane in panes:
         pane.draw_ghost(sheet)
         body = pane.draw_body(sheet, pose.nodes, pale=0.35, pins=rest.shape[1] == 3)
-        drawn.append(draw_hardware(sheet, pane, body, carried, pose.nodes, colours=colours, width=2.6))
+        drawn.append(draw_hardware(sheet, pane, body, carried, pose.nodes, colors=colors, width=2.6))
     points = [*pose.markers.values(), *goals]
     labels = drawn[0].labels(sheet, panes[0].places(np.array(points)) if points else np.empty((0, 2)))
     if robot.cables:
         scale.draw_bar(sheet, of="cable tension")
-        beads = draw_numbers(sheet, drawn[0].runs, colours, labels)
+        beads = draw_numbers(sheet, drawn[0].runs, colors, labels)
         name_winches(labels, robot, drawn[0].winches, [_note(contraction) for contraction in pose.contractions])
         for bead, tension in zip(beads, pose.tensions, strict=True):
             words = f"{tension:.1f} N" if tension > 0 else "slack"

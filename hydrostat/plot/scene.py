@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.drawing import DARK, FELT, LIGHT, Spots, channels, upright, winch_colours
+from hydrostat.drawing import DARK, FELT, LIGHT, Spots, channels, upright, winch_colors
 from hydrostat.errors import InputError
 from hydrostat.plot.frame import Attachments, Frame, check_frames
 from hydrostat.plot.glb import Glb, GlbPart
@@ -31,7 +31,7 @@ def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: f
     """Write frames, a step [s] apart, as a binary glTF 2.0 scene, whole or not at all; returns its path.
 
     Every frame that differs is a morph target of body and cables, and an animation goes from one to the next; winches,
-    stoppers and markers are carried along. Cables are coloured by tension, targets are there while a pose is
+    stoppers and markers are carried along. Cables are colored by tension, targets are there while a pose is
     approached, a flat body is a slab of its thickness. Metres; what is up is y, as glTF wants it.
 
     Raises:
@@ -125,18 +125,18 @@ def _body(film: _Film) -> GlbPart:
 
 
 def _cables(film: _Film) -> GlbPart:
-    """A tube for each cable, in the colours of tension."""
+    """A tube for each cable, in the colors of tension."""
     carried, size = Attachments(film.robot), film.robot.body.mesh.size
     runs = [[_in_space(points) for points in carried.cables(nodes)] for nodes in film.nodes]
     scale = TensionScale.of(np.concatenate([key.tensions for key in film.keys]))
-    solids, colours = [], []
+    solids, colors = [], []
     for index in range(len(film.robot.cables)):
         solids.append(tube(np.stack([run[index] for run in runs]), CABLE * size))
-        shades = np.array([_linear(scale.colour(float(key.tensions[index]))) for key in film.keys])
-        colours.append(np.repeat(shades[:, None], solids[-1][1].shape[1], axis=1))
+        shades = np.array([_linear(scale.color(float(key.tensions[index]))) for key in film.keys])
+        colors.append(np.repeat(shades[:, None], solids[-1][1].shape[1], axis=1))
     triangles, places, normals = join_solids(solids)
-    every = np.concatenate(colours, axis=1)
-    return GlbPart(name="cables", triangles=triangles, places=places, normals=normals, colours=every)
+    every = np.concatenate(colors, axis=1)
+    return GlbPart(name="cables", triangles=triangles, places=places, normals=normals, colors=every)
 
 
 def _add_hardware(glb: Glb, film: _Film) -> None:
@@ -146,10 +146,10 @@ def _add_hardware(glb: Glb, film: _Film) -> None:
     for cable in reversed(robot.cables):
         ends = _in_space(np.array(cable.points[:2], dtype=float))
         ways[cable.winch] = ends[1] - ends[0]
-    colours, winches = winch_colours(robot.winches), _carry_places(film, carried.winches)
+    colors, winches = winch_colors(robot.winches), _carry_places(film, carried.winches)
     for index, winch in enumerate(robot.winches):
         radius = min(max(robot.largest_spool(winch), SPOOL[0] * size), SPOOL[1] * size)
-        shape = _shape(f"winch {winch.name}", spool(ways[winch.name], radius), colours[winch.name])
+        shape = _shape(f"winch {winch.name}", spool(ways[winch.name], radius), colors[winch.name])
         glb.add_copies(shape, winches[:, [index]], [shape.name])
     if robot.cables:
         ends = _carry_places(film, lambda nodes: np.array([points[-1] for points in carried.cables(nodes)]))
@@ -176,10 +176,10 @@ def _add_targets(glb: Glb, robot: Robot, targets: Sequence[PoseTarget | None]) -
         glb.add_copies(shape, places[None], names, np.array(seen))
 
 
-def _shape(name: str, solid: Solid, colour: str, *, opacity: float = 1.0) -> GlbPart:
+def _shape(name: str, solid: Solid, color: str, *, opacity: float = 1.0) -> GlbPart:
     triangles, places, normals = solid
-    told = np.tile(_linear(colour), (1, places.shape[1], 1))
-    return GlbPart(name=name, triangles=triangles, places=places, normals=normals, colours=told, opacity=opacity)
+    told = np.tile(_linear(color), (1, places.shape[1], 1))
+    return GlbPart(name=name, triangles=triangles, places=places, normals=normals, colors=told, opacity=opacity)
 
 
 def _in_space(points: Spread) -> Spots:
@@ -187,7 +187,7 @@ def _in_space(points: Spread) -> Spots:
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
 
 
-def _linear(colour: str) -> Vector:
-    """A colour of a screen (sRGB) as shares of light, which glTF wants."""
-    shares = np.array(channels(colour)) / 255
+def _linear(color: str) -> Vector:
+    """A color of a screen (sRGB) as shares of light, which glTF wants."""
+    shares = np.array(channels(color)) / 255
     return np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)

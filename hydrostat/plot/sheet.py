@@ -82,7 +82,7 @@ def new_sheet(
     """An empty sheet that shows all of the points [mm].
 
     The subtitle is left out with the title. If ruled it has a grid and numbers in millimetres; the bar is room for one
-    of colours, the room a free border as a share of the longest side; width in inches.
+    of colors, the room a free border as a share of the longest side; width in inches.
     """
     low, high = frame_points(points, room)
     left, right, bottom = (0.42, 0.12, 0.32) if ruled else (0.05, 0.05, 0.05)
@@ -136,8 +136,8 @@ def round_step(span: float) -> float:
 
 def _head(figure: Figure, title: str, subtitle: str) -> None:
     width, height = figure.get_size_inches()
-    for words, down, size, colour, weight in ((title, 0.1, 11, INK, "bold"), (subtitle, 0.31, 8, MUTED, "normal")):
+    for words, down, size, color, weight in ((title, 0.1, 11, INK, "bold"), (subtitle, 0.31, 8, MUTED, "normal")):
         figure.text(
-            0.12 / width, 1 - down / height, words, fontsize=size, color=colour, weight=weight, va="top",
+            0.12 / width, 1 - down / height, words, fontsize=size, color=color, weight=weight, va="top",
             parse_math=False,
         )  # fmt: skip

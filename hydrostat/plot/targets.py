@@ -38,10 +38,10 @@ def draw_arrows(sheet: PictureSheet, places: Mapping[str, Place], targets: Mappi
     for name, end in targets.items():
         start = places[name]
         if np.linalg.norm(end - start) > 10 * sheet.scale:
-            for colour, width, order in ((LIGHT, 3.4, 14), (DARK, 1.3, 14.1)):
+            for color, width, order in ((LIGHT, 3.4, 14), (DARK, 1.3, 14.1)):
                 arrow = FancyArrowPatch(
                     (start[0], start[1]), (end[0], end[1]), arrowstyle="-|>,head_length=4.2,head_width=2.1",
-                    shrinkA=4, shrinkB=6, color=colour, linewidth=width, capstyle="round", joinstyle="round",
+                    shrinkA=4, shrinkB=6, color=color, linewidth=width, capstyle="round", joinstyle="round",
                     zorder=order, clip_on=False, connectionstyle="arc3,rad=0.08",
                 )  # fmt: skip
                 sheet.axes.add_patch(arrow)

@@ -26,7 +26,7 @@ from hydrostat.studio.posing import Poser
 from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter
-from hydrostat.studio.view.colouring import Colouring, Scale, node_values, scale
+from hydrostat.studio.view.coloring import Coloring, Scale, node_values, scale
 from hydrostat.studio.view.picture import Show, Shown
 from hydrostat.studio.view.things import rest_shape
 
@@ -80,7 +80,7 @@ class Session:
             StageName.EXPORT: self.exporter,
         }
         self.stage = StageName.START  # that is shown
-        self.colouring = Colouring.FELT  # of the body
+        self.coloring = Coloring.FELT  # of the body
         most_notes = 50  # so many notes are kept
         self.notes: deque[Note] = deque(maxlen=most_notes)
         self._told = 0
@@ -251,13 +251,13 @@ class Session:
     @property
     def legend(self) -> Scale | None:
         """Scale of the body's colors; None for plain felt, and for muscles where none move the body."""
-        if not self.document.is_open or (self.colouring is Colouring.MUSCLES and self.current.shape().muscles is None):
+        if not self.document.is_open or (self.coloring is Coloring.MUSCLES and self.current.shape().muscles is None):
             return None
-        return scale(self.document.robot, self.colouring)
+        return scale(self.document.robot, self.coloring)
 
-    def colour_by(self, colouring: Colouring | str) -> None:
-        """Choose what the colours of the body mean (InputError: there is no colouring of this name)."""
-        self.colouring = parse_choice(Colouring, colouring, what="colouring")
+    def color_by(self, coloring: Coloring | str) -> None:
+        """Choose what the colors of the body mean (InputError: there is no coloring of this name)."""
+        self.coloring = parse_choice(Coloring, coloring, what="coloring")
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
@@ -296,7 +296,7 @@ class Session:
         if len(shape.nodes) != len(robot.body.mesh.nodes):
             shape = rest_shape(robot)  # the body was changed at this very moment; the next one is right
         head = {"stage": str(self.stage), "stamp": self.answered, "errors": shape.errors, "notes": list(shape.notes)}
-        return self._show.moment(robot, shape, things, head, node_values(robot, shape, self.colouring))
+        return self._show.moment(robot, shape, things, head, node_values(robot, shape, self.coloring))
 
     def release_screen(self, screen: str) -> None:
         """Release what a disconnected screen was dragging."""

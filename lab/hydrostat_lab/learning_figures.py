@@ -38,10 +38,10 @@ def draw_errors(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
     panes = [figure.add_axes((left, lower, wide, tall)) for left in (0.1, 0.565)]
     methods = list(dict.fromkeys(row.method for row in rows))
     ways = list(dict.fromkeys(way_of(name) for name in methods))
-    colours = dict(zip(ways, (MUTED, *WINCHES), strict=False))
+    colors = dict(zip(ways, (MUTED, *WINCHES), strict=False))
     for name in methods:
         way = way_of(name)
-        colour, label = colours.get(way, INK), way if name == way else None
+        color, label = colors.get(way, INK), way if name == way else None
         dashes = "-" if name == way else "--" if name.endswith(STEP) else ":"
         mine = [row for row in rows if row.method == name]
         counts = sorted({row.samples for row in mine})
@@ -50,9 +50,9 @@ def draw_errors(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
         seconds = [float(np.mean([row.sampling + row.learning for row in group])) for group in groups]
         for axes, across in zip(panes, (counts, seconds), strict=True):
             means = [float(np.mean(each)) for each in errors]
-            axes.plot(across, means, dashes, color=colour, linewidth=1.4, marker="o", markersize=3, label=label)
+            axes.plot(across, means, dashes, color=color, linewidth=1.4, marker="o", markersize=3, label=label)
             low, high = [min(each) for each in errors], [max(each) for each in errors]
-            axes.fill_between(across, low, high, color=colour, alpha=0.15, linewidth=0)
+            axes.fill_between(across, low, high, color=color, alpha=0.15, linewidth=0)
     _logarithmic(panes[0], "samples", "mean error [mm]")
     _logarithmic(panes[1], "CPU time of sampling and learning [s]", "")
     panes[0].plot([], [], "--", color=INK, linewidth=1.4, label="and one exact step")
@@ -66,9 +66,9 @@ def draw_losses(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
     """Learning curves of the thesis's network, for each number of samples that it learned from."""
     figure, axes = new_chart("epoch", "mean square of the action's error", width=width)
     for number, row in enumerate(rows):
-        colour, curve = WINCHES[number % len(WINCHES)], np.array(row.curve)
-        axes.plot(1 + np.arange(len(curve)), curve[:, 0], "--", color=colour, linewidth=1.0)
-        axes.plot(1 + np.arange(len(curve)), curve[:, 1], color=colour, linewidth=1.4, label=f"{row.samples} samples")
+        color, curve = WINCHES[number % len(WINCHES)], np.array(row.curve)
+        axes.plot(1 + np.arange(len(curve)), curve[:, 0], "--", color=color, linewidth=1.0)
+        axes.plot(1 + np.arange(len(curve)), curve[:, 1], color=color, linewidth=1.4, label=f"{row.samples} samples")
     axes.plot([], [], "--", color=MUTED, linewidth=1.0, label="dashed: what it learned from")
     axes.plot([], [], color=MUTED, linewidth=1.4, label="solid: what was held out")
     axes.set_yscale("log")
@@ -88,7 +88,7 @@ def draw_costs(
 ) -> Figure:
     """Mean errors [mm] of ways to a policy over what each has used, as (used, error); inches.
 
-    Ways whose names begin with the same words before a comma have one colour, and lines of other kinds.
+    Ways whose names begin with the same words before a comma have one color, and lines of other kinds.
     """
     figure, axes = new_chart("", "", width=width, height=4.0)
     heads = list(dict.fromkeys(name.partition(",")[0] for name in curves))
@@ -96,9 +96,9 @@ def draw_costs(
     for name, points in curves.items():
         across, up = zip(*sorted(points), strict=True)
         head = name.partition(",")[0]
-        colour, dashes = WINCHES[heads.index(head) % len(WINCHES)], ("-", "--", ":")[seen[head] % 3]
+        color, dashes = WINCHES[heads.index(head) % len(WINCHES)], ("-", "--", ":")[seen[head] % 3]
         seen[head] += 1
-        axes.plot(across, up, color=colour, linestyle=dashes, linewidth=1.4, marker="o", markersize=5, label=name)
+        axes.plot(across, up, color=color, linestyle=dashes, linewidth=1.4, marker="o", markersize=5, label=name)
     _logarithmic(axes, used, missed)
     left, lower, _, tall = axes.get_position().bounds
     axes.set_position((left, lower, 0.7 - left, tall))
@@ -138,8 +138,8 @@ def draw_calibration(
         tenths = np.array_split(np.argsort(said, kind="stable"), min(10, len(said)))
         across, up = ([MILLIMETRES * float(values[tenth].mean()) for tenth in tenths] for values in (said, found))
         ends = [min(ends[0], *across, *up), max(ends[1], *across, *up)]
-        colour = WINCHES[number % len(WINCHES)]
-        axes.plot(across, up, color=colour, linewidth=1.4, marker="o", markersize=4, label=name)
+        color = WINCHES[number % len(WINCHES)]
+        axes.plot(across, up, color=color, linewidth=1.4, marker="o", markersize=4, label=name)
     axes.plot(ends, ends, "--", color=MUTED, linewidth=1.0, label="as said")
     _logarithmic(axes, "expected error and doubt together [mm]", "error in the simulator [mm]")
     axes.legend(frameon=False, fontsize=8, labelcolor=INK)

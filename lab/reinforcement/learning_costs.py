@@ -45,8 +45,8 @@ def _pane(axes: Axes, rows: list[dict[str, str]], across: str, up: str) -> None:
     for number, (way, points) in enumerate(ways.items()):
         used, value = zip(*sorted(points), strict=True)
         marker = "os^Dv"[number // len(WINCHES) % 5]
-        colour = WINCHES[number % len(WINCHES)]
-        axes.plot(used, value, color=colour, linewidth=1.2, marker=marker, markersize=6, label=way, clip_on=False)
+        color = WINCHES[number % len(WINCHES)]
+        axes.plot(used, value, color=color, linewidth=1.2, marker=marker, markersize=6, label=way, clip_on=False)
     axes.set_xlabel(across, color=INK, fontsize=8.5)
     axes.set_ylabel(up, color=INK, fontsize=8.5)
     if rows[0]["task"] == "reach":

@@ -28,7 +28,7 @@ def test_a_box_covers_its_projected_area(eye: list[float]) -> None:
     image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
     a, b, c = 1e3 * np.array(SIDES)
     exact = float(np.abs(camera.axes[2]) @ np.array([b * c, c * a, a * b]))
-    assert image.colours[..., 3].sum() * image.buffer.pixel**2 == pytest.approx(exact, rel=3e-3)
+    assert image.colors[..., 3].sum() * image.buffer.pixel**2 == pytest.approx(exact, rel=3e-3)
 
 
 @pytest.mark.parametrize("eye", EYES)
@@ -80,7 +80,7 @@ def test_the_order_of_facets_does_not_matter(rng: np.random.Generator) -> None:
     nodes, facets = two_boxes()
     spots = Camera.towards(np.array([0.4, -0.7, 0.5])).see(1e3 * nodes)
     one, two = (render(spots, order, pixel=0.5) for order in (facets, rng.permutation(facets)))
-    assert np.abs(one.colours - two.colours).max(axis=2).mean() < 1e-3
+    assert np.abs(one.colors - two.colors).max(axis=2).mean() < 1e-3
     assert (
         np.array_equal(one.buffer.depth, two.buffer.depth)
         or np.nanmax(np.abs(one.buffer.depth - two.buffer.depth)) < 1e-3
@@ -212,7 +212,7 @@ def test_light_comes_from_above_and_felt_looks_like_felt() -> None:
             spot = camera.see(1e3 * np.array([middle]))
             column, row = np.rint((spot[0, :2] - image.buffer.low) / image.buffer.pixel).astype(int)
             if abs(image.buffer.depth[row, column] - spot[0, 2]) < 0.5:
-                tones[name, face] = image.colours[row, column, :3]
+                tones[name, face] = image.colors[row, column, :3]
     assert tones["above", "top"].sum() > tones["above", "front"].sum() > tones["below", "under"].sum()
     for tone in tones.values():
         assert tone[0] > tone[1] > tone[2]
@@ -225,7 +225,7 @@ def test_what_is_held_is_hatched_and_nothing_else() -> None:
     mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
     spots, held = camera.see(1e3 * mesh.nodes), (mesh.nodes[:, 0] < 1e-6).astype(float)
     plain, hatched = (
-        render(spots, mesh.boundary, pixel=0.25, held=mask, point=0.5).colours for mask in (np.zeros_like(held), held)
+        render(spots, mesh.boundary, pixel=0.25, held=mask, point=0.5).colors for mask in (np.zeros_like(held), held)
     )
     columns = np.flatnonzero(np.abs(plain - hatched).max(axis=(0, 2)) > 0.02)
     assert columns.min() <= 3
@@ -235,7 +235,7 @@ def test_what_is_held_is_hatched_and_nothing_else() -> None:
 def test_pale_felt_is_lighter() -> None:
     mesh = box()
     spots = Camera.towards(np.array([0.5, -0.5, 0.7])).see(1e3 * mesh.nodes)
-    full, pale = (render(spots, mesh.boundary, pixel=0.5, pale=share).colours for share in (0.0, 0.4))
+    full, pale = (render(spots, mesh.boundary, pixel=0.5, pale=share).colors for share in (0.0, 0.4))
     inside = full[..., 3] == 1
     assert (pale[inside][:, :3] >= full[inside][:, :3] - 1e-9).all()
     assert pale[inside].mean() > full[inside].mean() + 0.03

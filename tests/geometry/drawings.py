@@ -64,18 +64,18 @@ def _image(pixels: np.ndarray) -> Image.Image:
     return Image.fromarray(np.clip(np.round(pixels), 0, 255).astype(np.uint8))
 
 
-def disc(colour: object, radius: float = 250.0, at: tuple[float, float] = (300.0, 300.0)) -> Draw:
+def disc(color: object, radius: float = 250.0, at: tuple[float, float] = (300.0, 300.0)) -> Draw:
     """A disc; Pillow counts the last dot in, so it ends half a dot earlier."""
     (x, y), r = at, radius
     return lambda draw, fine: draw.ellipse(
         [(x - r) * fine, (y - r) * fine, (x + r) * fine - 1, (y + r) * fine - 1],
-        fill=colour,  # pyright: ignore[reportArgumentType]
+        fill=color,  # pyright: ignore[reportArgumentType]
     )
 
 
-def shape(points: np.ndarray, colour: object) -> Draw:
+def shape(points: np.ndarray, color: object) -> Draw:
     """A filled polygon of corners (corners, 2)."""
-    return lambda draw, fine: draw.polygon([(fine * x, fine * y) for x, y in points], fill=colour)  # pyright: ignore[reportArgumentType]
+    return lambda draw, fine: draw.polygon([(fine * x, fine * y) for x, y in points], fill=color)  # pyright: ignore[reportArgumentType]
 
 
 def star(corners: int = 5, outer: float = 260.0, inner: float = 120.0, at: float = 300.0) -> np.ndarray:

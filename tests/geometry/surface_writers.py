@@ -92,13 +92,13 @@ def ply_text(surface: Surface) -> bytes:
 
 
 def ply_big(surface: Surface) -> bytes:
-    """PLY, big-endian, with colours and an element between vertices and faces."""
+    """PLY, big-endian, with colors and an element between vertices and faces."""
     vertices = np.zeros(len(surface.vertices), dtype=[("p", ">f8", 3), ("c", "u1", 3)])
     vertices["p"] = 1e3 * surface.vertices
     faces = np.zeros(len(surface.triangles), dtype=[("f", "u1"), ("n", "u1"), ("v", ">i4", 3)])
     faces["n"], faces["v"] = 3, surface.triangles
     head = ["ply", "format binary_big_endian 1.0", f"element vertex {len(vertices)}"]
-    head += [f"property double {axis}" for axis in "xyz"] + [f"property uchar {colour}" for colour in ("r", "g", "b")]
+    head += [f"property double {axis}" for axis in "xyz"] + [f"property uchar {color}" for color in ("r", "g", "b")]
     head += ["element edge 2", "property int vertex1", "property list uchar short weights"]
     head += [f"element face {len(faces)}", "property uchar flags", "property list uchar int vertex_index", "end_header"]
     edges = b"\0\0\0\1\2\0\1\0\1" + b"\0\0\0\1\1\0\1"  # lists of different lengths

@@ -32,7 +32,7 @@ def _good(name: str) -> bytes:
     if name.endswith(".dxf"):
         return dxf(_all_kinds)
     small = canvas(fish, size=(600, 600)).resize((150, 150))
-    if name == "colours.png":
+    if name == "colors.png":
         return picture(canvas(shape(star(), "red"), disc("white", 60), ground=(0, 0, 0, 0)).resize((150, 150)))
     return picture(small, "JPEG", quality=60) if name.endswith(".jpg") else picture(small)
 
@@ -53,7 +53,7 @@ def _fate(content: bytes, name: str) -> str:
     return line
 
 
-@pytest.mark.parametrize("name", ["lines.dxf", "fish.png", "colours.png", "fish.jpg"])
+@pytest.mark.parametrize("name", ["lines.dxf", "fish.png", "colors.png", "fish.jpg"])
 def test_damaged(name: str) -> None:
     """Oracle: an outline or an InputError of one line within 10 s, for 25 damaged files of each kind."""
     good = _good(name)

@@ -117,7 +117,7 @@ def test_holes(radius: float) -> None:
 
 @pytest.mark.slow
 def test_pale_parts_and_eyes_are_no_holes() -> None:
-    """Oracle: the disc's area: rings of other colours are body; the white of an eye, which holds a pupil, is filled."""
+    """Oracle: the disc's area: rings of other colors are body; the white of an eye, which holds a pupil, is filled."""
     rings = canvas(disc("red"), disc((255, 235, 120), 200), disc("navy", 150), disc((255, 200, 60), 60))
     eye = canvas(disc("orange"), disc("white", 40, (200, 250)), disc("black", 12, (200, 250)))
     for image, notes in ((rings, 0), (eye, 1)):
@@ -244,7 +244,7 @@ def test_refused(content: bytes, message: str) -> None:
 
 
 def test_not_plain_ground() -> None:
-    """Oracle: a chequered ground, which has no one colour."""
+    """Oracle: a chequered ground, which has no one color."""
     board = np.kron((np.indices((12, 12)).sum(axis=0) % 2).astype(np.uint8) * 255, np.ones((50, 50), np.uint8))
     with pytest.raises(OutlineError, match=r"a.png: the ground is not plain"):
         read_outline(picture(Image.fromarray(board)), name="a.png", size=SIZE)
@@ -296,6 +296,6 @@ def test_a_shadow_that_is_taken_for_body_is_told(depth: float) -> None:
     found = read_drawing(picture(noisy(image, 3), "JPEG", quality=60), name="a.jpg", size=SIZE)
     pixel = SIZE / float(np.ptp(STAR, axis=0).max())
     assert found.outline.area > 1.1 * Polygon(STAR).area * pixel**2
-    assert any("of the body has the colour of the ground, only darker" in note for note in found.notes)
+    assert any("of the body has the color of the ground, only darker" in note for note in found.notes)
     plain = read_drawing(picture(noisy(canvas(star, ground=ground), 3), "JPEG", quality=60), name="a.jpg", size=SIZE)
     assert not any("darker" in note for note in plain.notes)

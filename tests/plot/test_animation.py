@@ -74,7 +74,7 @@ def test_what_is_held_does_not_tremble() -> None:
 
 
 def test_a_gif_shows_the_pictures_that_were_drawn() -> None:
-    """Oracle: the drawn pixels; with every colour in the palette nothing but the tolerance is lost."""
+    """Oracle: the drawn pixels; with every color in the palette nothing but the tolerance is lost."""
     import io
 
     rng = np.random.default_rng(3)
@@ -126,7 +126,7 @@ def test_targets_are_shown_while_a_pose_is_approached_and_errors_are_red() -> No
     for frame in made.frames[:4]:
         off = np.abs(pictures.draw(frame).astype(int) - red).max(axis=2)
         counts[frame.target is not None] = int((off < 40).sum())
-    assert counts[True] > counts[False] + 5  # the scale of tension has a few of about that colour
+    assert counts[True] > counts[False] + 5  # the scale of tension has a few of about that color
 
 
 def test_a_frame_is_drawn_alike_whatever_was_drawn_before() -> None:

@@ -87,7 +87,7 @@ def test_names_are_shown_as_they_are() -> None:
     assert FORMULA in words
 
 
-def test_quiet_colours_follow_the_page() -> None:
+def test_quiet_colors_follow_the_page() -> None:
     text = plot.inline_svg(figure("draw_rest"), name="it", label="")
     assert "var(--ink, #" in text
     assert "var(--grid, #" in text

@@ -31,7 +31,7 @@ def soup(surface: Surface, *, away: int = 0, over: int = 0) -> Surface:
 
 
 def reds(figure: Figure) -> int:
-    """Pixels of about the colour of errors."""
+    """Pixels of about the color of errors."""
     figure.set_dpi(80)
     figure.set_facecolor("white")
     figure.canvas.draw()  # pyright: ignore[reportAttributeAccessIssue]

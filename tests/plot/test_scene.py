@@ -177,7 +177,7 @@ def test_winches_and_markers_are_carried_and_targets_come_and_go(tmp_path: Path)
     assert {"winch one", "winch two", "stopper 1", "stopper 2"} <= {node["name"] for node in read.document["nodes"]}
 
 
-def test_cables_wear_the_colour_of_their_tension(tmp_path: Path) -> None:
+def test_cables_wear_the_color_of_their_tension(tmp_path: Path) -> None:
     """Oracle: the scale of tension, as light."""
     from hydrostat.plot.tension_scale import TensionScale
 
@@ -185,11 +185,11 @@ def test_cables_wear_the_colour_of_their_tension(tmp_path: Path) -> None:
     read = scene("space", tmp_path)
     scale = TensionScale.of(np.concatenate([frame.tensions for frame in made.frames]))
     for number in (0, 6):
-        colours = at_time(read, "cables", "COLOR_0", number * made.step)
-        half = len(colours) // 2
-        for index, colour in enumerate((colours[0], colours[half])):
-            words = scale.colour(float(made.frames[number].tensions[index]))
-            screen = np.where(colour <= 0.0031308, 12.92 * colour, 1.055 * np.abs(colour) ** (1 / 2.4) - 0.055)
+        colors = at_time(read, "cables", "COLOR_0", number * made.step)
+        half = len(colors) // 2
+        for index, color in enumerate((colors[0], colors[half])):
+            words = scale.color(float(made.frames[number].tensions[index]))
+            screen = np.where(color <= 0.0031308, 12.92 * color, 1.055 * np.abs(color) ** (1 / 2.4) - 0.055)
             wanted = [int(words[start : start + 2], 16) for start in (1, 3, 5)]
             assert np.round(255 * screen).tolist() == wanted
 

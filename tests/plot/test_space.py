@@ -88,24 +88,24 @@ def check_words(drawn: Figure) -> None:
 
 
 @pytest.mark.slow
-def test_cables_wear_the_colours_of_their_tension() -> None:
-    """Oracle: the tension scale; where the body covers a cable, the same colour mixed with felt."""
+def test_cables_wear_the_colors_of_their_tension() -> None:
+    """Oracle: the tension scale; where the body covers a cable, the same color mixed with felt."""
     network = space_network()
     pose = network.reached[0].pose
     scale = TensionScale.of(pose.tensions)
     lines = figure("draw_pose").axes[0].lines
-    colours = {to_hex(line.get_color()) for line in lines}  # pyright: ignore[reportArgumentType]
+    colors = {to_hex(line.get_color()) for line in lines}  # pyright: ignore[reportArgumentType]
     for tension in pose.tensions:
-        full = scale.colour(float(tension))
-        assert full in colours
-        assert any(mix(full, FELT, share / 10000) in colours for share in range(2000, 7000, 25))
+        full = scale.color(float(tension))
+        assert full in colors
+        assert any(mix(full, FELT, share / 10000) in colors for share in range(2000, 7000, 25))
 
 
 @pytest.mark.slow
 def test_a_wire_in_front_is_drawn_over_one_behind() -> None:
     network = space_network()
     pose = network.reached[0].pose
-    full = TensionScale.of(pose.tensions).colour(float(pose.tensions[0]))
+    full = TensionScale.of(pose.tensions).color(float(pose.tensions[0]))
     lines = figure("draw_pose").axes[0].lines
     solid = [line.get_zorder() for line in lines if to_hex(line.get_color()) == full and len(line.get_xdata()) > 2]  # pyright: ignore
     rest = [line.get_zorder() for line in lines if to_hex(line.get_color()) != full and len(line.get_xdata()) > 40]  # pyright: ignore

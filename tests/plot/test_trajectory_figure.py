@@ -8,7 +8,7 @@ import pytest
 from builders import strip_robot
 from matplotlib.colors import to_hex
 
-from hydrostat.drawing import ERROR, winch_colours
+from hydrostat.drawing import ERROR, winch_colors
 from hydrostat.geometry import Outline
 from hydrostat.ik import CenterOfMassTarget, ShapeTarget, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
 from hydrostat.plot import draw_reached, draw_trajectory, inline_svg, trajectory_frames
@@ -36,11 +36,11 @@ def test_lines_are_the_trajectory() -> None:
     charts = [axes for axes in figure.axes if not axes.images]
     values = (trajectory.contractions, trajectory.speeds, trajectory.accelerations)
     for axes, wanted in zip(charts, values, strict=True):
-        colours = winch_colours(robot.winches)
-        lines = {line.get_label(): line for line in axes.lines if line.get_label() in colours}
+        colors = winch_colors(robot.winches)
+        lines = {line.get_label(): line for line in axes.lines if line.get_label() in colors}
         for column, name in enumerate(trajectory.winches):
             assert lines[name].get_ydata() == pytest.approx(1e3 * wanted[:, column])
-            assert to_hex(lines[name].get_color()) == colours[name]
+            assert to_hex(lines[name].get_color()) == colors[name]
     dashed = [float(np.ravel(line.get_ydata())[0]) for line in charts[1].lines if to_hex(line.get_color()) == ERROR]
     assert dashed == pytest.approx([-50.0, 50.0])
 

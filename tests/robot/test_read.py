@@ -32,8 +32,8 @@ LINES = [
     ("format = 1", "format = 1\nfromat = 1", 'line 3: fromat: unknown key "fromat", did you mean format? allowed here'),
     (
         "[body]",
-        "[body]\ncolour = 1",
-        'line 6: body.colour: unknown key "colour"; allowed here are: outline, surface, mesh',
+        "[body]\ncolor = 1",
+        'line 6: body.color: unknown key "color"; allowed here are: outline, surface, mesh',
     ),
     ("[body]", "[boddy]", 'line 5: boddy: unknown key "boddy", did you mean body? allowed here are: format, name'),
     ("radius = 12", "radios = 12", 'line 13: pin[0].radios: unknown key "radios", did you mean radius?'),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.drawing import winch_colours
+from hydrostat.drawing import winch_colors
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import locate
 from hydrostat.robot import Robot
@@ -77,16 +77,16 @@ def test_places_in_the_world_and_loads_need_no_new_scene(robot: Robot) -> None:
 
 
 def test_what_is_stuck_elsewhere_needs_a_new_scene(robot: Robot) -> None:
-    dot = Dot(at=robot.markers[0].at, look=Look.MARKER, colour="#000000")
-    other = Dot(at=tuple(value + 0.001 for value in dot.at), look=Look.MARKER, colour="#000000")
+    dot = Dot(at=robot.markers[0].at, look=Look.MARKER, color="#000000")
+    other = Dot(at=tuple(value + 0.001 for value in dot.at), look=Look.MARKER, color="#000000")
     assert not Picture(robot, [dot], 1).fits(robot, [other])
 
 
 def test_ghosts_clouds_and_areas_come_along(robot: Robot) -> None:
     mesh = robot.body.mesh
-    cloud = Cloud(name="reach", points=mesh.nodes[:5] + 1.0, colour="#0b5fa5")
-    ghost = Ghost(name="rest", nodes=mesh.nodes, colour="#b4afbc")
-    area = Area(key="zone:0", colour="#c8243f", at=tuple(mesh.nodes[0].tolist()), radius=0.01)
+    cloud = Cloud(name="reach", points=mesh.nodes[:5] + 1.0, color="#0b5fa5")
+    ghost = Ghost(name="rest", nodes=mesh.nodes, color="#b4afbc")
+    area = Area(key="zone:0", color="#c8243f", at=tuple(mesh.nodes[0].tolist()), radius=0.01)
     things = [area, ghost, cloud]
     picture = Picture(robot, things, 1)
     head, arrays = parse_message(picture.scene())
@@ -94,7 +94,7 @@ def test_ghosts_clouds_and_areas_come_along(robot: Robot) -> None:
     assert np.allclose(arrays["cloud:reach"][:, : mesh.dim], mesh.nodes[:5] + 1.0, atol=1e-6)
     assert arrays["ghost:rest"].shape == arrays["rest"].shape
     assert picture.fits(robot, things)
-    assert not picture.fits(robot, [area, ghost, Cloud(name="reach", points=mesh.nodes[:6], colour="#0b5fa5")])
+    assert not picture.fits(robot, [area, ghost, Cloud(name="reach", points=mesh.nodes[:6], color="#0b5fa5")])
 
 
 def test_corners_beside_the_body_go_along_with_the_nearest_place(robot: Robot) -> None:
@@ -103,7 +103,7 @@ def test_corners_beside_the_body_go_along_with_the_nearest_place(robot: Robot) -
     outside = mesh.nodes.max(axis=0) + 0.02
     third = np.where(np.arange(mesh.dim) == 0, outside, inside)
     corners = np.array([inside, outside, third])
-    area = Area(key="zone:0", colour="#c8243f", outline=tuple(tuple(corner.tolist()) for corner in corners))
+    area = Area(key="zone:0", color="#c8243f", outline=tuple(tuple(corner.tolist()) for corner in corners))
     picture = Picture(robot, [area], 1)
     _, arrays = parse_message(picture.frame(mesh.nodes, [area], {}))
     assert np.allclose(arrays["points"][:, : mesh.dim], corners, atol=1e-6)
@@ -122,14 +122,14 @@ def test_values_are_those_of_the_shown_nodes(robot: Robot) -> None:
 
 
 def test_winches_have_the_marks_of_the_kit() -> None:
-    """The sheet's own marks in the view and in the bars of Pose (finding 34); a colour each, up to sixteen."""
+    """The sheet's own marks in the view and in the bars of Pose (finding 34); a color each, up to sixteen."""
     robot = gallery_robot("starfish")
     marks = winch_marks_of(robot)
     dots = [thing for thing in robot_things(robot) if isinstance(thing, Dot) and thing.key.startswith("winch:")]
     assert {dot.label: dot.short for dot in dots} == marks
     assert {bar.winch: bar.mark for bar in winch_bars(robot, rest_shape(robot), 20.0)} == marks
     many = [replace(robot.winches[0], name=f"winch_{number}") for number in range(16)]
-    assert len(set(winch_colours(many).values())) == 16
+    assert len(set(winch_colors(many).values())) == 16
 
 
 def test_eyes_are_shown_and_go_along_with_the_body() -> None:

@@ -13,7 +13,7 @@ from hydrostat.robot import load_robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import Hit, Stage, StageName
-from hydrostat.studio.view.colouring import Colouring
+from hydrostat.studio.view.coloring import Coloring
 from hydrostat.studio.view.picture import parse_message
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
@@ -243,10 +243,10 @@ def test_work_that_cannot_be_kept_is_told_once(session: Session) -> None:
 def test_what_a_page_names_must_be_of_its_set() -> None:
     session = Session()
     session.document.open(Work(robot=gallery_robot("starfish")))
-    for call in (session.go, session.colour_by, session.editor.take, session.poser.set_mode):
-        before = session.stage, session.colouring, session.editor.tool, session.poser.mode
+    for call in (session.go, session.color_by, session.editor.take, session.poser.set_mode):
+        before = session.stage, session.coloring, session.editor.tool, session.poser.mode
         with pytest.raises(InputError, match=r'must be one of .*, not "nonsense"'):
             call("nonsense")
-        assert (session.stage, session.colouring, session.editor.tool, session.poser.mode) == before
-    session.colour_by("strain")
-    assert session.colouring is Colouring.STRAIN
+        assert (session.stage, session.coloring, session.editor.tool, session.poser.mode) == before
+    session.color_by("strain")
+    assert session.coloring is Coloring.STRAIN

@@ -35,7 +35,7 @@ def judged(judge: Judge, robot: Robot, wishes: Wishes = WISHES) -> tuple:
 
 
 def flags(things: object) -> set[tuple]:
-    return {(dot.at, dot.colour, dot.about) for dot in things if isinstance(dot, Dot) and dot.look is Look.FLAG}  # type: ignore[attr-defined]
+    return {(dot.at, dot.color, dot.about) for dot in things if isinstance(dot, Dot) and dot.look is Look.FLAG}  # type: ignore[attr-defined]
 
 
 def test_what_is_said_is_the_one_judgement_once_a_robot_rests(squid: Robot) -> None:

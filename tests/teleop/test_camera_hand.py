@@ -16,7 +16,7 @@ PLACES = np.random.default_rng(2).normal(size=(COUNT, 3))
 
 
 class Film:
-    """A camera whose pictures have so many hands each; red, so that a swap of colours shows."""
+    """A camera whose pictures have so many hands each; red, so that a swap of colors shows."""
 
     def __init__(self, number: int) -> None:
         self.number, self.hands, self.open = number, [1], number < 2

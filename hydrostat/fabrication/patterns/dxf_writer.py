@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing
     from ezdxf.layouts.layout import Modelspace
 
-_COLOURS = {Layer.MARK: 7, Layer.PINHOLE: 5, Layer.CUT: 1}
-"""By DXF's index of colours: 5 is blue, 1 red, and 7 is black on paper and white on a dark screen."""
+_COLORS = {Layer.MARK: 7, Layer.PINHOLE: 5, Layer.CUT: 1}
+"""By DXF's index of colors: 5 is blue, 1 red, and 7 is black on paper and white on a dark screen."""
 
 _WRITING = Lock()  # dates are switched off for all drawings of a process: one at a time
 
@@ -37,7 +37,7 @@ def pattern_document(pattern: Pattern) -> "Drawing":
     document.header["$EXTMIN"] = (0.0, 0.0, 0.0)
     document.header["$EXTMAX"] = (pattern.width, pattern.height, 0.0)
     for layer in Layer:
-        document.layers.add(layer.upper(), color=_COLOURS[layer])
+        document.layers.add(layer.upper(), color=_COLORS[layer])
     space = document.modelspace()
     for shape in (*(shape for panel in pattern.panels for shape in panel.shapes), *pattern.shapes):
         _draw(space, shape)

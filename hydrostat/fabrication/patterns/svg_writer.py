@@ -8,7 +8,7 @@ from hydrostat.drawing import NAMESPACE, Html, number, path, shape, tag
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 
-COLOURS = {Layer.MARK: "#000000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"}
+COLORS = {Layer.MARK: "#000000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"}
 """Stroke of each layer: LightBurn and its like tell operations apart by these."""
 
 
@@ -37,7 +37,7 @@ def _layer(pattern: Pattern, layer: Layer) -> Iterable[str]:
     hairline = 0.1
     yield (
         f'<g id="{layer}" inkscape:groupmode="layer" inkscape:label="{layer.upper()}" fill="none"'
-        f' stroke="{COLOURS[layer]}" stroke-width="{hairline}" stroke-linecap="round" stroke-linejoin="round">'
+        f' stroke="{COLORS[layer]}" stroke-width="{hairline}" stroke-linecap="round" stroke-linejoin="round">'
     )
     groups = [(panel.name, panel.shapes) for panel in pattern.panels] + [("sheet", pattern.shapes)]
     for name, shapes in groups:
@@ -67,7 +67,7 @@ def shapes_svg(
             "g",
             [shape_element(drawn, height) for drawn in shapes if drawn.layer is layer],
             fill="none",
-            stroke=COLOURS[layer],
+            stroke=COLORS[layer],
             stroke_width=f"{widths[layer]:.4f}",
             stroke_linecap="round",
             stroke_linejoin="round",

@@ -51,8 +51,8 @@ class CableRun:
     twin: int | None = None  # number of the cable behind it, on the other panel
 
     @property
-    def colour(self) -> str:
-        """Its colour on paper: that of no cable near it in number."""
+    def color(self) -> str:
+        """Its color on paper: that of no cable near it in number."""
         return WINCHES[(self.cable - 1) % len(WINCHES)]
 
 
@@ -189,7 +189,7 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], sta
         words = f"C{run.cable}" if run.twin is None else f"C{run.cable} C{run.twin}"
         middle = labels.beside(run.spots[-1], text_size(words, 9.0), gap=1.7)
         if middle is not None:
-            canvas.text(middle, words, size=9.0, bold=True, halo=True, colour=run.colour)
+            canvas.text(middle, words, size=9.0, bold=True, halo=True, color=run.color)
     _put_numbers(canvas, labels, runs)
 
 
@@ -251,17 +251,17 @@ def _put_number(
     near = 3.2  # a number further than this from its hole is led to it by a line [mm]
     if np.hypot(*np.subtract(middle, spot)) > near:
         canvas.line([[middle, spot]], width=0.12, grey=0.35)
-    canvas.text(middle, words, size=7.5, halo=led, colour=run.colour)
+    canvas.text(middle, words, size=7.5, halo=led, color=run.color)
 
 
 def _put_cable(canvas: Canvas, run: CableRun) -> None:
     for start, end, solid, sheathed in zip(run.spots[:-1], run.spots[1:], run.solid, run.sheathed, strict=True):
         if sheathed:
-            canvas.line([[start, end]], width=1.25, colour=run.colour)
+            canvas.line([[start, end]], width=1.25, color=run.color)
             canvas.line([[start, end]], width=0.8, grey=1.0)
-            canvas.line([[start, end]], width=THIN, dash=None if solid else (1.0, 0.7), colour=run.colour)
+            canvas.line([[start, end]], width=THIN, dash=None if solid else (1.0, 0.7), color=run.color)
         else:
-            canvas.line([[start, end]], width=THICK, dash=None if solid else (1.1, 0.8), colour=run.colour)
+            canvas.line([[start, end]], width=THICK, dash=None if solid else (1.1, 0.8), color=run.color)
 
 
 def _put_stopper(canvas: Canvas, run: CableRun) -> None:
@@ -360,4 +360,4 @@ def _put_cell(canvas: Canvas, robot: Robot, scene: _Scene, number: int, cell: Bo
     put_run(canvas, labels, own, winch_marks_of(robot)[cable.winch])
     twin = "" if own.twin is None else f", and C{own.twin} behind it"
     words = f"C{own.cable} from {winch_marks_of(robot)[cable.winch]}{twin}"
-    canvas.text((left + 1.0, top + 2.6), words, size=9.0, anchor="start", bold=True, colour=own.colour)
+    canvas.text((left + 1.0, top + 2.6), words, size=9.0, anchor="start", bold=True, color=own.color)

@@ -15,7 +15,7 @@ import shapely
 from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, Shape
-from hydrostat.fabrication.patterns.svg_writer import COLOURS, shapes_svg
+from hydrostat.fabrication.patterns.svg_writer import COLORS, shapes_svg
 from hydrostat.fabrication.sheets.legible import legible
 
 PAPERS = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}  # width and height [mm]
@@ -123,7 +123,7 @@ def _letters(index: int) -> str:
 
 
 _WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
-"""Widths of the lines [mm]: the width too shows the operation where the printer knows no colour."""
+"""Widths of the lines [mm]: the width too shows the operation where the printer knows no color."""
 
 
 _Box = tuple[float, float, float, float]
@@ -226,7 +226,7 @@ def _left_out(empty: list[str]) -> str:
 
 def _key(y: float) -> list[str]:
     """Legend of the kinds of lines."""
-    red, blue = (f'rgb("{COLOURS[layer]}")' for layer in (Layer.CUT, Layer.PINHOLE))
+    red, blue = (f'rgb("{COLORS[layer]}")' for layer in (Layer.CUT, Layer.PINHOLE))
     thin = f"width: {_WIDTHS[Layer.MARK]}mm"
     samples = (
         (f"#stroke_at({{x}}, {y}, 12, 0, width: {_WIDTHS[Layer.CUT]}mm, paint: {red})", "cut", 24.0),

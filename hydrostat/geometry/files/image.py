@@ -33,7 +33,7 @@ _BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticE
 def read_image(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
     """Read the outline of a body from a photograph or a drawing on plain ground, PNG or JPEG, with notes on omissions.
 
-    A picture with transparent parts tells the body by them; else the body is what differs in colour from the ground,
+    A picture with transparent parts tells the body by them; else the body is what differs in color from the ground,
     darker or lighter, which is taken from the border of the picture and may change slowly across it. A drawing of lines
     is filled to the outer side of its outer line, and what is drawn inside plays no part. Elsewhere ground within the
     body is a hole if it is larger than 1 % of the body and nothing lies in it. A soft shadow is left out where the body
@@ -96,12 +96,12 @@ def _plain(image: "Image", step: int) -> Float[np.ndarray, "rows columns 4"]:
         top = max(float(np.max(values, initial=0.0)), 1.0)
         image = Image.fromarray((255.0 * np.clip(values / top, 0.0, 1.0)).astype(np.uint8))
     if image.has_transparency_data:
-        # Through premultiplied colours, so that what hides in transparent pixels plays no part.
-        coloured = image if image.mode == "RGBA" else image.convert("RGBA")
-        coloured = coloured.convert("RGBa").reduce(step).convert("RGBA") if step > 1 else coloured
+        # Through premultiplied colors, so that what hides in transparent pixels plays no part.
+        colored = image if image.mode == "RGBA" else image.convert("RGBA")
+        colored = colored.convert("RGBa").reduce(step).convert("RGBA") if step > 1 else colored
     else:
-        coloured = image.convert("RGB").reduce(step).convert("RGBA")
-    return np.asarray(coloured, dtype=float)
+        colored = image.convert("RGB").reduce(step).convert("RGBA")
+    return np.asarray(colored, dtype=float)
 
 
 def _find_body(
@@ -120,7 +120,7 @@ def _find_body(
     uneven = 80.0
     if seen.edge > edge or seen.faint > uneven:
         raise OutlineError(
-            f"{name}: the ground is not plain: put the body on a sheet of one colour, away from the picture's border, "
+            f"{name}: the ground is not plain: put the body on a sheet of one color, away from the picture's border, "
             "or cut it out"
         )
     level, shadow = _body_level(seen)
@@ -134,7 +134,7 @@ def _shade_told(found: ShadedPart, page: Page) -> str:
     scale = 1e3 * page.scale[0]
     where = f"up to {scale * found.width:.2g} mm wide about ({scale * x:.0f}, {scale * y:.0f}) mm"
     return (
-        f"{found.share:.0%} of the body has the colour of the ground, only darker, {where}: if that is a shadow, the "
+        f"{found.share:.0%} of the body has the color of the ground, only darker, {where}: if that is a shadow, the "
         "outline is as much off; take the picture in even light, or draw over it"
     )
 

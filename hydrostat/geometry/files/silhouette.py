@@ -18,18 +18,18 @@ Field = Float[np.ndarray, "rows columns"]  # a value for each pixel
 
 @dataclass(frozen=True, eq=False)
 class Contrast:
-    """Picture against its ground, in steps of colour from 0 to 255 and more."""
+    """Picture against its ground, in steps of color from 0 to 255 and more."""
 
-    field: Field  # distance in colour of each pixel from the ground there
+    field: Field  # distance in color of each pixel from the ground there
     strong: float  # level halfway between ground and what stands out most (Otsu 1979)
     faint: float  # level that the noise of the ground does not reach
-    # which pixels have the colour of the ground, only darker, as in a soft shadow
+    # which pixels have the color of the ground, only darker, as in a soft shadow
     shaded: Bool[np.ndarray, "rows columns"]
     edge: float  # share of the image border that stands out from the ground
 
 
 def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
-    """Compare a picture (red, green, blue from 0 to 255) with its ground: a colour that changes slowly, as light does.
+    """Compare a picture (red, green, blue from 0 to 255) with its ground: a color that changes slowly, as light does.
 
     The ground, a quadratic of the place, is fitted to the border of the picture and then to all that is like it; what
     stands out is left out of the fit, so a body may reach the border in places.
@@ -68,13 +68,13 @@ def _ground(
     where = where[:: max(1, len(where) // most_samples)]
     px, py = x.ravel()[where], y.ravel()[where]
     basis = np.stack([np.ones_like(px), px, py, px * px, px * py, py * py], axis=1)
-    colours = pixels.reshape(-1, 3)[where]
-    away = np.linalg.norm(colours - np.broadcast_to(first, pixels.shape).reshape(-1, 3)[where], axis=1)
+    colors = pixels.reshape(-1, 3)[where]
+    away = np.linalg.norm(colors - np.broadcast_to(first, pixels.shape).reshape(-1, 3)[where], axis=1)
     factors = np.zeros((6, 3))
     for _ in range(6):
         kept = away <= max(3.0 * float(np.median(away)), 6.0)
-        factors = np.linalg.lstsq(basis[kept], colours[kept], rcond=None)[0]
-        away = np.linalg.norm(colours - basis @ factors, axis=1)
+        factors = np.linalg.lstsq(basis[kept], colors[kept], rcond=None)[0]
+        away = np.linalg.norm(colors - basis @ factors, axis=1)
     kept = away <= max(3.0 * float(np.median(away)), 6.0)
     whole = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=2) @ factors
     return whole, float(np.quantile(away[kept], 0.95))

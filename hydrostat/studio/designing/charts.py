@@ -79,7 +79,7 @@ Place = tuple[float, float]  # in a picture
 
 
 def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint], chosen: int | None) -> str:
-    """A dot for each candidate's error as built over its minutes of sewing, in the colour of its winches, as SVG.
+    """A dot for each candidate's error as built over its minutes of sewing, in the color of its winches, as SVG.
 
     The number beside a dot counts cables. Small dots are the networks on the way of the last design, from its trail.
     The line goes through what is better than all that are sewn as fast: what more sewing gains. The candidate of the
@@ -103,11 +103,11 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint],
     places = [chart.place(*error) for error in errors]
     for one, (x, y) in zip(candidates, places, strict=True):
         ring = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="9" class="chart-ring"/>' if one.number == chosen else ""
-        colour = winch_count_colour(len(one.robot.winches))
-        parts.append(f'{ring}<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{colour}" class="chart-dot"/>')
+        color = winch_count_color(len(one.robot.winches))
+        parts.append(f'{ring}<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{color}" class="chart-dot"/>')
     parts += _counts(candidates, places, chosen)
     counts = sorted({len(one.robot.winches) for one in candidates})
-    keys = [(winch_count_colour(count), plural(count, "winch")) for count in counts]
+    keys = [(winch_count_color(count), plural(count, "winch")) for count in counts]
     return chart.render("".join([*parts, _legend(keys)]), label="expected as-built error against sewing time")
 
 
@@ -126,18 +126,18 @@ def _counts(candidates: Sequence[Candidate], places: Sequence[Place], chosen: in
             )
 
 
-def winch_count_colour(winches: int) -> str:
-    """The colour of all networks with so many winches."""
+def winch_count_color(winches: int) -> str:
+    """The color of all networks with so many winches."""
     return WINCHES[(winches - 1) % len(WINCHES)]
 
 
 def _legend(keys: list[tuple[str, str]]) -> str:
-    """Colours with their words, at the top from the right."""
+    """Colors with their words, at the top from the right."""
     parts, x = [], FRONT_WIDTH - 8
-    for colour, words in reversed(keys[:3]):
+    for color, words in reversed(keys[:3]):
         parts.append(f'<text x="{x:g}" y="12" class="chart-word" text-anchor="end">{words}</text>')
         x -= 7.4 * len(words) + 10
-        parts.append(f'<circle cx="{x + 4:g}" cy="8" r="4" fill="{colour}"/>')
+        parts.append(f'<circle cx="{x + 4:g}" cy="8" r="4" fill="{color}"/>')
         x -= 8
     return "".join(parts)
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.design import KNOB_RANGES, DesignRequest, RouteOptions
-from hydrostat.drawing import INK, pose_colours
+from hydrostat.drawing import INK, pose_colors
 from hydrostat.errors import InputError
 from hydrostat.project import Paint, Wishes, after_design, wished_poses
 from hydrostat.robot import Robot
@@ -239,8 +239,8 @@ class Designer(Stage):
             shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.constraints.tension
         )
         there = reach is not None and ease is not None and not ease.moving
-        for targets, colour in self._targets():
-            things += target_things(targets, reach.places if reach is not None and there else {}, colour=colour)
+        for targets, color in self._targets():
+            things += target_things(targets, reach.places if reach is not None and there else {}, color=color)
         judge = self._document.judge
         flags = finding_things(shown, judge.of(shown, self.wishes) or (), judge.chosen)
         return [*things, *flags, *self.painter.things()]
@@ -323,17 +323,17 @@ class Designer(Stage):
         return candidate.reach(self.pose)
 
     def _targets(self) -> list[tuple[Any, str]]:
-        """Targets of the pose that is shown; of all that are to be reached where none is, each in its own colour."""
+        """Targets of the pose that is shown; of all that are to be reached where none is, each in its own color."""
         reach, robot = self._reach(), self._document.robot
         if reach is not None:
             return [(reach.pose.targets, INK)]
         if self.painter.busy or not robot.poses:
             return []
-        poses, colours = wished_poses(robot, self.wishes), pose_colours(robot.poses)
+        poses, colors = wished_poses(robot, self.wishes), pose_colors(robot.poses)
         most_rings = 12  # more targets than these at once say nothing
         if sum(len(pose.targets) for pose in poses) > most_rings:
             return []
-        return [(pose.targets, colours[pose.name] if len(poses) > 1 else INK) for pose in poses]
+        return [(pose.targets, colors[pose.name] if len(poses) > 1 else INK) for pose in poses]
 
     def _on_better(self, glimpse: BestSoFar) -> None:
         """A better network was found; called in a thread of the jobs."""

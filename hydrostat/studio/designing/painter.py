@@ -12,7 +12,7 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing
 
-COLOURS = {Paint.KEEP_OUT: "#c8243f", Paint.WINCH_ZONES: "#00795f", Paint.STILL: "#5a3da6"}  # of each paint
+COLORS = {Paint.KEEP_OUT: "#c8243f", Paint.WINCH_ZONES: "#00795f", Paint.STILL: "#5a3da6"}  # of each paint
 LABELS = {Paint.KEEP_OUT: "no cable", Paint.WINCH_ZONES: "winches", Paint.STILL: "still"}  # written in a zone
 LEAST = 0.015  # the smallest radius of a painted zone, as a share of the body
 
@@ -180,9 +180,9 @@ class Painter:
             things += _handles(self.chosen, *zones[self.chosen])
         open_line = self._line or self._corners
         if open_line and self.paint is not None:
-            things.append(Strand(points=open_line, stroke=Stroke.PATH, colour=COLOURS[self.paint]))
+            things.append(Strand(points=open_line, stroke=Stroke.PATH, color=COLORS[self.paint]))
         for corner in self._corners:
-            things.append(Dot(at=corner, look=Look.HANDLE, colour=COLOURS[self.paint or Paint.KEEP_OUT]))
+            things.append(Dot(at=corner, look=Look.HANDLE, color=COLORS[self.paint or Paint.KEEP_OUT]))
         return things
 
     @property
@@ -259,14 +259,14 @@ class Painter:
 
 
 def _area(index: int, paint: Paint, zone: Zone, *, chosen: bool) -> Area:
-    key, colour, label = f"zone:{index}", COLOURS[paint], LABELS[paint]
+    key, color, label = f"zone:{index}", COLORS[paint], LABELS[paint]
     if zone.at is not None and zone.radius is not None:
-        return Area(key=key, colour=colour, at=zone.at, radius=zone.radius, label=label, chosen=chosen)
+        return Area(key=key, color=color, at=zone.at, radius=zone.radius, label=label, chosen=chosen)
     outline = zone.outline
     if zone.box is not None and zone.dim == 2:
         (left, low), (right, high) = zone.box
         outline = ((left, low), (right, low), (right, high), (left, high))
-    return Area(key=key, colour=colour, outline=outline, label=label, chosen=chosen)
+    return Area(key=key, color=color, outline=outline, label=label, chosen=chosen)
 
 
 def _handles(index: int, paint: Paint, zone: Zone) -> list[Thing]:
@@ -275,6 +275,4 @@ def _handles(index: int, paint: Paint, zone: Zone) -> list[Thing]:
         places = {f"zone-rim:{index}": rim_handle(zone)}
     else:
         places = {f"zone-corner:{index}:{number}": corner for number, corner in enumerate(zone.outline)}
-    return [
-        Dot(key=key, at=place, look=Look.HANDLE, colour=COLOURS[paint], stuck=False) for key, place in places.items()
-    ]
+    return [Dot(key=key, at=place, look=Look.HANDLE, color=COLORS[paint], stuck=False) for key, place in places.items()]

@@ -1,4 +1,4 @@
-"""`BodySketch`: small pictures of a network, as SVG that follows the colours of the page."""
+"""`BodySketch`: small pictures of a network, as SVG that follows the colors of the page."""
 
 from functools import cached_property
 
@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.drawing import winch_colours
+from hydrostat.drawing import winch_colors
 from hydrostat.robot import Body, Robot
 
 DURATION = 0.45  # time from one shape to the next [s]
@@ -59,17 +59,17 @@ class BodySketch:
 
     def network(self, robot: Robot) -> str:
         """The picture of a network in this body."""
-        colours = winch_colours(robot.winches)
+        colors = winch_colors(robot.winches)
         parts = [f'<path d="{self._outline}" class="sketch-body"/>']
         for cable in robot.cables:
             places = self._places(np.array(cable.points))
-            colour = colours[cable.winch]
-            parts.append(f'<path d="{_path(places)}" class="sketch-cable" stroke="{colour}"/>')
+            color = colors[cable.winch]
+            parts.append(f'<path d="{_path(places)}" class="sketch-cable" stroke="{color}"/>')
             x, y = places[-1]
-            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.2" fill="{colour}"/>')
+            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.2" fill="{color}"/>')
         for winch in robot.winches:
             x, y = self._places(np.array([winch.at]))[0]
-            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7" class="sketch-winch" fill="{colours[winch.name]}"/>')
+            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7" class="sketch-winch" fill="{colors[winch.name]}"/>')
         left, top, wide, high = self._frame(robot)
         box = f"{left:.0f} {top:.0f} {wide:.0f} {high:.0f}"
         return f'<svg viewBox="{box}" class="sketch" role="img">{"".join(parts)}</svg>'

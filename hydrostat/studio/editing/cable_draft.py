@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from hydrostat.drawing import INK, MUTED, WINCHES, winch_colours
+from hydrostat.drawing import INK, MUTED, WINCHES, winch_colors
 from hydrostat.errors import InputError
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.editing.part import Mirror
@@ -81,18 +81,18 @@ def _axis(robot: Robot, mirror: Mirror) -> Strand:
     margin = beyond * robot.body.mesh.size
     ends = (float(nodes[:, along].min()) - margin, float(nodes[:, along].max()) + margin)
     points = tuple(mirror.on_plane((end, end)) for end in ends)
-    return Strand(points=points, stroke=Stroke.PATH, colour=MUTED, loose=-1)
+    return Strand(points=points, stroke=Stroke.PATH, color=MUTED, loose=-1)
 
 
 def _draft(robot: Robot, draft: CableDraft) -> list[Thing]:
-    colour: str = WINCHES[len(robot.winches) % len(WINCHES)]
+    color: str = WINCHES[len(robot.winches) % len(WINCHES)]
     if draft.winch is not None:
-        colour = winch_colours(robot.winches).get(draft.winch, INK)
+        color = winch_colors(robot.winches).get(draft.winch, INK)
     start, *rest = draft.points
     things: list[Thing] = []
     if rest:
-        things.append(Strand(points=draft.points, stroke=Stroke.CABLE, colour=colour, loose=-1))
+        things.append(Strand(points=draft.points, stroke=Stroke.CABLE, color=color, loose=-1))
     if draft.winch is None:
-        things.append(Dot(at=start, look=Look.WINCH, colour=colour, stuck=False))
-    vias = [Dot(at=point, look=Look.HANDLE, colour=colour, stuck=False) for point in rest]
+        things.append(Dot(at=start, look=Look.WINCH, color=color, stuck=False))
+    vias = [Dot(at=point, look=Look.HANDLE, color=color, stuck=False) for point in rest]
     return [*things, *vias]

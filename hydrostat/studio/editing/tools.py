@@ -58,12 +58,12 @@ class Ruler:
         """The line, and its ends."""
         label = self.words.partition(" (")[0]
         dots: list[Thing] = [
-            Dot(at=point, look=Look.VIA, colour=INK, label=label if number else "", chosen=bool(number), stuck=False)
+            Dot(at=point, look=Look.VIA, color=INK, label=label if number else "", chosen=bool(number), stuck=False)
             for number, point in enumerate(self.points)
         ]
         if len(self.points) < 2:
             return dots
-        return [Strand(points=self.points, stroke=Stroke.PATH, colour=INK, loose=-1), *dots]
+        return [Strand(points=self.points, stroke=Stroke.PATH, color=INK, loose=-1), *dots]
 
 
 class Tool(StrEnum):

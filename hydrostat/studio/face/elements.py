@@ -7,7 +7,7 @@ from typing import Any
 from nicegui import events, ui
 
 from hydrostat.control import Player, Timeline
-from hydrostat.drawing import winch_colours
+from hydrostat.drawing import winch_colors
 from hydrostat.robot import Robot
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops
@@ -20,10 +20,10 @@ class Knob(ui.element, component="static/knob.js"):
     Its hand shows what is wanted, the arc around it what is reached.
     """
 
-    def __init__(self, *, least: float, most: float, step: float, colour: str, label: str) -> None:
+    def __init__(self, *, least: float, most: float, step: float, color: str, label: str) -> None:
         """A knob from least to most, in steps of wheel and arrow keys; who cannot see it hears its label."""
         super().__init__()
-        self._props.update(value=0.0, reach=0.0, least=least, most=most, step=step, colour=colour, label=label)
+        self._props.update(value=0.0, reach=0.0, least=least, most=most, step=step, color=color, label=label)
 
     def show(self, wanted: float, reached: float) -> None:
         """Show what is wanted and what is reached."""
@@ -56,17 +56,15 @@ class TimelineView(ui.element, component="static/timeline.js"):
     def __init__(self) -> None:
         super().__init__()
         self._props.update(
-            seconds=4.0, keys=[], colours=[], smooth=False, time=0.0, playing=False, speed=1.0, loop=True, chosen=None,
+            seconds=4.0, keys=[], colors=[], smooth=False, time=0.0, playing=False, speed=1.0, loop=True, chosen=None,
             hint=HINT,
         )  # fmt: skip
 
     def show_keys(self, robot: Robot, timeline: Timeline, chosen: int | None) -> None:
         """Show the keys of a timeline, one of them selected."""
-        colours = winch_colours(robot.winches)
+        colors = winch_colors(robot.winches)
         keys = [{"time": key.time, "values": _shares(robot, key.contractions)} for key in timeline.keys]
-        self._set(
-            seconds=timeline.seconds, smooth=timeline.smooth, keys=keys, chosen=chosen, colours=[*colours.values()]
-        )
+        self._set(seconds=timeline.seconds, smooth=timeline.smooth, keys=keys, chosen=chosen, colors=[*colors.values()])
 
     def show_player(self, player: Player) -> None:
         """Show the playhead."""
@@ -90,10 +88,10 @@ class TimelineView(ui.element, component="static/timeline.js"):
             self.update()
 
 
-def winch_badge(mark: str, colour: str) -> None:
-    """The mark of a winch in the kit, as W1, in its colour."""
+def winch_badge(mark: str, color: str) -> None:
+    """The mark of a winch in the kit, as W1, in its color."""
     style = "border-radius: 4px; padding: 1px 4px; font-size: 11px; font-weight: 600; color: white; flex: none"
-    ui.label(mark).style(f"{style}; background: {colour}").tooltip("Label of this winch in the kit")
+    ui.label(mark).style(f"{style}; background: {color}").tooltip("Label of this winch in the kit")
 
 
 def _shares(robot: Robot, contractions: Mapping[str, float]) -> list[float]:

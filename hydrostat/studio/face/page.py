@@ -129,9 +129,9 @@ def pressable(kind: str, action: Callable[[], Any], *, role: str = "button") -> 
 
 
 def icon_button(
-    icon: str, words: str, action: Callable[[], Any] | None, *, small: bool = True, colour: str | None = None
+    icon: str, words: str, action: Callable[[], Any] | None, *, small: bool = True, color: str | None = None
 ) -> ui.button:
     """A round button with a sign alone, small or not; its words are told to who points at it or cannot see it."""
-    button = ui.button(icon=icon, color=colour, on_click=action).props("flat round dense" + " size=sm" * small)
+    button = ui.button(icon=icon, color=color, on_click=action).props("flat round dense" + " size=sm" * small)
     button.props["aria-label"] = words
     return button.tooltip(words)

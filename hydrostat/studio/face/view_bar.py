@@ -5,22 +5,22 @@ from nicegui import ui
 from hydrostat.drawing import palette
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, icon_button
-from hydrostat.studio.view.colouring import Colouring
+from hydrostat.studio.view.coloring import Coloring
 
 RAMP = palette.TENSION
 
 AXES = {"off": None, "x": "x", "y": "y", "z": "z"}
 
-COLOURINGS = {
-    Colouring.FELT: "Felt",
-    Colouring.STRAIN: "Strain",
-    Colouring.STRESS: "Stress",
-    Colouring.MUSCLES: "Muscles",
+COLORINGS = {
+    Coloring.FELT: "Felt",
+    Coloring.STRAIN: "Strain",
+    Coloring.STRESS: "Stress",
+    Coloring.MUSCLES: "Muscles",
 }
 
 
-def view_bar(page: WindowPage, *, colours: bool = True) -> None:
-    """Buttons in a corner of the view, that for colours, which all windows share, if wanted; a legend in another."""
+def view_bar(page: WindowPage, *, colors: bool = True) -> None:
+    """Buttons in a corner of the view, that for colors, which all windows share, if wanted; a legend in another."""
     _legend(page)
     view = page.viewport
     with ui.element("div").classes("studio-view-bar"):
@@ -32,9 +32,9 @@ def view_bar(page: WindowPage, *, colours: bool = True) -> None:
             icon_button("layers", "Top (7)", lambda: view.view("top"))
             with icon_button("view_in_ar", "View options", None):
                 _space_menu(page)
-        if colours:
+        if colors:
             with icon_button("palette", "Colors", None):
-                _colour_menu(page)
+                _color_menu(page)
         mesh = icon_button("grid_4x4", "Mesh", None)
         mesh.on_click(lambda: _toggle_mesh(page, mesh))
 
@@ -78,12 +78,12 @@ def _space_menu(page: WindowPage) -> None:
             control.on_value_change(lambda: view.section(AXES[axis.value], share.value or 0.0))
 
 
-def _colour_menu(page: WindowPage) -> None:
+def _color_menu(page: WindowPage) -> None:
     session = page.session
     with ui.menu(), ui.column().classes("q-pa-md gap-2"):
-        choice = ui.radio(COLOURINGS, value=session.colouring)
-        choice.on_value_change(lambda event: page.act(session.colour_by, event.value))
-    page.on(Topic.THINGS, lambda: choice.set_value(session.colouring), lasting=True)
+        choice = ui.radio(COLORINGS, value=session.coloring)
+        choice.on_value_change(lambda event: page.act(session.color_by, event.value))
+    page.on(Topic.THINGS, lambda: choice.set_value(session.coloring), lasting=True)
 
 
 def _toggle_mesh(page: WindowPage, button: ui.button) -> None:

@@ -12,7 +12,7 @@ from hydrostat.drawing import palette
 STATIC = Path(__file__).parent / "static"
 MODULES = STATIC / "view"
 
-COLOURS = {  # what the view is painted with; ink and ghosts are lighter on a dark page
+COLORS = {  # what the view is painted with; ink and ghosts are lighter on a dark page
     "felt": palette.FELT,
     "felt_light": palette.FELT_LIGHT,
     "seam": palette.SEAM,
@@ -44,7 +44,7 @@ class Viewport(ui.element, component="static/viewport.js"):
         """A view of a websocket's path, dark or as the page is (None); with a brush a drag beside the body paints."""
         super().__init__()
         self._props["stream"] = stream
-        self._props["palette"] = COLOURS
+        self._props["palette"] = COLORS
         self._props["dark"] = dark
         self._props["brush"] = brush
 

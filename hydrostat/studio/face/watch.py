@@ -26,7 +26,7 @@ def build_watch(session: Session, stream: str) -> WindowPage:
         room = ui.element("div").classes("studio-work")
     with room, ui.element("div").classes("studio-view"):
         page.viewport = Viewport(stream=stream).classes("studio-viewport")
-        view_bar(page, colours=False)
+        view_bar(page, colors=False)
         page.toasts = Toasts()
 
     def show() -> None:

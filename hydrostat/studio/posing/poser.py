@@ -111,7 +111,7 @@ class Poser(Stage):
         robot, targets, shape = now.robot, now.targets, now.shape
         limit = self._document.work.wishes.constraints.tension
         keys = {f"marker:{self._chosen}", f"point:{self._chosen}"} if self._chosen else set()
-        found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, colour=GHOST)]
+        found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, color=GHOST)]
         if now.ghost is not None:
             found.append(now.ghost)
         cloud = self.reach.cloud(robot)
@@ -127,7 +127,7 @@ class Poser(Stage):
             found += proposed_things(proposed)
         markers = {marker.name for marker in robot.markers}
         found += [
-            Dot(key=f"point:{name}", at=point.at, look=Look.HANDLE, colour=MARKER, chosen=f"point:{name}" in keys)
+            Dot(key=f"point:{name}", at=point.at, look=Look.HANDLE, color=MARKER, chosen=f"point:{name}" in keys)
             for name, point in targets.held.items()
             if name not in markers
         ]
@@ -213,7 +213,7 @@ class Poser(Stage):
                 raise InputError("this robot has no cables yet. Find some in Design, or place them in Edit")
             ghost = None
             if mode is Mode.CABLES and now.targets.held:
-                ghost = Ghost(name="target", nodes=now.shape.nodes, colour="#8fb4d6")
+                ghost = Ghost(name="target", nodes=now.shape.nodes, color="#8fb4d6")
             self._now = replace(now, targets=replace(now.targets, mode=mode), ghost=ghost)
         self._ring()
 

@@ -65,7 +65,7 @@ def spread_contractions(robot: Robot, count: int) -> list[Vector]:
     return [low + share * (high - low) for share in drawn[order]]
 
 
-COLOUR = "#1787b8"
+COLOR = "#1787b8"
 
 
 @dataclass(eq=False)
@@ -160,7 +160,7 @@ class MarkerReach:
 
     def _grow(self, search: _ReachSearch, points: Points) -> None:
         known = points if search.cloud is None else np.concatenate([search.cloud.points, points])
-        search.cloud = Cloud(name="reach", points=known, colour=COLOUR)
+        search.cloud = Cloud(name="reach", points=known, color=COLOR)
         if search is self._search:
             self._document.bell.ring(Topic.THINGS)
 

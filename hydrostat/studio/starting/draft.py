@@ -14,7 +14,7 @@ MOST_BYTES = 190_000_000  # of a file that is brought; with what goes round it, 
 PICTURES = (".png", ".jpg", ".jpeg")  # endings of files of pixels
 _CAD = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
-THRESHOLDS = (5.0, 250.0)  # least and most difference in colour from the ground that may be asked for, of 441
+THRESHOLDS = (5.0, 250.0)  # least and most difference in color from the ground that may be asked for, of 441
 SMOOTHINGS = (0.0, 20.0)  # likewise how far the edge is smoothed [pixels]
 
 

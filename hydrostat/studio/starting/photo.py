@@ -38,7 +38,7 @@ def cut_out(content: bytes, reading: PhotoReading) -> bytes:
     if reading.smoothing > 0:
         field = gaussian_filter(field, reading.smoothing)
     cut = image.convert("RGBA")
-    slope = 4.0  # opacity for each step of colour about the threshold
+    slope = 4.0  # opacity for each step of color about the threshold
     opacity = np.clip(127.5 + slope * (field - level), 0.0, 255.0)
     cut.putalpha(Image.fromarray(opacity.astype(np.uint8)))
     return _bytes(cut, "PNG")

@@ -21,7 +21,7 @@ class Sketch:
     robot: Robot  # that would be begun with
     lines: tuple[str, ...]  # what was found and done in reading, healing and meshing
     clean: bool  # whether nothing had to be mended
-    picture: str  # of the robot, as SVG that follows the colours of the page
+    picture: str  # of the robot, as SVG that follows the colors of the page
     repair: str = ""  # of what was mended, likewise; "" if nothing was
     behind: Backdrop | None = None  # the picture that a flat body was read from; None: it was no picture
 

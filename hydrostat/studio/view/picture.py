@@ -63,7 +63,7 @@ class Picture:
     flat body; for each ghost `ghost:NAME` and for each cloud `cloud:NAME`.
 
     The head of a frame: kind "frame", scene (the serial of the scene it belongs to), and what the session adds. Arrays:
-    `nodes` of the surface, `points` of all things, `loads` of the lines, `values` of the nodes (0 to 1) if coloured.
+    `nodes` of the surface, `points` of all things, `loads` of the lines, `values` of the nodes (0 to 1) if colored.
     """
 
     def __init__(self, robot: Robot, things: Sequence[Thing], serial: int) -> None:
@@ -104,7 +104,7 @@ class Picture:
     def frame(
         self, nodes: Nodes, things: Sequence[Thing], head: dict[str, Any], *, values: Vector | None = None
     ) -> bytes:
-        """All that changes: nodes [m] and their colours from 0 to 1, if any, places and loads of things, words."""
+        """All that changes: nodes [m] and their colors from 0 to 1, if any, places and loads of things, words."""
         points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
         if self._stuck_flags.any():
             points[self._stuck_flags] = self._anchors.positions(nodes) + self._beside
@@ -177,21 +177,21 @@ def _styles(things: Sequence[Thing]) -> list[dict[str, Any]]:
 def _style(thing: Thing) -> dict[str, Any]:
     if isinstance(thing, Dot):
         return {
-            "key": thing.key, "look": str(thing.look), "colour": thing.colour, "label": thing.label,
+            "key": thing.key, "look": str(thing.look), "color": thing.color, "label": thing.label,
             "short": thing.short, "chosen": thing.chosen, "radius": thing.radius, "about": thing.about,
             "faint": thing.faint,
         }  # fmt: skip
     if isinstance(thing, Strand):
         return {
-            "key": thing.key, "stroke": str(thing.stroke), "colour": thing.colour, "chosen": thing.chosen,
+            "key": thing.key, "stroke": str(thing.stroke), "color": thing.color, "chosen": thing.chosen,
             "faint": thing.faint,
         }  # fmt: skip
     if isinstance(thing, Area):
         return {
-            "key": thing.key, "colour": thing.colour, "radius": thing.radius, "label": thing.label,
+            "key": thing.key, "color": thing.color, "radius": thing.radius, "label": thing.label,
             "chosen": thing.chosen,
         }  # fmt: skip
-    return {"name": thing.name, "colour": thing.colour}
+    return {"name": thing.name, "color": thing.color}
 
 
 def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
@@ -206,7 +206,7 @@ def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
         elif isinstance(thing, Area):
             marks.append((*_style(thing).values(), thing.at, thing.outline))
         else:
-            marks.append((thing.name, thing.colour, id(thing.nodes if isinstance(thing, Ghost) else thing.points)))
+            marks.append((thing.name, thing.color, id(thing.nodes if isinstance(thing, Ghost) else thing.points)))
     return tuple(marks)
 
 
@@ -235,7 +235,7 @@ class Show:
         head: dict[str, Any],
         values: Vector | None = None,
     ) -> Shown:
-        """A robot in a shape, with things, words to go along with the frame, and values of nodes for colours."""
+        """A robot in a shape, with things, words to go along with the frame, and values of nodes for colors."""
         if self._picture is None or not self._picture.fits(robot, things):
             self._serial += 1
             self._picture = Picture(robot, things, self._serial)

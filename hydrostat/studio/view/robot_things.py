@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.design import Diagnostic, Severity
-from hydrostat.drawing import DARK, INK, MUTED, SEAM, winch_colours
+from hydrostat.drawing import DARK, INK, MUTED, SEAM, winch_colors
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Cable, Mount, Pin, Point, Robot, Winch, in_words, obstacle_lines
@@ -57,43 +57,43 @@ def robot_things(
     are drawn on a scale up to the largest, obstacles that move where they are carried to [m]. With `vias` each point of
     a cable is a dot that can be taken hold of; else only its stopper is shown.
     """
-    colours, marks = winch_colours(robot.winches), winch_marks_of(robot)
+    colors, marks = winch_colors(robot.winches), winch_marks_of(robot)
     things: list[Thing] = [
-        Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, colour=MUTED, loose=-1)
+        Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, color=MUTED, loose=-1)
         for line in obstacle_lines(obstacles_in_pose(robot, carried))
     ]
     things += _drawing_things(robot)
     held = pinned_points(robot)
     if len(held):
-        things.append(Cloud(name="pins", points=held, colour=PIN))
+        things.append(Cloud(name="pins", points=held, color=PIN))
     for index, pin in enumerate(robot.pins):
         middle = pin.at if pin.at is not None else tuple(np.mean(pin.box or (), axis=0).tolist())
         key = f"pin:{index}"
-        things.append(Dot(key=key, at=middle, look=Look.PIN, colour=PIN, chosen=key in chosen, radius=pin.radius))
+        things.append(Dot(key=key, at=middle, look=Look.PIN, color=PIN, chosen=key in chosen, radius=pin.radius))
     loads = np.zeros(len(robot.cables)) if tensions is None else np.clip(tensions / scale, 0.0, 1.0)
     for index, cable in enumerate(robot.cables):
-        things += _cable(robot, index, cable, colours[cable.winch], float(loads[index]), chosen)
+        things += _cable(robot, index, cable, colors[cable.winch], float(loads[index]), chosen)
     for index, cable in enumerate(robot.cables):
-        things += _vias(index, cable, colours[cable.winch], chosen, every=vias)
+        things += _vias(index, cable, colors[cable.winch], chosen, every=vias)
     for winch in robot.winches:
         key = f"winch:{winch.name}"
-        things.append(_winch(winch, colours[winch.name], marks[winch.name], chosen=key in chosen))
+        things.append(_winch(winch, colors[winch.name], marks[winch.name], chosen=key in chosen))
     for marker in robot.markers:
         key = f"marker:{marker.name}"
-        dot = Dot(key=key, at=marker.at, look=Look.MARKER, colour=MARKER, label=marker.name, chosen=key in chosen)
+        dot = Dot(key=key, at=marker.at, look=Look.MARKER, color=MARKER, label=marker.name, chosen=key in chosen)
         things.append(dot)
     return things
 
 
 def proposed_things(robot: Robot) -> list[Thing]:
     """Cables and winches of a network that is proposed, faintly; none can be picked."""
-    colours, marks = winch_colours(robot.winches), winch_marks_of(robot)
+    colors, marks = winch_colors(robot.winches), winch_marks_of(robot)
     things: list[Thing] = []
     for index, cable in enumerate(robot.cables):
-        things += _cable(robot, index, cable, colours[cable.winch], 0.0, ())
+        things += _cable(robot, index, cable, colors[cable.winch], 0.0, ())
     for index, cable in enumerate(robot.cables):
-        things += _vias(index, cable, colours[cable.winch], (), every=False)
-    things += [_winch(winch, colours[winch.name], marks[winch.name], chosen=False) for winch in robot.winches]
+        things += _vias(index, cable, colors[cable.winch], (), every=False)
+    things += [_winch(winch, colors[winch.name], marks[winch.name], chosen=False) for winch in robot.winches]
     return [
         replace(thing, key="", label="", faint=True) if isinstance(thing, Dot) else replace(thing, key="", faint=True)
         for thing in things
@@ -101,12 +101,12 @@ def proposed_things(robot: Robot) -> list[Thing]:
     ]
 
 
-def _winch(winch: Winch, colour: str, mark: str, *, chosen: bool) -> Dot:
+def _winch(winch: Winch, color: str, mark: str, *, chosen: bool) -> Dot:
     return Dot(
         key=f"winch:{winch.name}",
         at=winch.at,
         look=Look.WINCH,
-        colour=colour,
+        color=color,
         label=winch.name,
         short=mark,
         stuck=winch.mount is Mount.BODY,
@@ -119,23 +119,21 @@ def _drawing_things(robot: Robot) -> list[Thing]:
     marks = robot.body.marks
     step = max(1, sum(map(len, marks)) // DETAIL)
     return [
-        Strand(
-            points=tuple(map(tuple, [*line[:-1:step].tolist(), line[-1].tolist()])), stroke=Stroke.DRAWN, colour=DARK
-        )
+        Strand(points=tuple(map(tuple, [*line[:-1:step].tolist(), line[-1].tolist()])), stroke=Stroke.DRAWN, color=DARK)
         for line in marks
     ]
 
 
 def target_things(
-    targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "", colour: str = INK
+    targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "", color: str = INK
 ) -> list[Thing]:
     """Rings where markers should go [m], keys "target:tip", the chosen one selected, with lines from where they are."""
     things: list[Thing] = []
     for name, target in targets.items():
         key = f"target:{name}"
         if name in places:
-            things.append(Strand(points=(places[name], target), stroke=Stroke.MISS, colour=colour, loose=-1))
-        things.append(Dot(key=key, at=target, look=Look.TARGET, colour=colour, stuck=False, chosen=key == chosen))
+            things.append(Strand(points=(places[name], target), stroke=Stroke.MISS, color=color, loose=-1))
+        things.append(Dot(key=key, at=target, look=Look.TARGET, color=color, stuck=False, chosen=key == chosen))
     return things
 
 
@@ -145,25 +143,25 @@ def prediction_things(shape: RobotShape) -> list[Thing]:
     if prediction is None or prediction.exact:
         return []
     return [
-        Dot(at=place, look=Look.MARKER, colour=PREDICTED, label="predicted", stuck=False)
+        Dot(at=place, look=Look.MARKER, color=PREDICTED, label="predicted", stuck=False)
         for place in prediction.markers.values()
     ]
 
 
-def _cable(robot: Robot, index: int, cable: Cable, colour: str, load: float, chosen: Collection[str]) -> list[Thing]:
+def _cable(robot: Robot, index: int, cable: Cable, color: str, load: float, chosen: Collection[str]) -> list[Thing]:
     """The run of a cable, its sheaths over it."""
     key, loose = f"cable:{index}", int(robot.winch(cable.winch).mount is Mount.WORLD)
     things: list[Thing] = [
-        Strand(key=key, points=cable.points, stroke=Stroke.CABLE, colour=colour, loose=loose, load=load,
+        Strand(key=key, points=cable.points, stroke=Stroke.CABLE, color=color, loose=loose, load=load,
              chosen=key in chosen)
     ]  # fmt: skip
     for start, end in cable.sheathed:
         hidden = loose if start == 0 else 0
-        things.append(Strand(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, colour=colour, loose=hidden))
+        things.append(Strand(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, color=color, loose=hidden))
     return things
 
 
-def _vias(index: int, cable: Cable, colour: str, chosen: Collection[str], *, every: bool) -> list[Thing]:
+def _vias(index: int, cable: Cable, color: str, chosen: Collection[str], *, every: bool) -> list[Thing]:
     """The points of a cable after its winch; the last is its stopper."""
     last = len(cable.points) - 1
     places = range(1, last + 1) if every else [last]
@@ -173,7 +171,7 @@ def _vias(index: int, cable: Cable, colour: str, chosen: Collection[str], *, eve
             key=keys[place],
             at=cable.points[place],
             look=Look.STOPPER if place == last else Look.VIA,
-            colour=colour,
+            color=color,
             chosen=keys[place] in chosen,
         )
         for place in places
@@ -186,7 +184,7 @@ class Bar:
 
     winch: str  # its name
     mark: str  # of it in the kit, as W1
-    colour: str  # of it
+    color: str  # of it
     contraction: float  # cable taken in [m]
     travel: float  # the most it can take in [m]
     release: float  # the most it can let out [m]
@@ -196,15 +194,15 @@ class Bar:
 
 def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
     """A bar for each winch: what it does in a shape, beside the most that a cable bears [N]."""
-    colours, marks = winch_colours(robot.winches), winch_marks_of(robot)
-    largest = dict.fromkeys(colours, 0.0)
+    colors, marks = winch_colors(robot.winches), winch_marks_of(robot)
+    largest = dict.fromkeys(colors, 0.0)
     for cable, tension in zip(robot.cables, np.asarray(shape.tensions).tolist(), strict=True):
         largest[cable.winch] = max(largest[cable.winch], tension)
     return [
         Bar(
             winch=winch.name,
             mark=marks[winch.name],
-            colour=colours[winch.name],
+            color=colors[winch.name],
             contraction=contraction,
             travel=winch.travel,
             release=winch.release,
@@ -215,7 +213,7 @@ def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
     ]
 
 
-TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: SEAM}  # colour of each weight
+TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: SEAM}  # color of each weight
 BRIEF = 64  # letters that are written beside a ring
 
 
@@ -231,7 +229,7 @@ def finding_things(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic 
             Dot(
                 at=place.at,
                 look=Look.FLAG,
-                colour=TONES[finding.weight],
+                color=TONES[finding.weight],
                 label=label,
                 about=place.part,
                 stuck=place.part not in loose,

@@ -59,7 +59,7 @@ class Look(StrEnum):
 
 
 class Stroke(StrEnum):
-    """Style of a line; a cable becomes thicker and takes the colour of its tension with its load."""
+    """Style of a line; a cable becomes thicker and takes the color of its tension with its load."""
 
     CABLE = "cable"
     SHEATH = "sheath"
@@ -76,7 +76,7 @@ class Dot:
     key: str = ""  # what a click on it names, such as "winch:left"; "": it cannot be picked
     at: Point  # a place in the rest shape if it is stuck to the body, else in the world [m]
     look: Look  # how it is drawn
-    colour: str  # such as "#0b5fa5"
+    color: str  # such as "#0b5fa5"
     label: str = ""  # written beside it; "" for nothing
     short: str = ""  # written in it, as W1; "": what its label begins with
     about: str = ""  # of a flag: key of the part whose words it shows while the pointer is there
@@ -93,7 +93,7 @@ class Strand:
     key: str = ""  # what a click on it names, such as "cable:0"; "": it cannot be picked
     points: tuple[Point, ...]  # in the rest shape where stuck to the body, else in the world [m]
     stroke: Stroke  # how it is drawn
-    colour: str  # such as "#0b5fa5"
+    color: str  # such as "#0b5fa5"
     loose: int = 0  # how many points at its beginning are not stuck to the body; -1: none is
     load: float = 0.0  # tension as a share of the largest on the scale, 0 to 1
     chosen: bool = False  # whether it is selected
@@ -106,7 +106,7 @@ class Ghost:
 
     name: str  # one of each name is shown; such as "rest" or "target"
     nodes: Nodes  # of that shape [m]
-    colour: str  # such as "#b4afbc"
+    color: str  # such as "#b4afbc"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,7 +115,7 @@ class Cloud:
 
     name: str  # one of each name is shown
     points: Points  # [m]
-    colour: str  # such as "#0b5fa5"
+    color: str  # such as "#0b5fa5"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,7 +123,7 @@ class Area:
     """A part of the rest shape: a disc or ball, or a polygon in the plane."""
 
     key: str = ""  # what a click on it names, such as "zone:0"
-    colour: str  # such as "#c8243f"
+    color: str  # such as "#c8243f"
     at: Point = ()  # middle of the disc or ball [m]
     radius: float = 0.0  # of it [m]
     outline: tuple[Point, ...] = ()  # corners of the polygon [m], if it is one

@@ -45,8 +45,8 @@ def touch_things(shape: RobotShape, size: float) -> list[Thing]:
         way = longest * size * np.sqrt(touch.strength / hardest) * touch.force / touch.strength
         ends = (touch.place - way, touch.place + way) if touch.obstacle is None else (touch.place, touch.place + way)
         line = tuple(tuple(end.tolist()) for end in ends)
-        things.append(Strand(points=line, stroke=Stroke.RIM, colour=TOUCH, loose=-1))
-        things.append(Dot(at=tuple(touch.place.tolist()), look=Look.TOUCH, colour=TOUCH, stuck=False))
+        things.append(Strand(points=line, stroke=Stroke.RIM, color=TOUCH, loose=-1))
+        things.append(Dot(at=tuple(touch.place.tolist()), look=Look.TOUCH, color=TOUCH, stuck=False))
     if shape.crossing is not None:
-        things.append(Dot(at=shape.crossing, look=Look.FLAG, colour=ERROR, label=OFF, stuck=False, chosen=True))
+        things.append(Dot(at=shape.crossing, look=Look.FLAG, color=ERROR, label=OFF, stuck=False, chosen=True))
     return things

@@ -1,4 +1,4 @@
-"""A small map for each cable, and the marks of winches. Oracles: the words and the colours of the SVG."""
+"""A small map for each cable, and the marks of winches. Oracles: the words and the colors of the SVG."""
 
 import re
 from dataclasses import replace
@@ -45,10 +45,10 @@ def test_a_winch_has_one_mark_everywhere() -> None:
 
 
 def test_the_map_tells_cables_apart() -> None:
-    """A colour for each, and the cable's name at the first and the last hole that is numbered."""
+    """A color for each, and the cable's name at the first and the last hole that is numbered."""
     robot, stitches = stitched("starfish")
     svg = flat_map(robot, stitches, width=112.0, height=119.0).svg
-    assert all(colour in svg for colour in WINCHES[: len(robot.cables)])
+    assert all(color in svg for color in WINCHES[: len(robot.cables)])
     assert {f"C{number}-2" for number in range(1, 6)} <= set(words(svg))
 
 

@@ -96,13 +96,13 @@ def test_the_check_of_the_scale_of_pages_can_fail(pattern, tmp_path):
 @needs_poppler
 @pytest.mark.slow
 def test_lines_survive_a_grey_printer_and_the_margin_is_white(pattern, tmp_path):
-    """Oracle: pixels: each colour of a line is dark in grey; nothing is within 9.9 mm of the edge."""
+    """Oracle: pixels: each color of a line is dark in grey; nothing is within 9.9 mm of the edge."""
     page = printed(tiled_pdf(pattern, Paper.A4), 2, tmp_path)
     grey = page @ [0.299, 0.587, 0.114]
     for channel in (0, 2):
-        coloured = (page[..., channel] > 200) & (np.delete(page, channel, axis=2).max(axis=2) < 40)
-        assert coloured.any()
-        assert grey[coloured].max() < 128
+        colored = (page[..., channel] > 200) & (np.delete(page, channel, axis=2).max(axis=2) < 40)
+        assert colored.any()
+        assert grey[colored].max() < 128
     edge = round(9.9 / PIXEL)
     inner = np.full_like(page, 255)
     inner[edge:-edge, edge:-edge] = page[edge:-edge, edge:-edge]

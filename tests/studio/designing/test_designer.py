@@ -10,7 +10,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design import Constraints, DesignRequest, RouteOptions, TreeOptions, design_cables
-from hydrostat.drawing import INK, pose_colours
+from hydrostat.drawing import INK, pose_colors
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.project import Wishes, Work
@@ -279,17 +279,17 @@ def test_one_pose_at_least_is_reached(fresh: Studio) -> None:
 
 
 def test_targets_of_several_poses_are_told_apart(fresh: Studio) -> None:
-    """Oracle: where the poses want their marker; one pose alone has no colour."""
+    """Oracle: where the poses want their marker; one pose alone has no color."""
 
     def rings() -> dict[tuple[float, ...], str]:
         things = fresh.designer.things()
-        return {thing.at: thing.colour for thing in things if isinstance(thing, Dot) and thing.look is Look.TARGET}
+        return {thing.at: thing.color for thing in things if isinstance(thing, Dot) and thing.look is Look.TARGET}
 
     assert rings() == {(0.18, 0.06): INK}
     fresh.designer.wish_pose("down", True)
-    colours = pose_colours(["up", "down"])
-    assert rings() == {(0.18, 0.06): colours["up"], (0.185, -0.05): colours["down"]}
-    assert len({*colours.values(), INK}) == 3
+    colors = pose_colors(["up", "down"])
+    assert rings() == {(0.18, 0.06): colors["up"], (0.185, -0.05): colors["down"]}
+    assert len({*colors.values(), INK}) == 3
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from nicegui import ui
 
 from hydrostat.project import WISH_RANGES, Paint, Wishes
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.designing.painter import COLOURS, WORDS
+from hydrostat.studio.designing.painter import COLORS, WORDS
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage, pressable
 
@@ -26,7 +26,7 @@ def design_paint(page: WindowPage) -> None:
     buttons: dict[Paint, ui.element] = {}
     with ui.element("div").classes("studio-row").style("gap: 6px; align-items: stretch"):
         for paint, words in SHORT.items():
-            button = pressable("design-paint", partial(_take, page, paint)).style(f"--tint: {COLOURS[paint]}")
+            button = pressable("design-paint", partial(_take, page, paint)).style(f"--tint: {COLORS[paint]}")
             with button.props(f'data-testid="paint-{paint}"'):
                 ui.element("span").classes("design-spot")
                 ui.label(words)
@@ -60,7 +60,7 @@ def _zone(page: WindowPage, index: int, paint: Paint, size: str, *, chosen: bool
     designer = page.session.designer
     row = ui.element("div").classes("studio-row design-zone" + (" design-zone-on" if chosen else ""))
     row.on("click", page.doing(designer.choose_zone, index))
-    with row.style(f"--tint: {COLOURS[paint]}"):
+    with row.style(f"--tint: {COLORS[paint]}"):
         ui.element("span").classes("design-spot")
         ui.label(WORDS[paint] + size).classes("flex-1").style("font-size: 13px")
         remove = ui.button(icon="close", color=None).props('flat round dense size=sm aria-label="Delete zone"')

@@ -5,7 +5,7 @@ from functools import partial
 from nicegui import ui
 
 from hydrostat.design import DesignMethod
-from hydrostat.drawing import pose_colours
+from hydrostat.drawing import pose_colors
 from hydrostat.project import wished_poses
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
@@ -49,7 +49,7 @@ def _poses(page: WindowPage) -> None:
 
     def build() -> None:
         names, on = document.robot.poses, find_wished()
-        colours = pose_colours(names)
+        colors = pose_colors(names)
         if not names:
             _no_pose(page)
             return
@@ -59,8 +59,8 @@ def _poses(page: WindowPage) -> None:
                 kind = "design-pose" + (" design-pose-on" if name in on else "")
                 chip = pressable(kind, page.doing(designer.wish_pose, name, name not in on), role="checkbox")
                 with chip.props(f'aria-checked="{str(name in on).lower()}"'):
-                    if len(on) > 1 and name in on:  # the colour of its targets in the view
-                        ui.element("span").classes("design-dot").style(f"background: {colours[name]}")
+                    if len(on) > 1 and name in on:  # the color of its targets in the view
+                        ui.element("span").classes("design-dot").style(f"background: {colors[name]}")
                     ui.label(name)
 
     page.on_new(Topic.ROBOT, state, room, build)

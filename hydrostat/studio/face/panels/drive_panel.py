@@ -2,7 +2,7 @@
 
 from nicegui import events, ui
 
-from hydrostat.drawing import ERROR, winch_colours
+from hydrostat.drawing import ERROR, winch_colors
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Winch
 from hydrostat.studio.bell import Topic
@@ -14,7 +14,7 @@ from hydrostat.studio.face.panels.edit_body import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.stage import StageName
 
-ui.add_css("body.body--dark { --lift: 38% }", shared=True)  # colours of winches are made for paper: lighter on dark
+ui.add_css("body.body--dark { --lift: 38% }", shared=True)  # colors of winches are made for paper: lighter on dark
 
 
 def drive_panel(page: WindowPage) -> None:
@@ -39,8 +39,8 @@ def drive_panel(page: WindowPage) -> None:
 
     def build() -> None:
         winches, marks = session.document.robot.winches, winch_marks_of(session.document.robot)
-        colours, size = winch_colours(winches), 68 if len(winches) <= many else 50
-        cards[:] = [_Card(page, winch, marks[winch.name], colours[winch.name], size) for winch in winches]
+        colors, size = winch_colors(winches), 68 if len(winches) <= many else 50
+        cards[:] = [_Card(page, winch, marks[winch.name], colors[winch.name], size) for winch in winches]
 
     def show() -> None:
         commands, places, tensions = driver.commands(), driver.places(), driver.tensions()
@@ -64,19 +64,19 @@ def drive_panel(page: WindowPage) -> None:
 class _Card:
     """A winch: its knob, its box, the tension of its cables."""
 
-    def __init__(self, page: WindowPage, winch: Winch, mark: str, colour: str, size: int) -> None:
+    def __init__(self, page: WindowPage, winch: Winch, mark: str, color: str, size: int) -> None:
         self.name = winch.name
         self._page, self._typing = page, False
         driver, least, most = page.session.driver, -1e3 * winch.release, 1e3 * winch.travel
         card = ui.element("div").classes("studio-card")
         step = 0.5  # of a knob's wheel and arrow keys [mm]
         with card.style(f"display: flex; align-items: center; gap: 8px; padding: {size // 8}px 10px"):
-            self._knob = Knob(least=least, most=most, step=step, colour=colour, label=winch.name)
+            self._knob = Knob(least=least, most=most, step=step, color=color, label=winch.name)
             self._knob.style(f"width: {size}px; height: {size}px; flex: none; margin: -3px 0 -5px -4px")
             self._knob.mark(f"knob-{winch.name}")
             with ui.element("div").style("flex: 1; min-width: 0; display: flex; flex-direction: column; gap: 5px"):
                 with ui.element("div").style("display: flex; align-items: center; gap: 6px; min-width: 0"):
-                    winch_badge(mark, colour)
+                    winch_badge(mark, color)
                     name = ui.label(winch.name).style(
                         "font-weight: 600; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
                     )
@@ -89,7 +89,7 @@ class _Card:
             self._box.props(f'dense outlined aria-label="{winch.name}, millimetres"').classes("drive-box")
             self._box.style("width: 88px; flex: none")
             self._box.mark(f"box-{winch.name}")
-        self._colour = f"color-mix(in oklab, {colour}, white var(--lift, 0%))"
+        self._color = f"color-mix(in oklab, {color}, white var(--lift, 0%))"
         self._knob.on_turn(
             lambda millimetres: page.act(driver.turn, winch.name, 1e-3 * millimetres), page.doing(driver.let_go)
         )
@@ -105,8 +105,8 @@ class _Card:
         words = f"{tension:.1f} N"
         if words != self._pull.text:
             self._pull.set_text(words)
-            colour = ERROR if tension > most else self._colour
-            self._bar.style(f"width: {100 * min(tension / most, 1.0):.0f}%; background: {colour}")
+            color = ERROR if tension > most else self._color
+            self._bar.style(f"width: {100 * min(tension / most, 1.0):.0f}%; background: {color}")
 
     def _on_typed(self, event: events.GenericEventArguments) -> None:
         number = sent_number(event.args)

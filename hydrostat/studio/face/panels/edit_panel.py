@@ -5,7 +5,7 @@ from typing import Any
 
 from nicegui import events, ui
 
-from hydrostat.drawing import winch_colours
+from hydrostat.drawing import winch_colors
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
@@ -207,7 +207,7 @@ def _part_row(page: WindowPage, robot: Robot, key: str, words: str, number: str)
         f"padding: 3px 8px 3px {24 if kind is Kind.CABLE else 8}px; border-radius: 8px; font-size: 13px; flex-shrink: 0"
     )
     with row:
-        ui.icon(ICONS[kind], size="17px").style(f"color: {_colour(robot, key)}")
+        ui.icon(ICONS[kind], size="17px").style(f"color: {_color(robot, key)}")
         ui.label(words).style("overflow: hidden; text-overflow: ellipsis; white-space: nowrap")
         ui.space()
         ui.label(number).classes("studio-hint studio-figure").style("white-space: nowrap")
@@ -230,16 +230,16 @@ def _part_words(robot: Robot, key: str) -> tuple[str, str]:
     return robot.markers[part.index].name, "marker"
 
 
-def _colour(robot: Robot, key: str) -> str:
-    """Colour of its winch; the quiet one for all else."""
-    part, colours = find_part(robot, key), winch_colours(robot.winches)
+def _color(robot: Robot, key: str) -> str:
+    """Color of its winch; the quiet one for all else."""
+    part, colors = find_part(robot, key), winch_colors(robot.winches)
     if part is not None and part.kind is Kind.WINCH:
-        return _page_colour(colours[robot.winches[part.index].name])
+        return _page_color(colors[robot.winches[part.index].name])
     if part is not None and part.kind is Kind.CABLE:
-        return _page_colour(colours[robot.cables[part.index].winch])
+        return _page_color(colors[robot.cables[part.index].winch])
     return "var(--muted)"
 
 
-def _page_colour(colour: str) -> str:
-    """A colour of the view on a page that is light or dark."""
-    return f"color-mix(in srgb, {colour} 78%, var(--ink))"
+def _page_color(color: str) -> str:
+    """A color of the view on a page that is light or dark."""
+    return f"color-mix(in srgb, {color} 78%, var(--ink))"

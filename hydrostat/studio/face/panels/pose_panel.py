@@ -12,7 +12,7 @@ from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.face.panels.proposals_card import proposals_card
 from hydrostat.studio.posing import Mode, same_as
 from hydrostat.studio.stage import told_error
-from hydrostat.studio.view.colouring import Colouring
+from hydrostat.studio.view.coloring import Coloring
 from hydrostat.studio.view.robot_things import Bar
 from hydrostat.studio.view.things import RobotShape
 from hydrostat.units import plural
@@ -23,17 +23,17 @@ def muscles_card(page: WindowPage) -> None:
     session, poser = page.session, page.session.poser
     with ui.column().classes("w-full").style("gap: 6px") as room:
         ui.label("Muscles").classes("studio-section")
-        colours = ui.switch("Show muscle activation").props("dense").style("font-size: 13px").mark("pose-colours")
+        colors = ui.switch("Show muscle activation").props("dense").style("font-size: 13px").mark("pose-colors")
 
-    def colour(on: bool) -> None:
-        if on != (session.colouring is Colouring.MUSCLES):
-            page.act(session.colour_by, Colouring.MUSCLES if on else Colouring.FELT)
+    def color(on: bool) -> None:
+        if on != (session.coloring is Coloring.MUSCLES):
+            page.act(session.color_by, Coloring.MUSCLES if on else Coloring.FELT)
 
     def show() -> None:
         room.set_visibility(poser.mode is Mode.MUSCLES)
-        colours.set_value(session.colouring is Colouring.MUSCLES)
+        colors.set_value(session.coloring is Coloring.MUSCLES)
 
-    colours.on_value_change(lambda event: colour(bool(event.value)))
+    colors.on_value_change(lambda event: color(bool(event.value)))
     page.on((Topic.THINGS, Topic.ROBOT), show)
 
 
@@ -184,7 +184,7 @@ class _BarRow:
     def __init__(self, bar: Bar) -> None:
         with ui.element("div").style("width: 100%").mark(f"pose-bar-{bar.winch}"):
             with ui.element("div").classes("studio-row").style("gap: 8px; font-size: 13px"):
-                winch_badge(bar.mark, bar.colour)
+                winch_badge(bar.mark, bar.color)
                 name = ui.label(bar.winch).style(
                     "flex: 1; min-width: 0; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
                 )
@@ -204,8 +204,8 @@ class _BarRow:
         self._shown = state
         self._length.set_text(f"{1e3 * bar.contraction + 0.0:.1f} mm")
         self._pull.set_text(f"{bar.tension:.1f} N")
-        _fill(self._taken, max(bar.contraction, 0.0) / bar.travel, bar.colour)
-        _fill(self._tension, bar.tension / bar.limit, bar.colour)
+        _fill(self._taken, max(bar.contraction, 0.0) / bar.travel, bar.color)
+        _fill(self._tension, bar.tension / bar.limit, bar.color)
 
 
 def _track() -> ui.element:
@@ -213,8 +213,8 @@ def _track() -> ui.element:
         return ui.element("div").style("height: 6px; border-radius: 3px; width: 0%")
 
 
-def _fill(bar: ui.element, share: float, colour: str) -> None:
-    full = ERROR if share >= FULL else f"color-mix(in oklab, {colour}, white var(--lift, 0%))"
+def _fill(bar: ui.element, share: float, color: str) -> None:
+    full = ERROR if share >= FULL else f"color-mix(in oklab, {color}, white var(--lift, 0%))"
     bar.style(f"width: {100 * min(share, 1.0):.1f}%; background: {full}")
 
 

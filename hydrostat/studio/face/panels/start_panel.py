@@ -90,7 +90,7 @@ def _tools(editor: OutlineEditor, *, new: bool) -> None:
         ("delete_outline", "Delete corner (Delete)", editor.remove_corner),
         ("fit_screen", "Fit", editor.fit),
     ):
-        icon_button(icon, words, action, small=False, colour="primary")
+        icon_button(icon, words, action, small=False, color="primary")
     mirror = ui.switch("Mirror", on_change=lambda event: editor.set_mirror(bool(event.value)))
     mirror.props('data-testid="outline-mirror"')
     ui.switch("Snap", value=True, on_change=lambda event: editor.set_snap(bool(event.value)))

@@ -31,7 +31,7 @@ export default /** @type {Component} */ ({
       <line :x1="inner[0]" :y1="inner[1]" :x2="outer[0]" :y2="outer[1]" :stroke="lifted" stroke-width="4.5"
         stroke-linecap="round" />
     </svg>`,
-  props: { value: Number, reach: Number, least: Number, most: Number, step: Number, colour: String, label: String },
+  props: { value: Number, reach: Number, least: Number, most: Number, step: Number, color: String, label: String },
   emits: ["turn", "letgo"],
   data: () => ({ held: null, angle: 0, told: 0, timer: null, linger: null, focused: false }),
   computed: {
@@ -48,7 +48,7 @@ export default /** @type {Component} */ ({
       return this.shareOf(this.reach);
     },
     lifted() {
-      return `color-mix(in oklab, ${this.colour}, white var(--lift, 0%))`;
+      return `color-mix(in oklab, ${this.color}, white var(--lift, 0%))`;
     },
     track: () => arc(0, 1, 28),
     filled() {

@@ -22,7 +22,7 @@ export default /** @type {Component} */ ({
         <text v-if="tick.words" :x="tick.x" :y="12" :text-anchor="tick.anchor" fill="var(--muted)"
           style="font-variant-numeric: tabular-nums">{{ tick.words }}</text>
       </g>
-      <path v-for="(path, index) in paths" :key="'path' + index" :d="path" fill="none" :stroke="'color-mix(in oklab, ' + colours[index] + ', white var(--lift, 0%))'"
+      <path v-for="(path, index) in paths" :key="'path' + index" :d="path" fill="none" :stroke="'color-mix(in oklab, ' + colors[index] + ', white var(--lift, 0%))'"
         stroke-width="1.8" stroke-linejoin="round" opacity="0.9" />
       <g v-for="(mark, index) in marks" :key="'key' + index">
         <line :x1="mark.x" :x2="mark.x" :y1="ruler" :y2="ruler + curves" stroke="var(--muted)" stroke-width="1"
@@ -48,7 +48,7 @@ export default /** @type {Component} */ ({
   props: {
     seconds: Number,
     keys: Array,
-    colours: Array,
+    colors: Array,
     smooth: Boolean,
     time: Number,
     playing: Boolean,
@@ -82,7 +82,7 @@ export default /** @type {Component} */ ({
     paths() {
       const keys = this.shownKeys.slice().sort((one, other) => one.time - other.time);
       if (!keys.length) return [];
-      return this.colours.map((_, winch) => this.path(keys, winch));
+      return this.colors.map((_, winch) => this.path(keys, winch));
     },
     ticks() {
       const step = STEPS.find((each) => (each * this.span) / this.seconds > 70) || 120;

@@ -7,7 +7,7 @@ from hydrostat.robot import Robot
 from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.posing.proposal_work import Proposal
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.view.colouring import Colouring
+from hydrostat.studio.view.coloring import Coloring
 from hydrostat.units import plural
 
 
@@ -16,14 +16,14 @@ def test_muscles_are_shown_and_cables_proposed(starfish: Robot, monkeypatch: pyt
         desk.go(StageName.POSE)
         session, poser = desk.session, desk.session.poser
         monkeypatch.setattr(poser.proposals, "_follow", lambda run: None)  # no process of its own
-        assert not is_shown(desk.one("pose-colours"))
+        assert not is_shown(desk.one("pose-colors"))
         poser.set_mode(Mode.MUSCLES)
         await desk.follow()
-        assert is_shown(desk.one("pose-colours"))
-        await desk.choose("pose-colours", True)
-        assert session.colouring is Colouring.MUSCLES
-        await desk.choose("pose-colours", False)
-        assert session.colouring is Colouring.FELT
+        assert is_shown(desk.one("pose-colors"))
+        await desk.choose("pose-colors", True)
+        assert session.coloring is Coloring.MUSCLES
+        await desk.choose("pose-colors", False)
+        assert session.coloring is Coloring.FELT
         assert not is_shown(desk.one("pose-proposed"))
         await desk.choose("pose-propose", True)
         assert poser.proposals.on

@@ -43,11 +43,11 @@ export function drawGrid(pen, view) {
 /** Other shapes of a flat body, behind it. */
 export function drawGhosts(pen, view) {
   for (const { thing, array } of Object.values(view.ghosts)) {
-    const colour = view.ghostColour(thing);
+    const color = view.ghostColor(thing);
     const path = ringPath(view.skin.rim.at(array), view.camera);
-    pen.fillStyle = veil(colour, 0.2);
+    pen.fillStyle = veil(color, 0.2);
     pen.fill(path, "evenodd");
-    pen.strokeStyle = veil(colour, 0.8);
+    pen.strokeStyle = veil(color, 0.8);
     pen.lineWidth = 1.4;
     pen.stroke(path);
   }
@@ -93,8 +93,8 @@ export function drawFelt(pen, view) {
   pen.stroke(rim);
   // what is sought stays to be seen through the body
   for (const { thing, array } of Object.values(view.ghosts)) {
-    if (thing.colour === palette.ghost) continue;
-    pen.strokeStyle = veil(view.ghostColour(thing), 0.55);
+    if (thing.color === palette.ghost) continue;
+    pen.strokeStyle = veil(view.ghostColor(thing), 0.55);
     pen.lineWidth = 1.2;
     pen.setLineDash([4, 3]);
     pen.stroke(ringPath(skin.rim.at(array), camera));
@@ -138,10 +138,10 @@ export function drawGhostsInSpace(pen, view) {
   pen.lineCap = "round";
   for (const ghost of Object.values(view.ghosts)) {
     const { field, rim } = ghostPaths(view, ghost);
-    const colour = view.ghostColour(ghost.thing);
-    pen.fillStyle = veil(colour, 0.2);
+    const color = view.ghostColor(ghost.thing);
+    pen.fillStyle = veil(color, 0.2);
     pen.fill(field);
-    pen.strokeStyle = veil(colour, 0.75);
+    pen.strokeStyle = veil(color, 0.75);
     pen.stroke(rim);
   }
 }
@@ -151,8 +151,8 @@ function drawSought(pen, view) {
   pen.lineWidth = 1.2;
   pen.setLineDash([4, 3]);
   for (const ghost of Object.values(view.ghosts)) {
-    if (ghost.thing.colour === view.palette.ghost) continue;
-    pen.strokeStyle = veil(view.ghostColour(ghost.thing), 0.55);
+    if (ghost.thing.color === view.palette.ghost) continue;
+    pen.strokeStyle = veil(view.ghostColor(ghost.thing), 0.55);
     pen.stroke(ghostPaths(view, ghost).rim);
   }
   pen.setLineDash([]);

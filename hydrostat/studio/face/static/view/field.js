@@ -1,16 +1,16 @@
-// Values of the nodes of a flat body as a field of colours.
+// Values of the nodes of a flat body as a field of colors.
 
 import { rgb } from "./theme.js";
 
-const CELL = 2; // so many pixels of the view have one colour; it is smoothed when it is drawn
+const CELL = 2; // so many pixels of the view have one color; it is smoothed when it is drawn
 
-/** A row of colours as 256 colours, each four bytes. */
-export function ramp256(colours) {
+/** A row of colors as 256 colors, each four bytes. */
+export function ramp256(colors) {
   const bytes = new Uint8Array(4 * 256);
   for (let i = 0; i < 256; i++) {
-    const place = (i / 255) * (colours.length - 1);
-    const first = Math.min(Math.floor(place), colours.length - 2);
-    const [a, b] = [rgb(colours[first]), rgb(colours[first + 1])];
+    const place = (i / 255) * (colors.length - 1);
+    const first = Math.min(Math.floor(place), colors.length - 2);
+    const [a, b] = [rgb(colors[first]), rgb(colors[first + 1])];
     for (let k = 0; k < 3; k++) bytes[4 * i + k] = Math.round(255 * (a[k] + (place - first) * (b[k] - a[k])));
     bytes[4 * i + 3] = 255;
   }
@@ -31,9 +31,9 @@ function widened(nodes, loops) {
 }
 
 export class Field {
-  /** @param ramp 256 colours as bytes */
+  /** @param ramp 256 colors as bytes */
   constructor(ramp) {
-    this.colours = new Uint32Array(ramp.buffer);
+    this.colors = new Uint32Array(ramp.buffer);
     this.canvas = document.createElement("canvas");
     this.pen = this.canvas.getContext("2d", { willReadFrequently: true });
   }
@@ -63,7 +63,7 @@ export class Field {
     const ux = bx - ax, uy = by - ay, vx = cx - ax, vy = cy - ay;
     const whole = ux * vy - uy * vx;
     if (!whole) return;
-    const { pixels, colours } = this;
+    const { pixels, colors } = this;
     const first = Math.max(Math.ceil(Math.min(ay, by, cy) - 0.5), 0);
     const last = Math.min(Math.floor(Math.max(ay, by, cy) + 0.5), tall - 1);
     const from = Math.max(Math.ceil(Math.min(ax, bx, cx) - 0.5), 0);
@@ -75,7 +75,7 @@ export class Field {
         const t = (ux * (row - ay) - uy * (column - ax)) / whole;
         if (s < near || t < near || s + t > 1 - near) continue;
         const value = va + s * (vb - va) + t * (vc - va);
-        pixels[row * wide + column] = colours[value <= 0 ? 0 : value >= 1 ? 255 : Math.round(255 * value)];
+        pixels[row * wide + column] = colors[value <= 0 ? 0 : value >= 1 ? 255 : Math.round(255 * value)];
       }
     }
   }

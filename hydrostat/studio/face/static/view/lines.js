@@ -5,26 +5,26 @@ import { FAINT, mix, ramp, veil } from "./theme.js";
 const PIECE = 7; // a line in space is looked at so often [px]
 const FRONT = 0, INSIDE = 1, BEHIND = 2;
 
-/** Width and colour of a cable under its load: thicker, and towards the colours of tension. */
+/** Width and color of a cable under its load: thicker, and towards the colors of tension. */
 function cableLook(view, line) {
   const load = Math.min(Math.max(line.load ?? 0, 0), 1);
   const towards = ramp(view.palette.tension, load);
-  return { width: 2.5 + 3.5 * load, colour: load > 0.02 ? mix(line.colour, towards, Math.min(0.9, 0.35 + load)) : line.colour };
+  return { width: 2.5 + 3.5 * load, color: load > 0.02 ? mix(line.color, towards, Math.min(0.9, 0.35 + load)) : line.color };
 }
 
-/** The strips a line is drawn of, the lowest first: [layer, width, colour, dash]. */
+/** The strips a line is drawn of, the lowest first: [layer, width, color, dash]. */
 function strips(view, line) {
   const { palette, theme } = view;
-  const colour = line.colour === view.ink ? theme.ink : line.colour;
-  if (line.stroke === "sheath") return [[0, 10, mix(line.colour, palette.light, 0.68)]];
-  if (line.stroke === "miss") return [[5, 1.8, colour, [5, 4]]];
-  if (line.stroke === "rim") return [[3, 2.2, colour]];
-  if (line.stroke === "drawn") return [[0, 2, line.colour]];
-  if (line.stroke === "path") return [[3, 2, colour, line.chosen ? null : [7, 4]]];
+  const color = line.color === view.ink ? theme.ink : line.color;
+  if (line.stroke === "sheath") return [[0, 10, mix(line.color, palette.light, 0.68)]];
+  if (line.stroke === "miss") return [[5, 1.8, color, [5, 4]]];
+  if (line.stroke === "rim") return [[3, 2.2, color]];
+  if (line.stroke === "drawn") return [[0, 2, line.color]];
+  if (line.stroke === "path") return [[3, 2, color, line.chosen ? null : [7, 4]]];
   const look = cableLook(view, line);
-  const layers = [[2, look.width + 2.6, palette.light], [4, look.width, look.colour]];
-  if (line.chosen) layers.push([1, 16, mix(line.colour, palette.light, 0.45)]);
-  else if (line.key && line.key === view.hover) layers.push([1, 13, mix(line.colour, palette.light, 0.6)]);
+  const layers = [[2, look.width + 2.6, palette.light], [4, look.width, look.color]];
+  if (line.chosen) layers.push([1, 16, mix(line.color, palette.light, 0.45)]);
+  else if (line.key && line.key === view.hover) layers.push([1, 13, mix(line.color, palette.light, 0.6)]);
   return layers;
 }
 
@@ -63,16 +63,16 @@ export function drawLines(pen, view) {
   for (const line of view.lines) {
     const own = runs(view, line);
     const veiled = line.faint ? FAINT : 1;
-    for (const [layer, width, colour, dash] of strips(view, line)) layers[layer].push({ layer, own, width, colour, dash, veiled });
+    for (const [layer, width, color, dash] of strips(view, line)) layers[layer].push({ layer, own, width, color, dash, veiled });
   }
   const inside = 0.55 + 0.35 * (1 - view.opacity);
   for (const kind of [BEHIND, INSIDE, FRONT]) {
     for (const layer of layers) {
-      for (const { layer: level, own, width, colour, dash, veiled } of layer) {
+      for (const { layer: level, own, width, color, dash, veiled } of layer) {
         if (kind !== FRONT && level === 2) continue; // only what is before the body needs a rim
         pen.globalAlpha = veiled * (kind === FRONT ? 1 : kind === INSIDE ? inside : 0.55 * inside);
         pen.lineWidth = width;
-        pen.strokeStyle = colour;
+        pen.strokeStyle = color;
         pen.lineCap = kind === FRONT && !dash ? "round" : "butt";
         pen.setLineDash(dash ?? []);
         pen.beginPath();
@@ -97,7 +97,7 @@ export function drawClouds(pen, view) {
     const held = thing.name === "pins"; // what is held is seen at once, what can be reached is a mist
     const radius = held ? 2.1 : 1.7;
     for (const hidden of view.camera.flat ? [false] : [true, false]) {
-      pen.fillStyle = veil(thing.colour, hidden ? 0.16 : held ? 0.85 : 0.5);
+      pen.fillStyle = veil(thing.color, hidden ? 0.16 : held ? 0.85 : 0.5);
       pen.beginPath();
       for (let i = 0; i < array.length; i += 3) {
         view.camera.project(array[i], array[i + 1], array[i + 2], spot);

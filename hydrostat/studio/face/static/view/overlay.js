@@ -60,10 +60,10 @@ export class Overlay {
     }
     area.path = path;
     const lively = area.chosen || area.key === view.hover;
-    pen.fillStyle = veil(area.colour, lively ? 0.3 : 0.2);
+    pen.fillStyle = veil(area.color, lively ? 0.3 : 0.2);
     pen.fill(path);
     pen.lineWidth = lively ? 2.5 : 1.5;
-    pen.strokeStyle = veil(area.colour, 0.9);
+    pen.strokeStyle = veil(area.color, 0.9);
     pen.setLineDash(lively ? [] : [6, 4]);
     pen.stroke(path);
     pen.setLineDash([]);
@@ -71,7 +71,7 @@ export class Overlay {
 
   pin(view, dot) {
     const { pen } = this;
-    const colour = this.tone(view, dot.colour);
+    const color = this.tone(view, dot.color);
     pen.globalAlpha = dot.depth > 1 ? 0.4 : 1;
     this.halo(view, dot, 13);
     if (dot.radius > 0 && view.camera.flat) {
@@ -81,7 +81,7 @@ export class Overlay {
       pen.save();
       pen.clip(reach);
       pen.lineWidth = 1;
-      pen.strokeStyle = veil(dot.colour, 0.4);
+      pen.strokeStyle = veil(dot.color, 0.4);
       pen.beginPath();
       for (let k = -2 * radius; k < 2 * radius; k += 6) {
         pen.moveTo(dot.x + k - radius, dot.y + radius);
@@ -90,7 +90,7 @@ export class Overlay {
       pen.stroke();
       pen.restore();
       pen.setLineDash([4, 4]);
-      pen.strokeStyle = veil(dot.colour, 0.8);
+      pen.strokeStyle = veil(dot.color, 0.8);
       pen.lineWidth = 1.2;
       pen.stroke(reach);
       pen.setLineDash([]);
@@ -101,7 +101,7 @@ export class Overlay {
     pen.lineTo(dot.x + 7, dot.y + 5);
     pen.lineTo(dot.x - 7, dot.y + 5);
     pen.closePath();
-    pen.fillStyle = dot.colour;
+    pen.fillStyle = dot.color;
     pen.strokeStyle = "#ffffff";
     pen.lineWidth = 1.5;
     pen.stroke();
@@ -110,7 +110,7 @@ export class Overlay {
     pen.moveTo(dot.x - 9, dot.y + 8);
     pen.lineTo(dot.x + 9, dot.y + 8);
     pen.lineWidth = 2;
-    pen.strokeStyle = view.camera.flat ? dot.colour : colour;
+    pen.strokeStyle = view.camera.flat ? dot.color : color;
     pen.stroke();
     pen.globalAlpha = 1;
   }
@@ -122,7 +122,7 @@ export class Overlay {
     pen.globalAlpha = (dot.faint ? FAINT : 1) * (dot.depth > 1 ? 0.45 : 1);
     if (look === "winch") {
       this.halo(view, dot, 18);
-      this.disc(x, y, lively ? 13 : 12, dot.colour, "#ffffff", 2);
+      this.disc(x, y, lively ? 13 : 12, dot.color, "#ffffff", 2);
       pen.fillStyle = "#ffffff";
       pen.font = `600 ${dot.short.length > 1 ? 11 : 13}px ${view.font}`;
       pen.textAlign = "center";
@@ -130,43 +130,43 @@ export class Overlay {
       pen.fillText(dot.short, x, y + 0.5);
     } else if (look === "marker") {
       this.halo(view, dot, 11);
-      this.disc(x, y, lively ? 6.5 : 5.5, dot.colour, "#ffffff", 2);
+      this.disc(x, y, lively ? 6.5 : 5.5, dot.color, "#ffffff", 2);
       this.disc(x, y, 1.6, "#ffffff");
     } else if (look === "target") {
       this.halo(view, dot, 15);
-      const tone = this.tone(view, dot.colour);
-      this.cross(x, y, 9, tone === dot.colour ? "#ffffff" : view.theme.paper, 4.5); // colours of poses are dark ones
+      const tone = this.tone(view, dot.color);
+      this.cross(x, y, 9, tone === dot.color ? "#ffffff" : view.theme.paper, 4.5); // colors of poses are dark ones
       this.cross(x, y, 9, tone, 1.8);
     } else if (look === "via") {
       this.halo(view, dot, 10);
-      this.disc(x, y, lively ? 5.5 : 4, "#ffffff", dot.colour, 2);
+      this.disc(x, y, lively ? 5.5 : 4, "#ffffff", dot.color, 2);
     } else if (look === "stopper") {
       this.halo(view, dot, 11);
       const half = lively ? 5.5 : 4.5;
       pen.beginPath();
       pen.roundRect(x - half, y - half, 2 * half, 2 * half, 1.5);
-      pen.fillStyle = dot.colour;
+      pen.fillStyle = dot.color;
       pen.strokeStyle = "#ffffff";
       pen.lineWidth = 3;
       pen.stroke();
       pen.fill();
     } else if (look === "touch") {
-      this.disc(x, y, 4, dot.colour, "#ffffff", 1.5);
+      this.disc(x, y, 4, dot.color, "#ffffff", 1.5);
     } else if (look === "flag") {
       const radius = dot.chosen || told(view, dot) ? 19 : 16;
       this.ring(x, y, radius, view.theme.paper, 5);
-      this.ring(x, y, radius, dot.colour, dot.chosen ? 3 : 2);
+      this.ring(x, y, radius, dot.color, dot.chosen ? 3 : 2);
     } else {
       this.halo(view, dot, 13);
-      this.disc(x, y, lively ? 8 : 7, "#ffffff", dot.colour, 2.5);
+      this.disc(x, y, lively ? 8 : 7, "#ffffff", dot.color, 2.5);
     }
     pen.globalAlpha = 1;
   }
 
   halo(view, dot, radius) {
     if (!dot.chosen) return;
-    const colour = dot.look === "winch" || dot.look === "via" || dot.look === "stopper" ? dot.colour : view.theme.accent;
-    this.disc(dot.x, dot.y, radius, veil(colour, 0.28), veil(colour, 0.85), 1.5);
+    const color = dot.look === "winch" || dot.look === "via" || dot.look === "stopper" ? dot.color : view.theme.accent;
+    this.disc(dot.x, dot.y, radius, veil(color, 0.28), veil(color, 0.85), 1.5);
   }
 
   disc(x, y, radius, fill, stroke, width) {
@@ -181,16 +181,16 @@ export class Overlay {
     pen.stroke();
   }
 
-  ring(x, y, radius, colour, width) {
+  ring(x, y, radius, color, width) {
     const { pen } = this;
     pen.beginPath();
     pen.arc(x, y, radius, 0, 2 * Math.PI);
-    pen.strokeStyle = colour;
+    pen.strokeStyle = color;
     pen.lineWidth = width;
     pen.stroke();
   }
 
-  cross(x, y, radius, colour, width) {
+  cross(x, y, radius, color, width) {
     const { pen } = this;
     pen.beginPath();
     pen.arc(x, y, radius, 0, 2 * Math.PI);
@@ -202,14 +202,14 @@ export class Overlay {
     pen.lineTo(x, y - 2.5);
     pen.moveTo(x, y + 2.5);
     pen.lineTo(x, y + radius + 4);
-    pen.strokeStyle = colour;
+    pen.strokeStyle = color;
     pen.lineWidth = width;
     pen.stroke();
   }
 
   /** Dark ink is light on a dark page. */
-  tone(view, colour) {
-    return colour === view.ink ? view.theme.ink : colour;
+  tone(view, color) {
+    return color === view.ink ? view.theme.ink : color;
   }
 
   /** Labels beside their dots, where there is room; those of what is chosen or under the pointer always. */
@@ -247,7 +247,7 @@ export class Overlay {
     if (pill) {
       pen.beginPath();
       pen.roundRect(slot.x, slot.y, slot.w, slot.h, 6);
-      pen.fillStyle = dot.colour;
+      pen.fillStyle = dot.color;
       pen.fill();
       pen.strokeStyle = "rgba(255,255,255,0.85)";
       pen.lineWidth = 1.2;
@@ -265,7 +265,7 @@ export class Overlay {
     const y = area.spots.reduce((sum, spot) => sum + spot[1], 0) / area.spots.length;
     pen.font = `600 13px ${view.font}`;
     pen.textAlign = "center";
-    this.words(view, area.label, x, y, mix(area.colour, view.ink, 0.45), view.palette.light);
+    this.words(view, area.label, x, y, mix(area.color, view.ink, 0.45), view.palette.light);
     pen.textAlign = "left";
   }
 

@@ -11,7 +11,7 @@ import { mix, theme } from "./theme.js";
 
 export class Shown {
   /**
-   * @param {Record<string, any>} palette colours by name, and `tension`, a row of them
+   * @param {Record<string, any>} palette colors by name, and `tension`, a row of them
    * @param {boolean} dark whether the page is
    */
   constructor(palette, dark) {
@@ -110,8 +110,8 @@ export class Shown {
     this.ghosts = fresh;
   }
 
-  ghostColour(thing) {
-    return thing.colour === this.palette.ghost ? this.theme.ghost : thing.colour;
+  ghostColor(thing) {
+    return thing.color === this.palette.ghost ? this.theme.ghost : thing.color;
   }
 
   add(part) {
@@ -133,11 +133,11 @@ export class Shown {
     for (const dot of this.dots) dot.place = [0, 1, 2].map((k) => arrays.points[3 * dot.first + k]);
   }
 
-  /** Colours, and how much is seen through the body. */
+  /** Colors, and how much is seen through the body. */
   applyLook() {
     const { surface, palette } = this;
     if (!surface) return;
-    surface.colour(palette, mix(palette.seam, palette.dark, 0.12));
+    surface.color(palette, mix(palette.seam, palette.dark, 0.12));
     surface.see(this.opacity);
     surface.section(this.cut);
   }

@@ -1,4 +1,4 @@
-// What WebGL draws: the surface of a body in space, of felt or coloured by values.
+// What WebGL draws: the surface of a body in space, of felt or colored by values.
 
 import { THREE } from "nicegui-scene";
 import { rgb } from "./theme.js";
@@ -31,7 +31,7 @@ uniform vec3 felt;
 uniform vec3 light;
 uniform vec3 seam;
 uniform vec3 inside;
-uniform float coloured;
+uniform float colored;
 uniform float opacity;
 uniform sampler2D ramp;
 ${CUT}
@@ -49,7 +49,7 @@ void main() {
   vec3 wool = mix(mix(seam, felt, smoothstep(-0.15, 0.62, bright)), light, 0.9 * smoothstep(0.5, 1.0, bright));
   wool = mix(wool, seam, 0.62 * edge * edge * edge);
   vec3 data = base * (0.66 + 0.4 * bright) * (1.0 - 0.25 * edge * edge * edge);
-  gl_FragColor = vec4(mix(wool, data, coloured), opacity);
+  gl_FragColor = vec4(mix(wool, data, colored), opacity);
 }`;
 
 const DEPTH = `
@@ -101,7 +101,7 @@ export class Surface {
     texture.needsUpdate = true;
     this.uniforms = {
       felt: { value: new THREE.Vector3() }, light: { value: new THREE.Vector3() }, seam: { value: new THREE.Vector3() },
-      inside: { value: new THREE.Vector3() }, coloured: { value: 0 }, opacity: { value: 1 }, ramp: { value: texture },
+      inside: { value: new THREE.Vector3() }, colored: { value: 0 }, opacity: { value: 1 }, ramp: { value: texture },
       cut: { value: new THREE.Vector4(0, 0, 0, 1) },
     };
     const own = { vertexShader: VERTEX, uniforms: this.uniforms, transparent: true };
@@ -111,7 +111,7 @@ export class Surface {
     this.see(1);
   }
 
-  colour(palette, inside) {
+  color(palette, inside) {
     this.uniforms.felt.value.set(...rgb(palette.felt));
     this.uniforms.light.value.set(...rgb(palette.felt_light));
     this.uniforms.seam.value.set(...rgb(palette.seam));
@@ -123,7 +123,7 @@ export class Surface {
     position.array.set(nodes);
     smooth(nodes, this.faces, normal.array);
     position.needsUpdate = normal.needsUpdate = true;
-    this.uniforms.coloured.value = values ? 1 : 0;
+    this.uniforms.colored.value = values ? 1 : 0;
     if (values) {
       value.array.set(values);
       value.needsUpdate = true;

@@ -1,4 +1,4 @@
-// Colours that follow the page. The colours of felt and cables come from palette.py, as a prop.
+// Colors that follow the page. The colors of felt and cables come from palette.py, as a prop.
 
 const LIGHT = {
   back: "#faf8f6", grid: "#efebed", ink: "#2b2833", muted: "#6d6876", paper: "#ffffff",
@@ -19,7 +19,7 @@ export function theme(dark) {
 export const FAINT = 0.5;
 
 /**
- * Red, green and blue, 0 to 1, of a colour such as "#0b5fa5".
+ * Red, green and blue, 0 to 1, of a color such as "#0b5fa5".
  * @returns {[number, number, number]}
  */
 export function rgb(hex) {
@@ -27,20 +27,20 @@ export function rgb(hex) {
   return [(number >> 16) / 255, ((number >> 8) & 255) / 255, (number & 255) / 255];
 }
 
-/** A colour with a share, 0 to 1, of another. */
-export function mix(colour, other, share) {
-  const [a, b] = [rgb(colour), rgb(other)];
+/** A color with a share, 0 to 1, of another. */
+export function mix(color, other, share) {
+  const [a, b] = [rgb(color), rgb(other)];
   return "#" + a.map((value, i) => Math.round(255 * (value + share * (b[i] - value))).toString(16).padStart(2, "0")).join("");
 }
 
-/** A colour of some opacity, for a canvas. */
-export function veil(colour, opacity) {
-  return `rgba(${rgb(colour).map((value) => Math.round(255 * value)).join(",")},${opacity})`;
+/** A color of some opacity, for a canvas. */
+export function veil(color, opacity) {
+  return `rgba(${rgb(color).map((value) => Math.round(255 * value)).join(",")},${opacity})`;
 }
 
-/** The colour at a share, 0 to 1, of a row of colours. */
-export function ramp(colours, share) {
-  const place = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
-  const first = Math.min(Math.floor(place), colours.length - 2);
-  return mix(colours[first], colours[first + 1], place - first);
+/** The color at a share, 0 to 1, of a row of colors. */
+export function ramp(colors, share) {
+  const place = Math.min(Math.max(share, 0), 1) * (colors.length - 1);
+  const first = Math.min(Math.floor(place), colors.length - 2);
+  return mix(colors[first], colors[first + 1], place - first);
 }

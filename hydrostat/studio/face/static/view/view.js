@@ -19,7 +19,7 @@ export class View extends Shown {
    * @param {HTMLElement} element that is filled
    * @param {HTMLCanvasElement[]} canvases three, one over the other: for ghosts in space, for the body in space, for all else
    * @param {{stream: string, dark: boolean, palette: Record<string, any>, brush: boolean}} options of the page; the
-   *   palette has colours by name and `tension`, a row of them
+   *   palette has colors by name and `tension`, a row of them
    * @param {(name: string, value: any) => void} tell is told "connected", "failure" and "note"
    */
   constructor(element, canvases, options, tell) {

@@ -1,4 +1,4 @@
-"""Colours of strain and stress. Oracles: closed forms of homogeneous stretch and shear, differences of the energy."""
+"""Colors of strain and stress. Oracles: closed forms of homogeneous stretch and shear, differences of the energy."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics
 from hydrostat.studio.posing.movers import MuscleMover
 from hydrostat.studio.posing.pose_state import HeldPoint
-from hydrostat.studio.view.colouring import Colouring, node_strains, node_stresses, node_values, scale
+from hydrostat.studio.view.coloring import Coloring, node_strains, node_stresses, node_values, scale
 from hydrostat.studio.view.things import rest_shape
 
 ROBOTS = {2: strip_robot(columns=6, rows=2), 3: box_robot()}
@@ -88,24 +88,24 @@ def test_turning_a_body_strains_nothing() -> None:
     assert node_stresses(robot, moved(robot, turn)) == pytest.approx(0.0, abs=1e-6 * robot.body.material.young)
 
 
-def test_colours_are_shares_of_a_steady_scale() -> None:
+def test_colors_are_shares_of_a_steady_scale() -> None:
     robot = ROBOTS[2]
     nodes = moved(robot, np.diag([1.2, 1.0]))
-    legend = scale(robot, Colouring.STRAIN)
+    legend = scale(robot, Coloring.STRAIN)
     assert legend is not None
-    values = node_values(robot, replace(rest_shape(robot), nodes=nodes), Colouring.STRAIN)
+    values = node_values(robot, replace(rest_shape(robot), nodes=nodes), Coloring.STRAIN)
     assert values == pytest.approx(0.2 / legend.most)
     assert legend.high == f"{100 * legend.most:.3g} %"
     wide = replace(rest_shape(robot), nodes=moved(robot, np.diag([9.0, 1.0])))
-    far = node_values(robot, wide, Colouring.STRESS)
+    far = node_values(robot, wide, Coloring.STRESS)
     assert far is not None
     assert far.max() == 1.0
-    assert node_values(robot, rest_shape(robot), Colouring.FELT) is None
-    assert scale(robot, Colouring.FELT) is None
+    assert node_values(robot, rest_shape(robot), Coloring.FELT) is None
+    assert scale(robot, Coloring.FELT) is None
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-def test_muscles_are_coloured_as_hard_as_they_pull(dim: int) -> None:
+def test_muscles_are_colored_as_hard_as_they_pull(dim: int) -> None:
     """The mean over the edges of each node, counted one by one; nothing where no muscle moves the body."""
     robot = ROBOTS[dim]
     mover, marker = MuscleMover(robot), robot.markers[0]
@@ -114,10 +114,10 @@ def test_muscles_are_coloured_as_hard_as_they_pull(dim: int) -> None:
     held = {marker.name: HeldPoint(at=marker.at, target=tuple(goal.tolist()), marker=True)}
     for _ in range(20):
         shape, _ = mover.update(held)
-    values = node_values(robot, shape, Colouring.MUSCLES)
+    values = node_values(robot, shape, Coloring.MUSCLES)
     assert values is not None
     tensions, edges = mover.pulls[1], robot.body.mesh.edges
     means = np.array([tensions[(edges == node).any(axis=1)].mean() for node in range(len(values))])
     assert values == pytest.approx(means / means.max(), abs=1e-12)
-    assert node_values(robot, mover.rest(), Colouring.MUSCLES) == pytest.approx(0.0)
-    assert node_values(robot, rest_shape(robot), Colouring.MUSCLES) is None
+    assert node_values(robot, mover.rest(), Coloring.MUSCLES) == pytest.approx(0.0)
+    assert node_values(robot, rest_shape(robot), Coloring.MUSCLES) is None
