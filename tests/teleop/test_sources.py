@@ -41,7 +41,7 @@ TIPS = DriveChannels(
 )
 
 
-def until(read: Callable, wanted: Callable, seconds: float = 5.0):
+def until(read: Callable, wanted: Callable, seconds: float = 60.0):
     """What is read first that is wanted."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:

@@ -35,7 +35,7 @@ def printed(content: bytes, page: int, folder: Path) -> np.ndarray:
     """A page as poppler prints it at 300 pixels an inch, (rows, columns, 3)."""
     (folder / "pages.pdf").write_bytes(content)
     command = ["pdftoppm", "-r", "300", "-f", str(page), "-l", str(page), "-png", "-singlefile", "pages.pdf", "page"]
-    subprocess.run(command, cwd=folder, check=True, timeout=60)
+    subprocess.run(command, cwd=folder, check=True, timeout=300)
     with Image.open(folder / "page.png") as image:
         return np.asarray(image.convert("RGB")).astype(int)
 

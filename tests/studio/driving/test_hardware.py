@@ -20,7 +20,7 @@ from hydrostat.studio.stage import StageName
 pytestmark = pytest.mark.usefixtures("unchecked")
 
 
-def until(done: Callable[[], bool], seconds: float = 30.0) -> bool:
+def until(done: Callable[[], bool], seconds: float = 120.0) -> bool:
     """Wait for something; long enough for a machine that is busy."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -58,7 +58,7 @@ def test_motors_do_what_is_shown_once_they_are_armed(session: Session) -> None:
     step(session, 0.4)
     assert hardware.places["left"] == 0.0  # nothing turns before it is armed
     hardware.arm()
-    end = time.monotonic() + 30
+    end = time.monotonic() + 120
     while hardware.places["left"] < 0.0075 and time.monotonic() < end:
         step(session, 0.05)
     assert hardware.places["left"] == pytest.approx(0.008, abs=5e-4)
@@ -144,7 +144,7 @@ def test_a_line_that_is_gone_is_told(session: Session) -> None:
 def test_two_windows_that_connect_at_once_leave_no_port_open(session: Session) -> None:
     """Oracle: ports that are counted; the second finds the motors of the first, and lets its own go."""
     hardware, inner = session.hardware, session.hardware._opener
-    opened, closed, both = [], [], threading.Barrier(2, timeout=30)
+    opened, closed, both = [], [], threading.Barrier(2, timeout=120)
 
     def opener(*given) -> Bus:
         bus = inner(*given)

@@ -28,7 +28,7 @@ LIMIT = 50_000
 
 def raw(port: int, text: bytes) -> tuple[int, dict[str, str], bytes]:
     """Status, headers and body of the answer to a request, sent as it is."""
-    with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
+    with socket.create_connection(("127.0.0.1", port), timeout=120) as connection:
         connection.sendall(text)
         response = http.client.HTTPResponse(connection, method=text.split(b" ")[0].decode())
         response.begin()
@@ -112,7 +112,7 @@ def test_websockets_of_other_pages_are_refused(server: Server, path: str) -> Non
     ):
         pass
     with connect(address, origin=own) as welcome:  # type: ignore[arg-type]
-        assert welcome.recv(timeout=20)
+        assert welcome.recv(timeout=120)
 
 
 def test_no_path_leads_to_other_files(server: Server) -> None:
@@ -154,7 +154,7 @@ def small_app() -> Iterator[tuple[int, list[int]]]:
         yield port, read
     finally:
         running.should_exit = True
-        thread.join(timeout=20)
+        thread.join(timeout=120)
 
 
 def test_a_body_that_never_ends_is_cut_off() -> None:
@@ -225,7 +225,7 @@ def test_websockets_need_the_token(open_server: Server) -> None:
         pass
     cookie = {"Cookie": f"hydrostat_token_{port}={token}"}
     with connect(address, origin=own, additional_headers=cookie) as welcome:  # type: ignore[arg-type]
-        assert welcome.recv(timeout=20)
+        assert welcome.recv(timeout=120)
 
 
 def test_with_a_token_addresses_in_numbers_will_do_but_names_will_not(open_server: Server) -> None:

@@ -105,7 +105,7 @@ def _stage(before: int) -> str:
 
 def until(true: Callable[[], bool]) -> None:
     """Wait for what another thread does."""
-    end = time.monotonic() + 60.0
+    end = time.monotonic() + 240.0
     while not true():
         assert time.monotonic() < end
         time.sleep(0.02)

@@ -36,6 +36,6 @@ def run(folder: Path, script: str, *arguments: Path) -> Any:
     (three / "package.json").write_text('{"type": "module", "main": "index.js"}')
     (folder / "script.js").write_text("const given = process.argv.slice(2);\n" + script)
     command = [NODE, str(folder / "script.js"), *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
