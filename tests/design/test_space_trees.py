@@ -63,7 +63,7 @@ def test_winches_stand_in_a_body_where_the_robots_own_do() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "pose"), [("trunk", "feed"), ("cupping_hand", "fist"), ("bear", "hug")])
+@pytest.mark.parametrize(("name", "pose"), [("trunk", "feed"), ("bear", "hug")])
 def test_a_network_in_space_can_be_built(name: str, pose: str, unchecked: None) -> None:
     """By sentences of the checks, which know nothing of trees; and it reaches what it says, by a fresh simulation."""
     network, robot = designed(name, pose), gallery_robot(name)
@@ -80,7 +80,7 @@ def test_a_network_in_space_can_be_built(name: str, pose: str, unchecked: None) 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("phi", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("phi", [0.0, 0.5])
 def test_the_first_winch_scores_best_of_all_places_and_routes(phi: float, unchecked: None) -> None:
     """R39, R41, R43: the strongest fibres, then brute force over each winch of the trunk and each run of routes."""
     network, robot = designed("trunk", "feed", phi), gallery_robot("trunk")

@@ -14,9 +14,7 @@ from hydrostat.geometry.triangles.triangulate import triangulate
 
 SOLIDS: dict[str, tuple[Maker, int]] = {
     "ball": (ball, 300),
-    "ball of many": (ball, 1500),
     "ring": (ring, 900),
-    "plate": (lambda: brick(0.12, 0.12, 0.01), 1000),
     "rod": (lambda: moved(brick(0.3, 0.01, 0.01), turned=0.3), 1000),
     "fingers": (lambda: two_fingers(0.01), 900),
 }

@@ -11,7 +11,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
-from plot.designs import space_network, space_trace
+from plot.designs import grown, space_network, space_trace
 
 from hydrostat import plot
 from hydrostat.drawing import FELT, mix
@@ -184,8 +184,9 @@ def test_winches_far_away_are_on_the_picture() -> None:
 
 @pytest.mark.slow
 def test_the_report_of_a_body_in_space() -> None:
-    text = report_text(space_network())
+    text = report_text(grown(space_network()))
     assert "tetrahedra" in text
+    assert "How it grew" in text
     assert "<animate" not in text
     assert text.count("data:image/png;base64,") >= 10
 

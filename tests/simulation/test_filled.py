@@ -10,15 +10,17 @@ ROBOT = load_robot(gallery_folder("starfish"))
 PULLED = np.array([0.0, 0.02, 0.01])
 
 
-@pytest.mark.parametrize(("face", "least", "most"), [("pairs", 0.0, 1e-3), ("middle", 0.0, 1e-3), ("front", 1e-2, 0.1)])
-def test_pairs_keep_a_body_flat_and_one_face_curls_it(face: str, least: float, most: float, unchecked: None) -> None:
+@pytest.mark.parametrize("face", ["pairs", "middle"])
+def test_cables_on_both_faces_or_between_them_keep_a_body_flat(face: str, unchecked: None) -> None:
     found = filled_motion(ROBOT, [PULLED], face)
-    assert least <= found.out <= most
+    assert 0.0 <= found.out <= 1e-3
     assert found.face is Face(face)
 
 
-def test_the_most_of_all_poses_is_told(unchecked: None) -> None:
+def test_one_face_curls_it_and_the_most_of_all_poses_is_told(unchecked: None) -> None:
     found = filled_motion(ROBOT, [0.5 * PULLED, PULLED], "front")
+    assert 1e-2 <= found.out <= 0.1
+    assert found.face is Face.FRONT
     flat, solid = Simulation(ROBOT).solve(PULLED), Simulation(inflated_robot(ROBOT, "front")).solve(PULLED)
     assert found.out == pytest.approx(max(abs(place[2]) for place in solid.markers.values()))
     assert found.tension == pytest.approx(solid.tensions.max())

@@ -65,10 +65,10 @@ def kit(starfish: Robot) -> tuple[KitMade, Told]:
 
 
 @pytest.fixture
-def exporter(starfish: Robot) -> Exporter:
+def exporter(waving: Robot) -> Exporter:
     bell = Bell()
     document = Document(bell)
-    document.open(Work(robot=starfish))
+    document.open(Work(robot=waving))
     return Exporter(document, Jobs(bell))
 
 
