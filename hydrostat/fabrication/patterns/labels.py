@@ -27,7 +27,7 @@ class FreeSpace:
         self._inside = inside
         lines = [shapely.get_coordinates(shape.geometry) for shape in shapes]
         pairs = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
-        self._taken: list[BaseGeometry] = [shapely.LineString(pair) for pair in pairs]
+        self._taken: list[BaseGeometry] = list(shapely.linestrings(pairs))
         self._texts: list[BaseGeometry] = []
         shapely.prepare(inside)
 
@@ -35,7 +35,7 @@ class FreeSpace:
         """Middle of a box as near to a place as there is room, else where it crosses the least [mm]."""
         centres = _round(at, width, height, gap + np.arange(0, 14, 1.5))
         crossings = self._crossings(centres, _boxes(centres, width, height))
-        leaders = np.array([shapely.LineString([at, centre]) for centre in centres])
+        leaders = shapely.linestrings(np.stack([np.broadcast_to(at, centres.shape), centres], axis=1))
         through_text = 3  # so is a line to a label through another, for so many
         crossings += through_text * _hits(self._texts, leaders)
         x, y = centres[np.argmin(crossings)].tolist()
@@ -56,6 +56,7 @@ class FreeSpace:
         left, bottom, right, top = self._inside.bounds
         x, y = np.meshgrid(np.arange(left, right, 3.0), np.arange(bottom, top, 3.0))
         centres = np.column_stack([x.ravel(), y.ravel()])
+        centres = centres[shapely.contains_xy(self._inside, centres)]
         boxes = _boxes(centres, width, height)
         free = self._crossings(centres, boxes) == 0
         if not free.any():

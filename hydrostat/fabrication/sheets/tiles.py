@@ -280,5 +280,7 @@ def _image(pattern: Pattern, shapes: Iterable[Shape], window: _Box, size: tuple[
 
 def _text(text: str) -> str:
     """A string of typst; its escapes are those of JSON, but for characters of control."""
-    plain = "".join(letter if letter.isprintable() else " " for letter in text)
-    return json.dumps(plain, ensure_ascii=False)
+    for letter in {*text}:
+        if not letter.isprintable():
+            text = text.replace(letter, " ")
+    return json.dumps(text, ensure_ascii=False)
