@@ -6,7 +6,7 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.ik.ik_result import IKResult, IKStatus
-    from hydrostat.ik.limits import Limits
+    from hydrostat.ik.limits import Limits, spool_arms
     from hydrostat.ik.linearized_pose import LinearizedPose, unconstrained_motion
     from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, begin_robot, new_robot
     from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
@@ -70,6 +70,7 @@ __all__ = [
     "reach_extent",
     "solve_ik",
     "solve_ik_trajectory",
+    "spool_arms",
     "state_at",
     "state_jacobian_at",
     "unconstrained_motion",

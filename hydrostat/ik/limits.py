@@ -24,6 +24,8 @@ class Limits:
         rate: maximum rate of change of a contraction [m/s], for every winch or by name; counted from the start.
         interval: time available for the change from the start [s]; required with a rate.
         tension: maximum cable tension [N], for every winch's cables or by the winch's name.
+        torque: maximum torque of a winch [N m], for every winch or by name: the sum over its cables of spool radius
+            times tension.
         equal: groups of winches that share one contraction.
     """
 
@@ -31,6 +33,7 @@ class Limits:
     rate: float | Mapping[str, float] | None = None
     interval: float | None = None
     tension: float | Mapping[str, float] | None = None
+    torque: float | Mapping[str, float] | None = None
     equal: Sequence[Sequence[str]] = ()
 
 
@@ -46,6 +49,9 @@ class Bounds:
     channels: np.ndarray  # channel of each winch
     spread: Float[np.ndarray, "winches channels"]  # 1 where a winch follows a channel
     cables: np.ndarray  # channel of each cable
+    loads: Float[np.ndarray, "loads cables"]  # limited sums of tensions: single cables [1], torques of winches [m]
+    most: Vector  # their maxima [N], [N m]
+    motors: tuple[str, ...]  # winches of the torques among them, the last of the loads
 
     def channel(self, contractions: Vector) -> Vector:
         """Contractions of the channels, from those of the winches: the mean of a group, within the limits."""
@@ -62,8 +68,8 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
     """Limits on one robot.
 
     Raises:
-        InputError: no simulation, no limits, a winch that it does not have, an empty range, a rate or tension not above
-            0, a rate without an interval or the other way round, a winch named twice among equal ones.
+        InputError: no simulation, no limits, a winch that it does not have, an empty range, a rate, tension or torque
+            not above 0, a rate without an interval or the other way round, a winch named twice among equal ones.
     """
     if not isinstance(simulation, Simulation):
         raise InputError(f"simulation must be a Simulation(robot), not {describe(simulation)}")
@@ -83,22 +89,38 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
         reach = reach * above_zero("interval of limits", limits.interval, unit="s")
     elif limits.interval is not None:
         raise InputError(f"an interval of {describe(limits.interval)} s limits nothing without a rate; give a rate too")
+    tension, torque = largest[simulation.cables.winches], limit_by_winch(robot, limits.torque, "torque", "N m")
+    arms = spool_arms(robot)
+    limited, turned = np.isfinite(tension), np.isfinite(torque) & arms.any(axis=1)
     lows = np.array([low[channels == channel].max() for channel in range(count)])
     highs = np.array([high[channels == channel].min() for channel in range(count)])
     found = Bounds(
         low=lows,
         high=highs,
         span=np.maximum(highs - lows, np.finfo(float).tiny),
-        tension=largest[simulation.cables.winches],
+        tension=tension,
         reach=np.array([reach[channels == channel].min() for channel in range(count)]),
         channels=channels,
         spread=spread,
         cables=channels[simulation.cables.winches],
+        loads=np.concatenate([np.eye(len(tension))[limited], arms[turned]]),
+        most=np.concatenate([tension[limited], torque[turned]]),
+        motors=tuple(winch.name for winch, own in zip(robot.winches, turned, strict=True) if own),
     )
     for channel in np.flatnonzero(found.low > found.high):
         names = ", ".join(winch.name for winch, own in zip(robot.winches, channels, strict=True) if own == channel)
         raise InputError(f"no contraction of {names} is within all of its limits; widen them")
     return found
+
+
+def spool_arms(robot: Robot) -> Float[np.ndarray, "winches cables"]:
+    """Radius at which each winch pulls each cable [m]; 0 for cables of other winches."""
+    arms = np.zeros((len(robot.winches), len(robot.cables)))
+    numbers = {winch.name: number for number, winch in enumerate(robot.winches)}
+    for index, cable in enumerate(robot.cables):
+        number = numbers[cable.winch]
+        arms[number, index] = cable.spool_radius or robot.winches[number].spool_radius
+    return arms
 
 
 def _groups(robot: Robot, equal: Sequence[Sequence[str]]) -> np.ndarray:

@@ -183,3 +183,24 @@ def test_a_rate_bounds_both_directions() -> None:
     near = bounds(STRIP, Limits(rate=0.03, interval=0.1)).near(start)
     np.testing.assert_allclose(near.high, start + 0.003, rtol=1e-12)
     np.testing.assert_allclose(near.low, start - 0.003, rtol=1e-12)
+
+
+@pytest.mark.parametrize("most", [0.002, 0.006])
+def test_torque_of_a_winch_that_pulls_two_cables(most: float) -> None:
+    """The sum of radius times tension holds to 2e-6 and is used to the full; one cable pulls more than its even share.
+
+    The target is out of reach, and a tension limit of the even share would leave a larger error.
+    """
+    robot = strip_robot()
+    up, down = robot.cables
+    second = replace(up, name="up 2", points=tuple((x, 0.4 * y) for x, y in up.points), spool_radius=0.004)
+    simulation = Simulation(robot.with_network(robot.winches, [up, second, down]))
+    arms = np.array([robot.winches[0].spool_radius, 0.004])
+    reached = solve_ik(simulation, FAR, limits=Limits(torque={"up": most}))
+    tensions = reached.pose.tensions[:2]
+    assert float(arms @ tensions) == pytest.approx(most, rel=2e-6)
+    assert f"up: at maximum torque, {1e3 * most:.4g} N mm" in reached.active_limits
+    share = most / arms.sum()
+    assert tensions.max() > share
+    shared = solve_ik(simulation, FAR, limits=Limits(tension={"up": share}))
+    assert reached.rms_error < shared.rms_error

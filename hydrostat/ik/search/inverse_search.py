@@ -344,6 +344,13 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
     full = state.posture.tensions >= (1.0 - _HAIR) * bounds.tension
     pulling = {robot.cables[cable].winch: bounds.tension[cable] for cable in np.flatnonzero(full)}
     words.extend(f"{name}: at maximum tension, {most:.4g} N" for name, most in pulling.items())
+    first = len(bounds.most) - len(bounds.motors)
+    torques = (bounds.loads @ state.posture.tensions)[first:]
+    words.extend(
+        f"{name}: at maximum torque, {1e3 * most:.4g} N mm"
+        for name, torque, most in zip(bounds.motors, torques, bounds.most[first:], strict=True)
+        if torque >= (1.0 - _HAIR) * most
+    )
     return tuple(words)
 
 

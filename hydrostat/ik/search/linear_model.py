@@ -83,8 +83,7 @@ class LinearModel:
         """Residual and its slopes, slopes of tensions, and limits at contractions `values` of the channels."""
         self.residual, self.matrix, self.places, self.bounds, self.values = residual, matrix, places, bounds, values
         self._pulls = posture.tensions[places.first], tensions[places.first]
-        limited = np.isfinite(bounds.tension)
-        self._tensions = posture.tensions[limited], tensions[limited], bounds.tension[limited]
+        self._loads = bounds.loads @ posture.tensions, bounds.loads @ tensions, bounds.most
         self._efforts = posture.tensions, tensions
         self.active = places.active
         self.range = bounds.span
@@ -190,13 +189,13 @@ class LinearModel:
         reach = radius * self.range[active]
         eye = np.eye(int(active.sum()))
         pulls, slopes = self._pulls
-        tensions, rises, largest = self._tensions
+        loads, rises, largest = self._loads
         rows = [eye, -eye, -slopes[np.ix_(active, active)], rises[:, active]]
         room = [
             np.minimum(bounds.high[active] - begin, reach),
             np.minimum(begin - bounds.low[active], reach),
             pulls[active],
-            largest - tensions,
+            largest - loads,
         ]
         return np.vstack(rows), np.concatenate(room)
 

@@ -155,8 +155,7 @@ class InverseProblem:
         errors: dict[str, float] = {}
         for term in self.terms:
             errors.update(term.errors(posture))
-        limited = np.isfinite(self.bounds.tension)
-        excess = posture.tensions[limited] / self.bounds.tension[limited] - 1.0
+        excess = self.bounds.loads @ posture.tensions / self.bounds.most - 1.0
         return InverseState(
             values=values,
             result=result,
