@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
-    from hydrostat.robot.risks import find_risks, limit_travels
+    from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
     from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
     from hydrostat.robot.robot import LARGEST_STEP, Robot
     from hydrostat.robot.scaled import scaled_robot
@@ -39,6 +39,7 @@ __all__ = [
     "LEAST_ACROSS",
     "LOCKING",
     "MATERIALS",
+    "SEWN_DEPTH",
     "STANDARD_GRAVITY",
     "Angle",
     "Body",

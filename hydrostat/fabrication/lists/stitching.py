@@ -13,9 +13,9 @@ from hydrostat.fabrication.lists.cuts import point_name
 from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.geometry import Solid, Surface
-from hydrostat.robot import Body, Robot
+from hydrostat.robot import SEWN_DEPTH, Body, Robot
 
-SKIN = 4.0  # A point at most so deep [mm] is sewn to the skin: the needle only dips into the foam. Assumed.
+SKIN = 1e3 * SEWN_DEPTH  # A point at most so deep [mm] is sewn to the skin: the needle only dips in. Assumed.
 
 NEEDLE = 60.0
 """A point at most so deep [mm] is reached with a long needle: a doll needle of 125 mm goes in at the skin, and there is

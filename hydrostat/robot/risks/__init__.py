@@ -1,11 +1,11 @@
 """Risks of a robot that has no errors, found without a simulation."""
 
 from hydrostat.robot.risks.body_risks import body_risks
-from hydrostat.robot.risks.network_risks import cable_risks, limit_travels, winch_risks
+from hydrostat.robot.risks.network_risks import SEWN_DEPTH, cable_risks, limit_travels, winch_risks
 from hydrostat.robot.risks.pose_risks import marker_risks, pin_risks, pose_risks
 from hydrostat.robot.robot import Robot
 
-__all__ = ["find_risks", "limit_travels"]
+__all__ = ["SEWN_DEPTH", "find_risks", "limit_travels"]
 
 
 def find_risks(robot: Robot) -> list[str]:

@@ -93,6 +93,7 @@ def _sticking_out(robot: Robot) -> Iterator[Risk]:
 
 
 LEAST_COVER = 0.003  # a cable nearer to the edge or the surface than this [m] tears out
+SEWN_DEPTH = 0.004  # a point of a cable at most so deep in a body of foam [m] is sewn to its skin
 _STEP = 0.5 * LEAST_COVER  # distance of the places at which a cable is looked at [m]
 _MOST_STEPS = 400  # places on one segment
 
@@ -123,6 +124,7 @@ def _sample_line(points: Points) -> Float[np.ndarray, "places dim"]:
 def _leaving(robot: Robot) -> Iterator[Risk]:
     """Cables of which a straight piece lies outside: of a drawing however little, of a mesh more than a corner."""
     corner = 0.02  # a straight line may cut a corner of a coarse surface by this many elements
+    spans = 1e-3  # a line that is sewn to the skin may span a dent by this [m]
     for index, cable in enumerate(robot.cables):
         inside = _points_in_body(robot, cable)
         if len(inside) < 2:
@@ -130,7 +132,8 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
         places = _sample_line(inside)
         if robot.body.outline is None:
             out = locate(robot.body.mesh, places).distances
-            leaves = out.max() > corner * np.median(spacings(robot.body.mesh))
+            sewn = cover(robot.body, inside).max() <= SEWN_DEPTH
+            leaves = out.max() > max(corner * float(np.median(spacings(robot.body.mesh))), spans if sewn else 0.0)
         else:
             from shapely import LineString, distance, points
 
@@ -146,18 +149,28 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
 
 
 def _near_the_surface(robot: Robot) -> Iterator[Risk]:
-    edge = "edge" if robot.body.mesh.dim == 2 else "surface"
+    """Cables that tear out: holes near the edge of cloth; in foam also runs between two points deeper than the skin."""
+    flat = robot.body.mesh.dim == 2
     for index, cable in enumerate(robot.cables):
-        places = _sample_line(_points_in_body(robot, cable))
+        inside = _points_in_body(robot, cable)
+        places = inside if flat else _unsewn_places(robot.body, inside)
         if robot.winch(cable.winch).mount is Mount.WORLD:  # it has to come in somewhere
-            places = places[np.linalg.norm(places - places[0], axis=1) > 2 * LEAST_COVER]
+            places = places[np.linalg.norm(places - inside[0], axis=1) > 2 * LEAST_COVER]
         if not len(places):
             continue
         depths = cover(robot.body, places)
         if depths.min() < LEAST_COVER:
             nearest = int(np.argmin(depths))
-            text = f"only {mm(float(depths[nearest]))} inside the {edge} at {place(places[nearest])}, it may tear out"
+            edge = f"{'edge' if flat else 'surface'} at {place(places[nearest])}"
+            text = f"only {mm(float(depths[nearest]))} inside the {edge}, it may tear out"
             yield Risk(_cable_name(robot, index), -float(depths[nearest]), text)
+
+
+def _unsewn_places(body: Body, inside: Points) -> Float[np.ndarray, "places dim"]:
+    """Places along the runs of a cable in space of which neither end is sewn to the skin."""
+    deep = cover(body, inside) > SEWN_DEPTH
+    runs = [_sample_line(inside[at : at + 2]) for at in np.flatnonzero(deep[:-1] & deep[1:])]
+    return np.concatenate([inside[:0], *runs])
 
 
 def _length_inside(robot: Robot, cable: Cable) -> float:
