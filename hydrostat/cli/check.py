@@ -62,11 +62,13 @@ def check(
 
 def _print_judgement(robot: "Robot") -> None:
     """Print the design review of a robot, as the studio does, regardless of the motor loads in its poses."""
-    from hydrostat.design import Constraints, Diagnostic, Severity, review_robot
+    from hydrostat.design import Constraints, Diagnostic, Severity, find_no_room, review_robot
     from hydrostat.robot import in_words
 
     found = [Diagnostic(text=text, weight=Severity.REFUSED, places=()) for text in print_sewing(robot.body)]
     found += review_robot(robot, constraints=Constraints())
+    if not robot.cables and (words := find_no_room(robot)):
+        found.append(Diagnostic(text=words, weight=Severity.MIND, places=()))
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Severity.REFUSED, Severity.MIND))

@@ -15,6 +15,7 @@ from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.options import DefaultText
+from hydrostat.cli.remedies import design_remedy
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import plural
 
@@ -199,6 +200,8 @@ def design(
         lock_winch=lock_winch or [],
         lock_cable=lock_cable or [],
     )
+    from hydrostat.design import kit_fits
+
     began = time.perf_counter()
     source = read_robot(robot)
     request = parse_request(source, typed)
@@ -207,12 +210,16 @@ def design(
     _tell_count(network, request)
     if made is not None:
         print_kit(made)
-    _tell_next(network, out, kit=kit)
+    fits = kit_fits(network) and not (made is not None and made.problems)
+    _tell_next(network, robot, out, kit=kit, fits=fits)
     if network.timed_out:
         print(f"time limit of {time_limit} reached: best network so far")
     elif not network.complete:
         print("interrupted: best network so far")
         raise typer.Exit(130)
+    if not fits:
+        print("hydrostat: error: the kit of this network would be rejected", file=sys.stderr)
+        raise typer.Exit(1)
 
 
 def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) -> "tuple[Network, Kit | None]":
@@ -264,14 +271,19 @@ def _tell_count(network: "Network", request: "DesignRequest") -> None:
         print_front(network)
 
 
-def _tell_next(network: "Network", out: Path, *, kit: bool) -> None:
+def _tell_next(network: "Network", source: Path, out: Path, *, kit: bool, fits: bool) -> None:
     """Print the locations of the results and the next command."""
     if network.alternatives:
         print(f"Alternatives: {out / 'alternatives'}")
-    if kit:
+    if not fits:
+        print(f"Try: {design_remedy(network, source, out)}")
+    elif kit:
         print(f"To build it, start with {out / 'kit' / 'assembly_sheet.pdf'}")
     else:
         print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))} --out {quote(str(out / 'kit'))}")
-    limit = f"{network.constraints.tension_limit:g}N"
-    print(f"Pose it within its tension limit: hydrostat pose {quote(str(out / 'robot'))} --tension {limit} --out DIR")
+    limits = network.constraints
+    given = f"--tension {limits.tension_limit:.4g}N"
+    if limits.torque is not None:
+        given += f' --torque "{1e3 * limits.torque:.4g} N mm"'
+    print(f"Pose it within its limits: hydrostat pose {quote(str(out / 'robot'))} {given} --out DIR")
     print(f"Open {out / 'report.html'}")

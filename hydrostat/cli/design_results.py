@@ -36,7 +36,8 @@ def write_kit(network: "Network", folder: Path) -> "Kit":
     """The fabrication kit, in which what cannot be built well is told; its poses keep to the design's tension."""
     from hydrostat.fabrication import KitOptions, write_kit
 
-    options = KitOptions(force=True, tension=network.constraints.tension_limit)
+    limits = network.constraints
+    options = KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque)
     return write_kit(network.robot, folder, options=options)
 
 
@@ -45,6 +46,17 @@ def designed_tension(robot: "Robot", folder: Path) -> float | None:
 
     None for a robot of which neither is. Raises InputError: studio.json is there, and cannot be read.
     """
+    limit = _design_limit(robot, folder, "tension_limit")
+    return _wished_tension(robot, folder) if limit is None else limit
+
+
+def designed_torque(robot: "Robot", folder: Path) -> float | None:
+    """The torque that a design kept [N m], from the score.json beside its folder; None without one."""
+    return _design_limit(robot, folder, "torque_limit")
+
+
+def _design_limit(robot: "Robot", folder: Path, name: str) -> float | None:
+    """A limit of the design that made a robot; None where there is no such design or no such limit."""
     from hydrostat.robot import robot_hash
 
     own = robot_hash(robot)
@@ -52,10 +64,10 @@ def designed_tension(robot: "Robot", folder: Path) -> float | None:
         try:
             card = json.loads((place / "score.json").read_text(encoding="utf-8"))
             if own in {card["robot"], *(other["robot"] for other in card["alternatives"])}:
-                return float(card["tension_limit"])
+                return None if card.get(name) is None else float(card[name])
         except (OSError, ValueError, KeyError, TypeError):
             continue
-    return _wished_tension(robot, folder)
+    return None
 
 
 def _wished_tension(robot: "Robot", folder: Path) -> float | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.design_results import designed_tension
+from hydrostat.cli.design_results import designed_tension, designed_torque
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
@@ -90,10 +90,10 @@ def fabricate(
     began = time.perf_counter()
     loaded = read_robot(robot)
     kept = designed_tension(loaded, robot) if limit is None else None
-    options = replace(options, tension=kept or limit)
+    options = replace(options, tension=kept or limit, torque=designed_torque(loaded, robot))
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
-    kit = _build_or_report(robot, loaded, options)
+    kit = _build_or_report(robot, loaded, options, out)
     kit.write(out)
     print_kit(kit)
     if kept is not None:
@@ -102,8 +102,9 @@ def fabricate(
     print(f"Wrote {len(kit.files)} files in {seconds:.1f} s. Start with {out / 'assembly_sheet.pdf'}")
 
 
-def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
-    """The kit; the reasons are printed why there is none (InputError: it cannot be built well)."""
+def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: Path) -> "Kit":
+    """The kit; else the reasons are printed, and a command that fixes them (InputError: it cannot be built well)."""
+    from hydrostat.cli.remedies import kit_remedy
     from hydrostat.fabrication import UnbuildableError, build_kit
     from hydrostat.robot import in_words
 
@@ -113,6 +114,7 @@ def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions") -> "Ki
     except UnbuildableError as error:
         for reason in error.reasons:
             print(f"error: {in_words(reason)}")
+        print(f"Try: {kit_remedy(robot, folder, out, options=options, reasons=error.reasons)}")
         count = f"{plural(len(error.reasons), 'problem')} {'prevents' if len(error.reasons) == 1 else 'prevent'}"
         words = f"{folder}: {count} fabrication. Fix the robot, or add --force to write the kit anyway."
         raise InputError(words) from None
@@ -126,6 +128,8 @@ def print_kit(kit: "Kit") -> None:
         print(f"error: {in_words(problem)}")
     for warning in kit.warnings:
         print(f"warning: {in_words(warning)}")
+    for note in kit.notes:
+        print(f"note: {in_words(note)}")
     for line in kit.summary:
         print(line)
     held = sum(check.passed for check in kit.checks)

@@ -45,6 +45,9 @@ Contract = Annotated[
 MostTension = Annotated[
     str | None, typer.Option(metavar="FORCE", help="Maximum cable tension, e.g. 20N.", show_default="no limit")
 ]
+MostTorque = Annotated[
+    str | None, typer.Option(metavar="TORQUE", help='Maximum winch torque, e.g. "50 N mm".', show_default="no limit")
+]
 EqualWinches = Annotated[
     list[str] | None,
     typer.Option(
@@ -118,16 +121,20 @@ def middle(text: str, dim: int) -> "Vector":
     return place
 
 
-def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
-    """Limits from --tension and --equal, such as "left,right" (InputError: no force, a group of fewer than two)."""
+def pose_limits(tension: str | None, torque: str | None, equal: Sequence[str] | None) -> "Limits":
+    """Limits from --tension, --torque and --equal, such as "left,right" (InputError: no such unit, a group of one)."""
     from hydrostat.ik import Limits
-    from hydrostat.units import FORCE
+    from hydrostat.units import FORCE, TORQUE
 
     groups = [[name.strip() for name in text.split(",") if name.strip()] for text in equal or []]
     for text, names in zip(equal or [], groups, strict=True):
         if len(names) < 2:
             raise InputError(f'--equal {text}: too few winches. Name at least two, e.g. "left,right".')
-    return Limits(tension=parse_optional("--tension", tension, FORCE), equal=groups)
+    return Limits(
+        tension=parse_optional("--tension", tension, FORCE),
+        torque=parse_optional("--torque", torque, TORQUE),
+        equal=groups,
+    )
 
 
 def check_width(width: int) -> None:

@@ -10,7 +10,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.learned import learned_start, read_model
-from hydrostat.cli.options import EqualWinches, MostTension, parse_optional, pose_limits
+from hydrostat.cli.options import EqualWinches, MostTension, MostTorque, parse_optional, pose_limits
 from hydrostat.cli.waiting import read_robot, search_told
 from hydrostat.errors import InputError
 
@@ -32,6 +32,7 @@ def pose(
         Path | None, typer.Option(metavar="FILE", help="Target shape, drawn over the body's own drawing.")
     ] = None,
     tension: MostTension = None,
+    torque: MostTorque = None,
     equal: EqualWinches = None,
     restarts: Annotated[
         int | None,
@@ -59,7 +60,7 @@ def pose(
     from hydrostat.units import TIME
 
     require_folder(out)
-    limits, patience = pose_limits(tension, equal), parse_optional("--within", within, TIME)
+    limits, patience = pose_limits(tension, torque, equal), parse_optional("--within", within, TIME)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
     options = IKOptions() if restarts is None else IKOptions(restarts=restarts)
@@ -129,6 +130,7 @@ def _write(
         "optimality": reached.optimality,
         "held": list(reached.active_limits),
         "tension_limit": limits.tension,
+        "torque_limit": limits.torque,
         "equal": [list(group) for group in limits.equal],
     }
     write_pose(simulation, reached.pose, folder, extra=extra, jacobian=jacobian)

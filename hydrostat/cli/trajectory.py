@@ -11,6 +11,7 @@ from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import (
     EqualWinches,
     MostTension,
+    MostTorque,
     PictureWidth,
     check_width,
     parse_optional,
@@ -61,6 +62,7 @@ def trajectory(
     hold: Annotated[str, typer.Option(metavar="TIME", help="Time to hold each pose.")] = "0s",
     loop: Annotated[bool, typer.Option("--return", help="Return to rest at the end.")] = False,
     tension: MostTension = None,
+    torque: MostTorque = None,
     equal: EqualWinches = None,
     width: PictureWidth = 640,
 ) -> None:
@@ -79,7 +81,7 @@ def trajectory(
     fastest = positive("--max-speed", speed, SPEED)
     hardest = parse_optional("--max-acceleration", acceleration, ACCELERATION)
     stay = positive("--hold", hold, TIME, zero=True)
-    limits = pose_limits(tension, equal)
+    limits = pose_limits(tension, torque, equal)
     kind = parse_choice(PathKind, path, what="--path")
     check_width(width)
     loaded = read_robot(robot)
@@ -166,6 +168,7 @@ def _facts(simulation: "Simulation", made: "Trajectory", limits: "Limits", secon
         "speed_limit": _by_winch(made, made.limits.speed),
         "acceleration_limit": _by_winch(made, made.limits.acceleration),
         "tension_limit": limits.tension,
+        "torque_limit": limits.torque,
         "equal": [list(group) for group in limits.equal],
         "report": made.lines(),
         "keyframes": [_key_facts(made, key) for key in made.keyframes],

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
         TreeKnobs,
         TreeOptions,
     )
+    from hydrostat.design.routes.finalists import kit_fits
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
     from hydrostat.design.routes.price import PricedPath
     from hydrostat.design.routes.propose import route_along
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from hydrostat.design.score_card import rest_error, score_card
     from hydrostat.design.trees.design_trees import propose_trees
     from hydrostat.design.uncertainty import BuildTolerances
+    from hydrostat.design.winch_room import find_no_room
     from hydrostat.design.zone import Zone
 
 __all__ = [
@@ -102,7 +104,9 @@ __all__ = [
     "edge_fibres",
     "expected_error",
     "find_network",
+    "find_no_room",
     "front",
+    "kit_fits",
     "nearest_shares",
     "on_front",
     "out_of_plane",

@@ -15,6 +15,7 @@ from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
+from hydrostat.ik import Limits
 from hydrostat.robot import LARGEST_STEP, Cable, Mount, Robot, Winch
 
 
@@ -161,13 +162,23 @@ class Constraints:
     def tension_limit(self) -> float:
         """The most that any cable may be pulled with [N].
 
-        By the cable itself, or by the motor when all the cables that its winch may have pull so hard, on the largest
-        spools that they may have.
+        By the cable itself, or by the motor of a winch that pulls no other, on its smallest spool. Cables that share a
+        winch share its torque (`Limits.torque`).
         """
         if self.torque is None:
             return self.tension
-        arm = self.spool_radius * self.spool_ratio
-        return min(self.tension, self.torque / (arm * self.cables_per_winch))
+        return min(self.tension, self.torque * self.spool_ratio / self.spool_radius)
+
+    def stand_outside(self, robot: Robot) -> bool:
+        """True if new winches of a robot stand in the world."""
+        if self.mount is None:
+            return bool(robot.winches) and all(winch.mount is Mount.WORLD for winch in robot.winches)
+        return self.mount is Mount.WORLD
+
+    @property
+    def limits(self) -> Limits:
+        """Limits on the tension of every cable and the torque of every winch."""
+        return Limits(tension=self.tension, torque=self.torque)
 
     def restrict_to_trees(self) -> "Constraints":
         """The constraints that winch trees keep; the others ask nothing."""

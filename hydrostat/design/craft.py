@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.design.checks.cables import SAME
 from hydrostat.design.polyline import nearest_shares, turns
-from hydrostat.fabrication import PRICES, choose_motor, control_needs, power_plan, shaft_torques
+from hydrostat.fabrication import PRICES, KitOptions, control_needs, find_motor, power_plan, shaft_torques
 from hydrostat.ik import IKResult
 from hydrostat.robot import Cable, Mount, Robot, sewn_sides
 from hydrostat.units import plural
@@ -71,8 +71,7 @@ def build_effort(robot: Robot, reached: Sequence[IKResult], *, times: SewingTime
     if motors:
         rows = [shaft_torques(robot, pose.pose.tensions) for pose in reached]
         torques = np.array(rows).reshape(-1, len(robot.winches))
-        inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-        motor = choose_motor("auto", torques.ravel().tolist(), inside=inside, winches=motors)
+        motor = find_motor(robot, torques.ravel().tolist(), KitOptions())
         used, most = {cable.winch for cable in cables}, 1e3 * torques.max(axis=0, initial=0.0)
         pairs = zip(robot.winches, most.tolist(), strict=True)
         power = power_plan({winch.name: torque for winch, torque in pairs if winch.name in used}, motor)

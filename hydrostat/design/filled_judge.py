@@ -59,6 +59,6 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
 def _reach(found: Network, one: Alternative) -> FilledReach | None:
     """Return the results of a network on the filled body; None where a pose has no equilibrium there."""
     try:
-        return filled_reach(one.robot, one.reached, tension=found.constraints.tension_limit)
+        return filled_reach(one.robot, one.reached, limits=found.constraints.limits)
     except HydrostatError:
         return None

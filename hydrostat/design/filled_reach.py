@@ -35,13 +35,13 @@ def out_of_plane(pose: Equilibrium) -> float:
     return max((abs(float(place[2])) for place in pose.markers.values()), default=0.0)
 
 
-def filled_reach(robot: Robot, reached: Sequence[IKResult], *, tension: float, finalists: int = 1) -> FilledReach:
+def filled_reach(robot: Robot, reached: Sequence[IKResult], *, limits: Limits, finalists: int = 1) -> FilledReach:
     """Find the commands of poses on the filled body, from those of the flat model on.
 
     Args:
         robot: flat, with a drawing; its cables run where it says.
         reached: its poses in the flat model.
-        tension: the most that each cable bears, of a pair each [N].
+        limits: limits of its winches; the tension is that of each cable, of a pair of both.
         finalists: networks that are compared so.
 
     Raises:
@@ -49,7 +49,7 @@ def filled_reach(robot: Robot, reached: Sequence[IKResult], *, tension: float, f
         NotConvergedError: a pose that has no equilibrium.
     """
     simulation = Simulation(inflated_robot(robot))
-    limits, once = Limits(tension=tension), IKOptions(restarts=0)
+    once = IKOptions(restarts=0)
     found, squares = [], []
     for flat in reached:
         pose = lift_target(flat.pose_target)

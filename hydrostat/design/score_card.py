@@ -22,6 +22,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error_at_rest": rest_error(network),
         "craft": build_effort(robot, network.reached).as_values,
         "tension_limit": network.constraints.tension_limit,
+        "torque_limit": network.constraints.torque,
         "poses": {pose.pose_target.name: _pose_results(robot, pose) for pose in network.reached},
         "winches": _winches(robot),
         "cables": _cables(robot),

@@ -1,6 +1,7 @@
-"""`built_in`, `winch_room`: where a flat body has room for motor and spool (a configuration space), and how strong."""
+"""`built_in`, `winch_room`: where a body has room for motor and spool (a configuration space), and how strong."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,48 +9,193 @@ import shapely
 from shapely import affinity
 from shapely.geometry.base import BaseGeometry
 
+from hydrostat.arrays import Points
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.zone import Zone
-from hydrostat.fabrication import GIVES, MOTORS, Cuboid, Motor, PartOptions, largest_torque, seam_of, unit_room
+from hydrostat.errors import InputError
+from hydrostat.fabrication import (
+    GIVES,
+    MOTORS,
+    Cuboid,
+    KitOptions,
+    Method,
+    Motor,
+    PartOptions,
+    largest_torque,
+    pocket_room,
+    seam_of,
+    sides_text,
+    unit_room,
+)
 from hydrostat.robot import Body, Cable, Robot, Winch, sewn_robot
+from hydrostat.units import plural
 
 
 def built_in(robot: Robot, constraints: Constraints, *, winches: int, cables: int) -> Constraints:
-    """The constraints with what motors in the body can do: their room, and their torque where only weak ones fit.
+    """The constraints with what motors in the body can do: their room, and the torque that they hold for long.
 
-    The strongest motor of the kit sets no torque: where poses ask for more than it gives, there is no other to choose.
+    Raises InputError: no motor of the kit fits into the body.
     """
-    zones, motor = winch_room(robot, constraints, -(-cables // winches))
-    found = replace(constraints, winch_zones=zones)
-    if motor is None or motor is MOTORS[-1]:
-        return found
-    return replace(
-        found,
-        torque=min(constraints.torque or math.inf, largest_torque(motor, inside=True)),
-        cables_per_winch=min(constraints.cables_per_winch, cables - winches + 1),  # the others have one at least
-    )
+    if not has_known_room(robot.body):
+        return constraints
+    each = -(-cables // winches)
+    zones, motor = winch_room(robot, constraints, each, winches=winches)
+    if motor is None:
+        raise InputError(_no_room(robot, constraints, each, winches))
+    own = constraints.torque or math.inf
+    return replace(constraints, winch_zones=zones, torque=min(own, largest_torque(motor)))
 
 
-def winch_room(robot: Robot, constraints: Constraints, cables: int) -> tuple[tuple[Zone, ...], Motor | None]:
-    """Zones in which a winch with so many cables can be built into a flat body, and the motor that fits there.
+def find_no_room(robot: Robot) -> str | None:
+    """Return why no motor of the kit fits into the body for winches that a design would place; None if one fits."""
+    constraints = Constraints()
+    if constraints.stand_outside(robot) or not has_known_room(robot.body):
+        return None
+    return None if winch_room(robot, constraints, 1)[1] is not None else _no_room(robot, constraints, 1, 1)
 
-    They are within those of the constraints. The unit lies across the body or in its plane, turned by whole hours of a
-    clock; it takes both of a pair. The motor is the strongest that leaves any room. Zones as given and None: where no
-    motor fits, and in space.
+
+def has_known_room(body: Body) -> bool:
+    """True for bodies whose room for motors can be computed: flat ones, and those of foam."""
+    return body.thickness is not None or KitOptions().method_for(body) is Method.FOAM
+
+
+def winch_room(
+    robot: Robot, constraints: Constraints, cables: int, *, winches: int = 1
+) -> tuple[tuple[Zone, ...], Motor | None]:
+    """Zones in which a winch with so many cables can be built into a body, and the motor that fits there.
+
+    They are within those of the constraints. In a flat body the unit lies across the body or in its plane, turned by
+    whole hours of a clock; it takes both of a pair. In space its pocket lies along the mold. The motor is the strongest
+    that leaves room for all winches. Zones as given and None: where no motor fits.
     """
-    body = robot.body
-    if body.thickness is None:
-        return constraints.winch_zones, None
-    allowed = None
-    if constraints.winch_zones:
-        allowed = shapely.union_all([_shape(zone) for zone in constraints.winch_zones])
     for motor in reversed(MOTORS):
         box = unit_room(*_example(robot, constraints, cables), PartOptions(), motor)
-        room = _room(body, box)
-        zones = _zones(room if allowed is None else room.intersection(allowed))
+        if robot.body.thickness is None:
+            zones = _pocket_zones(robot, constraints, box, winches)
+        else:
+            zones = _flat_zones(robot, constraints, box, winches)
         if zones:
             return zones, motor
     return constraints.winch_zones, None
+
+
+def _flat_zones(robot: Robot, constraints: Constraints, box: Cuboid, winches: int) -> tuple[Zone, ...]:
+    """Zones in which a unit lies within the seam of a flat body; none if there is no room for all winches.
+
+    Winches stand in no pin and on no drawn eye, unless there is no other room.
+    """
+    room = _room(robot.body, box)
+    if constraints.winch_zones:
+        room = room.intersection(shapely.union_all([_shape(zone) for zone in constraints.winch_zones]))
+    free = room.difference(_find_taken_parts(robot, constraints.spool_radius))
+    for part in (free, room):
+        if _has_room_for(_grid(part), winches, _width(box)):
+            return _zones(part)
+    return ()
+
+
+def _find_taken_parts(robot: Robot, around: float) -> BaseGeometry:
+    """Pins, where the body is clamped, and small closed shapes drawn on it, such as eyes, with room around [mm]."""
+    parts: list[BaseGeometry] = []
+    for pin in robot.pins:
+        if pin.box is not None:
+            (left, bottom), (right, top) = (1e3 * np.array(pin.box)[:, :2]).tolist()
+            parts.append(shapely.box(left, bottom, right, top))
+        elif pin.at is not None:
+            parts.append(shapely.Point(1e3 * np.array(pin.at[:2])).buffer(1e3 * pin.radius))
+    closed = [line for line in robot.body.marks if len(line) > 3 and np.linalg.norm(line[0] - line[-1]) < _SAME]
+    small = [line for line in closed if np.ptp(line, axis=0).max() < _EYE * robot.body.mesh.size]
+    parts += [shapely.Polygon(1e3 * line).buffer(0.0) for line in small]
+    return shapely.union_all(parts).buffer(1e3 * around)
+
+
+def _grid(room: BaseGeometry) -> Points:
+    """Places in a room and on its rim [m]."""
+    if room.is_empty:
+        return np.zeros((0, 2))
+    left, bottom, right, top = room.bounds
+    x, y = np.meshgrid(np.arange(left, right, _APART), np.arange(bottom, top, _APART))
+    inside = shapely.contains_xy(room, x, y)
+    rim = shapely.get_coordinates(shapely.segmentize(room, _APART))
+    return 1e-3 * np.concatenate([np.column_stack([x[inside], y[inside]]), rim])
+
+
+def _width(box: Cuboid) -> float:
+    """Distance at which units lie next to each other [m]: side of a square as large as the side on which one lies."""
+    _, middle, longest = sorted(box.size)
+    return 1e-3 * math.sqrt(middle * longest)
+
+
+def _pocket_zones(robot: Robot, constraints: Constraints, box: Cuboid, winches: int) -> tuple[Zone, ...]:
+    """Balls in which the pocket of a winch has room in a body of foam, the largest first."""
+    points, radii = pocket_room(robot).places(box)
+    if constraints.winch_zones and len(points):
+        inside = -np.min([zone.distances(points) for zone in constraints.winch_zones], axis=0)
+        points, radii = points[inside >= 0], np.minimum(radii, np.maximum(inside, _POINT))[inside >= 0]
+    if not _has_room_for(points, winches, _width(box)):
+        return ()
+    zones: list[Zone] = []
+    left = np.ones(len(points), dtype=bool)
+    while left.any() and len(zones) < _BALLS:
+        number = int(np.argmax(np.where(left, radii, -1.0)))
+        middle = points[number]
+        zones.append(Zone(at=tuple(middle.round(5).tolist()), radius=round(float(radii[number]), 5)))
+        left &= np.linalg.norm(points - middle, axis=1) > radii[number]
+    return tuple(zones)
+
+
+def _has_room_for(points: Points, winches: int, apart: float) -> bool:
+    """True if so many places are farther apart than a unit is wide [m], each as far as it can be from the others."""
+    if not len(points):
+        return False
+    away = np.linalg.norm(points - points[np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1))], axis=1)
+    for _ in range(winches - 1):
+        farthest = int(np.argmax(away))
+        if away[farthest] < apart:
+            return False
+        away = np.minimum(away, np.linalg.norm(points - points[farthest], axis=1))
+    return True
+
+
+def _no_room(robot: Robot, constraints: Constraints, cables: int, winches: int) -> str:
+    """Reason why no motor can be built in, and the changes that would allow one."""
+    motor, body = MOTORS[0], robot.body
+    box = unit_room(*_example(robot, constraints, cables), PartOptions(), motor)
+    smallest = f"{motor.title}, {sides_text(sorted(box.size, reverse=True))} mm"
+    lift = 'Or put winches outside, as [[winch]] with mount = "world".'
+    free = replace(constraints, winch_zones=())
+    if constraints.winch_zones and winch_room(robot, free, cables, winches=winches)[1] is not None:
+        return f"winch_zones: no motor of the kit fits in them (smallest: {smallest}). Widen or remove them. {lift}"
+    scale = _least_scale(lambda scale: _has_room(robot, box, winches, scale))
+    sizes = f"{_round_up(1e3 * scale * body.mesh.size):g} mm long"
+    if body.thickness is not None:
+        sizes += f" and {_round_up(1e3 * scale * body.thickness):g} mm thick"
+    count = plural(winches, "motor") if winches > 1 else "the motor"
+    return f"body: no room for {count} (smallest: {smallest}). Make it at least {sizes}. {lift}"
+
+
+def _has_room(robot: Robot, box: Cuboid, winches: int, scale: float) -> bool:
+    """True if the units of all winches have room in a body that is scaled by a factor."""
+    if robot.body.thickness is not None:
+        return _has_room_for(_grid(_room(robot.body, box, scale)), winches, _width(box))
+    return _has_room_for(pocket_room(robot).places(box, scale=scale)[0], winches, _width(box))
+
+
+def _least_scale(fits: Callable[[float], bool]) -> float:
+    """The least factor of a body at which it has room, to 2 %."""
+    low, high = 1.0, 1.25
+    while not fits(high):
+        low, high = high, 1.25 * high
+    while high - low > _CLOSE * low:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if fits(middle) else (middle, high)
+    return high
+
+
+def _round_up(length: float) -> float:
+    """A length [mm] as a builder would give it: in steps of 1 mm, from 100 mm on of 5 mm."""
+    step = 5.0 if length >= 100 else 1.0
+    return step * math.ceil(length / step)
 
 
 def _example(robot: Robot, constraints: Constraints, cables: int) -> tuple[Robot, Winch]:
@@ -64,10 +210,11 @@ def _example(robot: Robot, constraints: Constraints, cables: int) -> tuple[Robot
     return sewn_robot(robot.with_network([winch], drawn)), winch
 
 
-def _room(body: Body, box: Cuboid) -> BaseGeometry:
-    """Places of the unit's middle at which it is within the seam some way round [mm]."""
-    thickness = 1e3 * float(body.thickness or 0.0)
-    seam = shapely.simplify(seam_of(body).buffer(-_ROUGH), _ROUGH)
+def _room(body: Body, box: Cuboid, scale: float = 1.0) -> BaseGeometry:
+    """Places of the unit's middle at which it is within the seam of a scaled body some way round [mm]."""
+    thickness = scale * 1e3 * float(body.thickness or 0.0)
+    seam = affinity.scale(seam_of(body), scale, scale, origin=(0.0, 0.0))
+    seam = shapely.simplify(seam.buffer(-_ROUGH), _ROUGH)
     sides = []
     if box.size[2] <= (1 + GIVES) * thickness:
         sides.append((box.low[:2], box.high[:2]))
@@ -106,16 +253,45 @@ def _shape(zone: Zone) -> BaseGeometry:
 
 
 def _zones(room: BaseGeometry) -> tuple[Zone, ...]:
-    """The parts of a room that are worth standing in, without their holes [m]."""
+    """The parts of a room that are worth standing in [m]; those with holes as parts without that overlap."""
     parts = shapely.get_parts(shapely.simplify(room, _ROUGH))
-    kept = [part for part in parts if isinstance(part, shapely.Polygon) and part.area >= _LEAST]
+    kept = [piece for part in parts if isinstance(part, shapely.Polygon) for piece in _without_holes(part)]
     return tuple(
         Zone(outline=tuple((float(x), float(y)) for x, y in 1e-3 * np.array(part.exterior.coords)[:-1]))
         for part in sorted(kept, key=lambda part: -part.area)
+        if part.area >= _LEAST
     )
+
+
+def _without_holes(part: shapely.Polygon) -> list[shapely.Polygon]:
+    """The part itself, or what lies left, right, below and above of its largest hole; small holes are filled."""
+    holes = [shapely.Polygon(ring) for ring in part.interiors if shapely.Polygon(ring).area >= _HOLE]
+    if not holes:
+        return [shapely.Polygon(part.exterior)]
+    left, bottom, right, top = max(holes, key=lambda hole: hole.area).bounds
+    low_x, low_y, high_x, high_y = part.bounds
+    sides = (
+        shapely.box(low_x, low_y, left, high_y),
+        shapely.box(right, low_y, high_x, high_y),
+        shapely.box(low_x, low_y, high_x, bottom),
+        shapely.box(low_x, top, high_x, high_y),
+    )
+    pieces = [piece for side in sides for piece in shapely.get_parts(part.intersection(side))]
+    return [
+        more
+        for piece in pieces
+        if isinstance(piece, shapely.Polygon) and piece.area > 0
+        for more in _without_holes(piece)
+    ]
 
 
 _HOUR = 30  # between the turns that are tried [degrees]
 _APART = 5.0  # between the places of a rim that are looked at [mm]
 _ROUGH = 0.2  # by so much may the seam be drawn simpler [mm]
 _LEAST = 4.0  # smaller rooms are none [mm^2]
+_HOLE = 100.0  # holes of a room that are smaller are none [mm^2]
+_EYE = 0.2  # closed shapes drawn on a body that are larger than this share of it are no eyes
+_SAME = 1e-6  # ends of a closed line are so near to each other [m]
+_POINT = 1e-4  # radius of a zone that is hardly more than a point [m]
+_BALLS = 24  # balls that tell where pockets have room
+_CLOSE = 0.02  # precision of the scale

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.lists.needs import control_needs
     from hydrostat.fabrication.lists.stitching import depth_table
     from hydrostat.fabrication.moulds.mould import make_mould
+    from hydrostat.fabrication.moulds.pocket_room import PocketRoom, pocket_room
     from hydrostat.fabrication.parts.motor import (
         BOARDS,
         MOTORS,
@@ -39,9 +40,9 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.patterns.marks import winch_marks
     from hydrostat.fabrication.patterns.pattern import plush_pattern
     from hydrostat.fabrication.patterns.shape import Circle, PatternPart
-    from hydrostat.fabrication.refusals import find_refusals
+    from hydrostat.fabrication.refusals import find_motor, find_refusals
     from hydrostat.fabrication.sheets.solid_pictures import drawn_solid
-    from hydrostat.fabrication.solids.construct import Box, Cuboid, Cylinder, solid_of
+    from hydrostat.fabrication.solids.construct import Box, Cuboid, Cylinder, sides_text, solid_of
     from hydrostat.fabrication.solids.printed import Printed
     from hydrostat.fabrication.winch_marks import winch_marks_of
 
@@ -69,6 +70,7 @@ __all__ = [
     "PartOptions",
     "PatternOptions",
     "PatternPart",
+    "PocketRoom",
     "Printed",
     "Sewing",
     "UnbuildableError",
@@ -81,16 +83,19 @@ __all__ = [
     "depth_table",
     "drawn_solid",
     "find_demand",
+    "find_motor",
     "find_refusals",
     "find_sewing",
     "forget_files",
     "largest_torque",
     "make_mould",
     "plush_pattern",
+    "pocket_room",
     "power_plan",
     "seam_of",
     "sewing_of",
     "shaft_torques",
+    "sides_text",
     "skin_of_surface",
     "solid_of",
     "space_pattern",

@@ -60,13 +60,14 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
             f"Pour: {body.mass:.0f} g of {body.material}",
         ),
         problems=(*mould.problems, *channel_problems(robot, options.parts)),
-        warnings=(*mould.warnings, *_effort(printed), *_inside(robot)),
+        warnings=(*mould.warnings, *_effort(printed)),
+        notes=(*mould.notes, *_inside(robot)),
         checks=mould_checks(robot, mould),
     )
 
 
 def _inside(robot: Robot) -> tuple[str, ...]:
-    """Return a warning if a flat robot is cast but has its cables on its faces."""
+    """Return a note if a flat robot is cast but has its cables on its faces."""
     if robot.face in (None, Face.MIDDLE) or not robot.cables:
         return ()
     return (
@@ -156,6 +157,7 @@ def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
         summary=(f"Pattern: {plural(len(pattern.panels), 'panel')} on {_size(pattern)} mm of felt",),
         problems=(*pattern.problems, *stuffing_problems(robot)),
         warnings=pattern.warnings,
+        notes=pattern.notes,
         checks=checks,
     )
 

@@ -14,7 +14,7 @@ from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
-from hydrostat.fabrication.refusals import find_refusals
+from hydrostat.fabrication.refusals import find_motor, find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
@@ -68,6 +68,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
         "summary": summary,
         "problems": findings.problems,
         "warnings": findings.warnings,
+        "notes": findings.notes,
     }
     files[MANIFEST] = manifest(robot, options, files, checks=findings.checks, told=facts)
     tell.end()
@@ -80,6 +81,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
         summary=summary,
         problems=findings.problems,
         warnings=findings.warnings,
+        notes=findings.notes,
         checks=findings.checks,
     )
 
@@ -111,7 +113,7 @@ class _Stages:
 def _plan(drawn: Robot, options: KitOptions, tell: _Stages) -> KitPlan:
     robot = sewn_robot(drawn) if options.method_for(drawn.body) is Method.PLUSH else drawn
     tell("Loads in its poses")
-    demand = find_demand(robot, tension=options.tension, progress=tell.part)
+    demand = find_demand(robot, tension=options.tension, torque=options.torque, progress=tell.part)
     rigid, work = _parts_and_body(drawn, robot, options, demand, tell)
     return KitPlan(drawn=drawn, robot=robot, options=options, demand=demand, rigid=rigid, work=work)
 
@@ -123,13 +125,12 @@ def _parts_and_body(
 
     Felt has holes for grommets, foam has room for winches.
     """
+    motor = find_motor(drawn, demand.torques, options).key
 
     def rigid(holes: int) -> RigidParts:
         tell("Winches")
         pinhole, bed = options.pattern.pinhole, options.mould.bed
-        return rigid_parts(
-            robot, demand, motor=options.motor, options=options.parts, bed=bed, holes=holes, hole=pinhole
-        )
+        return rigid_parts(robot, demand, motor=motor, options=options.parts, bed=bed, holes=holes, hole=pinhole)
 
     if options.method_for(robot.body) is Method.PLUSH:
         tell("Pattern")
@@ -160,7 +161,8 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
     return KitFindings(
         checks=checks,
         problems=tuple(dict.fromkeys((*known, *made, *large, *failed))),
-        warnings=(*work.warnings, *rigid.warnings, *lists.warnings, *plan.demand.far),
+        warnings=(*work.warnings, *rigid.warnings, *lists.warnings),
+        notes=(*work.notes, *rigid.notes, *plan.demand.far),
     )
 
 

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik
+from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik, spool_arms
 from hydrostat.robot import PoseTarget, Robot, Winch
 from hydrostat.simulation import Equilibrium, Simulation
 
@@ -34,18 +34,23 @@ class Demand:
 
 
 def find_demand(
-    robot: Robot, *, tension: float | None = None, progress: Callable[[int, int], None] | None = None
+    robot: Robot,
+    *,
+    tension: float | None = None,
+    torque: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Demand:
     """Find what the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at full travel.
 
-    Winches are pulled alone too if no pose could be solved. In poses no cable is pulled with more than the tension [N],
-    as whoever plays them should keep to it; without one winches do all they can. Cables with friction come to each pose
+    Winches are pulled alone too if no pose could be solved. In poses no cable is pulled with more than the tension [N]
+    and no winch with more than the torque [N m], as whoever plays them should keep to them; without these winches do
+    all they can. Cables with friction come to each pose
     straight from rest. `progress` is told how many poses are solved, of how many.
     """
     if not robot.cables:
         count = len(robot.winches)
         return Demand(poses=(), tensions=np.zeros(0), torques=np.zeros(count), taken=np.zeros((count, 2)))
-    work = _PoseLoads(robot, Limits(tension=tension))
+    work = _PoseLoads(robot, Limits(tension=tension, torque=torque))
     for done, pose in enumerate(robot.poses.values()):
         if progress is not None:
             progress(done, len(robot.poses))
@@ -118,7 +123,4 @@ class _PoseLoads:
 
 def shaft_torques(robot: Robot, tensions: Vector) -> Vector:
     """Torque on the shaft of each winch [N m] of the tensions of all cables [N]."""
-    radii = {winch.name: winch.spool_radius for winch in robot.winches}
-    own = np.array([cable.spool_radius or radii[cable.winch] for cable in robot.cables])
-    mine = np.array([[cable.winch == winch.name for cable in robot.cables] for winch in robot.winches], dtype=float)
-    return mine @ (own * tensions)
+    return spool_arms(robot) @ tensions

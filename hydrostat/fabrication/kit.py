@@ -58,6 +58,7 @@ class Kit:
         summary: contents, one line each.
         problems: reasons why it cannot be built well; empty without `force`.
         warnings: warnings for the builder, one line each.
+        notes: information for the builder, one line each.
         checks: comparisons of the files with the simulated robot.
     """
 
@@ -69,6 +70,7 @@ class Kit:
     summary: tuple[str, ...]
     problems: tuple[str, ...]
     warnings: tuple[str, ...]
+    notes: tuple[str, ...] = ()
     checks: tuple[Check, ...]
 
     def write(self, folder: str | Path) -> list[Path]:

@@ -174,6 +174,7 @@ class KitOptions:
         motor: key of a motor in the table, or "auto": the first that is strong enough.
         tension: maximum cable tension in its poses [N], for the choice of motors and lines. None: the limit of its
             winches. A designed robot keeps to the limit of its design.
+        torque: maximum torque of a winch in its poses [N m], as the tension.
         paper: paper size of the pages.
         step: also write each printed part as STEP; needs the extra `cad`.
         force: True to write a kit that cannot be built well, with the reasons on the sheet.
@@ -182,12 +183,13 @@ class KitOptions:
         mould: options for the mold of a foam robot.
 
     Raises:
-        InputError: a text that is no method or no paper, a tension that is not above 0.
+        InputError: a text that is no method or no paper, a tension or torque that is not above 0.
     """
 
     method: Method | None = None
     motor: str = "auto"
     tension: float | None = None
+    torque: float | None = None
     paper: Paper = Paper.A4
     step: bool = False
     force: bool = False
@@ -199,10 +201,13 @@ class KitOptions:
         if self.method is not None:
             make_member(self, "method", Method)
         make_member(self, "paper", Paper)
-        if self.tension is not None:
-            check_number("tension", self.tension, "N")
-        if self.tension is not None and not (math.isfinite(self.tension) and self.tension > 0):
-            raise InputError(f"tension must be above 0 N, not {self.tension:g} N")
+        for name, unit in (("tension", "N"), ("torque", "N m")):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            check_number(name, value, unit)
+            if not (math.isfinite(value) and value > 0):
+                raise InputError(f"{name} must be above 0 {unit}, not {value:g} {unit}")
 
     def method_for(self, body: Body) -> Method:
         """Method by which a body is made."""

@@ -61,6 +61,7 @@ class BodyWork:
     summary: tuple[str, ...] = ()  # a line for each result
     problems: tuple[str, ...] = ()  # why it cannot be built well
     warnings: tuple[str, ...] = ()  # sentences on what may fail later
+    notes: tuple[str, ...] = ()  # information for the builder
     checks: tuple[Check, ...] = ()  # comparisons with the simulation
 
 
@@ -128,3 +129,4 @@ class KitFindings:
     checks: tuple[Check, ...] = ()  # checks of the kit on itself
     problems: tuple[str, ...] = ()  # why the robot cannot be built well, each once
     warnings: tuple[str, ...] = ()  # sentences on what may fail later
+    notes: tuple[str, ...] = ()  # information for the builder

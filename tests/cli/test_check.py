@@ -66,7 +66,10 @@ NO_CABLES = "OK: 0 errors, 0 warnings (body only: no cables yet)."
 
 
 def test_flat_body(check: Check, tmp_path: Path) -> None:
-    """Oracle: 48 cm^3, 1.92 g, from 40 to 60 mm across, that is 40 / 12 elements and more."""
+    """Oracle: 48 cm^3, 1.92 g, from 40 to 60 mm across, that is 40 / 12 elements and more; 20 mm are thin for motors.
+
+    The smallest unit is 25 mm thick, and stuffing gives a quarter.
+    """
     (tmp_path / "body.svg").write_text(SVG.format('<rect width="60" height="40"/>'))
     (tmp_path / "robot.toml").write_text(FLAT)
     lines = check(tmp_path)
@@ -75,7 +78,13 @@ def test_flat_body(check: Check, tmp_path: Path) -> None:
     few = float(lines[2].removeprefix("thickness 40 to 60 mm (").split(" to ")[0])
     assert few == pytest.approx(40 / 12, rel=0.15)
     assert "smallest angle" in lines[2]
-    assert lines[3:] == ["1 pin, 0 winches, 0 cables, 0 markers, poses: none", NO_CABLES]
+    assert lines[3] == "1 pin, 0 winches, 0 cables, 0 markers, poses: none"
+    told = re.fullmatch(
+        r"warning: body: no room for the motor .* at least (\d+) mm long and (\d+) mm thick\. .*", lines[4]
+    )
+    assert told is not None
+    assert 25 / 1.25 <= float(told[2]) < 1.05 * 25 / 1.25 + 1
+    assert lines[5:] == [NO_CABLES.replace("0 warnings", "1 warning")]
 
 
 def test_body_in_space(check: Check, tmp_path: Path) -> None:

@@ -53,8 +53,10 @@ class Search:
 
 @pytest.fixture
 def search(monkeypatch: pytest.MonkeyPatch) -> Search:
+    """The search; the kits of its networks pass, until a test says otherwise."""
     fake = Search()
     monkeypatch.setattr("hydrostat.design.find_network", fake)
+    monkeypatch.setattr("hydrostat.design.kit_fits", lambda network: True)
     return fake
 
 
@@ -123,6 +125,29 @@ def test_options_come_before_the_file(run: Run, strip: Path, search: Search, no_
     for words in ("'clearance': '4 mm'", "'tension': '12 N'", "'keep out': '1'", "'locked cables': 'down 1'"):
         assert words in told
     assert "still" not in told
+
+
+def test_a_design_that_no_kit_can_be_made_of_is_an_error(
+    run: Run, strip: Path, search: Search, no_report: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Oracle: the strip's own refusals; the command continues with the alternative that fits, else with fewer winches.
+
+    All is written anyway.
+    """
+    other = search.answer.alternatives[1]
+    out = tmp_path / "out"
+    for fits, remedy in (
+        (lambda network: network is other, f"hydrostat fabricate {out}/alternatives/02_1_winches_1_cables "),
+        (lambda network: False, f"hydrostat design {strip} --winches 1 --cables 1 "),
+    ):
+        monkeypatch.setattr("hydrostat.design.kit_fits", fits)
+        code, told, err = run("design", strip, "--out", out)
+        assert code == 1
+        assert "error: the units of winches" in told
+        assert f"Try: {remedy}" in told
+        assert "Next: " not in told
+        assert "the kit of this network would be rejected" in err
+        assert (out / "robot" / "robot.toml").exists()
 
 
 @pytest.mark.slow

@@ -90,15 +90,13 @@ def test_a_mount_in_words_is_a_mount(unchecked: None) -> None:
 
 
 def test_the_limit_of_tension() -> None:
-    """A motor of 0.06 N m on a spool of 6 mm holds 10 N, shared by the cables; on spools twice as large, half."""
-    assert Constraints(tension=20.0).tension_limit == 20.0
-    assert Constraints(tension=20.0, torque=0.06, cables_per_winch=1).tension_limit == pytest.approx(10.0)
-    assert Constraints(tension=20.0, torque=0.06, cables_per_winch=4).tension_limit == pytest.approx(2.5)
-    larger = Constraints(tension=20.0, torque=0.06, cables_per_winch=4, spool_radius=0.012)
-    assert larger.tension_limit == pytest.approx(1.25)
-    stepped = Constraints(tension=20.0, torque=0.06, cables_per_winch=4, spool_ratio=2.0)
-    assert stepped.tension_limit == pytest.approx(1.25)
-    assert Constraints(tension=2.0, torque=0.06, cables_per_winch=4).tension_limit == 2.0
+    """A motor of 0.06 N m on a spool of 6 mm holds 10 N if it pulls one cable; on spools half as large, 20 N."""
+    assert Constraints(tension=30.0).tension_limit == 30.0
+    for cables in (1, 4):
+        assert Constraints(torque=0.06, cables_per_winch=cables).tension_limit == pytest.approx(10.0)
+    assert Constraints(torque=0.06, spool_radius=0.012).tension_limit == pytest.approx(5.0)
+    assert Constraints(tension=30.0, torque=0.06, spool_ratio=2.0).tension_limit == pytest.approx(20.0)
+    assert Constraints(tension=2.0, torque=0.06).tension_limit == 2.0
 
 
 def misfit(limits: dict[str, Any], *, space: bool = False, bare: bool = False) -> str:

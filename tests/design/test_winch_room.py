@@ -1,31 +1,47 @@
-"""Where a winch can be built in. Oracle: the ways to lie that the kit tries for a unit."""
+"""Where a winch can be built in. Oracle: the ways to lie, and the pockets, that the kit tries for a unit."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
+from moulds.mould_robots import blob_body, foam_robot, slab_body
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.winch_room import _example, built_in, winch_room
+from hydrostat.design.design_cables import design_cables
+from hydrostat.design.request import RouteOptions
+from hydrostat.design.routes.finalists import kit_fits
+from hydrostat.design.winch_room import _example, built_in, find_no_room, winch_room
 from hydrostat.design.zone import Zone
+from hydrostat.errors import InputError
 from hydrostat.fabrication import (
     GIVES,
     MOTORS,
     TOUCHES,
+    KitOptions,
     PartOptions,
     UnitBox,
+    build_kit,
     choose_motor,
+    find_refusals,
+    largest_torque,
     seam_of,
     unit_room,
     ways_to_lie,
 )
+from hydrostat.robot import Marker, Pin, PoseTarget, Robot
 
 
 @pytest.mark.parametrize("name", ["starfish", "letter_e"])
 def test_a_unit_lies_within_the_seam_wherever_there_is_room(name: str, unchecked: None) -> None:
-    """Of the strongest motor that fits; and nowhere 8 mm outside the room: the kit slides a unit by 6."""
+    """Of the strongest motor that fits; and nowhere 8 mm outside the room: the kit slides a unit by 6.
+
+    The pins, where no winch stands, are on the edge.
+    """
     robot, limits = gallery_robot(name), Constraints()
+    side = robot.body.mesh.nodes[robot.body.mesh.boundary[0]]
+    robot = replace(robot, pins=tuple(Pin(at=tuple(end)) for end in side.tolist()))
     zones, motor = winch_room(robot, limits, 2)
     assert motor is MOTORS[-1]
     assert zones
@@ -44,6 +60,28 @@ def test_a_unit_lies_within_the_seam_wherever_there_is_room(name: str, unchecked
     assert not any(map(fits, outside))
 
 
+def test_winches_stand_in_no_pin_and_on_no_eye(unchecked: None) -> None:
+    """Oracle: distances from the pin and from the eye; elsewhere there is the room that there was without them."""
+    robot, limits = gallery_robot("starfish"), Constraints()
+    (pin,) = robot.pins
+    assert pin.at is not None
+    turns = np.linspace(0.0, 2 * np.pi, 40)
+    eye = np.array([0.0, 0.06]) + 0.006 * np.column_stack([np.cos(turns), np.sin(turns)])
+    drawn = replace(robot, body=replace(robot.body, marks=(eye,)))
+    bare = replace(robot, pins=(Pin(at=(0.0, 0.2), radius=0.09),))
+    places = robot.body.mesh.nodes
+    found = [winch_room(each, limits, 3)[0] for each in (drawn, bare)]
+    allowed, free = (np.min([zone.distances(places) for zone in zones], axis=0) < 0 for zones in found)
+    taken = np.linalg.norm(places - pin.at, axis=1) < pin.radius + limits.spool_radius
+    on_eye = np.linalg.norm(places - eye.mean(axis=0), axis=1) < 0.006 + limits.spool_radius
+    assert (free & taken).any()
+    assert (free & on_eye).any()
+    assert not (allowed & (taken | on_eye)).any()
+    far = np.linalg.norm(places - pin.at, axis=1) > 1.5 * (pin.radius + limits.spool_radius)
+    far &= np.linalg.norm(places - eye.mean(axis=0), axis=1) > 0.02
+    assert (allowed[far] == free[far]).all()
+
+
 def test_zones_of_ones_own_count(unchecked: None) -> None:
     robot = gallery_robot("starfish")
     small = Zone(at=(0.0, 0.0), radius=0.02)
@@ -52,11 +90,75 @@ def test_zones_of_ones_own_count(unchecked: None) -> None:
     assert np.linalg.norm(corners, axis=1).max() <= 0.0201
 
 
-def test_in_space_zones_are_left_as_they_are(unchecked: None) -> None:
-    assert winch_room(gallery_robot("cupping_hand"), Constraints(), 2) == ((), None)
+def test_a_pocket_fits_wherever_there_is_room_in_foam(unchecked: None) -> None:
+    """Oracle: the pockets that the kit makes by booleans of solids; none fits 8 mm outside the room."""
+    body = blob_body((0.15, 0.09, 0.08))
+    robot = foam_robot(body, (0.0, 0.0, 0.0))
+    zones, motor = winch_room(robot.with_network((), ()), Constraints(), 1)
+    assert motor is MOTORS[-1]
+    options = KitOptions(motor=motor.key)
+
+    def fits(at: np.ndarray) -> bool:
+        return not find_refusals(foam_robot(body, tuple(at.tolist())), options=options)
+
+    middles = np.array([zone.at for zone in zones])
+    rims = np.array([np.add(zone.at, (0.0, 0.0, 0.9 * zone.radius)) for zone in zones])
+    assert all(map(fits, [*middles, *rims]))
+    places = 0.9 * body.mesh.nodes
+    away = np.min([zone.distances(places) for zone in zones], axis=0)
+    assert (away > 8e-3).sum() > 20
+    assert not any(map(fits, places[away > 8e-3][::8]))
 
 
-def test_a_small_body_gives_the_torque_of_the_motor_that_fits() -> None:
+@pytest.mark.slow
+def test_a_design_in_foam_can_be_built(unchecked: None) -> None:
+    """Oracle: the whole kit, which raises for every reason not to build it."""
+    body = slab_body((0.2, 0.06, 0.06))
+    robot = replace(
+        foam_robot(body, (0.0, 0.0, 0.0)).with_network((), ()),
+        markers=(Marker(name="tip", at=(0.095, 0.0, 0.0)),),
+        poses={"bend": PoseTarget(name="bend", targets={"tip": (0.08, 0.0, 0.04)})},
+    )
+    quick = RouteOptions(starts=1, trials=2, polish=5, exchanges=0)
+    network = design_cables(robot, robot.poses.values(), winches=1, cables=1, options=quick)
+    limits = network.constraints
+    kit = build_kit(network.robot, options=KitOptions(tension=limits.tension_limit, torque=limits.torque))
+    assert kit.problems == ()
+    assert all(check.passed for check in kit.checks)
+    assert kit_fits(network)
+
+
+def test_winches_need_room_next_to_each_other(unchecked: None) -> None:
+    """Six of the smallest unit do not fit into a body that holds one; more room is asked for than for one."""
+    robot = foam_robot(slab_body((0.09, 0.045, 0.045)), (0.0, 0.0, 0.0), at=(0.0, 0.0, 0.01)).with_network((), ())
+    assert winch_room(robot, Constraints(), 1)[1] is not None
+    with pytest.raises(InputError, match=r"body: no room for 6 motors .* Make it at least \d+ mm long"):
+        built_in(robot, Constraints(), winches=6, cables=6)
+
+
+@pytest.mark.parametrize("thickness", [0.01, 0.03])
+def test_a_body_of_the_size_that_an_error_names_has_room(thickness: float) -> None:
+    """Oracle: the same search for room in the larger body; none in one 10 % smaller."""
+
+    def body_of(scale: float) -> Robot:
+        mesh = strip_mesh(12, 2, size=(0.12 * scale, 0.02 * scale))
+        body = mesh_body(mesh, thickness=thickness * scale)
+        return replace(strip_robot(), cables=(), winches=(), markers=(), body=body)
+
+    with pytest.raises(InputError, match=r"no room for the motor \(smallest: Pololu micro") as caught:
+        built_in(body_of(1.0), Constraints(), winches=1, cables=1)
+    scale = float(re.search(r"at least (\d+) mm long", str(caught.value))[1]) / 120
+    assert winch_room(body_of(scale), Constraints(), 1)[1] is not None
+    assert winch_room(body_of(0.9 * scale), Constraints(), 1)[1] is None
+    assert find_no_room(body_of(1.0)) == str(caught.value)
+    assert find_no_room(body_of(scale)) is None
+
+
+def test_winches_outside_need_no_room(unchecked: None) -> None:
+    assert find_no_room(gallery_robot("cupping_hand")) is None
+
+
+def test_a_small_body_gives_the_torque_that_the_motor_that_fits_holds() -> None:
     """Oracle: the choice of the kit, which takes this motor up to that torque and a stronger one beyond."""
     body = mesh_body(strip_mesh(8, 4, size=(0.08, 0.04)), thickness=0.03)
     robot = replace(strip_robot(), cables=(), winches=(), markers=(), body=body)
@@ -64,14 +166,13 @@ def test_a_small_body_gives_the_torque_of_the_motor_that_fits() -> None:
     assert motor is not None
     limits = built_in(robot, Constraints(), winches=1, cables=2)
     assert limits.torque is not None
-    assert choose_motor("auto", [limits.torque], inside=True) is motor
-    assert choose_motor("auto", [1.01 * limits.torque], inside=True) is not motor
-    assert limits.cables_per_winch == 2
-    assert limits.tension_limit == pytest.approx(limits.torque / (2 * limits.spool_radius))
+    assert choose_motor("auto", [limits.torque]) is motor
+    assert choose_motor("auto", [1.01 * limits.torque]) is not motor
+    assert limits.tension_limit == pytest.approx(min(limits.torque / limits.spool_radius, limits.tension))
     assert built_in(robot, Constraints(torque=0.01), winches=1, cables=2).torque == 0.01
 
 
-def test_where_the_strongest_motor_fits_tensions_are_as_asked(unchecked: None) -> None:
-    robot = gallery_robot("starfish")
-    limits = built_in(robot, Constraints(), winches=2, cables=6)
-    assert (limits.torque, limits.tension_limit) == (None, Constraints().tension_limit)
+def test_where_the_strongest_motor_fits_a_cable_pulls_as_asked(unchecked: None) -> None:
+    limits = built_in(gallery_robot("starfish"), Constraints(), winches=2, cables=6)
+    assert limits.torque == largest_torque(MOTORS[-1])
+    assert limits.tension_limit == Constraints().tension

@@ -222,7 +222,7 @@ def test_the_middle_is_for_bodies_that_are_cast() -> None:
     with pytest.raises(InputError, match="cables in the middle are held by nothing in loose filling"):
         plush_pattern(robot)
     told: Mapping[Face, tuple[str, ...]] = {
-        face: build_kit(_foam(replace(robot, face=face)), options=KitOptions(method=Method.FOAM, force=True)).warnings
+        face: build_kit(_foam(replace(robot, face=face)), options=KitOptions(method=Method.FOAM, force=True)).notes
         for face in (Face.MIDDLE, Face.PAIRS)
     }
     assert not any("cast body" in warning for warning in told[Face.MIDDLE])

@@ -13,7 +13,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import IKOptions, IKResult, Limits, reach_extent, solve_ik, usable_spans
+from hydrostat.ik import IKOptions, IKResult, Limits, reach_extent, solve_ik, spool_arms, usable_spans
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics, CableSensitivities, Equilibrium, Simulation, cable_sensitivities
 
@@ -29,7 +29,7 @@ class Trial:
     columns: tuple[Columns, ...]  # what each tolerance does to the markers of each pose: see `spread_columns` [m]
     error: float  # root of the mean squared marker error over all poses [m]
     spread: float  # root of the mean variance of the markers as built, over all poses [m]
-    pull: float  # the largest tension, as a share of what a cable bears
+    pull: float  # the largest tension or torque, as a share of its limit
     from_rest: bool = False  # whether its poses were found from rest, to the end
     near: float = 1.0  # factor of the cost, at least 1: the less its markers reach elsewhere, the more
 
@@ -109,7 +109,7 @@ class Bench:
         self.solves += 1
         simulation = Simulation(layout.robot(), body=self.body)
         options = IKOptions(restarts=0, min_tension=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
-        limits = Limits(tension=self.constraints.tension_limit)
+        limits = self.constraints.limits
         found = []
         for index, target in enumerate(self.targets):
             start = None if before is None else self._relax_start(simulation, before, index)
@@ -190,7 +190,7 @@ class Bench:
 
     def trial(self, layout: Layout, simulation: Simulation, poses: Sequence[Equilibrium]) -> Trial:
         """The trial of poses that were solved."""
-        pull = max(float(pose.tensions.max(initial=0.0)) for pose in poses) / self.constraints.tension_limit
+        pull = max(self.pull(simulation.robot, pose.tensions) for pose in poses)
         slopes = tuple(
             cable_sensitivities(simulation, pose, markers) for pose, markers in zip(poses, self.markers, strict=True)
         )
@@ -203,6 +203,13 @@ class Bench:
         error = self._error(simulation, poses)
         near = self.nearness(simulation.robot, slopes)
         return Trial(layout, simulation, tuple(poses), slopes, columns, error, float(spread), pull, near=near)
+
+    def pull(self, robot: Robot, tensions: Vector) -> float:
+        """The largest tension or torque, as a share of its limit."""
+        share = float(tensions.max(initial=0.0)) / self.constraints.tension
+        if self.constraints.torque is None:
+            return share
+        return max(share, float((spool_arms(robot) @ tensions).max(initial=0.0)) / self.constraints.torque)
 
     def nearness(self, robot: Robot, slopes: Sequence[CableSensitivities]) -> float:
         """Factor of the cost of a network by its reach at some poses: (size / reach)^weight, at least 1."""

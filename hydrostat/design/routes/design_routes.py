@@ -27,7 +27,7 @@ from hydrostat.design.watch import Watch, unseen
 from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 
 Hints = Callable[[BodyPhysics], Iterable[Robot]]
@@ -84,7 +84,7 @@ class RouteSearch:
         self.hints, self.physics = hints, body
         self.winches, self.cables = int(request.winches), request.cables
         self.constraints, self.options = request.constraints, request.route_options
-        if self.constraints.built_in and not request.improve and self.constraints.mount is not Mount.WORLD:
+        if self.constraints.built_in and not request.improve and not self.constraints.stand_outside(robot):
             self.constraints = built_in(robot, self.constraints, winches=self.winches, cables=self.cables)
         self.bench = Bench(
             robot,
@@ -328,7 +328,7 @@ class RouteSearch:
     def _fitting_constraints(self) -> Constraints:
         """Return the request with the torque of the motors that fit."""
         own = self.constraints
-        return replace(self.request.constraints, torque=own.torque, cables_per_winch=own.cables_per_winch)
+        return replace(self.request.constraints, torque=own.torque)
 
     def _simpler(self) -> list[Trial]:
         """The best network of each size with fewer cables, where none with fewer still is as good."""

@@ -14,7 +14,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.errors import NotConvergedError
 from hydrostat.fabrication import demand_of, find_refusals
-from hydrostat.ik import IKOptions, Limits
+from hydrostat.ik import IKOptions
 from hydrostat.robot import Robot, limit_travels
 from hydrostat.simulation import Simulation, cable_sensitivities
 
@@ -38,7 +38,7 @@ class Finalists:
         if violations(robot, self.constraints, self.region):
             return None
         simulation = Simulation(robot, body=self.bench.body)
-        limits = Limits(tension=self.constraints.tension_limit)
+        limits = self.constraints.limits
         try:
             reached = [reach_from_rest(simulation, pose, limits, IKOptions()) for pose in self.request.poses]
         except NotConvergedError:

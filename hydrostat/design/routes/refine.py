@@ -4,13 +4,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.design.region import Region
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.margins import margins
-from hydrostat.ik import least_squares
+from hydrostat.ik import least_squares, spool_arms
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,9 +81,17 @@ class _Refinement:
         """Squares of the error as built, effort and turns, and of what tensions exceed."""
         total = trial.built_error**2 + float(((bend * turns(trial.layout)) ** 2).sum())
         for pose in trial.poses:
-            over = np.maximum(pose.tensions - self.limit, 0.0)
+            over = self._excess(trial, pose.tensions)
             total += float((effort**2) * (pose.tensions**2).sum() + (_OVER * effort) ** 2 * (over**2).sum())
         return total
+
+    def _excess(self, trial: Trial, tensions: Vector) -> Vector:
+        """Tensions above their limit, and torques above theirs by the radius of spools [N]."""
+        over, torque = np.maximum(tensions - self.limit, 0.0), self.bench.constraints.torque
+        if torque is None:
+            return over
+        turned = spool_arms(trial.simulation.robot) @ tensions
+        return np.append(over, np.maximum(turned - torque, 0.0) / self.bench.constraints.spool_radius)
 
     def _step(self, trial: Trial, effort: float, bend: float) -> Trial | None:
         """The first damped step that lowers the merit; None if none does. The damping follows what steps keep."""
@@ -139,6 +148,19 @@ class _Refinement:
         return self.bench.hold_contractions(moved, contractions, trial, worst=float(np.sqrt(max(room, 0.0))))
 
 
+def _pull_limits(
+    bench: Bench, trial: Trial, tensions: Vector, rises: Float[np.ndarray, "cables numbers"]
+) -> Iterator[tuple[Float[np.ndarray, "limits numbers"], Vector]]:
+    """Rows and room of the limits on tensions and torques that a pose is near."""
+    limit, torque = bench.constraints.tension_limit, bench.constraints.torque
+    near = tensions > 0.5 * limit
+    yield rises[near], limit - tensions[near]
+    if torque is not None:
+        arms = spool_arms(trial.simulation.robot)
+        turned = arms @ tensions > 0.5 * torque
+        yield arms[turned] @ rises, torque - arms[turned] @ tensions
+
+
 def linear_model(
     bench: Bench,
     region: Region,
@@ -150,7 +172,7 @@ def linear_model(
     directions: int = 2,
 ) -> Model:
     """A trial to first order, with limits within `reach` [m]; effort weighs tensions [m/N], bend turns of 1 rad [m]."""
-    layout, limit = trial.layout, bench.constraints.tension_limit
+    layout = trial.layout
     winches, free = len(layout.sites), layout.ties.shape[1]
     count = free + winches * len(trial.poses)
     matrix, right, rows, lefts = [], [], [], []
@@ -169,9 +191,9 @@ def linear_model(
             scattered[:, begin : begin + winches] = changed[:, :winches]
             matrix.append(scattered)
             right.append(moved)
-        near = pose.tensions > 0.5 * limit
-        rows.append(own[markers:][near])
-        lefts.append(limit - pose.tensions[near])
+        for row, left in _pull_limits(bench, trial, pose.tensions, own[markers:]):
+            rows.append(row)
+            lefts.append(left)
         for winch, site in enumerate(layout.sites):
             for sign, left in (
                 (1.0, site.winch.travel - pose.contractions[winch]),

@@ -106,7 +106,8 @@ def route_graph(robot: Robot, region: Region, constraints: Constraints, *, spaci
     points, such as the element size. Raises InputError if there is no place for a via point or for a winch.
     """
     mesh = robot.body.mesh
-    nodes, points = _via_points(mesh.nodes, region, constraints, spacing)
+    whole = _with_zones(mesh.nodes, robot, constraints)
+    nodes, points = _via_points(whole, region, constraints, spacing, first=len(whole) - len(mesh.nodes))
     if len(points) < 2:
         raise InputError(
             f"there is no room for cables {1e3 * constraints.clearance:g} mm inside the edge; lower the clearance or "
@@ -141,25 +142,33 @@ _NEIGHBOURS = {2: 12, 3: 18}
 
 
 def _via_points(
-    nodes: Nodes, region: Region, constraints: Constraints, spacing: float
+    nodes: Nodes, region: Region, constraints: Constraints, spacing: float, *, first: int = 0
 ) -> tuple[Int[np.ndarray, " points"], Points]:
     """Mesh nodes that cables may turn at, and their places inside the clearance.
 
-    Those that lie inside already come first; of what is moved there, only what is not crowded. A node that no place
-    near it can hold, as in a thin part, is left out.
+    The last nodes come first, as many as are said, then those that lie inside already; of all others, only what is not
+    crowded. A node that no place near it can hold, as in a thin part, is left out.
     """
     moved = region.push_inside(nodes)
     shifts = np.linalg.norm(moved - nodes, axis=1)
     good = region.fits(moved) & (shifts <= 2 * region.clearance + spacing)
     good &= _outside(moved, constraints.keep_out)
     order = np.flatnonzero(good)
-    order = order[np.argsort(shifts[order] > 1e-12, kind="stable")]
+    order = order[np.lexsort((order, shifts[order] > 1e-12, order < len(nodes) - first))]
     kept: list[int] = []
     for node in order.tolist():
         if not kept or np.linalg.norm(moved[kept] - moved[node], axis=1).min() >= _CROWDED * spacing:
             kept.append(node)
     chosen = np.array(sorted(kept), dtype=np.int64)
     return chosen, moved[chosen]
+
+
+def _with_zones(nodes: Nodes, robot: Robot, constraints: Constraints) -> Nodes:
+    """The nodes, and the middles of balls that are too small to hold one but may hold a winch."""
+    if constraints.stand_outside(robot):
+        return nodes
+    middles = [zone.at for zone in constraints.winch_zones if zone.at is not None and zone.distances(nodes).min() > 0]
+    return np.concatenate([nodes, np.array(middles, dtype=float).reshape(-1, nodes.shape[1])])
 
 
 def _near(points: Points, nodes: Int[np.ndarray, " points"], mesh_edges: Pairs, spacing: float) -> Pairs:
@@ -186,11 +195,9 @@ def _join_points(points: Points, pairs: Pairs, region: Region, constraints: Cons
 
 def _in_world(robot: Robot, constraints: Constraints) -> bool:
     """True if winches stand in the world (InputError: they should, but the robot has none that says where)."""
-    if constraints.mount is None:
-        return bool(robot.winches) and all(winch.mount is Mount.WORLD for winch in robot.winches)
     if constraints.mount is Mount.WORLD and not robot.winches:
         raise InputError("winches in the world stand where the robot's own do, but it has none; give it [[winch]]")
-    return constraints.mount is Mount.WORLD
+    return constraints.stand_outside(robot)
 
 
 def _winch_places(points: Points, region: Region, constraints: Constraints) -> Int[np.ndarray, " places"]:

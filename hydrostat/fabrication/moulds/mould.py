@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from jaxtyping import Float
 from manifold3d import Manifold
 
 from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
@@ -15,11 +13,11 @@ from hydrostat.fabrication.moulds.linked import interlock_count
 from hydrostat.fabrication.moulds.openings import Sprue, Vent, make_sprue, make_vents
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
 from hydrostat.fabrication.moulds.positive import Frames, Positive, make_frames, make_positive
-from hydrostat.fabrication.moulds.pull import Pull, find_pull
+from hydrostat.fabrication.moulds.pull import Pull
+from hydrostat.fabrication.moulds.setting import mould_setting
 from hydrostat.fabrication.moulds.split import grid
-from hydrostat.fabrication.moulds.stance import MouldOrientation, find_stance
+from hydrostat.fabrication.moulds.stance import MouldOrientation
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.body_solid import MILLIMETRES, body_solid
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Material, Robot
@@ -53,6 +51,7 @@ class Mould:
     casting: Casting  # amounts and times
     problems: tuple[str, ...]  # why it cannot be built well
     warnings: tuple[str, ...]  # warnings for the builder
+    notes: tuple[str, ...] = ()  # information for the builder
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -74,10 +73,9 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     `pockets` are what winches that sit in the body take up, by name; three sides [mm] if the shaft is in the middle.
     Raises InputError: the body is not closed, or a pocket is of a winch that is not there.
     """
-    solid = body_solid(robot.body)
-    pull = find_pull(solid)
-    stance = find_stance(pull, _pinned_nodes(robot))
-    inside = _fill_block(robot, options, solid, pull, stance, pockets or {})
+    setting = mould_setting(robot)
+    pull, stance = setting.pull, setting.stance
+    inside = _fill_block(robot, options, setting.solid, pull, stance, pockets or {})
     closing = make_closing(
         inside.block,
         sprue=inside.sprue,
@@ -116,7 +114,8 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
                 pull, robot.body.material, inside.sprue, inside.pockets, printed, options, halves, links=links
             ),
         ),
-        warnings=mould_warnings(pull, robot.body.material, options.kind, links=links),
+        warnings=mould_warnings(options.kind, links=links),
+        notes=mould_notes(pull, robot.body.material, options.kind),
     )
 
 
@@ -126,16 +125,6 @@ def _silicone_volumes(halves: Halves, positive: Positive, frames: Frames) -> dic
     lower, upper = frames.pours
     sides = float(frames.inside.solid.volume())
     return kept | {"box": sides, "sprue": positive.stub, "silicone_lower": lower, "silicone_upper": upper}
-
-
-def _pinned_nodes(robot: Robot) -> Float[np.ndarray, "held 3"]:
-    """Nodes at pins [mm], flat bodies at z = 0."""
-    mesh = robot.body.mesh
-    held = np.zeros(len(mesh.nodes), dtype=bool)
-    for pin in robot.pins:
-        held |= pin.holds(mesh)
-    nodes = MILLIMETRES * mesh.nodes[held]
-    return np.column_stack([nodes, np.zeros((len(nodes), 3 - mesh.dim))])
 
 
 def _fill_block(
@@ -266,9 +255,7 @@ def _reaches(links: tuple[int, int]) -> str:
     return " and ".join(parts)
 
 
-def mould_warnings(
-    pull: Pull, material: Material, kind: MouldKind, *, links: tuple[int, int] = (0, 0)
-) -> tuple[str, ...]:
+def mould_warnings(kind: MouldKind, *, links: tuple[int, int] = (0, 0)) -> tuple[str, ...]:
     """Return the warnings for the builder; `links` as in `mould_problems`."""
     found = []
     if kind is MouldKind.SILICONE and any(links):
@@ -276,10 +263,14 @@ def mould_warnings(
             f"{_reaches(links)} and closes behind it. Silicone yields, but a closed loop cannot be drawn out. "
             "Cut the silicone open there with a knife, and tape the cut from outside before you pour"
         )
+    return tuple(found)
+
+
+def mould_notes(pull: Pull, material: Material, kind: MouldKind) -> tuple[str, ...]:
+    """Return a note on a little undercut, which foam is squeezed past; empty if there is none."""
     if pull.share <= (UNNOTICED if kind is MouldKind.PRINTED else TOLERATED):
-        return tuple(found)
+        return ()
     return (
-        *found,
         f"{100 * pull.share:.0f} % of the surface is undercut: {material.name or 'the body'} is squeezed past it. Use "
         "plenty of release agent, open the mould slowly and draw the body out part by part",
     )

@@ -37,7 +37,7 @@ class WinchRoom(Cuboid):
         return (self.low[0] + self.high[0]) / 2, (self.low[1] + self.high[1]) / 2, 0.0
 
 
-_LEAST_SKIN = 2.0  # foam between a pocket and the next surface [mm]
+LEAST_SKIN = 2.0  # foam between a pocket and the next surface [mm]
 _WIRES = (8.0, 4.0)  # width and depth of the groove for the wires of a motor, beside it [mm]
 
 _OUTSIDE = 0.02
@@ -120,7 +120,7 @@ def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Lying:
+class LyingWinch:
     """One way to lay a winch, with its sides along those of the mould."""
 
     sides: Sides  # sides of the winch along x, y, z of the mold [mm]
@@ -139,7 +139,12 @@ def _pockets_for(
     return [_pocket(name, body, way, upper, clearance) for way in best for upper in (True, False)]
 
 
-def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[_Lying]:
+def ways_to_turn(room: WinchRoom) -> list[LyingWinch]:
+    """All ways to lay a winch whose place is at 0; those that differ in no length only once."""
+    return _lain(np.zeros(3), room)
+
+
+def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[LyingWinch]:
     """All ways to lay a winch; those that differ in no length only once."""
     rounding = 1e-6
     off = np.where(np.abs(room.off) > rounding, room.off, 0.0)
@@ -152,11 +157,11 @@ def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[_Lying]:
         shaft = order.index(2)
         wires = (shaft, -int(signs[2])) if shaft < 2 else (0, -1)
         sides = (room.size[order[0]], room.size[order[1]], room.size[order[2]])
-        found.append(_Lying(sides=sides, middle=(a, b, c), wires=wires))
+        found.append(LyingWinch(sides=sides, middle=(a, b, c), wires=wires))
     return list(dict.fromkeys(found))
 
 
-def _pocket(name: str, body: Manifold, way: _Lying, upper: bool, clearance: float) -> Pocket:
+def _pocket(name: str, body: Manifold, way: LyingWinch, upper: bool, clearance: float) -> Pocket:
     """A pocket for a winch laid one way, open to one half."""
     low, high = np.reshape(body.bounding_box(), (2, 3))
     at = np.array(way.middle)
@@ -178,7 +183,7 @@ def _pocket(name: str, body: Manifold, way: _Lying, upper: bool, clearance: floa
         )
     elif float((skin - body).volume()) > bare * float(skin.volume()):
         problem = (
-            f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left next to the pocket of {side} mm. '
+            f'winch "{name}": less than {LEAST_SKIN:g} mm of foam would be left next to the pocket of {side} mm. '
             "Move the winch to a thicker part of the body or choose a smaller motor"
         )
     return Pocket(
@@ -193,7 +198,7 @@ def _pocket(name: str, body: Manifold, way: _Lying, upper: bool, clearance: floa
     )
 
 
-def _cuboid(way: _Lying, clearance: float) -> Manifold:
+def _cuboid(way: LyingWinch, clearance: float) -> Manifold:
     """The box round a winch with some air on all sides."""
     return Manifold.cube([side + 2 * clearance for side in way.sides], True).translate(way.middle)
 
@@ -216,8 +221,8 @@ def _groove(at: np.ndarray, across: tuple[float, float], wires: tuple[int, int],
 def _skin(at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Manifold:
     """The room with a skin round it, but for its open side."""
     sign = 1.0 if upper else -1.0
-    deep, end = at[2] - sign * (sides[2] / 2 + _LEAST_SKIN), at[2] + sign * sides[2] / 2
-    return _upright_box(at, sides[0] + 2 * _LEAST_SKIN, sides[1] + 2 * _LEAST_SKIN, deep, end)
+    deep, end = at[2] - sign * (sides[2] / 2 + LEAST_SKIN), at[2] + sign * sides[2] / 2
+    return _upright_box(at, sides[0] + 2 * LEAST_SKIN, sides[1] + 2 * LEAST_SKIN, deep, end)
 
 
 def _upright_box(at: np.ndarray, width: float, height: float, deep: float, far: float) -> Manifold:

@@ -21,11 +21,12 @@ class LaidUnit:
 
     place: UnitPlace  # place and orientation
     problems: tuple[str, ...] = ()  # why it cannot be built well
-    warnings: tuple[str, ...] = ()  # warnings for the builder
+    is_piled: bool = False  # True if another lies above or below it
+    notes: tuple[str, ...] = ()  # information for the builder: a bulge, units one above the other
 
 
 def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
-    """Lay each unit, in their order, within a seam and a thickness [mm], with its problems and warnings.
+    """Lay each unit, in their order, within a seam and a thickness [mm], with its problems and notes.
 
     Each in turn takes the way in which it is within the seam, shares least of the plane with the others, bulges least
     and is moved least, until none changes. Those that still meet lie one above the other, if the body is thick
@@ -36,25 +37,18 @@ def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float
     if total[0] > 0:
         thin = [way.thinnest() if _meets_another(places, number) else way for number, way in enumerate(ways)]
         places = min((total, places), _settle_units(thin), key=lambda pair: pair[0])[1]
-    problems, warnings = (
+    problems, notes = (
         [_alone(place, thickness) for place in places],
         [_bulging(place, thickness) for place in places],
     )
-    stuck = {number for number, told in enumerate(problems) if told}  # no way of laying these is any good
+    piled: set[int] = set()
     for pile in _piles(places):
         words, possible = _describe_pile([places[number] for number in pile], thickness)
-        (warnings if possible else problems)[pile[0]].append(words)
-        stuck |= set() if possible else set(pile)
-    turned = [number for number, way in enumerate(ways) if places[number] is not way.alone or any(places[number].slid)]
-    moved = [number for number in turned if number not in stuck]
-    if moved:
-        ways_told = "; ".join(places[number].instruction for number in moved)
-        warnings[moved[0]].append(
-            f"place these winch units as listed (front view), or they collide or reach the seam: {ways_told}"
-        )
+        piled |= set(pile)
+        (notes if possible else problems)[pile[0]].append(words)
     return tuple(
-        LaidUnit(place=place, problems=tuple(wrong), warnings=tuple(minded))
-        for place, wrong, minded in zip(places, problems, warnings, strict=True)
+        LaidUnit(place=place, problems=tuple(wrong), is_piled=number in piled, notes=tuple(told))
+        for number, (place, wrong, told) in enumerate(zip(places, problems, notes, strict=True))
     )
 
 

@@ -58,7 +58,7 @@ class UnitPlace:
 
     @property
     def instruction(self) -> str:
-        """Instruction to lay it, for a person."""
+        """Instruction to lay it, for a person, after the name of its winch."""
         right, ahead = self.slid
         slid = ""
         if right or ahead:
@@ -66,9 +66,9 @@ class UnitPlace:
             slid = f", shifted {math.hypot(right, ahead):g} mm toward {_clock(way)}"
         if self.across:
             channel = self.turn - 90 + self.azimuth(self.box.along)
-            return f'"{self.box.winch}" across the body, channel of its first cable toward {_clock(channel)}{slid}'
+            return f"across the body, channel of its first cable toward {_clock(channel)}{slid}"
         motor = self.turn + (-90 if self.flipped else 90)
-        return f'"{self.box.winch}" flat, motor toward {_clock(motor)}{slid}'
+        return f"flat, motor toward {_clock(motor)}{slid}"
 
 
 def seam_of(body: Body) -> BaseGeometry:

@@ -129,6 +129,11 @@ class RigidParts:
         base = self.base.warnings if self.base else ()
         return (*(text for unit in self.units for text in unit.warnings), *self.between, *base, *self.seat.warnings)
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Information for the builder, one sentence each."""
+        return tuple(text for unit in self.units for text in unit.notes)
+
 
 def rigid_parts(
     robot: Robot,

@@ -222,6 +222,7 @@ class WinchUnit:
     place: UnitPlace | None = None  # place in a flat body; None in space and outside
     problems: tuple[str, ...] = ()  # why it cannot be built well
     warnings: tuple[str, ...] = ()  # warnings for the builder
+    notes: tuple[str, ...] = ()  # information for the builder
 
     @property
     def spool(self) -> Spool:
@@ -240,13 +241,11 @@ def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[Winch
     return tuple(draft.unit(robot, parts, laid) for draft, laid in _drafts(robot, options, motor))
 
 
-def unit_problems(robot: Robot, options: PartOptions, motor: Motor) -> tuple[str, ...]:
-    """Return the problems of the winch units, as in `winch_units`, without making them."""
-    return tuple(
-        problem
-        for draft, laid in _drafts(robot, options, motor)
-        for problem in (*draft.problems, *(laid.problems if laid else ()))
-    )
+def unit_problems(robot: Robot, options: PartOptions, motor: Motor) -> tuple[tuple[str, ...], bool]:
+    """Return the problems of the winch units, as in `winch_units`, without making them; and True if units are piled."""
+    drafts = _drafts(robot, options, motor)
+    found = (problem for draft, laid in drafts for problem in (*draft.problems, *(laid.problems if laid else ())))
+    return tuple(found), any(laid is not None and laid.is_piled for _, laid in drafts)
 
 
 def _drafts(robot: Robot, options: PartOptions, motor: Motor) -> list[tuple["_UnitDraft", LaidUnit | None]]:
@@ -263,6 +262,15 @@ def _drafts(robot: Robot, options: PartOptions, motor: Motor) -> list[tuple["_Un
 def unit_room(robot: Robot, winch: Winch, options: PartOptions, motor: Motor) -> Cuboid:
     """Box round the unit of a winch before it is laid, shaft along z, face of the motor at z = 0 [mm]."""
     return _UnitDraft.of(robot, winch, wound_cables(robot, winch), options, motor).housing.room
+
+
+def unit_rooms(robot: Robot, options: PartOptions, motor: Motor) -> dict[str, Cuboid]:
+    """Box round the unit of each winch in the body that has cables, by name, as `unit_room`."""
+    return {
+        winch.name: _UnitDraft.of(robot, winch, wound, options, motor).housing.room
+        for winch in robot.winches
+        if winch.mount is Mount.BODY and (wound := wound_cables(robot, winch))
+    }
 
 
 def find_crowded_units(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
@@ -316,7 +324,8 @@ class _UnitDraft:
             across=laid is None or laid.place.across,
             place=laid.place if laid else None,
             problems=(*self.problems, *(laid.problems if laid else ())),
-            warnings=(*self.warnings, *(laid.warnings if laid else ())),
+            warnings=self.warnings,
+            notes=laid.notes if laid else (),
         )
 
 

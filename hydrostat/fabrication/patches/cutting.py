@@ -294,9 +294,12 @@ def patch_problems(
     return tuple(problems)
 
 
-def patch_warnings(
-    names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
-) -> tuple[str, ...]:
+def patch_notes(names: tuple[str, ...], skins: tuple[Skin, ...]) -> tuple[str, ...]:
+    """Return the notes on sewing the patches, one line each."""
+    return tuple(f"patch {name}: {note}" for name, skin in zip(names, skins, strict=True) for note in skin.notes)
+
+
+def patch_warnings(names: tuple[str, ...], patches: tuple[Patch, ...], seams: tuple[Seam, ...]) -> tuple[str, ...]:
     """Return the warnings about the cloth, one line each."""
     warnings = []
     gives = {name: distortion(patch).give(0.95) for name, patch in zip(names, patches, strict=True)}
@@ -311,6 +314,4 @@ def patch_warnings(
     ease = max((seam.mismatch for seam in seams), default=0.0)
     if ease > 0.01:
         warnings.append(f"sides of seams differ by up to {ease:.1%}. Pin notch to notch and ease in the longer side")
-    for name, skin in zip(names, skins, strict=True):
-        warnings += [f"patch {name}: {warning}" for warning in skin.warnings]
     return tuple(warnings)

@@ -14,7 +14,7 @@ from shapely.geometry.polygon import orient
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
-from hydrostat.fabrication.patches.cutting import cut_skin, patch_problems, patch_warnings, thin_direction
+from hydrostat.fabrication.patches.cutting import cut_skin, patch_notes, patch_problems, patch_warnings, thin_direction
 from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import PatchNotch, Seam, find_seams, patch_notches, stuffing_gap
@@ -220,10 +220,11 @@ def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
         opening=None if opening is None else _on_sheet(opening[1], origins[opening[0]]),
         problems=problems,
         warnings=(
-            *patch_warnings(names, patches, skins, seams),
+            *patch_warnings(names, patches, seams),
             *(opening[1].warnings if opening else stuffing_gap(seams, names)),
             *hole_warnings(robot, holes),
         ),
+        notes=patch_notes(names, skins),
         patches=moved,
         seams=find_seams(cutting.mesh, moved, view.up),
         holes=tuple(_move_hole(hole, origins) for hole in holes),

@@ -108,6 +108,7 @@ class Pattern:
     opening: Opening | None = None
     problems: tuple[str, ...] = ()  # reasons why it cannot be cut well, one line each; only with `force`
     warnings: tuple[str, ...] = ()  # warnings, one line each
+    notes: tuple[str, ...] = ()  # information for sewing, one line each
 
     def panel(self, name: str) -> Panel:
         """The panel of this name (InputError: there is none)."""
@@ -192,7 +193,8 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
         stitches=draft.stitches,
         opening=draft.opening,
         problems=problems,
-        warnings=(*skin.warnings, *_warnings(draft, thickness, gusset=wanted)),
+        warnings=_warnings(draft, thickness, gusset=wanted),
+        notes=(*skin.notes, *_notes(draft)),
     )
 
 
@@ -236,7 +238,7 @@ def _back(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
 
 
 def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[str, ...]:
-    """Warn of the thickness, the opening and stoppers inside."""
+    """Warn of the thickness, the opening and cables on one panel."""
     warnings = list(draft.opening.warnings if draft.opening else ())
     stuffed = stuffed_thickness(draft.skin.seam)
     if not gusset and thickness > stuffed:
@@ -250,13 +252,17 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
             f"the cables are sewn on the {panel} alone, so they also curl the body toward it (`hydrostat check` prints "
             'by how much). Set face = "pairs" before [body] in the robot file to sew each on both panels'
         )
-    warnings += _over_zipper(draft)
-    warnings += [
+    return tuple(warnings)
+
+
+def _notes(draft: _PatternDraft) -> tuple[str, ...]:
+    """Information on cables below the zipper and on stoppers inside."""
+    inside = (
         f"the stopper of cable {sewn.cable} is inside the body. Adjust it through the opening"
         for sewn in draft.stitches
         if sewn.stopper is Side.INSIDE
-    ]
-    return tuple(warnings)
+    )
+    return (*_over_zipper(draft), *inside)
 
 
 def _unheld(robot: Robot) -> tuple[str, ...]:

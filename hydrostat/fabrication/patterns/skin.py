@@ -22,7 +22,7 @@ class Skin:
     cut: Polygon  # its parallel, one seam allowance out into the cloth [mm]
     slits: MultiLineString  # further cuts, in bays too narrow for two allowances [mm]
     problems: tuple[str, ...]  # why it cannot be cut and sewn as drawn, a line each
-    warnings: tuple[str, ...]  # warnings for sewing, one line each
+    notes: tuple[str, ...]  # information for sewing, one line each
 
 
 def flat_skin(body: Body, options: PatternOptions) -> Skin:

@@ -65,7 +65,7 @@ def sheet_pictures(
 ) -> dict[PictureName, Canvas]:
     """Pictures by name, in millimetres of paper; views of a body in space, the best first."""
     robot, stitches, tight = plan.robot, plan.work.stitches, _shorter(plan.options.paper)
-    told = note_lines(findings.problems, findings.warnings, robot)
+    told = note_lines(findings.problems, (*findings.warnings, *findings.notes), robot)
     boxed = 4.0 * sum(math.ceil(len(words) / 130) for words in told) + (4.0 if told else 0.0)
     pictures: dict[PictureName, Canvas] = {
         "portrait": portrait(robot, views[0] if views else None, width=44.0, height=32.0)

@@ -42,6 +42,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
     """All words and numbers, long ones shortened; `letters`: a sentence on letters that cannot be printed."""
     plush = plan.method is Method.PLUSH
     steps, mould, stitches = _all_steps(plan, lists), plan.work.mould, shown_stitches(plan)
+    told = (*((letters,) if letters else ()), *findings.warnings, *findings.notes)
     return {
         "paper": plan.options.paper.value,
         "method": plan.method.value,
@@ -50,7 +51,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         "flat": plan.robot.body.mesh.dim == 2,
         "kind": "Plush robot" if plush else "Foam robot",
         "facts": _about(plan, lists, steps),
-        "mind": note_lines(findings.problems, (*((letters,) if letters else ()), *findings.warnings), plan.robot),
+        "mind": note_lines(findings.problems, told, plan.robot),
         "forced": bool(findings.problems),
         "bill": bill_facts(lists),
         "cables": _table(lists.cables, _CABLES),

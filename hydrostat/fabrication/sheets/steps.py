@@ -301,12 +301,25 @@ def _sew(plan: KitPlan) -> AssemblyStep:
     )
 
 
+def _lying_text(plan: KitPlan) -> str:
+    """Return how each unit lies in a flat body, seen from the front; empty in space."""
+    marks = winch_marks_of(plan.robot)
+    laid: dict[str, list[str]] = {}
+    for unit in plan.rigid.units:
+        if unit.place is not None:
+            laid.setdefault(unit.place.instruction, []).append(marks[unit.winch])
+    lying = "; ".join(f"{marks_text(tuple(own))} {words}" for words, own in laid.items())
+    return f", seen from the front: {lying}" if lying else ""
+
+
 def _stuff(plan: KitPlan) -> AssemblyStep:
     inside, thickness = marks_on(plan, Mount.BODY), plan.robot.body.thickness
     full = f"about {1e3 * thickness:.0f} mm thick" if thickness else "as large as on page 1"
     them = "it" if len(inside) == 1 else "them"
     places = (
-        f"Set {marks_text(inside)} where the map has {them} and tie {them} to the cloth in front. " if inside else ""
+        f"Set {marks_text(inside)} where the map has {them}{_lying_text(plan)}. Tie {them} to the cloth in front. "
+        if inside
+        else ""
     )
     winches = ", then round the winches," if inside else ""
     lumps = " No lumps by the cables." if plan.robot.cables else ""

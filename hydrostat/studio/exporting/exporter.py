@@ -100,8 +100,9 @@ class Exporter(Stage):
         """Make the kit as a job; if forced, even where it cannot be built well (InputError: no cables, or busy)."""
         if not self._document.robot.cables:
             raise InputError("a kit needs cables. Press Design, or place winches and cables by hand")
-        tension = wished_constraints(self._document.robot, self._document.work.wishes).tension_limit
-        options = replace(self.options, tension=tension, force=force or self.options.force)
+        wished = wished_constraints(self._document.robot, self._document.work.wishes)
+        kept = replace(self.options, tension=wished.tension_limit, torque=wished.torque)
+        options = replace(kept, force=force or kept.force)
         self._start(Export.KIT, "Building the kit", make_kit, options)
 
     def make_report(self) -> None:

@@ -18,7 +18,8 @@ class KitMade:
     refused: tuple[str, ...] = ()  # why the robot cannot be built well; then there is nothing but these
     zip: Download | None = None  # all files; None if it was refused
     summary: tuple[str, ...] = ()  # what is in it, a line each
-    warnings: tuple[str, ...] = ()  # what to mind
+    warnings: tuple[str, ...] = ()  # what may fail later
+    notes: tuple[str, ...] = ()  # information for the builder
     problems: tuple[str, ...] = ()  # why it cannot be built well, where it was made all the same
     checks: tuple[Check, ...] = ()  # whether the files are true to the robot that was simulated
     pages: tuple[bytes, ...] = ()  # of the assembly sheet, as PNG
@@ -49,6 +50,7 @@ def make_kit(report: Report, robot: Robot, options: KitOptions) -> KitMade:
         zip=Download(name=f"{name}.zip", content=archive(kit.files, folder=name), title="Kit"),
         summary=kit.summary,
         warnings=kit.warnings,
+        notes=kit.notes,
         problems=kit.problems,
         checks=kit.checks,
         pages=page_pictures(kit.files[SHEET]),

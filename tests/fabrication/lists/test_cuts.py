@@ -76,10 +76,10 @@ def test_lengths_are_those_of_the_simulation_and_others_are_caught() -> None:
     robot = square(cable)
     cuts = cable_cuts(robot, leads={}, outside={}, spare_wraps=2.0)
     assert check_lengths(cable_table(cuts), Simulation(robot)).passed
-    wrong = cable_table((replace(cuts[0], body=cuts[0].body + 0.3),))
+    wrong = cable_table((replace(cuts[0], body=cuts[0].body + 1.3),))
     check = check_lengths(wrong, Simulation(robot))
     assert not check.passed
-    assert float(check.measured.split()[2]) == pytest.approx(0.3, abs=0.06)
+    assert float(check.measured.split()[2]) == pytest.approx(1.3, abs=0.06)
 
 
 POINTS = ((-0.02, -0.01), (0.01, 0.03), (0.04, 0.03), (0.04, -0.03), (0.0, -0.03))
@@ -125,7 +125,7 @@ def test_tubes_are_what_the_simulation_holds_and_others_are_caught() -> None:
     table = sheath_table(robot, found, bore=1.0, tube=2.0)
     assert check_sheaths(table, Simulation(robot), outside={0: 300.0}).passed
     assert not check_sheaths(table, Simulation(robot), outside={}).passed
-    wrong = sheath_table(robot, (replace(found[0], run=found[0].run + 0.2), *found[1:]), bore=1.0, tube=2.0)
+    wrong = sheath_table(robot, (replace(found[0], run=found[0].run + 1.2), *found[1:]), bore=1.0, tube=2.0)
     check = check_sheaths(wrong, Simulation(robot), outside={0: 300.0})
     assert not check.passed
-    assert "0.200 mm" in check.measured
+    assert "1.200 mm" in check.measured

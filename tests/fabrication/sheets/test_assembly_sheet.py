@@ -8,21 +8,24 @@ from functools import cache
 from importlib.resources import files
 
 import pytest
+from kit_plans import FewParts
 from page_words import read_words as words
 from pypdf import PdfReader
 from sheet_inputs import Given, changed, checks, foam, lists, plush
 
 from hydrostat.drawing import Camera, DrawnSolid, LineDrawing, line_drawing
-from hydrostat.fabrication.kit_options import Method, Paper
+from hydrostat.fabrication.kit_options import Method, Paper, PartOptions
 from hydrostat.fabrication.lists.bill import BillGroup, Item, Price
 from hydrostat.fabrication.lists.motors import power_plan
 from hydrostat.fabrication.lists.stitching import DepthRow, PointAccess
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.fabrication.parts.winch_unit import winch_units
 from hydrostat.fabrication.sheets import cable_map, solid_pictures
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.legible import legible, note_lines, shorten_text, typeset
+from hydrostat.fabrication.sheets.steps import plush_steps
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import MATERIALS, Mount
 
@@ -371,6 +374,23 @@ def test_winches_on_the_base_and_in_the_body_are_told_apart():
     text = words(assembly_sheet(*changed(given, robot=robot)))
     assert "Screw W2 to the base plate" in text
     assert "Set W1 where the map has it" in text
+
+
+def test_the_steps_state_how_each_unit_lies():
+    """Oracle: the placement of each unit, after the mark of its winch; units that lie alike share one."""
+    given = plush(winches=2)
+    units = winch_units(given.plan.robot, PartOptions(), MOTORS[0])
+    (stuffing,) = (
+        step.text
+        for step in plush_steps(replace(given.plan, rigid=FewParts(units=units)))
+        if step.title == "Stuff the body"
+    )
+    laid = [unit.place.instruction for unit in units if unit.place is not None]
+    assert len(laid) == 2
+    if laid[0] == laid[1]:
+        assert f"seen from the front: W1 and W2 {laid[0]}." in stuffing
+    else:
+        assert f"seen from the front: W1 {laid[0]}; W2 {laid[1]}." in stuffing
 
 
 def test_parts_are_told_with_their_files_and_for_which_winches():

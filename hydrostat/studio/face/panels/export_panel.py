@@ -249,7 +249,7 @@ def kit_result(page: WindowPage) -> None:
         _show_refusal(page)
         return
     download_button(kit.zip)
-    if replace(kit.options, force=False, tension=None) != replace(exporter.options, force=False, tension=None):
+    if _own_options(kit.options) != _own_options(exporter.options):
         ui.label("Built with other options than those above.").classes("studio-hint")
     for line in kit.summary:
         head, _, words = line.partition(": ")
@@ -259,7 +259,13 @@ def kit_result(page: WindowPage) -> None:
     _pages(kit)
     _lines("error", kit.problems, "error_outline", "export-bad")
     _lines("warning", kit.warnings, "info_outline", "export-mind")
+    _lines("note", kit.notes, "info_outline", "export-note")
     _checks(kit)
+
+
+def _own_options(options: KitOptions) -> KitOptions:
+    """The options of a kit without those that follow from the robot."""
+    return replace(options, force=False, tension=None, torque=None)
 
 
 def _show_refusal(page: WindowPage) -> None:

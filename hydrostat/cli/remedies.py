@@ -1,0 +1,43 @@
+"""Commands that fix what prevents a kit."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from shlex import quote
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hydrostat.design import Network
+    from hydrostat.fabrication import KitOptions
+    from hydrostat.robot import Robot
+
+_SILICONE = "mould of silicone"  # in reasons that a mold of silicone does not have
+
+
+def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions", reasons: Iterable[str]) -> str:
+    """Command that makes a rejected kit buildable: another motor, a mold of silicone, or a new design."""
+    from hydrostat.fabrication import MOTORS, Method, find_refusals
+
+    place, kit = quote(str(folder)), quote(str(out))
+    told = list(reasons)
+    if options.method_for(robot.body) is Method.FOAM and all(_SILICONE in reason for reason in told):
+        return f"hydrostat fabricate {place} --mould silicone --out {kit}"
+    known = set(find_refusals(robot, options=options))
+    for motor in MOTORS if known and known >= set(told) else ():
+        if not find_refusals(robot, options=replace(options, motor=motor.key)):
+            return f"hydrostat fabricate {place} --motor {motor.key} --out {kit}"
+    winches, cables = max(len(robot.winches), 1), max(len(robot.cables), 1)
+    return f"hydrostat design {place} --winches {winches} --cables {cables} --out {quote(f'{out}_design')}"
+
+
+def design_remedy(network: "Network", source: Path, out: Path) -> str:
+    """Command to continue with if the kit of a design would be rejected: an alternative, or fewer winches."""
+    from hydrostat.design import kit_fits
+
+    for number, other in enumerate(network.alternatives, start=1):
+        if kit_fits(other):
+            name = f"{number:02d}_{len(other.robot.winches)}_winches_{len(other.robot.cables)}_cables"
+            return f"hydrostat fabricate {quote(str(out / 'alternatives' / name))} --out {quote(str(out / 'kit'))}"
+    winches, cables = len(network.robot.winches), len(network.robot.cables)
+    fewer = f"--winches {max(winches - 1, 1)} --cables {max(cables - 1, 1)}"
+    return f"hydrostat design {quote(str(source))} {fewer} --out {quote(str(out))}"
