@@ -1,6 +1,8 @@
 """How fast the studio answers the pointer: from a pointer's event to the new shape on the screen.
 
     python benchmarks/studio.py [--robots starfish cupping_hand] [--modes cables muscles] [--seconds 20] [--minutes 0]
+    python benchmarks/studio.py --propose ...   # the same while cables are proposed
+    python benchmarks/studio.py --proposals [--robots starfish robot pig squid cupping_hand]   # no browser
 
 A studio runs as a program of its own, and a Chromium with software rendering shows it, on the same machine. The view
 is 800 x 500 pixels. The pointer takes hold of a marker and goes round an ellipse about where it was, an eighth of the
@@ -9,6 +11,10 @@ that answers it or a later one is painted (after a read back from the canvas); t
 
 With --minutes the same goes on for so long with one robot and mode, and every minute has a row: a queue would show as
 times that grow, a leak as memory that does.
+
+With --proposals each stored pose of a robot is held by muscles, two winches and six cables at most are wanted, and the
+time until a network is proposed is taken, the median over the poses: CPU time of the search, wall time from the pose
+until the network is in the stage, through the worker process. Winch trees are the proposals of Chang (2018).
 
 It needs the extra `test` and a Chromium. Wall time, as that is what a person feels; other programs on the machine show.
 """
@@ -32,7 +38,19 @@ from machine import machine
 import numpy as np  # isort: skip
 from playwright.sync_api import Page, sync_playwright
 
-from hydrostat.robot import gallery_folder
+from hydrostat.project import Wishes, Work
+from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.studio import (
+    Bell,
+    Document,
+    Jobs,
+    MuscleMover,
+    MusclePulls,
+    Poser,
+    ProposalInput,
+    Proposer,
+    held_of,
+)
 
 VIEW = (800, 500)
 """Of the view [pixels]."""
@@ -45,6 +63,12 @@ FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader",
 
 MARKERS = {"cupping_hand": "index", "starfish": "right"}
 """That is dragged; the first of others."""
+
+DRAGGED, PROPOSED = ["starfish", "cupping_hand"], ["starfish", "robot", "pig", "squid", "cupping_hand"]
+"""Robots that are dragged, and those that cables are proposed for, if none is named."""
+
+PREPARED = 8.0
+"""In which a worker process begins and prepares for a body [s]."""
 
 PATIENCE = 120_000
 """For the page to be ready [ms]: the first time on a machine kernels are compiled."""
@@ -110,6 +134,73 @@ def drag(page: Page, start: dict[str, float], seconds: float) -> dict[str, float
     }
 
 
+def proposal_row(name: str) -> str:
+    """How long proposals for the poses of a robot take, and their errors as built, as cells."""
+    robot = load_robot(gallery_folder(name))
+    cells = [name, str(len(robot.body.mesh.nodes))]
+    for method in ("trees", "routes"):
+        wishes = Wishes.of(method=method)
+        cpu, wall = search_times(robot, wishes), waiting_times(robot, wishes)
+        for stage in (-1,) if method == "trees" else (0, -1):
+            seconds, errors = ([found[stage][part] for found in cpu] for part in (0, 1))
+            waits = [found[stage] for found in wall]
+            error = "none" if np.isnan(errors).all() else f"{1e3 * np.nanmedian(errors):.1f}"
+            cells += [f"{np.median(seconds):.2f}", f"{np.median(waits):.2f}", error]
+    return f"| {' | '.join(cells)} |"
+
+
+def settled_pulls(robot: Robot, name: str) -> MusclePulls:
+    """Muscles that hold a pose."""
+    mover, held = MuscleMover(robot), held_of(robot, name)
+    while mover.update(held)[1]:
+        pass
+    nodes, tensions = mover.pulls
+    return MusclePulls(nodes=nodes, tensions=tensions)
+
+
+def search_times(robot: Robot, wishes: Wishes) -> list[list[tuple[float, float]]]:
+    """CPU time until each network [s] and its error as built [m], NaN where there is none, for each pose."""
+    proposer = Proposer(robot)
+    list(proposer.propose(ProposalInput(held={}, wishes=wishes, markers=robot.markers)))
+    times = []
+    for name in robot.poses:
+        pulls = settled_pulls(robot, name)
+        moment = ProposalInput(held=held_of(robot, name), wishes=wishes, markers=robot.markers, muscles=pulls)
+        began = time.process_time()
+        times.append([(time.process_time() - began, found.built or float("nan")) for found in proposer.propose(moment)])
+    return times
+
+
+def waiting_times(robot: Robot, wishes: Wishes) -> list[list[float]]:
+    """Wall time from each pose until each network is in the stage [s]; the process has prepared for the body."""
+    document, times = Document(Bell()), []
+    document.open(Work(robot=robot, wishes=wishes))
+    jobs = Jobs(document.bell)
+    poser = Poser(document, jobs)
+    poser.set_mode("muscles")
+    poser.proposals.switch(True)
+    begun = time.monotonic()
+    while time.monotonic() - begun < PREPARED:
+        poser.step(0.0)
+        time.sleep(0.05)
+    for name in robot.poses:
+        poser.rest()
+        poser.step(0.0)
+        poser.show_pose(name)
+        begun, seen, found = time.monotonic(), None, []
+        while not found or poser.proposals.searching:
+            poser.step(0.0)
+            proposal = poser.proposals.latest_proposal(robot)
+            if proposal is not None and proposal is not seen:
+                seen = proposal
+                found.append(time.monotonic() - begun)
+            time.sleep(0.005)
+        times.append(found)
+    poser.proposals.close()
+    jobs.close()
+    return times
+
+
 def heap(page: Page) -> float:
     """What the page's scripts hold [MB]."""
     return page.evaluate("() => { window.gc && window.gc(); return performance.memory.usedJSHeapSize / 1e6; }")
@@ -124,14 +215,29 @@ def row(found: dict[str, float]) -> str:
     return f"{times} | {found['paint']:.1f} | {found['frames']:.0f} | {found['events']:.0f}"
 
 
+def print_proposals(robots: list[str]) -> None:
+    """Print the table of proposals."""
+    print(machine(), end="\n\n")
+    print("| robot | nodes | trees: CPU s | wall s | built mm | first: CPU s | wall s | built mm | last: CPU s |"
+          " wall s | built mm |")  # fmt: skip
+    print("|---" * 11 + "|")
+    for robot in robots:
+        print(proposal_row(robot), flush=True)
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--robots", nargs="+", default=["starfish", "cupping_hand"])
+    parser.add_argument("--robots", nargs="+", default=None)
+    parser.add_argument("--proposals", action="store_true")
+    parser.add_argument("--propose", action="store_true")
     parser.add_argument("--modes", nargs="+", default=["cables", "muscles"], choices=["cables", "muscles"])
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--minutes", type=int, default=0)
     asked = parser.parse_args()
+    if asked.proposals:
+        print_proposals(asked.robots or PROPOSED)
+        return
     chromium = shutil.which("chromium") or shutil.which("google-chrome")
     if chromium is None:
         raise SystemExit("benchmarks/studio.py needs a Chromium; install Debian's package chromium")
@@ -140,12 +246,14 @@ def main() -> None:
     print(f"| robot | mode | {'minute | ' if long else ''}{HEAD} |{' studio MB | page MB |' if long else ''}")
     print("|---" * (8 + 3 * long) + "|")
     with sync_playwright() as playwright:
-        for robot in asked.robots:
+        for robot in asked.robots or DRAGGED:
             for mode in asked.modes:
                 with TemporaryDirectory() as state, studio(robot, state) as (address, process):
                     browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
                     page = browser.new_page()
                     ready(page, address, mode)
+                    if asked.propose:
+                        page.get_by_text("Propose cables while dragging").click()
                     start = marker(page, robot)
                     page.mouse.move(start["x"], start["y"])
                     page.mouse.down()

@@ -62,6 +62,7 @@ class Designer(Stage):
         self.chosen: int | None = None  # number of the candidate shown; None: the robot, or the best network so far
         self.pose: str | None = None  # name of the pose in which the candidate is shown; None: at rest
         self.outcome = ""  # what became of the last design, a line; "" while there is nothing to tell
+        self.has_failed = False  # whether it ended without a network
         self._all: tuple[Candidate, ...] = ()
         self._numbered = 0
         self.running = False  # whether a design goes on
@@ -160,7 +161,7 @@ class Designer(Stage):
             best=starting_robot(robot, request),
             is_live=is_live,
         )
-        self.running, self.outcome, self._is_taken = True, "", False
+        self.running, self.has_failed, self.outcome, self._is_taken = True, False, "", False
         ended = partial(self._on_end, request)
         calls: dict[str, Any] = {"on_part": self._on_better, "on_done": self._on_found, "on_end": ended}
         try:
@@ -182,7 +183,7 @@ class Designer(Stage):
         try:
             self.design(is_live=True)
         except InputError as error:
-            self.outcome, self.running = str(error), False
+            self.outcome, self.has_failed, self.running = str(error), True, False
             self._document.bell.ring(Topic.JOB)
 
     def stop(self) -> None:
@@ -378,6 +379,7 @@ class Designer(Stage):
         """Called in a thread of the jobs, whatever came of it."""
         if self.run is None or self.run.request is not request:
             return  # the next design has begun
+        self.has_failed = bool(error)
         if error:
             self.outcome = "stopped before a network was found" if error == "stopped" else error
             if self.run.is_live:

@@ -95,7 +95,7 @@ SHARES = {
 
 def time_left(seconds: float, share: float | None) -> str:
     """Time that a search still takes, in words, from that since it began [s]; "" where it cannot be told yet."""
-    known = 0.1  # share of the search before which nothing can be said
+    known = 0.15  # share of the search before which nothing can be said
     if share is None or share < known:
         return ""
     left = seconds * (1.0 - share) / share

@@ -251,6 +251,23 @@ def test_a_dirty_scan_is_mended_and_becomes_a_robot(studio: Studio, window: Open
         quiet(page)
 
 
+def test_cables_are_proposed_for_what_was_dragged_before(studio: Studio, window: Open) -> None:
+    """Switching on asks for the pose that is held, twice; *Keep* gives a word and cannot be pressed again."""
+    with studio(str(gallery_folder("starfish"))) as address:
+        page = window(address)
+        wait_for_view(page)
+        page.get_by_role("button", name="Muscles", exact=True).click()
+        drag(page, "marker:right", -30, -60)
+        switch, error = page.get_by_text("Propose cables while dragging"), page.get_by_text("mm as-built error")
+        for state in ("visible", "hidden", "visible"):
+            switch.click()
+            error.wait_for(state=state)
+        page.get_by_role("button", name="Keep", exact=True).click()
+        page.get_by_text(re.compile(r"^kept \d winch")).wait_for()
+        assert page.get_by_role("button", name="Kept", exact=True).is_disabled()
+        quiet(page)
+
+
 def test_keys(studio: Studio, window: Open) -> None:
     with studio(str(gallery_folder("starfish"))) as address:
         page = window(address)

@@ -65,6 +65,7 @@ def _shown(method: DesignMethod) -> DesignMethod:
 def _knob(page: WindowPage, words: str, name: str, unit: str, sentence: str) -> Show:
     """A box for one knob, with a sentence on it."""
     with ui.column().classes("w-full").style("gap: 2px"):
-        show = number_box(page, words, name, unit)
+        with ui.element("div").classes("studio-row"):
+            show = number_box(page, words, name, unit)
         ui.label(sentence).classes("studio-hint")
     return show

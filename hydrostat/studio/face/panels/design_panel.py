@@ -4,7 +4,7 @@ from functools import partial
 
 from nicegui import ui
 
-from hydrostat.design import DesignMethod
+from hydrostat.design import AUTO, DesignMethod
 from hydrostat.drawing import pose_colors
 from hydrostat.project import wished_poses
 from hydrostat.studio.bell import Topic
@@ -183,13 +183,13 @@ def _progress(page: WindowPage) -> None:
         state, run = jobs.state, designer.run
         card.set_visibility(designer.running)
         outcome.set_visibility(bool(designer.outcome) and not designer.running)
-        outcome.set_text(designer.outcome)
-        failed = not designer.candidates
+        outcome.set_text(f"{designer.outcome[:1].upper()}{designer.outcome[1:]}")
+        failed = designer.has_failed
         outcome.classes(add="design-bad" if failed else "studio-hint", remove="studio-hint" if failed else "design-bad")
         if not designer.running or run is None or state is None:
             return
         best = run.trail[-1] if run.trail else None
-        error.set_text("Searching" if best is None else f"{told_error(best.error)} as-built error")
+        error.set_text("Searching" if best is None else f"{told_error(best.error)} as built")
         count.set_text(_so_far(best.winches, best.cables) if best else f"{1e3 * run.rest:.3g} mm error at rest")
         chart.set_content(growth_chart(run, designer.seconds))
         share = share_done(run.request, state.stage, state.done, state.total)
@@ -197,7 +197,8 @@ def _progress(page: WindowPage) -> None:
             share = told[run.began]
         told.clear()
         told[run.began] = share or 0.0
-        bar.props(add="indeterminate" if share is None else "", remove="" if share is None else "indeterminate")
+        is_open = run.request.winches == AUTO
+        bar.props(add="indeterminate" if is_open else "", remove="" if is_open else "indeterminate")
         bar.set_value(share or 0.0)
         stage.set_text("Finishing with the best so far" if state.stopping else _stage(state.stage, best))
         left.set_text("" if state.stopping else time_left(designer.seconds, share))
@@ -212,7 +213,7 @@ def _stage(stage: str, best: ProgressPoint | None) -> str:
     """Status of the search, and the source of its best network."""
     if best is None or not best.words:
         return stage
-    tried = f" ({best.tried} networks tried)" if best.tried else ""
+    tried = f" after {plural(best.tried, 'network')}" if best.tried else ""
     return f"{stage}. Last gain{tried}: {best.words}"
 
 

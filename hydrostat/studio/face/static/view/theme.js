@@ -16,7 +16,7 @@ export function theme(dark) {
 }
 
 /** Opacity of what is proposed only. */
-export const FAINT = 0.5;
+export const FAINT = 0.6;
 
 /**
  * Red, green and blue, 0 to 1, of a color such as "#0b5fa5".
