@@ -192,21 +192,25 @@ class CableProposals:
                 is_called_off = True
                 pipe.send(None)
         with self._news:
-            self.searching = self.searching and self._newest is not None and self._run == run
+            if self._run == run:
+                self.searching = self.searching and self._newest is not None
         self._document.bell.ring(Topic.THINGS)
 
     def _next(self, run: int) -> _Question | None:
         """Wait for the next question; None: it is over."""
         with self._news:
             self._news.wait_for(lambda: self._newest is not None or self._run != run)
+            if self._run != run:  # what is asked now is for the next process
+                return None
             question, self._newest = self._newest, None
-            return question if self._run == run else None
+            return question
 
     def _take(self, run: int, robot: Robot, found: Proposal) -> None:
         with self._news:
             is_wanted = self._asked is not None and bool(self._asked.moment.held)
             if self._run == run and (is_wanted or found.words == LOST):
                 self._found = (robot, found)
+                self.searching = self.searching and found.words != LOST
         self._document.bell.ring(Topic.THINGS, Topic.SHAPE)
 
 

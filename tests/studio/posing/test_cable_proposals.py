@@ -260,3 +260,13 @@ def test_equal_moments_are_asked_once(
     proposals.searching = False
     proposals._take(proposals._run, starfish, Proposal(winches=starfish.winches, cables=starfish.cables))
     assert not ask(is_settled=True, cables=2)
+
+
+def test_a_thread_that_ends_leaves_the_question_to_the_next(starfish: Robot, poser: Poser) -> None:
+    """Switched off and on in a row, the first thread may wake up only then."""
+    proposals = poser.proposals
+    proposals.on, proposals._run = True, 2
+    proposals.ask(starfish, by_routes(starfish, Wishes()))
+    assert proposals._next(1) is None
+    assert proposals._next(2) is not None
+    proposals.on = False
