@@ -23,9 +23,9 @@ def curler(**contact: float) -> Robot:
 
 
 @cache
-def pulled(step: float = 2e-3, friction: float = 0.4) -> PullOut:
+def pulled(step: float = 2e-3) -> PullOut:
     options = PullOptions(direction=(1.0, 0.0), step=step)
-    return pull_out(curler(distance=1e-3), replace(PUCK, friction=friction), CURLED, options)
+    return pull_out(curler(distance=1e-3), PUCK, CURLED, options)
 
 
 def test_the_thing_is_held_and_comes_free() -> None:
@@ -50,7 +50,7 @@ def test_the_curve_does_not_depend_on_the_steps() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("springs", "distance", "within"), [(3.0, 1e-3, 0.01), (30.0, 1e-3, 0.01), (10.0, 5e-4, 0.03)])
+@pytest.mark.parametrize(("springs", "distance", "within"), [(30.0, 1e-3, 0.01), (10.0, 5e-4, 0.03)])
 def test_neither_springs_nor_distance_matter(
     monkeypatch: pytest.MonkeyPatch, springs: float, distance: float, within: float
 ) -> None:
@@ -60,12 +60,6 @@ def test_neither_springs_nor_distance_matter(
     assert np.interp(0.01, other.moved, other.forces) == pytest.approx(
         np.interp(0.01, pulled().moved, pulled().forces), rel=within
     )
-
-
-def test_more_friction_holds_better() -> None:
-    free, rough = pulled(friction=0.0), pulled(friction=0.8)
-    assert free.peak < pulled().peak < rough.peak
-    assert free.work < pulled().work
 
 
 @pytest.mark.slow
@@ -83,7 +77,9 @@ def test_a_case_for_each_thing_that_nobody_knows_well() -> None:
         "y -5 mm",
         "y +5 mm",
     ]
-    peaks = {case.name: case.pull.peak for case in cases if case.pull is not None}
+    pulls = {case.name: case.pull for case in cases if case.pull is not None}
+    peaks = {name: pull.peak for name, pull in pulls.items()}
+    assert pulls["no friction"].work < pulls["friction 0.3"].work
     assert peaks["no friction"] < peaks["friction 0.3"] < peaks["friction 0.8"]
     assert peaks["modulus -30%"] != peaks["modulus +30%"]
 

@@ -38,9 +38,7 @@ def test_cables_lie_on_the_skin(pairs: Robot) -> None:
     assert (pairs.body.distances(points + out) > 0).all()
 
 
-@pytest.mark.parametrize(
-    ("face", "least", "most"), [("front", 0.002, 1.0), ("back", -1.0, -0.002), ("middle", 0.0, 0.0)]
-)
+@pytest.mark.parametrize(("face", "least", "most"), [("back", -1.0, -0.002), ("middle", 0.0, 0.0)])
 def test_each_face_has_its_side(starfish: Robot, face: str, least: float, most: float) -> None:
     filled = inflated_robot(starfish, Face(face))
     heights = np.concatenate([np.array(cable.points)[1:, 2] for cable in filled.cables])

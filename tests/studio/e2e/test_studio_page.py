@@ -289,7 +289,24 @@ def test_keys(studio: Studio, window: Open) -> None:
         page.wait_for_function("y => Math.abs(__app.things.find(t => t.key === 'marker:top').y - y) < 1", arg=start[1])
         page.keyboard.press("Shift+Z")
         page.wait_for_function("y => __app.things.find(t => t.key === 'marker:top').y > y + 15", arg=start[1])
+        space_plays_and_does_not_press_the_last_button_again(page)
         quiet(page)
+
+
+def space_plays_and_does_not_press_the_last_button_again(page: "Page") -> None:
+    go(page, "drive")
+    page.get_by_role("button", name="Add").click()
+    page.locator("svg[aria-label=Timeline] rect[data-key]").first.wait_for(state="attached")
+    seek(page, 2.0)
+    page.get_by_role("button", name="Add").click()
+    page.wait_for_function("document.querySelectorAll('svg[aria-label=Timeline] rect[data-key]').length === 2")
+    seek(page, 1.0)
+    page.get_by_role("button", name="Light or dark").click()
+    page.wait_for_function("Quasar.Dark.isActive")
+    page.wait_for_function("document.activeElement === document.body")
+    page.keyboard.press("Space")
+    page.get_by_text(re.compile(r"^1\.[1-9]\d s$")).first.wait_for()
+    assert page.evaluate("Quasar.Dark.isActive"), "the last button was pressed again"
 
 
 def test_the_tour_has_five_steps_and_comes_once(studio: Studio, window: Open) -> None:
@@ -382,22 +399,3 @@ def test_a_class_each_with_a_robot_and_who_watches(studio: Studio, window: Open,
         assert one.evaluate("document.activeElement.getAttribute('role')") == "option"
         for page in (one, two, watcher):
             quiet(page)
-
-
-def test_space_plays_and_does_not_press_the_last_button_again(studio: Studio, window: Open) -> None:
-    with studio(str(gallery_folder("starfish"))) as address:
-        page = window(address)
-        wait_for_view(page)
-        go(page, "drive")
-        page.get_by_role("button", name="Add").click()
-        page.locator("svg[aria-label=Timeline] rect[data-key]").first.wait_for(state="attached")
-        seek(page, 2.0)
-        page.get_by_role("button", name="Add").click()
-        page.wait_for_function("document.querySelectorAll('svg[aria-label=Timeline] rect[data-key]').length === 2")
-        seek(page, 1.0)
-        page.get_by_role("button", name="Light or dark").click()
-        page.wait_for_function("Quasar.Dark.isActive")
-        page.wait_for_function("document.activeElement === document.body")
-        page.keyboard.press("Space")
-        page.get_by_text(re.compile(r"^1\.[1-9]\d s$")).first.wait_for()
-        assert page.evaluate("Quasar.Dark.isActive"), "the last button was pressed again"
