@@ -19,7 +19,7 @@ from hydrostat.design.filled_judge import evaluate_stuffed
 from hydrostat.design.filled_reach import filled_reach
 from hydrostat.design.network import Alternative
 from hydrostat.errors import InputError
-from hydrostat.ik import IKResult, solve_ik
+from hydrostat.ik import IKResult, Limits, solve_ik
 from hydrostat.progress import no_progress
 from hydrostat.robot import Face, Robot, get_material, inflated_robot
 from hydrostat.simulation import Simulation
@@ -73,7 +73,7 @@ def test_craft_of_pairs_is_sewn_twice_by_the_same_motors() -> None:
 @pytest.mark.slow
 def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[IKResult, ...]) -> None:
     """Oracle: statics of the inflated robot at both commands; its own are no worse than those of the flat model."""
-    filled = filled_reach(robot, reached, tension=20.0)
+    filled = filled_reach(robot, reached, limits=Limits(tension=20.0))
     solid = Simulation(inflated_robot(robot, "pairs"))
     assert filled.face is Face.PAIRS
     squares = {"flat": [], "own": []}
