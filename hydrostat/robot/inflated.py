@@ -8,6 +8,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, surface_body
+from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import LONGEST_NAME, Point
 from hydrostat.robot.face import Face
@@ -82,13 +83,22 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
 
 
 def _blown_up(body: Body, element_size: float | None) -> Body:
-    from hydrostat.geometry import inflate, write_ply
+    from hydrostat.geometry import Surface, inflate, write_ply
 
-    if body.outline is None or body.thickness is None:
+    outline, thickness = body.outline, body.thickness
+    if outline is None or thickness is None:
         raise InputError("only a flat robot with a drawing can be inflated")
-    surface = inflate(body.outline, body.thickness, spacing=body.outline.size / 80)
+    spacing = outline.size / 80
+
+    def make() -> Arrays:
+        surface = inflate(outline, thickness, spacing=spacing)
+        return {"vertices": surface.vertices, "triangles": surface.triangles}
+
+    counts = [len(ring) for ring in outline.rings]
+    content = b"".join(ring.tobytes() for ring in outline.rings)
+    kept = keep_body(("inflated", counts, thickness, spacing), content, make)
     return surface_body(
-        write_ply(surface),
+        write_ply(Surface(kept["vertices"], kept["triangles"])),
         file="inflated.ply",
         unit=1e-3,
         material=body.material,

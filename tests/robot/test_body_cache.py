@@ -3,13 +3,14 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from hydrostat import geometry
-from hydrostat.robot import Body, load_robot
+from hydrostat.robot import Body, inflated_robot, load_robot
 from hydrostat.robot.body_cache import keep_body
 
 STARFISH = Path(__file__).parents[2] / "examples" / "starfish"
@@ -54,6 +55,17 @@ def test_a_kept_body_is_not_meshed_again(folder: Path, monkeypatch: pytest.Monke
     monkeypatch.setenv("HYDROSTAT_CACHE", "")
     with pytest.raises(TypeError):
         load_robot(STARFISH)
+
+
+@pytest.mark.slow
+def test_a_kept_inflated_body_is_the_same_and_not_made_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the first one, which was made, and an inflation that fails."""
+    robot = load_robot(STARFISH)
+    first = inflated_robot(robot)
+    monkeypatch.setattr(geometry, "inflate", None)
+    assert _numbers(inflated_robot(robot).body) == _numbers(first.body)
+    with pytest.raises(TypeError):
+        inflated_robot(replace(robot, body=replace(robot.body, thickness=0.02)))
 
 
 @pytest.mark.parametrize("damage", ["empty", "cut", "flipped"])

@@ -102,7 +102,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         yield robot_folder(tmp_path_factory.mktemp("fuzz"))
 
 
-@settings(max_examples=300, deadline=5000, suppress_health_check=list(HealthCheck), derandomize=True)
+@settings(max_examples=300, deadline=60_000, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(text=spoiled())
 @example(text=GOOD)
 @example(text=MAXIMAL_IN["in"])
