@@ -168,6 +168,18 @@ def take_starfish(browser: Browser) -> None:
         keep(page, "drive")
 
 
+def take_proposal(browser: Browser) -> None:
+    """A network that is proposed for a pose."""
+    with window(browser, "cupping_hand") as page:
+        page.get_by_role("button", name="Muscles", exact=True).click()
+        page.get_by_text("Propose cables while dragging").click()
+        drag(page, "marker:index", 40, 90)
+        drag(page, "marker:thumb", -40, -10)
+        page.get_by_text("mm as-built error").wait_for()
+        page.wait_for_timeout(8000)
+        keep(page, "proposal")
+
+
 def take_kit(browser: Browser) -> None:
     """A kit, with its pages."""
     with window(browser, "starfish") as page:
@@ -187,7 +199,14 @@ def take_hand(browser: Browser) -> None:
         keep(page, "hand")
 
 
-TAKES = {"start": take_start, "photo": take_photo, "starfish": take_starfish, "kit": take_kit, "hand": take_hand}
+TAKES = {
+    "start": take_start,
+    "photo": take_photo,
+    "starfish": take_starfish,
+    "proposal": take_proposal,
+    "kit": take_kit,
+    "hand": take_hand,
+}
 
 
 def main() -> None:

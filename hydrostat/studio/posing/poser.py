@@ -124,7 +124,7 @@ class Poser(Stage):
             options = {"scale": limit, "carried": shape.carried}
             found += robot_things(robot, tensions=shape.tensions, chosen=keys, **options)
         if proposed is not None:
-            found += proposed_things(proposed)
+            found += proposed_things(proposed, robot.winches if targets.mode is Mode.CABLES else ())
         markers = {marker.name for marker in robot.markers}
         found += [
             Dot(key=f"point:{name}", at=point.at, look=Look.HANDLE, color=MARKER, chosen=f"point:{name}" in keys)

@@ -1,5 +1,6 @@
 """`robot_things`, `winch_bars`: pins, winches, cables and markers of a robot as dots and lines, its winches as bars."""
 
+import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -85,15 +86,22 @@ def robot_things(
     return things
 
 
-def proposed_things(robot: Robot) -> list[Thing]:
-    """Cables and winches of a network that is proposed, faintly; none can be picked."""
+def proposed_things(robot: Robot, own: Collection[Winch] = ()) -> list[Thing]:
+    """Cables and winches of a network that is proposed, faintly; none can be picked.
+
+    Winches that stand on own ones, which are drawn already, are left out.
+    """
     colors, marks = winch_colors(robot.winches), winch_marks_of(robot)
     things: list[Thing] = []
     for index, cable in enumerate(robot.cables):
         things += _cable(robot, index, cable, colors[cable.winch], 0.0, ())
     for index, cable in enumerate(robot.cables):
         things += _vias(index, cable, colors[cable.winch], (), every=False)
-    things += [_winch(winch, colors[winch.name], marks[winch.name], chosen=False) for winch in robot.winches]
+    things += [
+        _winch(winch, colors[winch.name], marks[winch.name], chosen=False)
+        for winch in robot.winches
+        if all(math.dist(winch.at, other.at) > 2 * other.spool_radius for other in own)
+    ]
     return [
         replace(thing, key="", label="", faint=True) if isinstance(thing, Dot) else replace(thing, key="", faint=True)
         for thing in things
