@@ -27,7 +27,7 @@ import numpy as np  # isort: skip
 import hydrostat as hs
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import Mesh, tetrahedralise
+from hydrostat.geometry import Mesh, tetrahedralize
 from hydrostat.robot import Cable, Material, Pin, Robot, Volume, Winch, gallery_folder
 
 FLAT = ("letter_e", "letter_s", "pig", "puppy", "robot", "squid", "starfish")
@@ -77,7 +77,7 @@ def gallery_body(name: str) -> Robot:
         size = body.element_size_for(NODES)
     except InputError:
         size = 2 * (body.element_size or 0.01)
-    return replace(robot, body=replace(body, mesh=tetrahedralise(body.healing.surface, size), element_size=size))
+    return replace(robot, body=replace(body, mesh=tetrahedralize(body.healing.surface, size), element_size=size))
 
 
 def random_robot(number: int, seed: int) -> tuple[Robot, str]:

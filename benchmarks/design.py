@@ -43,7 +43,7 @@ def fibres_error(robot: Robot) -> float:
 
 
 def row_of(name: str, methods: Sequence[str], count: int, seed: int) -> Row:
-    """Everything that is known of one body; errors in metres."""
+    """Everything that is known of one body; errors in meters."""
     robot, body = body_robot(name), BODIES[name]
     ways: dict[str, Callable[[], Robot | None]] = {
         "trees": lambda: _designed(robot, body, "trees"),

@@ -69,7 +69,7 @@ BODIES = {
 """The designs of the thesis with its numbers of winches and cables (N1), the starfish with two winches and with three,
 and bodies in space.
 
-The poses of the examples in space are what their own networks reach, to the millimetre; `five_poses` is the cupping
+The poses of the examples in space are what their own networks reach, to the millimeter; `five_poses` is the cupping
 hand with one more of that kind. It keeps its ten winches, so its own network can hardly be beaten. The trunk gets four
 winches of its six, so that its own network is none of the candidates: bear and octopus arm have no winch to spare, and
 the poses of the arm need as much travel. The travel of the trunk's winches is that of its own,

@@ -79,7 +79,7 @@ def hand_network(name: str) -> Robot:
 
 
 def _points(text: str) -> list[tuple[float, ...]]:
-    """Points [m] of millimetres in words: "20 -8, 34 2"."""
+    """Points [m] of millimeters in words: "20 -8, 34 2"."""
     return [tuple(round(1e-3 * float(value), 6) for value in point.split()) for point in text.split(",")]
 
 
@@ -289,7 +289,7 @@ DRAWINGS = {
                 "-60 -14, -69.5 -33, -76.3 -48, -84.3 -64.5, -95.7 -79.5, -108.8 -88.3",
                 lead=1,
             ),
-            # Spreads its neighbour.
+            # Spreads its neighbor.
             Line(
                 "left",
                 "-30 10, -42 -12, -47 -36, -50 -56, -53 -76, -57.5 -95, -66 -114, -76 -127",
@@ -301,7 +301,7 @@ DRAWINGS = {
                 "60 -14, 69.5 -33, 76.3 -48, 84.3 -64.5, 95.7 -79.5, 107.5 -87.8",
                 lead=1,
             ),
-            # Spreads its neighbour.
+            # Spreads its neighbor.
             Line(
                 "right",
                 "46 -12, 47 -36, 50 -56, 53 -76, 57.2 -95, 65.5 -114, 75 -126.5",

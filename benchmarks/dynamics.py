@@ -121,17 +121,17 @@ def errors(quick: bool) -> Iterator[str]:
         return motion
 
     fine = end(200 if quick else 600, "sdirk3")
-    for minimisations in (12, 24, 48, 96):
-        row = f"| {minimisations} "
+    for minimizations in (12, 24, 48, 96):
+        row = f"| {minimizations} "
         for scheme in ("euler", "sdirk2", "sdirk3"):
-            motion = end(minimisations // len(SCHEMES[scheme].table), scheme)
+            motion = end(minimizations // len(SCHEMES[scheme].table), scheme)
             row += f"| {1e3 * np.abs(motion.nodes - fine.nodes).max():.2g} "
             row += f"| {1e3 * np.abs(motion.velocities - fine.velocities).max():.2g} "
         yield row + "|"
 
 
 def oscillator() -> Iterator[str]:
-    """A mass on a spring: loss of amplitude and lag of phase after ten periods, for minimisations a period."""
+    """A mass on a spring: loss of amplitude and lag of phase after ten periods, for minimizations a period."""
     for count in (30, 60, 120):
         row = f"| {count} "
         for scheme in ("euler", "bdf2", "sdirk2", "sdirk3"):
@@ -195,12 +195,12 @@ def main() -> None:
     for row in jumps(quick):
         print(row, flush=True)
     print("\nviscous strip let go, after 0.1 s: nodes mm, velocities mm/s")
-    print("| minimisations | " + " | ".join(f"{name}: mm | mm/s" for name in schemes) + " |\n|" + 7 * "---|")
+    print("| minimizations | " + " | ".join(f"{name}: mm | mm/s" for name in schemes) + " |\n|" + 7 * "---|")
     for row in errors(quick):
         print(row, flush=True)
     print("\noscillator after ten periods: amplitude lost, phase off")
     names = " | ".join(f"{name}: lost | off" for name in ("euler", "bdf2", "sdirk2", "sdirk3"))
-    print(f"| minimisations a period | {names} |\n|" + 9 * "---|")
+    print(f"| minimizations a period | {names} |\n|" + 9 * "---|")
     print(*oscillator(), sep="\n")
     print("\nlowest frequency of the strip [Hz]; the limit is the mean of both on a mesh of 64 x 16")
     print("| cells | at the nodes | off | of linear fields | off |\n|---|---|---|---|---|")

@@ -27,7 +27,7 @@ from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Body, Cable, Material, Pin, Robot, Source, Winch
 
 TOLERANCE = 1e-8
-"""Norm of the forces [N] at which the trial stops: its tips are then as exact as ours, to a tenth of a nanometre."""
+"""Norm of the forces [N] at which the trial stops: its tips are then as exact as ours, to a tenth of a nanometer."""
 
 STEPS = (0.002, 0.01, 0.03)
 """Sizes of the steps of the walks, as shares of the length of each cable."""
@@ -208,14 +208,14 @@ def print_parts(program: Hydrostat) -> None:
     simulation, taken = program.simulation, np.full(program.count, 0.01)
     assembly, nodes = simulation.assembly, simulation.solve(taken).nodes
     data = assembly.hessian(nodes, taken).data
-    factors = assembly.pattern.analysis.factorise(data)
+    factors = assembly.pattern.analysis.factorize(data)
     sides = np.random.default_rng(0).random((assembly.size, program.count))
     parts: dict[str, Callable[[], Any]] = {
         "energy": lambda: assembly.value(nodes, taken),
         "gradient": lambda: assembly.gradient(nodes, taken),
         "Hessian": lambda: assembly.hessian(nodes, taken),
         "Hessian, projected": lambda: assembly.hessian(nodes, taken, projection=1.0),
-        "factorisation": lambda: assembly.pattern.analysis.factorise(data),
+        "factorization": lambda: assembly.pattern.analysis.factorize(data),
         "one right-hand side": lambda: factors.solve(sides[:, 0]),
         f"{program.count} right-hand sides": lambda: factors.solve(sides),
         "step along arcs": lambda: simulation.body.warp(nodes, 1e-3 * sides[:, 0].reshape(nodes.shape)),

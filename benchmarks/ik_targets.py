@@ -7,7 +7,7 @@ Contractions are drawn evenly from the ranges of all winches. Where they lead fr
 
     hidden        those targets; first without restarts, then with them where the pose was missed
     unreachable   each marker's target is moved by 10 to 30 % of the body's size, anywhere; on the first --compare poses
-                  SciPy's least_squares (trf) minimises the same residual, from our answer and from rest
+                  SciPy's least_squares (trf) minimizes the same residual, from our answer and from rest
     finer         targets of the same robot with elements of half the size
     stiffer       targets of a material whose Young's modulus is 20 % larger
     poisson       targets of a material whose Poisson's ratio is 0.05 larger (smaller where it is above 0.44)
@@ -28,7 +28,7 @@ from ik_problem import REACHED, Problem, hidden_poses, largest_error, machine, m
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.geometry import tetrahedralise, triangulate
+from hydrostat.geometry import tetrahedralize, triangulate
 from hydrostat.ik import IKStatus
 from hydrostat.robot import Point, Robot, gallery_folder, list_gallery
 
@@ -168,7 +168,7 @@ def truth(robot: Robot, kind: str) -> Robot:
     if body.outline is not None:
         return replace(robot, body=replace(body, element_size=half, mesh=triangulate(body.outline, half)))
     assert body.healing is not None
-    return replace(robot, body=replace(body, element_size=half, mesh=tetrahedralise(body.healing.surface, half)))
+    return replace(robot, body=replace(body, element_size=half, mesh=tetrahedralize(body.healing.surface, half)))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -4,8 +4,8 @@
 
 The cupping hand by element size [mm]; "/2" cuts each edge of that mesh in two, for bodies larger than our mesher makes.
 All cables take in random contractions up to a share of their length. Wall clock of the second of two solves, for the
-first one touches memory that the system still has to find. Arithmetic: factorisations x operations at the rate of BLAS
-(dgemm of 2000, one thread) x threads; operations are multiplications and additions of a Cholesky factorisation on these
+first one touches memory that the system still has to find. Arithmetic: factorizations x operations at the rate of BLAS
+(dgemm of 2000, one thread) x threads; operations are multiplications and additions of a Cholesky factorization on these
 fronts, zeros from merged fronts included. Each size and number of threads has a process of its own.
 """
 
@@ -83,22 +83,22 @@ def measured(size: str, share: float) -> dict[str, Any]:
     began = time.perf_counter()
     simulation = Simulation(robot)
     analysis = simulation.assembly.pattern.analysis
-    analysed = time.perf_counter() - began
+    analyzed = time.perf_counter() - began
     tree = analysis.tree
     dim = robot.body.mesh.dim
     columns, below = dim * np.diff(tree.first).astype(float), dim * np.diff(tree.starts).astype(float)
     operations = float((columns * (columns * columns / 3 + columns * below + below * below)).sum())
     counted = [0, 0.0]
-    plain = analysis.factorise
+    plain = analysis.factorize
 
-    def factorise(data: np.ndarray) -> Any:
+    def factorize(data: np.ndarray) -> Any:
         began = time.perf_counter()
         factors = plain(data)
         counted[0] += 1
         counted[1] += time.perf_counter() - began
         return factors
 
-    analysis.factorise = factorise
+    analysis.factorize = factorize
     lengths = simulation.cables.rest_lengths
     goal = np.zeros(len(robot.winches))
     goal[simulation.cables.winches] = np.random.default_rng(0).uniform(0.0, share, len(lengths)) * lengths
@@ -114,15 +114,15 @@ def measured(size: str, share: float) -> dict[str, Any]:
         "nodes": len(robot.body.mesh.nodes),
         "elements": len(robot.body.mesh.elements),
         "mesh": mesh_seconds,
-        "analysis": analysed,
+        "analysis": analyzed,
         "operations": operations,
         "entries": float((columns * (columns + below)).sum()),
         "first": taken[0],
         "solve": taken[1],
         "iterations": pose.result.iterations,
         "converged": pose.result.reason is Reason.CONVERGED,
-        "factorisations": counted[0],
-        "factorising": counted[1],
+        "factorizations": counted[0],
+        "factorizing": counted[1],
         "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6,
     }
 
@@ -135,14 +135,14 @@ def row(size: str, threads: int, share: float, rate: float) -> str:
     if ended.returncode:
         return f"| {size} | {threads} | failed: {ended.stderr.strip().splitlines()[-1:]} |"
     found = json.loads(ended.stdout.splitlines()[-1])
-    arithmetic = found["factorisations"] * found["operations"] / (rate * threads)
+    arithmetic = found["factorizations"] * found["operations"] / (rate * threads)
     gigaflop, megabytes = found["operations"] / 1e9, 8e-6 * found["entries"]
-    each = found["factorising"] / max(found["factorisations"], 1)
+    each = found["factorizing"] / max(found["factorizations"], 1)
     return (
         f"| {found['nodes']} | {threads} | {found['mesh']:.1f} | {found['analysis']:.2f} | {gigaflop:.1f} "
         f"| {megabytes:.0f} | {each:.3f} | {gigaflop / each:.0f} | {found['first']:.2f} "
         f"| {found['solve']:.2f} | {found['iterations']}{'' if found['converged'] else ', not converged'} "
-        f"| {found['factorisations']} | {found['solve'] / arithmetic:.2f} | {found['memory']:.2f} |"
+        f"| {found['factorizations']} | {found['solve'] / arithmetic:.2f} | {found['memory']:.2f} |"
     )
 
 
@@ -160,7 +160,7 @@ def main() -> None:
     rate = gemm_rate()
     print(f"\n{machine()}; BLAS {rate / 1e9:.0f} Gflop/s\n")
     heads = "nodes, threads, mesh s, analysis s, Gflop, L MB, factors s, Gflop/s, first solve s, solve s, iterations, "
-    heads += "factorisations, solve / arithmetic, peak GB"
+    heads += "factorizations, solve / arithmetic, peak GB"
     print(f"| {heads.replace(', ', ' | ')} |\n{'|---' * 14}|")
     for size in given.sizes.split(","):
         for threads in given.threads.split(","):

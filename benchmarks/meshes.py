@@ -30,7 +30,7 @@ from hydrostat.geometry import (
     read_surface,
     size_for,
     smallest_angle,
-    tetrahedralise,
+    tetrahedralize,
 )
 from hydrostat.robot import Body, gallery_folder, list_gallery, load_robot
 
@@ -120,9 +120,9 @@ def bodies(fine: bool) -> Iterator[tuple[str, Quality, float]]:
 
 def _sized(name: str, surface: Surface, count: int) -> tuple[str, Quality, float]:
     """A surface with about a number of nodes; the time is that of the last mesh."""
-    size = size_for(count, lambda trial: tetrahedralise(surface, trial), content=surface.volume, dim=3)
+    size = size_for(count, lambda trial: tetrahedralize(surface, trial), content=surface.volume, dim=3)
     start = process_time()
-    mesh = tetrahedralise(surface, size)
+    mesh = tetrahedralize(surface, size)
     seconds = process_time() - start
     return name, quality(mesh, surface, size), seconds
 

@@ -3,7 +3,7 @@
     python benchmarks/shared_body.py
 
 CPU time on one thread, the least of several runs. A "network" is `Simulation(robot, body=...)`: its cables' energies;
-"its analysis" is the order of elimination and the fronts of that network, made when it is first factorised.
+"its analysis" is the order of elimination and the fronts of that network, made when it is first factorized.
 """
 
 import os

@@ -90,7 +90,7 @@ class Row:
         made: CPU time to make robot and simulation [s].
         memory: most that the process held [MB].
         hessian: CPU time to assemble one Hessian [ms].
-        factors: CPU time to factorise it [ms].
+        factors: CPU time to factorize it [ms].
     """
 
     nodes: int = 0
@@ -203,7 +203,7 @@ def measure(name: str, folder: Path, count: int, profile: Profile | None = None)
 
 
 def cost_of_factors(simulation: Any, pose: Any) -> tuple[float, float]:
-    """CPU time to assemble the Hessian at a pose, and to factorise it [ms]; the shorter of two."""
+    """CPU time to assemble the Hessian at a pose, and to factorize it [ms]; the shorter of two."""
     hessian = whole = np.inf
     for _ in range(2):
         began = time.process_time()

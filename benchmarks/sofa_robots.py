@@ -77,7 +77,7 @@ def _mesh(folder: Path) -> Mesh:
 
 
 def _robot(case: dict[str, Any], mesh: Mesh, routes: dict[str, Any], mount: Mount, tip: Iterable[float]) -> Robot:
-    """A robot of a mesh in metres and routes in millimetres, one winch for each."""
+    """A robot of a mesh in meters and routes in millimeters, one winch for each."""
     material = Material(
         young=case["material"]["young"] * KPA,
         poisson=case["material"]["poisson"],

@@ -13,7 +13,7 @@ folder. In commands the hand is the example `cupping_hand`.
 With `--together N` only this: N processes begin together on one empty cache, and each solves a robot; then N again, now
 that the body is kept. It fails unless all of them end well and give the same bytes.
 
-With `--check` only this: `hydrostat check` of the hand with elements of so many millimetres, in a process of its own,
+With `--check` only this: `hydrostat check` of the hand with elements of so many millimeters, in a process of its own,
 once as the gallery's surface, which is meshed, and once as a folder that holds the ready mesh.
 """
 
@@ -201,7 +201,7 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=15)
     parser.add_argument("--commands", action="store_true", help="commands only")
     parser.add_argument("--together", type=int, metavar="PROCESSES")
-    parser.add_argument("--check", type=float, metavar="MILLIMETRES")
+    parser.add_argument("--check", type=float, metavar="MILLIMETERS")
     options = parser.parse_args()
     if options.check:
         print(f"{machine()}; median of {options.repeats} starts\n")

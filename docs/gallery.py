@@ -1,7 +1,7 @@
 """Write the robots in space of the gallery: python docs/gallery.py [NAME ...] [--poses].
 
 Each is a folder in examples/ with robot.toml and the surface of its body. With --poses the poses are simulated again:
-the winches take in what the sheet of the robot says, and where its markers come to rest, in whole millimetres, is kept
+the winches take in what the sheet of the robot says, and where its markers come to rest, in whole millimeters, is kept
 in docs/bodies/poses.json. In none of them does a body feel itself: they are the same with `[contact]` and without.
 """
 

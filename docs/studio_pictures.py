@@ -160,7 +160,7 @@ def take_starfish(browser: Browser) -> None:
             page.mouse.click(line["x"] + 18 + (line["width"] - 36) * time / 4.0, line["y"] + 12)
             page.wait_for_timeout(400)
             for winch, value in (("winch_1", left), ("winch_2", right)):
-                box = page.get_by_label(f"{winch}, millimetres")
+                box = page.get_by_label(f"{winch}, millimeters")
                 box.fill(str(value))
                 box.press("Enter")
             page.get_by_text("Add").first.click()

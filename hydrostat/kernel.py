@@ -38,4 +38,4 @@ def _threads() -> int:
 
 
 THREADS: int = _threads()
-"""Threads that share one factorisation of a large body; its bytes do not depend on them."""
+"""Threads that share one factorization of a large body; its bytes do not depend on them."""

@@ -27,7 +27,7 @@ FOAM = Material(young=30e3, poisson=0.3, density=40)
 
 
 def strip_mesh(columns: int, rows: int, *, size: tuple[float, float] = (0.2, 0.05)) -> Mesh:
-    """Rectangle [0, length] x [-height/2, height/2]; diagonals alternate, so that the pattern favours no direction."""
+    """Rectangle [0, length] x [-height/2, height/2]; diagonals alternate, so that the pattern favors no direction."""
     length, height = size
     x, y = np.meshgrid(np.linspace(0, length, columns + 1), np.linspace(-height / 2, height / 2, rows + 1))
     elements = []

@@ -108,28 +108,28 @@ def test_pictures_for_notebooks(simulation: hs.Simulation, pose: hs.Equilibrium)
         assert "&lt;" in record._repr_html_()
 
 
-MILLIMETRES = {
+MILLIMETERS = {
     "solve": (
         lambda simulation: simulation.solve({"left": 12}),
-        "12 m, is far more than the body, 0.279 m, .*in metres: 12 mm",
+        "12 m, is far more than the body, 0.279 m, .*in meters: 12 mm",
     ),
     "solve, let out": (
         lambda simulation: simulation.solve({"left": -5}),
-        "far more than the body, 0.279 m, .*in metres",
+        "far more than the body, 0.279 m, .*in meters",
     ),
-    "clearance": (lambda _: hs.Constraints(clearance=5), "at most 1 m, not 5; in metres: 5 mm is 0.005"),
-    "winch gap": (lambda _: hs.Constraints(winch_gap=25), "at most 20 m, not 25; in metres"),
+    "clearance": (lambda _: hs.Constraints(clearance=5), "at most 1 m, not 5; in meters: 5 mm is 0.005"),
+    "winch gap": (lambda _: hs.Constraints(winch_gap=25), "at most 20 m, not 25; in meters"),
     "a gap beside the body": (
         lambda simulation: hs.Constraints(hole_gap=4).check(simulation.robot),
         r"hole_gap: too large for a body of 0.279 m \(4 m\)",
     ),
-    "zone": (lambda _: hs.Zone(at=(0, 30), radius=0.01), "in metres, at most 20.*30 mm is 0.03"),
-    "radius of a zone": (lambda _: hs.Zone(at=(0.0, 0.03), radius=30.0), "in metres, at most 20, not 30"),
+    "zone": (lambda _: hs.Zone(at=(0, 30), radius=0.01), "in meters, at most 20.*30 mm is 0.03"),
+    "radius of a zone": (lambda _: hs.Zone(at=(0.0, 0.03), radius=30.0), "in meters, at most 20, not 30"),
     "young": (
         lambda _: hs.Material(young=30, poisson=0.3, density=40),
         r"young = 30 Pa is too small \(minimum 100 Pa\)",
     ),
-    "accuracy": (lambda s: s.solve({}, accuracy=0.1), "too rough for a body of 0.279 m; it is in metres"),
+    "accuracy": (lambda s: s.solve({}, accuracy=0.1), "too rough for a body of 0.279 m; it is in meters"),
     "range of a winch": (
         lambda s: hs.solve_ik(s, {"left": (0.0, 0.0)}, limits=hs.Limits(contraction={"left": (0, 20)})),
         "the contraction of winch .left., 20 m, is far more than the body",
@@ -140,21 +140,21 @@ MILLIMETRES = {
     ),
     "travel": (
         lambda _: hs.Winch(name="a", at=(0.0, 0.0), travel=60),
-        "travel must be at most 20 m, not 60; in metres",
+        "travel must be at most 20 m, not 60; in meters",
     ),
-    "size of a drawing": (lambda _: hs.new_robot("a.svg", size=200), "size must be at most 20 m, not 200; in metres"),
+    "size of a drawing": (lambda _: hs.new_robot("a.svg", size=200), "size must be at most 20 m, not 200; in meters"),
     "design": (
         lambda s: hs.design_cables(s.robot, [hs.PoseTarget(name="far", targets={"left": (100.0, 60.0)})]),
-        "the target of left is 116.4 m away from a body of 0.279 m; targets are in metres",
+        "the target of left is 116.4 m away from a body of 0.279 m; targets are in meters",
     ),
 }
 
 
-@pytest.mark.parametrize("case", MILLIMETRES)
+@pytest.mark.parametrize("case", MILLIMETERS)
 @pytest.mark.usefixtures("unchecked")
 def test_another_unit_is_noticed(simulation: hs.Simulation, case: str) -> None:
     """Oracle: the numbers themselves; none of them can be meant in SI."""
-    act, words = MILLIMETRES[case]
+    act, words = MILLIMETERS[case]
     with pytest.raises(hs.InputError, match=words):
         act(simulation)
 

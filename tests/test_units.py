@@ -36,7 +36,7 @@ UNITS = ["mm", "cm", "m", "in", "ft", "um", "km", "yard"]
         ("-2. m", LENGTH, -2.0),
         ("+1e-3 km", LENGTH, 1.0),
         ("2 µm", LENGTH, 2e-6),
-        ("3 metres", LENGTH, 3.0),
+        ("3 meters", LENGTH, 3.0),
         ("0.1 mm", LENGTH, 1e-4),
         ("30 kPa", PRESSURE, 30e3),
         ("1 N/mm^2", PRESSURE, 1e6),

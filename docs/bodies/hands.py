@@ -85,7 +85,7 @@ def extended() -> Sheet:
         name="extended_hand",
         words=(
             "A foam hand with human proportions, at rest with straight, spread fingers. After the second foam "
-            "hand of the thesis. Ten winches: each finger has one to bend it and one to swing it to a neighbour; "
+            "hand of the thesis. Ten winches: each finger has one to bend it and one to swing it to a neighbor; "
             "the second cable of the thumb crosses the palm, so that it can stand before the fingers. Lengths are "
             "in mm; x runs to the thumb, y from the palm to the back, z from the wrist to the fingers."
         ),

@@ -1,4 +1,4 @@
-"""A surface as a binary PLY file in millimetres, with fewer triangles."""
+"""A surface as a binary PLY file in millimeters, with fewer triangles."""
 
 import numpy as np
 
@@ -21,11 +21,11 @@ def decimated(surface: Surface, faces: int) -> Surface:
 
 
 def ply_bytes(surface: Surface) -> bytes:
-    """Vertices in millimetres as 4-byte floats, triangles as 4-byte integers."""
+    """Vertices in millimeters as 4-byte floats, triangles as 4-byte integers."""
     corners = np.zeros(len(surface.triangles), dtype=[("count", "u1"), ("corners", "<i4", 3)])
     corners["count"], corners["corners"] = 3, surface.triangles
     head = (
-        "ply\nformat binary_little_endian 1.0\ncomment millimetres\n"
+        "ply\nformat binary_little_endian 1.0\ncomment millimeters\n"
         f"element vertex {len(surface.vertices)}\nproperty float x\nproperty float y\nproperty float z\n"
         f"element face {len(corners)}\nproperty list uchar int vertex_indices\nend_header\n"
     )

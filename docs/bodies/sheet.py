@@ -156,7 +156,7 @@ def _comment(words: str) -> str:
 
 
 def _point(place: Place) -> str:
-    """Metres as millimetres to a tenth."""
+    """Meters as millimeters to a tenth."""
     return _row([1e3 * value for value in place])
 
 

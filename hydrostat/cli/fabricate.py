@@ -79,9 +79,9 @@ def fabricate(
         motor=motor,
         mould=kits.MouldOptions(kind=kind, bed=_lengths("--bed", bed)),
         paper=parse_choice(kits.Paper, paper, what="--paper"),
-        pattern=kits.PatternOptions(seam_allowance=_millimetres("--seam", seam)),
+        pattern=kits.PatternOptions(seam_allowance=_millimeters("--seam", seam)),
         parts=kits.PartOptions(
-            cable=_millimetres("--line", line), clearance=_millimetres("--print-clearance", clearance)
+            cable=_millimeters("--line", line), clearance=_millimeters("--print-clearance", clearance)
         ),
         step=step,
         force=force,
@@ -139,7 +139,7 @@ def print_kit(kit: "Kit") -> None:
             print(f"  failed: {check.what}: {check.measured} (allowed: {check.allowed})")
 
 
-def _millimetres(option: str, text: str) -> float:
+def _millimeters(option: str, text: str) -> float:
     """A length such as "8 mm" [mm]."""
     from hydrostat.units import LENGTH
 
@@ -154,5 +154,5 @@ def _lengths(option: str, text: str) -> tuple[float, float, float]:
             f'{option} {text}: not a build volume. Write three lengths with a unit, e.g. "220 x 220 x 250 mm".'
         )
     *sides, unit = match.groups()
-    x, y, z = (_millimetres(option, f"{side} {unit}") for side in sides)
+    x, y, z = (_millimeters(option, f"{side} {unit}") for side in sides)
     return x, y, z

@@ -9,7 +9,7 @@ from pathlib import Path
 FILES = {
     "elements": "neo_hookean patch_volume energy",
     "assembly": "assembly",
-    "factorization": "factorisation supernodal stiffness",
+    "factorization": "factorization supernodal stiffness",
     "symbolic analysis": "ordering symbolic",
     "arcs": "warp",
     "cables": "cable cable_friction capstan loading_path tension_law",

@@ -18,7 +18,7 @@ STANDS = 0.3
 SLOW, TURN = 0.02, 0.02
 """Speed from one to the next [m/s]; from one command to the next [s]."""
 WITHIN = 1e-3
-"""Readings may lie so far beside the curve [m]: a ruler read to half a millimetre does far better."""
+"""Readings may lie so far beside the curve [m]: a ruler read to half a millimeter does far better."""
 LIKELY = (0.7, 1.6)
 """The radius measured, over that of robot.toml: beyond, it was read in other units or the wrong spool is on."""
 
@@ -125,7 +125,7 @@ def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve
     if not LIKELY[0] <= radius / motor.radius <= LIKELY[1]:
         raise HydrostatError(
             f"{motor.winch}: by the ruler its spool has a radius of {1e3 * radius:.1f} mm, not of "
-            f"{1e3 * motor.radius:.1f} mm; write millimetres, and look that the mark is on the cable of this winch"
+            f"{1e3 * motor.radius:.1f} mm; write millimeters, and look that the mark is on the cable of this winch"
         )
     angles = [float(begin) for begin, step in zip(begins, steps, strict=True) if step > 1e-9 and begin > 0]
     angles.append(float(turned[-1]))

@@ -89,7 +89,7 @@ LARGEST = 4_000_000  # no table has more bytes
 
 
 def timeline_table(robot: Robot, timeline: Timeline) -> bytes:
-    """Contractions in time as a CSV of seconds and millimetres; see `ProfileTable` (InputError: no keyframes)."""
+    """Contractions in time as a CSV of seconds and millimeters; see `ProfileTable` (InputError: no keyframes)."""
     if not timeline.keys:
         raise InputError("there are no keyframes to export; turn the knobs and press Add")
     profile = timeline.profile([winch.name for winch in robot.winches])

@@ -22,7 +22,7 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
 
     - Points of cables keep the clearance from the edge or surface, straight segments half of it. Where a cable enters
       from the world, or begins at a winch that is locked, neither that point nor a clearance's way on from it counts.
-    - Where cables run at a depth under the skin, points lie there to half a millimetre, and straight segments neither
+    - Where cables run at a depth under the skin, points lie there to half a millimeter, and straight segments neither
       leave the body nor dive 3 mm deeper.
     - Segments keep out of `keep_out` along their whole length, bare ones out of `still`; without `leads`, sheaths are
       for `still` alone.

@@ -71,7 +71,7 @@ def _limit(default: Any, allowed: Range | None = None, *, trees: bool = False) -
 
 @dataclass(frozen=True, kw_only=True)
 class Constraints:
-    """Limits that every returned network keeps; lengths in metres, at rest.
+    """Limits that every returned network keeps; lengths in meters, at rest.
 
     `hydrostat.design.buildable` tells whether a network keeps them, and how each of them is measured.
 
@@ -198,7 +198,7 @@ class Constraints:
         """Refuse a robot that these constraints do not fit.
 
         Raises InputError: a zone of another dimension, a winch or cable to lock that it does not have, a mirror that
-        its body is not centred on, or winches in the world where it has no winch to stand for one.
+        its body is not centered on, or winches in the world where it has no winch to stand for one.
         """
         mesh = robot.body.mesh
         for field in ("winch_zones", "keep_out", "still"):
@@ -265,8 +265,8 @@ class Constraints:
         for field, allowed in RANGES.items():
             value = getattr(self, field)
             if not allowed.holds(value):
-                metres = "; in metres: 5 mm is 0.005" if allowed.unit == "m" else ""
-                _refuse(field, value, f"{allowed}, or None" if allowed.optional else str(allowed), metres)
+                meters = "; in meters: 5 mm is 0.005" if allowed.unit == "m" else ""
+                _refuse(field, value, f"{allowed}, or None" if allowed.optional else str(allowed), meters)
 
     def _check_locks(self) -> None:
         for field, kind in (("locked_winches", "winch"), ("locked_cables", "cable")):

@@ -113,7 +113,7 @@ def _sharp(cable: Cable) -> int:
 
 
 def _crossings(robot: Robot) -> int:
-    """Pairs of segments that meet: not neighbours of one cable, and not within two spool radii of a shared winch."""
+    """Pairs of segments that meet: not neighbors of one cable, and not within two spool radii of a shared winch."""
     winches = {winch.name: winch for winch in robot.winches}
     runs = [
         (index, at, np.array(cable.points[at : at + 2]))

@@ -9,7 +9,7 @@ from hydrostat.robot import Face, Robot
 def assign_cable_sides(robot: Robot) -> Robot:
     """The robot itself; if it is flat and does not say where its cables run, with what a builder would want.
 
-    That is in pairs: on one face alone they would curl a stuffed body out of its plane by centimetres (decision 0029).
+    That is in pairs: on one face alone they would curl a stuffed body out of its plane by centimeters (decision 0029).
     A flat body of foam is cast, with its cables in the middle.
     """
     if robot.body.mesh.dim != 2 or robot.face is not None:

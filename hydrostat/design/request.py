@@ -267,7 +267,7 @@ class DesignRequest:
                     raise InputError(
                         f'pose "{pose.name}": target of {name}: wrong dimension ({len(point)}). Body: {dim}.'
                     )
-                place(f'pose "{pose.name}": the target of {name}', point, robot.body.mesh)  # in metres
+                place(f'pose "{pose.name}": the target of {name}', point, robot.body.mesh)  # in meters
                 if name not in markers:
                     known = f"Available: {', '.join(markers)}." if markers else "The robot has no markers."
                     raise InputError(f'pose "{pose.name}": unknown marker "{name}". {known}')

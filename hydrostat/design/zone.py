@@ -143,7 +143,7 @@ def _check_corner(name: str, corner: object) -> None:
     if not isinstance(corner, tuple | list) or len(corner) not in (2, 3) or not all(map(_is_number, corner)):
         raise InputError(f"{name} of a zone must be two or three finite coordinates [m], not {corner!r:.60}")
     if max(map(abs, corner)) > FARTHEST:
-        raise InputError(f"{name} of a zone is in metres, at most {FARTHEST:g}, not {corner!r:.60}; 30 mm is 0.03")
+        raise InputError(f"{name} of a zone is in meters, at most {FARTHEST:g}, not {corner!r:.60}; 30 mm is 0.03")
 
 
 def _check_ball(at: object, radius: object) -> None:
@@ -153,7 +153,7 @@ def _check_ball(at: object, radius: object) -> None:
     if not (_is_number(radius) and radius > 0):
         raise InputError(f"radius of a zone must be finite and above 0 m, not {radius!r:.60}")
     if radius > FARTHEST:
-        raise InputError(f"radius of a zone is in metres, at most {FARTHEST:g}, not {radius:g}; 8 mm is 0.008")
+        raise InputError(f"radius of a zone is in meters, at most {FARTHEST:g}, not {radius:g}; 8 mm is 0.008")
 
 
 def _check_box(box: object) -> None:

@@ -1,4 +1,4 @@
-"""`Canvas`: a picture as SVG, in millimetres of paper, so that lines and letters have the same size on all of them."""
+"""`Canvas`: a picture as SVG, in millimeters of paper, so that lines and letters have the same size on all of them."""
 
 import html
 from collections.abc import Iterable, Sequence
@@ -60,8 +60,8 @@ def path(lines: Iterable[Iterable[Sequence[float] | np.ndarray]], *, digits: int
 Spot = tuple[float, float]  # a place on the canvas [mm]: to the right, down
 Box = tuple[float, float, float, float]  # left, top, right, bottom [mm]
 THICK, MIDDLE, THIN = 0.5, 0.32, 0.18  # widths of lines [mm]
-POINT = 25.4 / 72  # millimetres of a typographic point
-PIXELS = 10  # for each millimetre of paper, to know what is hidden: a tenth of a millimetre is less than a line
+POINT = 25.4 / 72  # millimeters of a typographic point
+PIXELS = 10  # for each millimeter of paper, to know what is hidden: a tenth of a millimeter is less than a line
 FONT = "Libertinus Serif"  # comes with typst, so that a sheet is the same on every machine
 
 
@@ -69,7 +69,7 @@ FONT = "Libertinus Serif"  # comes with typst, so that a sheet is the same on ev
 class CanvasFrame:
     """Scale and place of a drawing on a canvas."""
 
-    scale: float  # millimetres on paper per millimetre of the object
+    scale: float  # millimeters on paper per millimeter of the object
     left: float  # canvas coordinate of x = 0 [mm]
     base: float  # canvas coordinate, downwards, of height 0 [mm]
 

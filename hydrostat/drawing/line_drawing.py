@@ -79,7 +79,7 @@ def line_drawing(solids: Sequence[DrawnSolid], camera: Camera, *, soft: float = 
     """Draw solids as they are seen, each edge and rim only as far as nothing hides it.
 
     The light is blurred over a share of the picture (`soft`), for a body with dents. Pixels along the longer side tell
-    what is hidden; ten for a millimetre of paper are enough.
+    what is hidden; ten for a millimeter of paper are enough.
     """
     facets = [Facets.of(solid.vertices, solid.triangles, sharp=solid.sharp) for solid in solids]
     spots = np.concatenate([camera.see(item.vertices)[item.triangles] for item in facets])

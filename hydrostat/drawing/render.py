@@ -76,7 +76,7 @@ def render(
         up: the way up as the camera sees it, from where the sky shines; up in the picture if left out.
         pale: fades the felt behind what lies on it, 0 to 1.
         lines: strength of the mesh edges, 0 to 1.
-        point: millimetres that a point (1/72 inch) shows, which sizes lines.
+        point: millimeters that a point (1/72 inch) shows, which sizes lines.
     """
     fine, corners = pixel / FINER, spots[facets]
     samples, steps = _samples(corners, _corner_values(corners, facets, held, fine if lines else 0.0), pixel)

@@ -1,4 +1,4 @@
-"""Build kits of robots: patterns, printed parts, molds, lists and pages. Lengths are in millimetres."""
+"""Build kits of robots: patterns, printed parts, molds, lists and pages. Lengths are in millimeters."""
 
 from typing import TYPE_CHECKING
 

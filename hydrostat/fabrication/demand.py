@@ -13,7 +13,7 @@ from hydrostat.robot import PoseTarget, Robot, Winch
 from hydrostat.simulation import Equilibrium, Simulation
 
 _ONCE = IKOptions(restarts=0)
-"""No restarts: a pose that is better by some micrometres makes no difference to a motor."""
+"""No restarts: a pose that is better by some micrometers makes no difference to a motor."""
 
 
 FAR = 0.1

@@ -55,7 +55,7 @@ def _check_sizes(options: Any, *, above_zero: tuple[str, ...]) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class PatternOptions:
-    """Choices for a pattern; lengths in millimetres, as everywhere in fabrication.
+    """Choices for a pattern; lengths in millimeters, as everywhere in fabrication.
 
     Attributes:
         seam_allowance: width of cloth between the seam and the cut [mm].
@@ -98,7 +98,7 @@ class PatternOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class PartOptions:
-    """Sizes that depend on the printer and on the parts that you buy; lengths in millimetres.
+    """Sizes that depend on the printer and on the parts that you buy; lengths in millimeters.
 
     Attributes:
         clearance: gap between parts that move in each other, on each side [mm].
@@ -134,7 +134,7 @@ class PartOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class MouldOptions:
-    """Choices for a mould; lengths in millimetres.
+    """Choices for a mould; lengths in millimeters.
 
     Attributes:
         kind: material of the mold: printed halves, or silicone cast round a printed positive (R52).

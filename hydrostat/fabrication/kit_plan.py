@@ -67,7 +67,7 @@ class BodyWork:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class KitPlan:
-    """A robot with the parts and the body that it is built from; lengths in millimetres, cables by their index.
+    """A robot with the parts and the body that it is built from; lengths in millimeters, cables by their index.
 
     Raises:
         InputError: a length of a cable that the robot does not have, or one below 0.

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from hydrostat.geometry.surface import Solid, Surface
     from hydrostat.geometry.tetrahedra.manifold import euler
     from hydrostat.geometry.tetrahedra.stuffing import turned_outward
-    from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, fit, tetrahedralise
+    from hydrostat.geometry.tetrahedra.tetrahedralize import CLOSE, fit, tetrahedralize
     from hydrostat.geometry.thickness import Thickness, measure_thickness, spacings, thin_parts
     from hydrostat.geometry.triangles.triangulate import triangulate
 
@@ -97,7 +97,7 @@ __all__ = [
     "smallest_angle",
     "spacings",
     "sphere_field",
-    "tetrahedralise",
+    "tetrahedralize",
     "thin_parts",
     "triangulate",
     "turned_outward",

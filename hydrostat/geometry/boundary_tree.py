@@ -88,7 +88,7 @@ class BoundaryTree:
     def _at_rest(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Largest boxes that are apart at rest, in pairs, and the pairs of features of all facets whose boxes meet.
 
-        So no sweep goes down the tree from its root again, to facets that are neighbours anyway.
+        So no sweep goes down the tree from its root again, to facets that are neighbors anyway.
         """
         children, leaf = self.children, self.children[:, 0] < 0
         low, high = self._boxes_at_rest()

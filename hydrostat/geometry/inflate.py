@@ -92,7 +92,7 @@ def _without_bridges(mesh: Mesh) -> Mesh:
 
 
 def _split_triangle(triangle: tuple[int, ...], middles: dict[tuple[int, ...], int]) -> list[tuple[int, ...]]:
-    """Triangle, cut where its sides have a middle node; one side after another, so that neighbours agree."""
+    """Triangle, cut where its sides have a middle node; one side after another, so that neighbors agree."""
     for turn in range(3):
         a, b, c = (triangle[(turn + corner) % 3] for corner in range(3))
         middle = middles.get((min(a, b), max(a, b)))

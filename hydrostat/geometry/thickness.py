@@ -83,7 +83,7 @@ def _march(
     mesh: Mesh, elements: Int[np.ndarray, " rays"], starts: Points, directions: Points
 ) -> Float[np.ndarray, " rays"]:
     """Length [m] of each ray in the body, from a start in its element to where no element follows."""
-    beyond = _neighbours(mesh)
+    beyond = _neighbors(mesh)
     spans = np.swapaxes(mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]], 1, 2)
     slopes = np.linalg.inv(spans)
     run, here, rays = np.zeros(len(starts)), elements.copy(), np.arange(len(starts))
@@ -109,7 +109,7 @@ def _march(
     return run
 
 
-def _neighbours(mesh: Mesh) -> Int[np.ndarray, "elements corners"]:
+def _neighbors(mesh: Mesh) -> Int[np.ndarray, "elements corners"]:
     """Element beyond the facet opposite each corner; -1 where the body ends."""
     count, corners = len(mesh.elements), mesh.dim + 1
     facets = np.sort(np.concatenate([np.delete(mesh.elements, corner, axis=1) for corner in range(corners)]), axis=1)
@@ -143,8 +143,8 @@ def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
         return []
     middles = thickness.middles[thin]
     reach = _NEAR * float(np.median(thickness.spacing[thin]))
-    neighbours = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
-    gaps, near = KDTree(middles).query(middles, k=min(neighbours, len(thin)), distance_upper_bound=reach)
+    neighbors = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
+    gaps, near = KDTree(middles).query(middles, k=min(neighbors, len(thin)), distance_upper_bound=reach)
     gaps, near = gaps.reshape(len(thin), -1), near.reshape(len(thin), -1)
     one, two = np.nonzero(np.isfinite(gaps))[0], near[np.isfinite(gaps)]
     labels = joined_groups(np.stack([one, two]), len(thin))

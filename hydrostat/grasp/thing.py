@@ -53,7 +53,7 @@ def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
 
 
 def _from_file(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
-    """Read an object from a surface file in millimetres, with its center at the origin."""
+    """Read an object from a surface file in millimeters, with its center at the origin."""
     if dim == 2:
         raise InputError(f"{text}: a flat body meets no mesh; use a sphere, which is a disc in the plane, or a box")
     mesh = closed_mesh(read_stranger(text), Path(text).name)

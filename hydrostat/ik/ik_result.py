@@ -35,7 +35,7 @@ class IKResult:
         status: reason why the search ended.
         iterations: number of Gauss-Newton steps taken.
         solves: number of equilibria solved for.
-        optimality: largest admissible decrease of the residual norm per metre of one channel's contraction [m/m]; near
+        optimality: largest admissible decrease of the residual norm per meter of one channel's contraction [m/m]; near
             0 at an optimum, but not where a pose is reached.
         active_limits: limits that keep the pose from coming closer to the target.
         friction_hysteresis: distance of each marker from its position when the same contractions are reached from a
@@ -53,7 +53,7 @@ class IKResult:
     friction_hysteresis: Mapping[str, float] = field(default_factory=dict)
 
     def without_factors(self) -> "IKResult":
-        """Return the same result without the factorised Hessian of its pose, to keep many results in memory."""
+        """Return the same result without the factorized Hessian of its pose, to keep many results in memory."""
         return replace(self, pose=self.pose.without_factors())
 
     def __repr__(self) -> str:

@@ -155,7 +155,7 @@ def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vec
                 f'contraction of winch "{name}" must lie between two rising numbers [m], not {describe(limits)}'
             )
         for end in ends:
-            contraction_values(robot, {name: float(end)})  # in metres
+            contraction_values(robot, {name: float(end)})  # in meters
         ranges[name] = (ends[0], ends[1])
     values = np.array(list(ranges.values()), dtype=float).reshape(-1, 2)
     return values[:, 0], values[:, 1]

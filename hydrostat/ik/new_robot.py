@@ -29,7 +29,7 @@ CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
 @dataclass(frozen=True, kw_only=True)
 class NewRobotWish:
-    """Requested properties of a new robot, lengths in metres; None for no request."""
+    """Requested properties of a new robot, lengths in meters; None for no request."""
 
     name: str | None = None  # name of the robot; None: that of its file
     size: float | None = None  # longest side of the bounding box
@@ -47,7 +47,7 @@ class NewRobotWish:
             if value is not None:
                 check_number(key, value, "m")
                 if value > longest:
-                    raise InputError(f"{key} must be at most {longest:g} m, not {value:g}; in metres: 200 mm is 0.2")
+                    raise InputError(f"{key} must be at most {longest:g} m, not {value:g}; in meters: 200 mm is 0.2")
         check_type(self.nodes, (int, type(None)), "nodes must be a whole number")
         check_type(self.material, (str, type(None)), "material must be a name of the table")
         if self.nodes is not None and self.element_size is not None:
@@ -89,7 +89,7 @@ def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
         source: a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF), a ready mesh (VTK, VTU,
             MSH), or "gallery:NAME".
         wished: `name`, `size`, `element_size`, `nodes`, `thickness`, `inflate`, `material` and `inner` ("holes" or
-            "drawn"); lengths in metres.
+            "drawn"); lengths in meters.
 
     Raises:
         InputError: a file that is no body, or wishes that do not fit it.

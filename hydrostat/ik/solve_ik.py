@@ -85,8 +85,8 @@ def solve_ik(
 ) -> IKResult:
     """Bounded Gauss-Newton through the sensitivities of the equilibrium.
 
-    Minimises half the squares of what targets and objectives miss while the winches stay within their limits. Each step
-    is linearised by dx/da; equilibria on the way are only as sharp as they must be, the last one is exact. The answer
+    Minimizes half the squares of what targets and objectives miss while the winches stay within their limits. Each step
+    is linearized by dx/da; equilibria on the way are only as sharp as they must be, the last one is exact. The answer
     is a local optimum; where it misses its goal, the search begins elsewhere a few times. docs/theory/inverse.md.
 
     Where cables rub, the way counts. The answer is the pose in which the robot ends when the winches go straight from

@@ -76,7 +76,7 @@ class LearnedPose:
         return float(np.mean(list(self.spread.values())))
 
     def without_factors(self) -> "LearnedPose":
-        """The same with a pose that keeps no factorised Hessian, to be kept with many others."""
+        """The same with a pose that keeps no factorized Hessian, to be kept with many others."""
         return replace(self, pose=None if self.pose is None else self.pose.without_factors())
 
 
@@ -201,7 +201,7 @@ class LearnedModel:
         """The best of descents from the inverse network's answer and, if need be, from samples."""
         count = self.card.coordinates
         weights = np.zeros(len(self.unit))
-        weights[:count] = asked * self.unit[:count]  # what is left is then in metres
+        weights[:count] = asked * self.unit[:count]  # what is left is then in meters
         wanted = np.zeros(len(self.unit))
         wanted[:count] = (goal - self.middle[:count]) / self.unit[:count]
         usual = 3.0  # Ratio of a target's error to the mean error of the networks, above which it is unusual
@@ -271,10 +271,10 @@ class LearnedModel:
         return given
 
     def _scale_inputs(self, contractions: Vector) -> Vector:
-        return (contractions - self._centre) / self._half
+        return (contractions - self._center) / self._half
 
     def _contractions(self, scaled: Vector) -> Vector:
-        return np.minimum(np.maximum(self._centre + self._half * scaled, self.low), self.high)
+        return np.minimum(np.maximum(self._center + self._half * scaled, self.low), self.high)
 
     @cached_property
     def _rows(self) -> Mapping[str, int]:
@@ -292,7 +292,7 @@ class LearnedModel:
         return 0.5 * span_of(self.low, self.high)
 
     @cached_property
-    def _centre(self) -> Vector:
+    def _center(self) -> Vector:
         return self.low + self._half
 
 

@@ -82,7 +82,7 @@ class Perceptrons:
     ) -> tuple[Vector, float]:
         """Levenberg-Marquardt from a point in a box to the best one hereabouts, and what is left there.
 
-        Minimises the sum of squares of weights x (mean answer - goal) within the box. The first network leads there,
+        Minimizes the sum of squares of weights x (mean answer - goal) within the box. The first network leads there,
         all of them finish it.
 
         Args:

@@ -219,16 +219,16 @@ def _train(
     """Adam; the numbers of each network when its error was least. Ctrl-C ends it with those."""
     for part in numbers:
         part.requires_grad_(True)
-    optimiser = torch.optim.Adam(numbers, lr=rate, betas=(0.9, 0.99))
-    schedule = torch.optim.lr_scheduler.LambdaLR(optimiser, lambda step: _rate(step / steps))
+    optimizer = torch.optim.Adam(numbers, lr=rate, betas=(0.9, 0.99))
+    schedule = torch.optim.lr_scheduler.LambdaLR(optimizer, lambda step: _rate(step / steps))
     best, least = [part.detach().clone() for part in numbers], torch.full((len(numbers[0]),), math.inf)
     looks = 60  # So often held-out samples are looked at
     often = max(1, steps // looks)
     try:
         for step in range(steps):
-            optimiser.zero_grad(set_to_none=True)
+            optimizer.zero_grad(set_to_none=True)
             loss().backward()
-            optimiser.step()
+            optimizer.step()
             schedule.step()
             if (step + 1) % often == 0 or step == steps - 1:
                 with torch.no_grad():

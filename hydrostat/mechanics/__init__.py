@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.capstan import ViaPointTurns
     from hydrostat.mechanics.contact import ContactEnergy
     from hydrostat.mechanics.energy import ContactForces, Energy, LowRankStiffness, Stencils
-    from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation
+    from hydrostat.mechanics.factorization import Analysis, Backend, Factorization
     from hydrostat.mechanics.fibre import FibreEnergy
     from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
-    from hydrostat.mechanics.newton import minimise
+    from hydrostat.mechanics.newton import minimize
     from hydrostat.mechanics.newton_result import NewtonOptions, NewtonResult, Reason, RoundOff
     from hydrostat.mechanics.nodal_energies import PinEnergy, WeightEnergy
     from hydrostat.mechanics.obstacle import ObstacleEnergy
@@ -40,7 +40,7 @@ __all__ = [
     "ContactEnergy",
     "ContactForces",
     "Energy",
-    "Factorisation",
+    "Factorization",
     "FibreEnergy",
     "FrictionCableEnergy",
     "GuideEnergy",
@@ -66,7 +66,7 @@ __all__ = [
     "Warp",
     "WeightEnergy",
     "grow_patches",
-    "minimise",
+    "minimize",
 ]
 
 open_package(__name__)

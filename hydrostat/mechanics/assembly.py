@@ -70,7 +70,7 @@ class Assembly:
     def with_active_terms(self, nodes: Nodes) -> "Assembly":
         """Sum with the terms that count near `nodes`; itself where none come and go.
 
-        The pattern is analysed anew only when a pair of nodes meets that never met before.
+        The pattern is analyzed anew only when a pair of nodes meets that never met before.
         """
         return self.with_terms([energy.with_active_terms(nodes) for energy in self.energies])
 
@@ -149,7 +149,7 @@ class Assembly:
         return self.with_terms([energy.with_history(part, nodes, controls) for energy, part in parts])
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
-        """Largest error [N] of the quantities that a minimisation holds fixed, such as friction limits."""
+        """Largest error [N] of the quantities that a minimization holds fixed, such as friction limits."""
         return max((energy.history_residual(nodes, controls) for energy in self.energies), default=0.0)
 
     def with_corrected_history(self, nodes: Nodes, controls: Vector, stiffness: Stiffness | None) -> "Assembly":
@@ -231,7 +231,7 @@ class Assembly:
         shift: float = 0.0,
         damping: float = 0.0,
     ) -> Stiffness:
-        """Whole Hessian d2E/dx2, factorised.
+        """Whole Hessian d2E/dx2, factorized.
 
         `projection` is as in `hessian`; `early` is that of energies that project first, if it is another one. `damping`
         [N/m] is added to the diagonal, as is `shift`, a share of its largest entry.
@@ -241,7 +241,7 @@ class Assembly:
             values[self.pattern.diagonal] += damping
         if shift:
             values[self.pattern.diagonal] += shift * values[self.pattern.diagonal].max()
-        factors = self.pattern.analysis.factorise(values)
+        factors = self.pattern.analysis.factorize(values)
         return Stiffness(factors, self.coupling(nodes, controls), token=self.token, source=self)
 
     def control_derivative(self, nodes: Nodes, controls: Vector) -> "csc_array":

@@ -58,7 +58,7 @@ class CableEnergy(Energy):
             law: tension against elongation, of each cable.
             winches: index of the winch whose contraction each cable follows.
             slack: contraction at which each cable starts to become taut [m].
-            ratios: contraction of each cable per metre of its winch's contraction; 1 by default.
+            ratios: contraction of each cable per meter of its winch's contraction; 1 by default.
         """
         self.stencils, self.weights, self.offsets = (
             np.ascontiguousarray(part) for part in (segments.stencils, segments.weights, segments.offsets)

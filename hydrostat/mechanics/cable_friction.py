@@ -87,7 +87,7 @@ class FrictionCableEnergy(Energy):
             slack: contraction at which each cable starts to become taut [m], at the winch.
             friction: coefficient mu of each cable.
             turns: via points at which the cables turn; their points are the segments after them.
-            ratios: contraction of each cable per metre of its winch's contraction; 1 by default.
+            ratios: contraction of each cable per meter of its winch's contraction; 1 by default.
         """
         cables = segments.cables
         first = np.append(True, np.diff(cables) != 0)[: len(cables)]

@@ -116,7 +116,7 @@ class Energy(ABC):
     """Sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
     A control is what an actuator commands: the contraction of a winch [m], the tension of a muscle fibre [N].
-    A new energy needs value, gradient and Hessian to be assembled and minimised, and is given to a `Simulation` in a
+    A new energy needs value, gradient and Hessian to be assembled and minimized, and is given to a `Simulation` in a
     list. All other methods have defaults; they tell what a solver may have to ask. Run
     `hydrostat.testing.check_energy` on it.
 
@@ -243,7 +243,7 @@ class Energy(ABC):
         return self
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
-        """Error [N] of the quantities held fixed in a minimisation, at `nodes`; 0 for most energies."""
+        """Error [N] of the quantities held fixed in a minimization, at `nodes`; 0 for most energies."""
         return 0.0
 
     def with_corrected_history(

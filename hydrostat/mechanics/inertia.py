@@ -43,8 +43,8 @@ class TimeScheme:
     """Diagonally implicit Runge-Kutta method whose last stage is its end.
 
     Stage i of a step h of y' = f(y) solves y_i = b_i + h a_ii f(y_i), b_i = y_n + h sum over j < i of a_ij f(y_j). With
-    forces that have a potential each stage is a minimisation, like a step of implicit Euler; and as the end of the
-    step is itself minimised, no element is inverted there.
+    forces that have a potential each stage is a minimization, like a step of implicit Euler; and as the end of the
+    step is itself minimized, no element is inverted there.
 
     Attributes:
         table: rows a_i0 ... a_ii.

@@ -16,7 +16,7 @@ from hydrostat.mechanics.stiffness import Stiffness, find_negative_curvature
 from hydrostat.mechanics.warp import Bend
 
 
-def minimise(
+def minimize(
     assembly: Assembly,
     start: Nodes,
     controls: Vector,
@@ -42,7 +42,7 @@ def minimise(
         options: tolerance and limits.
         warp: bends steps along arcs; only straight ones without it.
         stiffness: the Hessian at `start` at other controls, such as those at which it is in equilibrium. The first step
-            then costs no factorisation: it is the prediction dx/da, bent along arcs.
+            then costs no factorization: it is the prediction dx/da, bent along arcs.
         exact: True if `stiffness` is that of `start` up to rounding; then it may serve as the Hessian at an end nearby.
     """
     return _EnergyDescent(assembly, controls, round_off, options, warp, exact).run(start, stiffness)
@@ -59,7 +59,7 @@ class _Iterate(NamedTuple):
 
 
 class _EnergyDescent:
-    """One minimisation; `run` is the loop, each method one part of it.
+    """One minimization; `run` is the loop, each method one part of it.
 
     Attributes:
         projection: shares of the negative part of the Hessian that the last step removed.
@@ -213,7 +213,7 @@ class _EnergyDescent:
         return self.error <= self.options.accuracy
 
     def _reuse(self, place: _Iterate, known: Stiffness | None) -> Stiffness | None:
-        """Return a known factorisation with the current springs; None if the result is not positive definite."""
+        """Return a known factorization with the current springs; None if the result is not positive definite."""
         if known is None or known.singular or known.token is not self.assembly.token:
             return None
         springs = place.assembly.coupling(place.nodes, self.controls)

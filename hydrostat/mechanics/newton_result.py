@@ -69,7 +69,7 @@ class NewtonResult:
         iterations: number of steps taken.
         stable: True if the full Hessian at `nodes` is positive definite: a minimum, not a saddle.
         buckled: True if the solver left a saddle on the way: the body could also have moved elsewhere.
-        stiffness: factorised Hessian at `nodes`, or where the last step began, if the residual there was below 1e-5 of
+        stiffness: factorized Hessian at `nodes`, or where the last step began, if the residual there was below 1e-5 of
             the applied force or the iterate was within the accuracy.
         error: approximate distance of a node from equilibrium [m] if an accuracy was requested, infinite if it was not
             reached; 0 if none was requested.

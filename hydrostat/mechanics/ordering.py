@@ -8,7 +8,7 @@ product of the halves is taken. Small parts are ordered by minimum degree, which
 
 Without coordinates, distances in the graph from a few far-apart nodes serve as such (Harel and Koren 2002).
 
-A graph is (starts, neighbours): those of node i are neighbours[starts[i]:starts[i + 1]], itself left out.
+A graph is (starts, neighbors): those of node i are neighbors[starts[i]:starts[i + 1]], itself left out.
 """
 
 import numpy as np
@@ -21,26 +21,26 @@ Graph = tuple[np.ndarray, np.ndarray]
 def block_graph(indptr: np.ndarray, indices: np.ndarray, dim: int) -> Graph:
     """Graph of the nodes that share an entry of a matrix with `dim` degrees of freedom per node."""
     count = (len(indptr) - 1) // dim
-    starts, neighbours = np.zeros(count + 1, np.int64), np.empty(len(indices), np.int64)
-    native.block_graph(indptr, indices, dim, starts, neighbours, np.full(count, -1))
-    return starts, neighbours[: starts[-1]].copy()
+    starts, neighbors = np.zeros(count + 1, np.int64), np.empty(len(indices), np.int64)
+    native.block_graph(indptr, indices, dim, starts, neighbors, np.full(count, -1))
+    return starts, neighbors[: starts[-1]].copy()
 
 
-def graph_coordinates(starts: np.ndarray, neighbours: np.ndarray, count: int) -> np.ndarray:
+def graph_coordinates(starts: np.ndarray, neighbors: np.ndarray, count: int) -> np.ndarray:
     """Distances in the graph from `count` nodes, each the farthest from those before it, (nodes, count)."""
     nodes = len(starts) - 1
     queue = np.empty(nodes, np.int64)
     distances = np.full((count + 1, nodes), float(nodes))
-    native.distances(starts, neighbours, 0, distances[count], queue)
+    native.distances(starts, neighbors, 0, distances[count], queue)
     root = np.argmax(distances[count])
     for column in range(count):
-        native.distances(starts, neighbours, root, distances[column], queue)
+        native.distances(starts, neighbors, root, distances[column], queue)
         root = np.argmax(distances[: column + 1].min(axis=0))
     return distances[:count].T
 
 
 def nested_dissection(
-    starts: np.ndarray, neighbours: np.ndarray, points: np.ndarray, leaf: int, shares: np.ndarray
+    starts: np.ndarray, neighbors: np.ndarray, points: np.ndarray, leaf: int, shares: np.ndarray
 ) -> np.ndarray:
     """Order of elimination, (nodes,): the node to eliminate first, second, ...
 
@@ -53,5 +53,5 @@ def nested_dissection(
     order, work = np.zeros(nodes, np.int64), np.full((3, nodes), -1)
     sides, todo = np.zeros((3, nodes), np.int64), np.zeros((nodes + 1, 2), np.int64)
     room = np.empty((3, nodes), np.int64)
-    native.dissect(starts, neighbours, points, lines, leaf, shares, order, work, sides, todo, room)
+    native.dissect(starts, neighbors, points, lines, leaf, shares, order, work, sides, todo, room)
     return order

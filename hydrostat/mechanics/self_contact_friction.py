@@ -90,7 +90,7 @@ class SelfContactFriction:
     """Friction between parts of a body: a spring from each pressed node to a point of the facet opposite.
 
     The point moves with the body. The `ObstacleFriction` sees as the place of a node the way from the point to the
-    node. The spring pulls at the node and at what is beside it, which while energy is minimised is a certain point of
+    node. The spring pulls at the node and at what is beside it, which while energy is minimized is a certain point of
     the part opposite; `attach_springs` brings it where it belongs.
 
     Attributes:

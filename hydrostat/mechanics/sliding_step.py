@@ -35,7 +35,7 @@ def find_sliding_step(
     """Return a step that keeps apart the pairs that a step meets, or the step itself if that is no better.
 
     Newton's quadratic model contains active pairs only, so a step ends where it meets other pairs. Here these join the
-    model as springs that push below a gap, linearized where the step ended. No matrix is factorised.
+    model as springs that push below a gap, linearized where the step ended. No matrix is factorized.
 
     Args:
         attempt: takes a step as far as it is admissible.

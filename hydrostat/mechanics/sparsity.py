@@ -8,7 +8,7 @@ from jaxtyping import Int
 
 from hydrostat.arrays import Nodes
 from hydrostat.mechanics.energy import Stencils
-from hydrostat.mechanics.factorisation import FACTORISATIONS, Analysis
+from hydrostat.mechanics.factorization import FACTORIZATIONS, Analysis
 
 AnyStencils = Int[np.ndarray, "_ _"]
 """Stencils of one of several energies, which differ in terms and corners."""
@@ -46,7 +46,7 @@ class SparsityPattern:
         return other
 
     def settle(self) -> None:
-        """Prepare the factorisation of a pattern whose terms come and go; then it keeps no other pattern."""
+        """Prepare the factorization of a pattern whose terms come and go; then it keeps no other pattern."""
         if self._base is not None and self._passing:
             _ = self.analysis, self._places
             self._base = None
@@ -63,11 +63,11 @@ class SparsityPattern:
 
     @cached_property
     def analysis(self) -> Analysis:
-        """Symbolic analysis shared by the factorisations of all matrices of this pattern."""
+        """Symbolic analysis shared by the factorizations of all matrices of this pattern."""
         like = None if self._base is None else self._base.analysis
         if like is not None and self._base is not None and len(self.entries) == len(self._base.entries):
             return like
-        uses = _USES if self._passing else FACTORISATIONS
+        uses = _USES if self._passing else FACTORIZATIONS
         return Analysis(self.indptr, self.indices, dim=self.shape[1], points=self.rest, like=like, uses=uses)
 
     @cached_property
@@ -142,4 +142,4 @@ def _merge_rising(rising: np.ndarray, others: np.ndarray) -> np.ndarray:
 
 
 _USES = 10
-"""So often is a matrix factorised before terms come that it has no place for."""
+"""So often is a matrix factorized before terms come that it has no place for."""

@@ -1,4 +1,4 @@
-"""`Stiffness`: the Hessian (tangent stiffness matrix) of the energy, factorised, with its part of low rank."""
+"""`Stiffness`: the Hessian (tangent stiffness matrix) of the energy, factorized, with its part of low rank."""
 
 from copy import copy
 from functools import cached_property
@@ -9,11 +9,11 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.mechanics.energy import Compliance, Law, LowRankBasis, LowRankStiffness, RankMatrix
-from hydrostat.mechanics.factorisation import Factorisation
+from hydrostat.mechanics.factorization import Factorization
 
 
 class Stiffness:
-    """H = K + G D G^T, with K sparse and factorised, G of a few columns, D small and positive semidefinite.
+    """H = K + G D G^T, with K sparse and factorized, G of a few columns, D small and positive semidefinite.
 
     A taut cable couples all the nodes along it. Kept apart, it neither fills the factors of K nor spoils their
     conditioning: H^-1 = K^-1 - Z R (I + R^T M R)^-1 R^T Z^T with Z = K^-1 G, M = G^T Z, D = R R^T (Woodbury). By
@@ -32,7 +32,7 @@ class Stiffness:
     """
 
     def __init__(
-        self, factors: Factorisation, coupling: LowRankStiffness, *, token: object = None, source: object = None
+        self, factors: Factorization, coupling: LowRankStiffness, *, token: object = None, source: object = None
     ) -> None:
         """Take the factors of K, and G and D."""
         self.factors, self.token, self.coupling, self.source = factors, token, coupling, source

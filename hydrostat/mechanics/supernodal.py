@@ -1,4 +1,4 @@
-"""Supernodal factors by multifrontal factorisation A = L S L^T of a symmetric matrix, S = diag(+-1), without pivoting.
+"""Supernodal factors by multifrontal factorization A = L S L^T of a symmetric matrix, S = diag(+-1), without pivoting.
 
 Every supernode has a front (Duff and Reid 1983): a dense matrix of its own columns and the rows below them. It collects
 entries of A and what its children hand up (extend-add), eliminates its own columns, and hands the rest to its parent:
@@ -62,7 +62,7 @@ IDLE = 4
 
 
 LARGE = 0.2
-"""Modelled time of a factorisation [s] from which on several threads share it."""
+"""Modelled time of a factorization [s] from which on several threads share it."""
 
 
 def plan(
@@ -89,7 +89,7 @@ def plan(
 
 
 class _Workspace(threading.local):
-    """Memory that factorisations work in, for each thread its own; it is not sent to other processes."""
+    """Memory that factorizations work in, for each thread its own; it is not sent to other processes."""
 
     def __init__(self, spare: int, stacks: tuple[int, int]) -> None:
         self.sizes = spare, stacks
@@ -107,7 +107,7 @@ class _IdleArrays:
         self._arrays: list[np.ndarray] = []
 
     def take(self, size: int) -> np.ndarray:
-        """Return an uninitialised array of this size."""
+        """Return an uninitialized array of this size."""
         try:  # one step that threads cannot share
             return self._arrays.pop()
         except IndexError:
@@ -138,7 +138,7 @@ class SupernodalAnalysis:
         block = 8  # Most columns that are eliminated together, before a product applies them to the rest
         self.workspace = _Workspace(max(widest * block, 1), (int(sizes[0]), int(sizes[1])))
 
-    def factorise(self, data: np.ndarray, tiny: float) -> "SupernodalFactors":
+    def factorize(self, data: np.ndarray, tiny: float) -> "SupernodalFactors":
         """Factors of the matrix with these values."""
         signs = np.ones(len(self.place))
         work = self.workspace
@@ -160,7 +160,7 @@ class SupernodalFactors:
     """
 
     def __init__(self, analysis: SupernodalAnalysis, lower: np.ndarray, signs: np.ndarray, negative: int) -> None:
-        """Numbers that a factorisation filled."""
+        """Numbers that a factorization filled."""
         self.singular = negative < 0
         self.negative = max(negative, 0)
         self._analysis, self._lower, self._signs = analysis, lower, signs

@@ -1,6 +1,6 @@
-"""Symbolic factorisation, from the sparsity pattern alone: elimination tree, supernodes, fronts.
+"""Symbolic factorization, from the sparsity pattern alone: elimination tree, supernodes, fronts.
 
-The elimination tree (Liu 1990) says which column first needs which: the parent of a node is the first of its neighbours
+The elimination tree (Liu 1990) says which column first needs which: the parent of a node is the first of its neighbors
 to be eliminated after it, fill-in counted. Nodes in a chain whose columns have the same rows are a supernode,
 eliminated together in one dense front. Larger fronts run faster, so a supernode is merged into its parent, zeros and
 all, where a model of time says that this pays (relaxed supernodes: Ashcraft and Grimes 1989).
@@ -29,7 +29,7 @@ class EliminationTree(NamedTuple):
         parent: parent of each supernode; -1 for a root.
         starts: start of the rows of each supernode, (supernodes + 1,).
         rows: positions of the nodes below each supernode, in rising order.
-        seconds: modelled time of a factorisation [s].
+        seconds: modeled time of a factorization [s].
     """
 
     order: np.ndarray
@@ -51,14 +51,14 @@ def front_seconds(columns: np.ndarray, rows: np.ndarray) -> np.ndarray:
     return front + entry * columns * rows + 0.5 * update * below * below + operations / rate
 
 
-def supernodes(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray, dim: int) -> EliminationTree:
+def supernodes(starts: np.ndarray, neighbors: np.ndarray, order: np.ndarray, dim: int) -> EliminationTree:
     """Supernodes of eliminating a graph in a given order."""
-    order = order[_postorder(_elimination(starts, neighbours, order))]
-    parent = _elimination(starts, neighbours, order)
+    order = order[_postorder(_elimination(starts, neighbors, order))]
+    parent = _elimination(starts, neighbors, order)
     count = np.ones(len(order), np.int64)
-    native.column_counts(starts, neighbours, order, _inverse(order), parent, count, np.full(len(order), -1))
+    native.column_counts(starts, neighbors, order, _inverse(order), parent, count, np.full(len(order), -1))
     head = _merge_supernodes(_fundamental(parent, count), parent, count, dim)
-    return _collect_tree(starts, neighbours, order, parent, count, head, dim)
+    return _collect_tree(starts, neighbors, order, parent, count, head, dim)
 
 
 def children(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -80,10 +80,10 @@ def _inverse(order: np.ndarray) -> np.ndarray:
     return place
 
 
-def _elimination(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray) -> np.ndarray:
+def _elimination(starts: np.ndarray, neighbors: np.ndarray, order: np.ndarray) -> np.ndarray:
     """Elimination tree: parent of each place in the order; -1 at a root."""
     parent, ancestor = np.full(len(order), -1), np.full(len(order), -1)
-    native.elimination_tree(starts, neighbours, order, _inverse(order), parent, ancestor)
+    native.elimination_tree(starts, neighbors, order, _inverse(order), parent, ancestor)
     return parent
 
 
@@ -106,7 +106,7 @@ def _fundamental(parent: np.ndarray, count: np.ndarray) -> np.ndarray:
 
 
 def _merge_supernodes(head: np.ndarray, parent: np.ndarray, count: np.ndarray, dim: int) -> np.ndarray:
-    """`head` after merging supernodes into their parents where it saves modelled time. A head is its highest node."""
+    """`head` after merging supernodes into their parents where it saves modeled time. A head is its highest node."""
     nodes = np.arange(len(head))
     above = np.where((head == nodes) & (parent >= 0), head[parent], -1)
     into = nodes.copy()
@@ -116,7 +116,7 @@ def _merge_supernodes(head: np.ndarray, parent: np.ndarray, count: np.ndarray, d
 
 def _collect_tree(
     starts: np.ndarray,
-    neighbours: np.ndarray,
+    neighbors: np.ndarray,
     order: np.ndarray,
     parent: np.ndarray,
     count: np.ndarray,
@@ -136,7 +136,7 @@ def _collect_tree(
     first = np.append(0, np.cumsum(np.bincount(which, minlength=len(tops))))
     begins = np.append(0, np.cumsum(count[tops[walk]] - 1))
     rows = np.empty(begins[-1], np.int64)
-    native.rows(starts, neighbours, order, _inverse(order), first, *children(up), begins, rows, np.full(len(order), -1))
+    native.rows(starts, neighbors, order, _inverse(order), first, *children(up), begins, rows, np.full(len(order), -1))
     owner = np.repeat(np.arange(len(tops)), np.diff(begins)) * len(order)
     rows = np.sort(owner + rows) - owner
     columns = dim * np.diff(first)

@@ -71,7 +71,7 @@ class ChainLaw(TensionLaw):
     """Tensions of the spans of cables between which cable slips, against friction of given largest force.
 
     A span is a spring of the law of `TensionLaw`, and over the points between spans cable slips by lengths p. They are
-    those of least energy: sum of U(elongation + p before - p after) + sum of limit |p|. So neighbouring tensions differ
+    those of least energy: sum of U(elongation + p before - p after) + sum of limit |p|. So neighboring tensions differ
     by no more than the limit, and by just the limit where cable slips, from the lower to the higher tension. As this is
     the minimum of a convex function, the tensions are the gradient of a convex function of the elongations.
 

@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Nodes
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Stencils, element_groups
-from hydrostat.mechanics.factorisation import Analysis
+from hydrostat.mechanics.factorization import Analysis
 
 Bend = Callable[[Nodes, Nodes], Nodes]
 """Map from the unknowns and a step to the unknowns after the step [m]."""
@@ -43,7 +43,7 @@ class Warp:
         data = np.bincount(places, np.concatenate([values for _, values in entries]))
         columns, rows = np.divmod(keys, count)
         indptr = np.searchsorted(columns, np.arange(count + 1)).astype(np.int32)
-        self._factors = Analysis(indptr, rows.astype(np.int32), dim=1, points=rest).factorise(data)
+        self._factors = Analysis(indptr, rows.astype(np.int32), dim=1, points=rest).factorize(data)
         self._groups = element_groups(stencils, shape_gradients, volumes)
 
     def __call__(self, nodes: Nodes, step: Nodes) -> Nodes:

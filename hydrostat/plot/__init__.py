@@ -34,11 +34,11 @@ if TYPE_CHECKING:
         reached_title,
     )
     from hydrostat.plot.scene import save_glb
-    from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
+    from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_figure
     from hydrostat.plot.skin import FlatSkin, outer_points
 
 __all__ = [
-    "MILLIMETRES",
+    "MILLIMETERS",
     "REACHED",
     "WIDTH",
     "WIDTHS",

@@ -13,7 +13,7 @@ from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Spread
+from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Spread
 from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
@@ -29,7 +29,7 @@ def draw_activation(robot: Robot, activation: Activation, *, title: str | None =
     """
     pose, rest = activation.target, robot.body.mesh.nodes
     head = f"Activation: {shorten(pose.name)}" if title is None else title
-    note = f"{len(activation.fibres)} fibres, marker error {MILLIMETRES * activation.rms_error:.2f} mm rms"
+    note = f"{len(activation.fibres)} fibres, marker error {MILLIMETERS * activation.rms_error:.2f} mm rms"
     sheet, panes = open_sheet(
         robot, [activation.nodes, rest], [target_points(pose)], title=head, subtitle=note, width=width, bar=True
     )
@@ -107,4 +107,4 @@ def _draw_markers(
     markers, targets = panes[0].locate_points(tracked), panes[0].locate_points(goals)
     labels = Labels(sheet, rings=surface.rings, avoid=np.array([*markers.values(), *targets.values()]))
     for name, place in markers.items():
-        labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * activation.errors[name]:.1f} mm")
+        labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETERS * activation.errors[name]:.1f} mm")

@@ -15,7 +15,7 @@ from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Spread
+from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Spread
 from hydrostat.robot import Robot
 from hydrostat.simulation import Branch, Equilibrium, Multistability
 from hydrostat.units import plural
@@ -66,7 +66,7 @@ def _found_text(found: Multistability) -> str:
     if found.unique:
         return f"one pose from {plural(found.starts, 'start')}"
     where, far = found.largest
-    return f"{len(found.poses)} poses at the same contractions, up to {MILLIMETRES * far:.3g} mm apart at {where}"
+    return f"{len(found.poses)} poses at the same contractions, up to {MILLIMETERS * far:.3g} mm apart at {where}"
 
 
 def _tracked_markers(robot: Robot, found: Multistability, branches: Sequence[Branch]) -> list[str]:
@@ -158,7 +158,7 @@ def _draw_chart(axes: Axes, robot: Robot, name: str, found: Multistability, bran
     axes.set_title(title, loc="left", color=INK, fontsize=8, fontweight="bold", parse_math=False)
     for branch in branches:
         shares = 100 * np.array([_share(point.pose, found.contractions) for point in branch.points])
-        moved = MILLIMETRES * np.array([_displacement(robot, point.pose, name) for point in branch.points])
+        moved = MILLIMETERS * np.array([_displacement(robot, point.pose, name) for point in branch.points])
         for part, stable in branch.runs():
             dashes, color, order = ("-", INK, 3.0) if stable else ((0, (2.5, 1.8)), ERROR, 2.5)
             axes.plot(shares[part], moved[part], linewidth=1.4, linestyle=dashes, color=color, zorder=order)
@@ -168,7 +168,7 @@ def _draw_chart(axes: Axes, robot: Robot, name: str, found: Multistability, bran
                 shares[point.index], moved[point.index], marker=marker, markersize=4.5, color=ERROR,
                 markeredgecolor="white", markeredgewidth=0.8, zorder=4, linestyle="none",
             )  # fmt: skip
-    heights = [MILLIMETRES * _displacement(robot, one.pose, name) for one in found.poses]
+    heights = [MILLIMETERS * _displacement(robot, one.pose, name) for one in found.poses]
     _zoom(axes, _parting(found, branches), heights)
     if len(found.poses) > 1:
         _number_poses(axes, heights)

@@ -11,7 +11,7 @@ from hydrostat.control import SlackCalibration, SpoolCurve, WinchPull
 from hydrostat.drawing import MUTED, WINCHES, Html, tag
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
-from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.robot import Robot, replace_file
 
 
@@ -46,8 +46,8 @@ def write_calibration_page(
             (
                 each.motor.winch,
                 str(each.motor.number),
-                number(MILLIMETRES * each.slack, 1),
-                number(MILLIMETRES * each.apart, 2),
+                number(MILLIMETERS * each.slack, 1),
+                number(MILLIMETERS * each.apart, 2),
                 f"{felt:.0f}" if np.isfinite(felt) else "not known",
                 f"{stiff:.0f}",
                 f"{each.seconds:.1f}",
@@ -75,7 +75,7 @@ def _spools(curves: Sequence[SpoolCurve]) -> tuple[Html, ...]:
     rows, pictures = [], []
     for index, each in enumerate(curves):
         lengths = (each.motor.radius, each.motor.reach(float(each.readings[-1])), each.more, each.scatter)
-        rows.append((each.motor.winch, *(number(MILLIMETRES * length, 2) for length in lengths)))
+        rows.append((each.motor.winch, *(number(MILLIMETERS * length, 2) for length in lengths)))
         words = ": cable taken in beside what was thought; points are readings of the ruler, the line is kept"
         pictures.append(picture(_draw_spool(each), f"spool{index}", each.motor.winch, words))
     heads = ("winch", "radius at the zero [mm]", "at the end [mm]", "beside at most [mm]", "scatter [mm]")
@@ -89,8 +89,8 @@ def _draw_spool(found: SpoolCurve) -> Figure:
     """Cable beside what was thought before, by turns of the spool."""
     figure, axes = new_chart("turns of the spool", "more than thought [mm]", width=NARROW, height=2.4)
     turns = found.turned / (2 * np.pi)
-    axes.plot(turns, MILLIMETRES * (found.readings - found.before), "o", color=WINCHES[0], markersize=4)
-    axes.plot(turns, MILLIMETRES * (found.fitted_lengths - found.before), color=MUTED, linewidth=1.2)
+    axes.plot(turns, MILLIMETERS * (found.readings - found.before), "o", color=WINCHES[0], markersize=4)
+    axes.plot(turns, MILLIMETERS * (found.fitted_lengths - found.before), color=MUTED, linewidth=1.2)
     return figure
 
 
@@ -106,8 +106,8 @@ def _draw(found: SlackCalibration, model: WinchPull, constant: float) -> Figure:
         "cable beyond the edge [mm]", "pull [N]" if known else "current [mA]", width=NARROW, height=2.4
     )
     scale = constant / found.motor.radius if known else 1e3
-    axes.plot(MILLIMETRES * found.places, scale * (found.currents - found.floor), ".", color=WINCHES[0], markersize=4)
+    axes.plot(MILLIMETERS * found.places, scale * (found.currents - found.floor), ".", color=WINCHES[0], markersize=4)
     if known:
         way = np.linspace(min(0.0, float(found.places.min())), reach(found), 40)
-        axes.plot(MILLIMETRES * way, model.at(model.taut + way), color=MUTED, linewidth=1.2)
+        axes.plot(MILLIMETERS * way, model.at(model.taut + way), color=MUTED, linewidth=1.2)
     return figure

@@ -11,8 +11,8 @@ from hydrostat.design import Alternative, DesignStage, Network, front, sewing_mi
 from hydrostat.drawing import ERROR, GHOST, INK, SEAM, WINCHES
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
-from hydrostat.plot.report_tables import millimetres
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH
+from hydrostat.plot.report_tables import millimeters
+from hydrostat.plot.sheet import MILLIMETERS, WIDTH
 from hydrostat.units import plural
 
 
@@ -26,11 +26,11 @@ def draw_growth(
 ) -> Figure:
     """The error of each stage, counted from 1; a new line where another network is begun.
 
-    Errors at rest (dashed) and of the network that was returned (dotted) are in metres; the stages of the marked
+    Errors at rest (dashed) and of the network that was returned (dotted) are in meters; the stages of the marked
     indices, from 0, have a filled dot; width in inches.
     """
     figure, axes = new_chart("stage", "pose error [mm rms]", width=width, height=0.46 * width)
-    errors = MILLIMETRES * np.array([stage.error for stage in stages])
+    errors = MILLIMETERS * np.array([stage.error for stage in stages])
     for run in stage_runs(stages):
         axes.plot(np.array(run) + 1, errors[run], color=SEAM, linewidth=1.6, zorder=3)
         if run[0]:
@@ -43,8 +43,8 @@ def draw_growth(
     levels = {"at rest": (rest, ERROR, -3), "returned": (final, INK, 3)}
     for words, (error, color, lift) in levels.items():
         if error is not None:
-            _draw_level(axes, MILLIMETRES * error, words, color, lift)
-    _scale(axes, np.concatenate([errors, [MILLIMETRES * error for error in (rest, final) if error is not None]]))
+            _draw_level(axes, MILLIMETERS * error, words, color, lift)
+    _scale(axes, np.concatenate([errors, [MILLIMETERS * error for error in (rest, final) if error is not None]]))
     edge = 0.02 * max(len(stages) - 1, 1)
     axes.set_xlim(1.0 - edge, len(stages) + edge)
     return figure
@@ -96,17 +96,17 @@ def draw_front(
     """
     networks = [chosen, *(other for other in alternatives if other.robot != chosen.robot)]
     figure, axes = new_chart("minutes of sewing", "error once built [mm rms]", width=width, height=0.5 * width)
-    points = [(sewing_minutes(one.robot), MILLIMETRES * one.built) for one in networks]
+    points = [(sewing_minutes(one.robot), MILLIMETERS * one.built) for one in networks]
     best = front(points)
     axes.plot(*np.transpose([points[index] for index in best]), color=GHOST, linewidth=1.2, zorder=2)
     _draw_dots(axes, networks, points, set(best))
     if tolerance is not None:
-        axes.axhline(MILLIMETRES * tolerance, color=ERROR, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
+        axes.axhline(MILLIMETERS * tolerance, color=ERROR, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
         axes.annotate(
-            "tolerance", (0.0, MILLIMETRES * tolerance), xycoords=("axes fraction", "data"), xytext=(3, 2),
+            "tolerance", (0.0, MILLIMETERS * tolerance), xycoords=("axes fraction", "data"), xytext=(3, 2),
             textcoords="offset points", fontsize=7.5, color=ERROR, ha="left", va="bottom",
         )  # fmt: skip
-    axes.set_ylim(0.0, 1.15 * max([MILLIMETRES * (tolerance or 0.0), 1e-6, *(error for _, error in points)]))
+    axes.set_ylim(0.0, 1.15 * max([MILLIMETERS * (tolerance or 0.0), 1e-6, *(error for _, error in points)]))
     axes.margins(x=0.06)
     _draw_counts(axes, networks, points)
     _draw_chosen(axes, points[0])
@@ -151,7 +151,7 @@ def _draw_chosen(axes: Axes, place: Dot) -> None:
     low, high = axes.get_xlim()
     left = place[0] > (low + high) / 2
     axes.annotate(
-        f"chosen: {millimetres(place[1] / MILLIMETRES)} mm", place, xytext=(-4 if left else 4, 11),
+        f"chosen: {millimeters(place[1] / MILLIMETERS)} mm", place, xytext=(-4 if left else 4, 11),
         textcoords="offset points", fontsize=8.5, color=INK, weight="bold", gid=HALO, ha="right" if left else "left",
         annotation_clip=False,
     )  # fmt: skip

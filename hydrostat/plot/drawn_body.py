@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing import Camera, Render
-from hydrostat.plot.sheet import MILLIMETRES, Place, Places, Spread
+from hydrostat.plot.sheet import MILLIMETERS, Place, Places, Spread
 
 LEVELS = 8  # steps from what is just covered to what is deep inside
 
@@ -32,23 +32,23 @@ class DrawnBody:
         if self.sight is None:
             return np.zeros(len(points))
         camera, _, image, thickness = self.sight
-        depths = image.covers(camera.see(MILLIMETRES * points))
+        depths = image.covers(camera.see(MILLIMETERS * points))
         levels = np.ceil(LEVELS * (1 - np.exp(-3 * depths / thickness))) / LEVELS
         return np.where(depths > max(0.02 * thickness, image.buffer.pixel), 0.26 + 0.42 * levels, 0.0)
 
     def cable(self, points: Points) -> DrawnCable:
         """A cable through points [m]."""
         if self.sight is None:
-            places = MILLIMETRES * points
+            places = MILLIMETERS * points
             return DrawnCable(places, [(places, 0.0)], np.zeros(len(points)))
         camera, shift, image, _ = self.sight
         step = 1.0  # length of the pieces into which a run is cut to see which of them are covered, in pixels
-        fine = _subdivide(points, step * image.buffer.pixel / MILLIMETRES)
-        places, fades = camera.see(MILLIMETRES * fine)[:, :2] + shift, self.fades(fine)
+        fine = _subdivide(points, step * image.buffer.pixel / MILLIMETERS)
+        places, fades = camera.see(MILLIMETERS * fine)[:, :2] + shift, self.fades(fine)
         cuts = np.flatnonzero(np.diff(fades)) + 1
         starts, ends = [0, *cuts], [*cuts, len(fades)]
         parts = [(places[start : end + 1], float(fades[start])) for start, end in zip(starts, ends, strict=True)]
-        whole = camera.see(MILLIMETRES * points)[:, :2] + shift
+        whole = camera.see(MILLIMETERS * points)[:, :2] + shift
         return DrawnCable(whole, [part for part in parts if len(part[0]) > 1], self.fades(points))
 
 

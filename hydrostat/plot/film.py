@@ -11,7 +11,7 @@ from hydrostat.errors import InputError
 from hydrostat.ik import IKResult, KeyPose, Trajectory
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.labels import shorten
-from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.progress import Progress
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation
@@ -45,7 +45,7 @@ def pose_stops(reached: Iterable[IKResult]) -> list[Stop]:
             name=shorten(found.pose_target.name),
             contractions=found.pose.contractions,
             target=found.pose_target,
-            words=f"{shorten(found.pose_target.name)}: marker error {MILLIMETRES * found.rms_error:.1f} mm rms",
+            words=f"{shorten(found.pose_target.name)}: marker error {MILLIMETERS * found.rms_error:.1f} mm rms",
         )
         for found in reached
     ]
@@ -60,7 +60,7 @@ def winch_stops(robot: Robot) -> list[Stop]:
         lengths = [cable.length / ratio for cable, ratio in pairs if cable.winch == winch.name]
         taken = np.zeros(len(robot.winches))
         taken[index] = min([winch.travel / 2, *((1 - least_left) * length for length in lengths)])
-        words = f"{shorten(winch.name)} {MILLIMETRES * taken[index]:.0f} mm"
+        words = f"{shorten(winch.name)} {MILLIMETERS * taken[index]:.0f} mm"
         stops.append(Stop(name=words, contractions=taken, words=words))
     return stops
 
@@ -172,4 +172,4 @@ def _words(key: KeyPose, there: bool) -> str:
     name = shorten(key.name)
     if not there:
         return f"to {name}"
-    return f"{name}: marker error {MILLIMETRES * key.rms_error:.1f} mm rms" if key.errors else name
+    return f"{name}: marker error {MILLIMETERS * key.rms_error:.1f} mm rms" if key.errors else name

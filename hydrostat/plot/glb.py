@@ -28,7 +28,7 @@ class Glb:
     """A scene with one animation, built part by part.
 
     The first key is the mesh itself; each further key is a morph target, of which an animation mixes one after the
-    other. Lengths are metres, and y is up after the turn of the scene.
+    other. Lengths are meters, and y is up after the turn of the scene.
     """
 
     def __init__(self, name: str, *, turn: tuple[float, float, float, float]) -> None:

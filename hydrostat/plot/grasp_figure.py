@@ -12,7 +12,7 @@ from hydrostat.plot.frame import Attachments, Frame
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_portrait
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
+from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_figure
 from hydrostat.robot import Robot, rims
 
 
@@ -50,10 +50,10 @@ def draw_pull(
     for case in cases:
         if case.pull is not None:
             dashed = case.name == "no friction"
-            (line,) = axes.plot(MILLIMETRES * case.pull.moved, case.pull.forces, linewidth=1.0)
+            (line,) = axes.plot(MILLIMETERS * case.pull.moved, case.pull.forces, linewidth=1.0)
             line.set(color=MUTED if dashed else WINCHES[0], linestyle="--" if dashed else "-", alpha=0.4)
-    axes.plot(MILLIMETRES * pull.moved, pull.forces, color=WINCHES[0], linewidth=2.0)
-    axes.plot(MILLIMETRES * pull.moved[hardest], pull.peak, "o", color=ERROR, markersize=4)
+    axes.plot(MILLIMETERS * pull.moved, pull.forces, color=WINCHES[0], linewidth=2.0)
+    axes.plot(MILLIMETERS * pull.moved[hardest], pull.peak, "o", color=ERROR, markersize=4)
     axes.axhline(0.0, color=MUTED, linewidth=0.8)
     axes.set_xlabel("way of the thing along the pull [mm]", color=INK, fontsize=8.5)
     axes.set_ylabel("force [N]", color=INK, fontsize=8.5)
@@ -66,7 +66,7 @@ def pull_frames(pull: PullOut, count: int = 30) -> list[Frame]:
     return [
         Frame.of(
             pull.poses[row],
-            words=f"{pull.forces[row]:.2f} N, moved {MILLIMETRES * pull.moved[row]:.0f} mm",
+            words=f"{pull.forces[row]:.2f} N, moved {MILLIMETERS * pull.moved[row]:.0f} mm",
             things=[pull.thing_at(int(row))],
         )
         for row in rows

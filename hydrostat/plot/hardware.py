@@ -11,7 +11,7 @@ from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places, join_lines
+from hydrostat.plot.sheet import MILLIMETERS, PictureSheet, Place, Places, join_lines
 from hydrostat.robot import Mount, Robot, Winch, obstacle_lines
 
 SHARES = np.linspace(0.3, 0.9, 13)  # shares of a cable's length where its number may stand
@@ -65,12 +65,12 @@ def draw_hardware(
 
 
 def spool_size(winch: Winch, scale: float) -> float:
-    """Diameter of a winch's picture [pt] where a point shows `scale` millimetres: true, unless too small or large."""
-    return min(max(2 * MILLIMETRES * winch.spool_radius / scale, 9.0), 22.0 if len(winch.at) == 2 else 12.0)
+    """Diameter of a winch's picture [pt] where a point shows `scale` millimeters: true, unless too small or large."""
+    return min(max(2 * MILLIMETERS * winch.spool_radius / scale, 9.0), 22.0 if len(winch.at) == 2 else 12.0)
 
 
 def stopper_bar(run: Places, scale: float) -> Places:
-    """Ends of the bar across the end of a run [mm] where a point shows `scale` millimetres."""
+    """Ends of the bar across the end of a run [mm] where a point shows `scale` millimeters."""
     way = run[-1] - run[-2]
     across = np.array([-way[1], way[0]]) / max(float(np.linalg.norm(way)), 1e-12) * 3.4 * scale
     return np.array([run[-1] - across, run[-1] + across])
@@ -101,28 +101,28 @@ def _draw_cables(
 
 
 def _draw_winches(
-    sheet: PictureSheet, robot: Robot, centres: Places, fades: Vector, *, contractions: Vector | None
+    sheet: PictureSheet, robot: Robot, centers: Places, fades: Vector, *, contractions: Vector | None
 ) -> None:
-    """A spool for each winch at its centre [mm], faded where the body covers it; a hand tells how far it has turned.
+    """A spool for each winch at its center [mm], faded where the body covers it; a hand tells how far it has turned.
 
     There are hands only where `contractions` [m] are given.
     """
     colors = winch_colors(robot.winches)
-    for index, (winch, centre, fade) in enumerate(zip(robot.winches, centres, fades, strict=True)):
-        _draw_spool(sheet, winch, centre, colors[winch.name], float(fade))
+    for index, (winch, center, fade) in enumerate(zip(robot.winches, centers, fades, strict=True)):
+        _draw_spool(sheet, winch, center, colors[winch.name], float(fade))
         if contractions is not None:
             turn = float(contractions[index]) / winch.spool_radius
-            _draw_hand(sheet, winch, centre, turn, _fade_color(DARK, float(fade)), 20.3 if fade == 0 else 10.8)
+            _draw_hand(sheet, winch, center, turn, _fade_color(DARK, float(fade)), 20.3 if fade == 0 else 10.8)
 
 
-def name_winches(labels: Labels, robot: Robot, centres: Places, notes: Sequence[str] = ()) -> None:
-    """The name of each winch, and a note behind it, on a flag at its spool with the centre [mm]."""
+def name_winches(labels: Labels, robot: Robot, centers: Places, notes: Sequence[str] = ()) -> None:
+    """The name of each winch, and a note behind it, on a flag at its spool with the center [mm]."""
     colors = winch_colors(robot.winches)
-    for centre in centres:
-        labels.reserve(centre, 18)
-    for index, (winch, centre) in enumerate(zip(robot.winches, centres, strict=True)):
+    for center in centers:
+        labels.reserve(center, 18)
+    for index, (winch, center) in enumerate(zip(robot.winches, centers, strict=True)):
         note = f"\N{EN SPACE}{notes[index]}" if notes else ""
-        labels.flag(centre, shorten(winch.name) + note, colors[winch.name])
+        labels.flag(center, shorten(winch.name) + note, colors[winch.name])
 
 
 def draw_numbers(sheet: PictureSheet, runs: list[Places], colors: Sequence[str], labels: Labels) -> list[Place]:
@@ -170,25 +170,25 @@ def _along(run: Places, share: float) -> Place:
     return np.array([np.interp(share * places[-1], places, run[:, side]) for side in range(2)])
 
 
-def _draw_spool(sheet: PictureSheet, winch: Winch, centre: Place, color: str, fade: float) -> None:
+def _draw_spool(sheet: PictureSheet, winch: Winch, center: Place, color: str, fade: float) -> None:
     """Flange, drum and axle; a winch outside the body sits on a square plate, a covered one beneath markers."""
     size, light, color = spool_size(winch, sheet.scale), _fade_color(LIGHT, fade), _fade_color(color, fade)
     order = 19.0 if fade == 0 else 9.5
     if winch.mount is Mount.WORLD:
         sheet.curve(
-            centre[None], linestyle="none", marker="s", markersize=1.5 * size, color=light,
+            center[None], linestyle="none", marker="s", markersize=1.5 * size, color=light,
             markeredgecolor=_fade_color(DARK, fade), markeredgewidth=0.9, zorder=order,
         )  # fmt: skip
-    sheet.dots(centre[None], size, color=color, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
-    sheet.dots(centre[None], 0.58 * size, color=mix(color, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
-    sheet.dots(centre[None], 0.2 * size, color=color, markeredgecolor="none", zorder=order + 1.2)
+    sheet.dots(center[None], size, color=color, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
+    sheet.dots(center[None], 0.58 * size, color=mix(color, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
+    sheet.dots(center[None], 0.2 * size, color=color, markeredgecolor="none", zorder=order + 1.2)
 
 
-def _draw_hand(sheet: PictureSheet, winch: Winch, centre: Place, turn: float, color: str, order: float) -> None:
+def _draw_hand(sheet: PictureSheet, winch: Winch, center: Place, turn: float, color: str, order: float) -> None:
     """A hand on a spool, upright at rest, that goes round to the right by `turn` [rad]."""
     reach = 0.44 * spool_size(winch, sheet.scale) * sheet.scale
-    end = centre + reach * np.array([np.sin(turn), np.cos(turn)])
-    sheet.curve(np.array([centre, end]), color=color, linewidth=1.2, zorder=order)
+    end = center + reach * np.array([np.sin(turn), np.cos(turn)])
+    sheet.curve(np.array([center, end]), color=color, linewidth=1.2, zorder=order)
 
 
 def _draw_sheath(sheet: PictureSheet, pipe: Places, color: str, width: float, fade: float) -> None:

@@ -12,7 +12,7 @@ from hydrostat.arrays import Points
 from hydrostat.drawing import ERROR, INK, LIGHT, MUTED, Camera, Render, Spots, channels, render, three_quarter
 from hydrostat.geometry import Surface, sides_of
 from hydrostat.plot.pane import fit_pixel, lay_image
-from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
+from hydrostat.plot.sheet import MILLIMETERS, TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
 
 LINE, HEAD, LETTERS = 11.0, 28.0, 92  # height of a line of notes and of what is above the views [pt]; letters of a line
 
@@ -37,7 +37,7 @@ def draw_healing(
     edges = _bad_edges(first)
     shown = np.concatenate([marked, first.vertices[edges].mean(axis=1)])
     camera = three_quarter(second.vertices, shown)
-    spots, healed, rings = (camera.see(MILLIMETRES * points) for points in (first.vertices, second.vertices, marked))
+    spots, healed, rings = (camera.see(MILLIMETERS * points) for points in (first.vertices, second.vertices, marked))
     lines = _fit_lines([line for note in notes for line in _lines(note, width)], width)
     layout = _lay_out(np.concatenate([spots, healed, rings])[:, :2], lines, width)
     sheet = new_sheet(layout.corners, title=title, width=width, ruled=False, room=0.0)
@@ -61,7 +61,7 @@ class _PairLayout:
     shifts: tuple[Place, Place]  # what is added to what the camera sees, for each view [mm]
     tops: tuple[Place, Place]  # middle of the upper side of each view [mm]
     foot: Place  # lower left corner of both views [mm]
-    point: float  # millimetres that a point (1/72 inch) shows
+    point: float  # millimeters that a point (1/72 inch) shows
 
 
 def _lay_out(view: Float[np.ndarray, "_ 2"], lines: Sequence[str], width: float) -> _PairLayout:

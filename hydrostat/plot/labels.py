@@ -23,21 +23,21 @@ class Labels:
     def place(self, at: Place, words: str, *, size: float = 8, weight: str = "normal", outside: float = 0.8) -> None:
         """Write words beside a point; `outside` is how much it matters that they lie off the body."""
         extent = np.array([0.6 * len(words) + 0.3, 1.25]) * size * self._sheet.scale
-        centre = self._find(at, extent, (7.0, 10.0, 16.0, 25.0), outside)
-        side = float(np.sign(np.round((centre - at)[0] / extent[0], 2)))
+        center = self._find(at, extent, (7.0, 10.0, 16.0, 25.0), outside)
+        side = float(np.sign(np.round((center - at)[0] / extent[0], 2)))
         align = {1.0: "left", -1.0: "right"}.get(side, "center")
         self._sheet.text(
-            (centre[0] - side * extent[0] / 2, centre[1]), words, fontsize=size, color=INK, weight=weight, ha=align,
+            (center[0] - side * extent[0] / 2, center[1]), words, fontsize=size, color=INK, weight=weight, ha=align,
             va="center_baseline", gid=HALO, zorder=30,
         )  # fmt: skip
 
     def flag(self, at: Place, words: str, color: str) -> None:
         """Write words on a colored flag that is tied to a point."""
         extent = np.array([0.71 * len(words) + 1.2, 1.9]) * 7 * self._sheet.scale
-        centre = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0), 0.0)
-        self._sheet.curve(np.array([at, centre]), color=color, linewidth=0.9, zorder=10)
+        center = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0), 0.0)
+        self._sheet.curve(np.array([at, center]), color=color, linewidth=0.9, zorder=10)
         self._sheet.text(
-            (centre[0], centre[1]), words, fontsize=7, color=LIGHT, weight="bold", ha="center", va="center_baseline",
+            (center[0], center[1]), words, fontsize=7, color=LIGHT, weight="bold", ha="center", va="center_baseline",
             zorder=25, bbox={"boxstyle": "round,pad=0.32,rounding_size=0.6", "facecolor": color, "edgecolor": LIGHT,
             "linewidth": 0.7},
         )  # fmt: skip
@@ -48,16 +48,16 @@ class Labels:
         self._taken.append(np.concatenate([at - reach, at + reach]))
 
     def _find(self, at: Place, extent: np.ndarray, gaps: tuple[float, ...], outside: float) -> np.ndarray:
-        """Centre of the best box of an extent beside a point, now taken; gaps [pt] from most to least preferred."""
+        """Center of the best box of an extent beside a point, now taken; gaps [pt] from most to least preferred."""
         angles = np.linspace(0, 2 * np.pi, RAYS, endpoint=False)
         rays = np.column_stack([np.cos(angles), np.sin(angles)])
         sides = np.where(np.abs(rays) > 0.2, np.sign(rays), 0.0) * extent / 2
-        centres = np.concatenate([at + rays * gap * self._sheet.scale + sides for gap in gaps])
-        boxes = np.concatenate([centres - extent / 2, centres + extent / 2], axis=1)
+        centers = np.concatenate([at + rays * gap * self._sheet.scale + sides for gap in gaps])
+        boxes = np.concatenate([centers - extent / 2, centers + extent / 2], axis=1)
         far = np.repeat((np.array(gaps) - gaps[0]) / 16, RAYS)
         best = int(np.argmin(far + self._costs(boxes, outside)))
         self._taken.append(boxes[best])
-        return centres[best]
+        return centers[best]
 
     def _costs(self, boxes: np.ndarray, outside: float) -> np.ndarray:
         rectangles = shapely.box(*boxes.T)

@@ -21,13 +21,13 @@ from hydrostat.drawing import (
 )
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import spool_size, stopper_bar
-from hydrostat.plot.sheet import MILLIMETRES, Places, frame_points
+from hydrostat.plot.sheet import MILLIMETERS, Places, frame_points
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
 STEPS = 6  # equilibria from rest to a pose
-SCALE = 0.7  # millimetres to a point in this picture: it shows true millimetres, about so large on a page
+SCALE = 0.7  # millimeters to a point in this picture: it shows true millimeters, about so large on a page
 STEP = 0.16  # time of a step [s]
 
 
@@ -61,7 +61,7 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str) -> Html:
         *_cables(robot, frames, seconds),
         *_winches(robot, frames, seconds),
     ]
-    low, high = frame_points(MILLIMETRES * np.concatenate([skin.shape(nodes)[0] for nodes in frames]), 0.04)
+    low, high = frame_points(MILLIMETERS * np.concatenate([skin.shape(nodes)[0] for nodes in frames]), 0.04)
     box = [low[0], -high[1], *(high - low)]
     return tag(
         "svg",
@@ -78,7 +78,7 @@ def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]
     colors, runs = winch_colors(robot.winches), list(map(Attachments(robot).cables, frames))
     lines = []
     for index, cable in enumerate(robot.cables):
-        bars = [_outline([stopper_bar(MILLIMETRES * run[index], SCALE) / MILLIMETRES], closed=False) for run in runs]
+        bars = [_outline([stopper_bar(MILLIMETERS * run[index], SCALE) / MILLIMETERS], closed=False) for run in runs]
         paths = [_outline([run[index]], closed=False) for run in runs]
         for color, width in ((LIGHT, 3.2), (colors[cable.winch], 1.7)):
             look = {"fill": "none", "stroke": color, "stroke_linecap": "round"}
@@ -88,7 +88,7 @@ def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]
 
 
 def _winches(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
-    places = [MILLIMETRES * place for place in map(Attachments(robot).winches, frames)]
+    places = [MILLIMETERS * place for place in map(Attachments(robot).winches, frames)]
     spools = []
     for index, (winch, color) in enumerate(zip(robot.winches, winch_colors(robot.winches).values(), strict=True)):
         radius = spool_size(winch, SCALE) * SCALE / 2
@@ -112,5 +112,5 @@ def _animation(kind: str, attribute: str, values: Sequence[str], seconds: float,
 
 
 def _outline(lines: Iterable[Places], *, closed: bool = True) -> str:
-    """Path data of lines [m], in millimetres with y down."""
-    return path((MILLIMETRES * np.asarray(line) * [1, -1] for line in lines), digits=1, closed=closed)
+    """Path data of lines [m], in millimeters with y down."""
+    return path((MILLIMETERS * np.asarray(line) * [1, -1] for line in lines), digits=1, closed=closed)

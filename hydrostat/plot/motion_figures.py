@@ -15,7 +15,7 @@ from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_portrait
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
+from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_figure
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, MotionTable
 
@@ -33,13 +33,13 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
     if head:
         upper.set_title(head, loc="left", color=INK, fontsize=11, fontweight="bold")
     colors = winch_colors(robot.winches)
-    way = MILLIMETRES * np.linalg.norm(table.markers - table.markers[0], axis=2)
+    way = MILLIMETERS * np.linalg.norm(table.markers - table.markers[0], axis=2)
     names = [marker.name for marker in robot.markers]
     others = cycle([color for color in WINCHES if color not in colors.values()] or WINCHES)
     _lines(upper, table.times, way, names, [colors.get(name) or next(others) for name in names])
     upper.set_ylabel("marker moved [mm]")
     winches = [winch.name for winch in robot.winches]
-    _lines(middle, table.times, MILLIMETRES * table.contractions, winches, [colors[name] for name in winches])
+    _lines(middle, table.times, MILLIMETERS * table.contractions, winches, [colors[name] for name in winches])
     middle.set_ylabel("cable taken in [mm]")
     cables = [f"{index + 1} {cable.winch}" for index, cable in enumerate(robot.cables)]
     _lines(lower, table.times, table.tensions, cables, [colors[cable.winch] for cable in robot.cables])
@@ -152,7 +152,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         _events(axes, trajectory)
         for column, name in enumerate(trajectory.winches):
             axes.plot(
-                trajectory.times, MILLIMETRES * values[:, column], color=colors[name], linewidth=1.4,
+                trajectory.times, MILLIMETERS * values[:, column], color=colors[name], linewidth=1.4,
                 linestyle=DASHES[column // len(WINCHES) % len(DASHES)], label=shorten(name),
             )  # fmt: skip
         if limits is not None:
@@ -204,8 +204,8 @@ def _limits(axes: Axes, limits: Vector) -> None:
     """Both limits, where all winches have the same one."""
     if len(limits) and np.isfinite(limits).all() and np.ptp(limits) == 0:
         for sign in (-1.0, 1.0):
-            axes.axhline(sign * MILLIMETRES * limits[0], color=ERROR, linewidth=0.9, linestyle=(0, (3, 2)), zorder=2)
+            axes.axhline(sign * MILLIMETERS * limits[0], color=ERROR, linewidth=0.9, linestyle=(0, (3, 2)), zorder=2)
         axes.annotate(
-            "limit", (1.0, MILLIMETRES * limits[0]), xycoords=("axes fraction", "data"), xytext=(-2, 2),
+            "limit", (1.0, MILLIMETERS * limits[0]), xycoords=("axes fraction", "data"), xytext=(-2, 2),
             textcoords="offset points", fontsize=6.5, color=ERROR, ha="right", va="bottom",
         )  # fmt: skip

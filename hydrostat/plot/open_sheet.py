@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.drawing import GRID, INK, MUTED, Camera, along_an_axis, three_quarter
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
-from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
+from hydrostat.plot.sheet import MILLIMETERS, TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import ObstacleShape, Robot
 
@@ -28,19 +28,19 @@ def open_sheet(
 
     A flat body has one pane; a body in space has a three-quarter view and, beside or below it, a view along the axis
     that shows most. All shapes and points [m] are seen. The subtitle is left out with the title; the bar is room for
-    one of colors; without millimetres (`ruled`) one pane is all there is; width in inches.
+    one of colors; without millimeters (`ruled`) one pane is all there is; width in inches.
     """
     if robot.body.mesh.dim == 2:
         skin = FlatSkin.of(robot.body)
         seen = [*(skin.shape(nodes)[0] for nodes in shapes), *points]
         room = 0.09 if ruled else 0.04
-        places = MILLIMETRES * np.concatenate(seen)
+        places = MILLIMETERS * np.concatenate(seen)
         sheet = new_sheet(places, title=title, subtitle=subtitle, width=width, bar=bar, ruled=ruled, room=room)
         return sheet, [FlatPane(robot, skin)]
     cameras = _cameras(robot, shapes)[: 2 if ruled else 1]
     skins = [nodes[robot.body.mesh.boundary_nodes] for nodes in shapes]
     seen = np.concatenate([*skins, *points])
-    views = [camera.see(MILLIMETRES * seen)[:, :2] for camera in cameras]
+    views = [camera.see(MILLIMETERS * seen)[:, :2] for camera in cameras]
     layout = _lay_out([np.ptp(view, axis=0) for view in views], 72 * (width - 0.1))
     corners = np.array([np.zeros(2), layout.whole])
     sheet = new_sheet(corners, title=title, subtitle=subtitle, width=width, bar=bar, ruled=False, room=0.0)
@@ -170,7 +170,7 @@ def draw_compass(sheet: PictureSheet, camera: Camera, low: Place) -> None:
 
 
 def draw_rules(sheet: PictureSheet, camera: Camera, low: Place, high: Place, origin: Place) -> None:
-    """Grid lines at round millimetres behind a view along an axis, numbered on its left and lower side.
+    """Grid lines at round millimeters behind a view along an axis, numbered on its left and lower side.
 
     The view goes from the corner `low` to the corner `high` of the sheet [mm]; the camera sees the origin at the first
     [mm].

@@ -28,7 +28,7 @@ from hydrostat.drawing import (
     silhouette,
 )
 from hydrostat.plot.drawn_body import DrawnBody
-from hydrostat.plot.sheet import BODY, MILLIMETRES, PictureSheet, Place, Places
+from hydrostat.plot.sheet import BODY, MILLIMETERS, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Obstacle, ObstacleShape, Robot, rims
 
@@ -123,10 +123,10 @@ class FlatPane(Pane):
     skin: FlatSkin  # its boundary
 
     def places(self, points: Points) -> Places:
-        return MILLIMETRES * points
+        return MILLIMETERS * points
 
     def outline(self, sheet: PictureSheet, nodes: Nodes) -> list[Places]:
-        return [MILLIMETRES * ring for ring in self.skin.shape(nodes)]
+        return [MILLIMETERS * ring for ring in self.skin.shape(nodes)]
 
     def draw_body(
         self,
@@ -139,7 +139,7 @@ class FlatPane(Pane):
         things: Sequence[Obstacle] = (),
     ) -> DrawnBody:
         fill, light, seam = (mix(color, PAPER, pale) for color in (FELT, FELT_LIGHT, SEAM))
-        rings, seams = self.outline(sheet, nodes), [MILLIMETRES * ring for ring in self.skin.seam(nodes)]
+        rings, seams = self.outline(sheet, nodes), [MILLIMETERS * ring for ring in self.skin.seam(nodes)]
         sheet.area(rings, facecolor=fill, edgecolor=seam, linewidth=1.3, joinstyle="round", zorder=3)
         if seams:
             sheet.area(seams, facecolor=light, edgecolor="none", zorder=3.1)
@@ -147,9 +147,9 @@ class FlatPane(Pane):
         for ring in seams:
             sheet.curve(np.concatenate([ring, ring[:1]]), color=STITCH, zorder=3.2, **stitches)
         for anchors in self.robot.body.mark_anchors:
-            sheet.curve(MILLIMETRES * anchors.positions(nodes), color=mix(INK, PAPER, pale), linewidth=1.5, zorder=3.3)
+            sheet.curve(MILLIMETERS * anchors.positions(nodes), color=mix(INK, PAPER, pale), linewidth=1.5, zorder=3.3)
         if mesh:
-            ends = MILLIMETRES * nodes[self.robot.body.mesh.edges]
+            ends = MILLIMETERS * nodes[self.robot.body.mesh.edges]
             sheet.segments(ends, color=MESH, linewidth=0.35, alpha=0.42, zorder=4)
         if pins:
             _draw_pins(sheet, self.robot, rings)
@@ -165,10 +165,10 @@ class SpacePane(Pane):
     pixel: float | None = None  # side of a pixel of the image of the body [mm]; by the size of the picture if left out
 
     def places(self, points: Points) -> Places:
-        return self.camera.see(MILLIMETRES * points)[:, :2] + self.shift
+        return self.camera.see(MILLIMETERS * points)[:, :2] + self.shift
 
     def outline(self, sheet: PictureSheet, nodes: Nodes) -> list[Places]:
-        spots = self.camera.see(MILLIMETRES * nodes)
+        spots = self.camera.see(MILLIMETERS * nodes)
         image = silhouette(spots, self.robot.body.mesh.boundary, pixel=self._pixel(sheet, spots))
         return [ring + self.shift for ring in image.rings()]
 
@@ -183,12 +183,12 @@ class SpacePane(Pane):
         things: Sequence[Obstacle] = (),
     ) -> DrawnBody:
         body, facets = self.robot.body.mesh, [self.robot.body.mesh.boundary]
-        spots = self.camera.see(MILLIMETRES * nodes)
+        spots = self.camera.see(MILLIMETERS * nodes)
         held = np.any([np.zeros(len(nodes)), *(pin.holds(body) for pin in self.robot.pins)], axis=0)
         held &= pins
         for places, triangles in map(thing_surface, things):
             facets.append(triangles + len(spots))
-            spots = np.concatenate([spots, self.camera.see(MILLIMETRES * places)])
+            spots = np.concatenate([spots, self.camera.see(MILLIMETERS * places)])
             held = np.append(held, np.ones(len(places), dtype=bool))
         image = render(
             spots, np.concatenate(facets), pixel=self._pixel(sheet, spots), up=self.camera.sky, pale=0.6 * pale,
@@ -196,7 +196,7 @@ class SpacePane(Pane):
             point=sheet.scale,
         )  # fmt: skip
         rings = lay_image(sheet, image, self.shift, seam=mix(SEAM, PAPER, 0.6 * pale))
-        thickness = MILLIMETRES * float(np.ptp(body.nodes, axis=0).min())
+        thickness = MILLIMETERS * float(np.ptp(body.nodes, axis=0).min())
         return self._with_rims(sheet, DrawnBody(rings, (self.camera, self.shift, image, thickness)), things)
 
     def _pixel(self, sheet: PictureSheet, spots: Spots) -> float:
@@ -207,7 +207,7 @@ class SpacePane(Pane):
         """Opacity of the mesh edges from 0 to 1: lower, the closer together they are."""
         mesh = self.robot.body.mesh
         sides = np.linalg.norm(np.diff(mesh.nodes[mesh.boundary[:, :2]], axis=1)[:, 0], axis=1)
-        return float(np.clip(MILLIMETRES * np.median(sides) / (9 * sheet.scale), 0.0, 1.0))
+        return float(np.clip(MILLIMETERS * np.median(sides) / (9 * sheet.scale), 0.0, 1.0))
 
 
 def fit_pixel(sheet: PictureSheet, sides: Place, *, dpi: float = DPI) -> float:
@@ -237,10 +237,10 @@ def _draw_pins(sheet: PictureSheet, robot: Robot, rings: list[Places]) -> None:
         body = body.symmetric_difference(shapely.Polygon(ring).buffer(0))
     for pin in robot.pins:
         if pin.box is not None:
-            field = shapely.box(*MILLIMETRES * np.min(pin.box, axis=0), *MILLIMETRES * np.max(pin.box, axis=0))
+            field = shapely.box(*MILLIMETERS * np.min(pin.box, axis=0), *MILLIMETERS * np.max(pin.box, axis=0))
         else:
-            radius = max(MILLIMETRES * pin.radius, 4 * sheet.scale)
-            field = shapely.Point(MILLIMETRES * np.array(pin.at)).buffer(radius, quad_segs=24)
+            radius = max(MILLIMETERS * pin.radius, 4 * sheet.scale)
+            field = shapely.Point(MILLIMETERS * np.array(pin.at)).buffer(radius, quad_segs=24)
         for part in shapely.get_parts(field.intersection(body)):
             if isinstance(part, shapely.Polygon):
                 _hatch(sheet, part)

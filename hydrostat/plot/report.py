@@ -13,9 +13,9 @@ from hydrostat.plot.frame import Attachments
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.report_chapters import chapters
-from hydrostat.plot.report_tables import add_caption, fact, footer, millimetres, page
+from hydrostat.plot.report_tables import add_caption, fact, footer, millimeters, page
 from hydrostat.plot.robot_figures import draw_portrait
-from hydrostat.plot.sheet import MILLIMETRES, Spread
+from hydrostat.plot.sheet import MILLIMETERS, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.robot import Robot
 from hydrostat.units import plural
@@ -78,7 +78,7 @@ def _path(network: Network, words: str) -> Html:
 
 def _error_fact(error: float, words: str, *, best: bool = False) -> Html:
     """An error [m] as a large number."""
-    number = f"{MILLIMETRES * error:.1f}" if error >= 1e-3 else millimetres(error)
+    number = f"{MILLIMETERS * error:.1f}" if error >= 1e-3 else millimeters(error)
     return fact(number, "mm rms", words, best=best)
 
 

@@ -30,7 +30,7 @@ from hydrostat.plot.report_tables import (
     contraction_table,
     grid,
     marker_table,
-    millimetres,
+    millimeters,
     picture,
     place_table,
     section,
@@ -39,7 +39,7 @@ from hydrostat.plot.report_tables import (
     winch_table,
 )
 from hydrostat.plot.robot_figures import draw_network, draw_reached, draw_rest, draw_stage, draw_target, stage_frame
-from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.robot import PoseTarget, Robot, Source, describe_cable_side
 from hydrostat.simulation import Simulation, filled_motion, is_filled_motion_fast
 from hydrostat.units import plural
@@ -80,8 +80,8 @@ def _error_table(network: Network, filled: FilledReach) -> Html:
     rows = [
         (
             pose.pose_target.name,
-            millimetres(flat.rms_error),
-            millimetres(pose.rms_error),
+            millimeters(flat.rms_error),
+            millimeters(pose.rms_error),
             f"{1e3 * out_of_plane(pose.pose):.1f}",
             ", ".join(
                 f"{winch.name} {1e3 * value:.1f}"
@@ -92,8 +92,8 @@ def _error_table(network: Network, filled: FilledReach) -> Html:
     ]
     heads = ("pose", "error in the model [mm]", "error filled [mm]", "out of the plane [mm]", "contractions there [mm]")
     told = (
-        f"Commands were found on the filled body: {millimetres(filled.rms_error)} mm rms over all poses, where those "
-        f"of the flat model reach {millimetres(filled.played)} mm. {plural(filled.finalists, 'network')} stood there "
+        f"Commands were found on the filled body: {millimeters(filled.rms_error)} mm rms over all poses, where those "
+        f"of the flat model reach {millimeters(filled.played)} mm. {plural(filled.finalists, 'network')} stood there "
         "side by side; this one was chosen."
     )
     return tag("div", table(heads, rows, numbers=(1, 2, 3)), tag("p", told, class_="note"))
@@ -177,7 +177,7 @@ REACHED = (  # head and words of the chapter on the poses
 def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> Html:
     """A pose as the winches reach it, beside tables of markers, winches and cables; below them what is to be minded."""
     figure = draw_reached(robot, reached, title="", width=NARROW)
-    note = f": {MILLIMETRES * reached.rms_error:.2f} mm rms; {reached.status}"
+    note = f": {MILLIMETERS * reached.rms_error:.2f} mm rms; {reached.status}"
     tables = {
         "Markers": marker_table(robot, reached),
         "Winches": contraction_table(robot, reached),
@@ -222,20 +222,20 @@ def _activations(network: Network, trace: TreeTrace) -> Chapter:
     pictures = []
     for index, activation in enumerate(trace.activations):
         figure = draw_activation(network.robot, activation, title="", width=NARROW)
-        note = f": {MILLIMETRES * activation.rms_error:.2f} mm rms with free muscles"
+        note = f": {MILLIMETERS * activation.rms_error:.2f} mm rms with free muscles"
         pictures.append(picture(figure, f"activation-{index}", activation.target.name, note))
     return Chapter("What muscles would do", words, [grid(*pictures)])
 
 
 def _routes(network: Network, trace: TreeTrace) -> Chapter:
-    words = "Nobody can sew in hundreds of muscles. The strongest are kept, and neighbours are joined into routes."
+    words = "Nobody can sew in hundreds of muscles. The strongest are kept, and neighbors are joined into routes."
     pictures = []
     for index, (activation, kept) in enumerate(zip(trace.activations, trace.candidates, strict=True)):
         figure = draw_candidates(network.robot, activation, kept, title="", width=NARROW)
         note = f": the strongest {len(kept)} of {plural(len(activation.fibres), 'fibre')}"
         pictures.append(picture(figure, f"candidates-{index}", f"Candidates for {activation.target.name}", note))
     figure = draw_trees(network.robot, trace.trees, title="", width=NARROW)
-    note = f": {plural(len(trace.trees), 'route')} that join neighbouring candidates"
+    note = f": {plural(len(trace.trees), 'route')} that join neighboring candidates"
     pictures.append(picture(figure, "trees", "Trees", note))
     return Chapter("From muscles to routes", words, [grid(*pictures, kind="small")])
 
@@ -312,7 +312,7 @@ def certificate_words(error: float, certificate: Certificate | None) -> str:
     return (
         f"One more cable with a winch of its own, along the best path found by pricing "
         f"{certificate.paths:,} states, {gain}. Moving one via point along one axis lowers the error by at most "
-        f"{certificate.slope:.2g} mm for each millimetre."
+        f"{certificate.slope:.2g} mm for each millimeter."
     )
 
 
@@ -338,4 +338,4 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
 
 
 def _rms_text(error: float) -> str:
-    return f"{millimetres(error)} mm rms"
+    return f"{millimeters(error)} mm rms"

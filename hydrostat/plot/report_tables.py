@@ -1,4 +1,4 @@
-"""Parts of a report: pages, chapters, pictures, tables; all numbers in millimetres, with a true minus sign."""
+"""Parts of a report: pages, chapters, pictures, tables; all numbers in millimeters, with a true minus sign."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
@@ -11,7 +11,7 @@ from hydrostat.design import Network, TreeTrace
 from hydrostat.drawing import Html, tag, winch_colors
 from hydrostat.ik import IKResult
 from hydrostat.plot.picture_file import inline_svg
-from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.plot.targets import rest_errors
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot, robot_hash
@@ -93,8 +93,8 @@ def marker_table(robot: Robot, reached: IKResult) -> Html:
     """Target, reached place and error of each marker."""
     before = rest_errors(robot, reached.pose_target)
     rows = [
-        (name, place(target), place(reached.pose.markers[name]), f"{MILLIMETRES * before[name]:.1f}",
-         tag("span", f"{MILLIMETRES * reached.errors[name]:.2f}", class_="error"))
+        (name, place(target), place(reached.pose.markers[name]), f"{MILLIMETERS * before[name]:.1f}",
+         tag("span", f"{MILLIMETERS * reached.errors[name]:.2f}", class_="error"))
         for name, target in reached.pose_target.targets.items()
     ]  # fmt: skip
     heads = ("marker", "target [mm]", "reached [mm]", "error at rest [mm]", "error [mm]")
@@ -105,9 +105,9 @@ def contraction_table(robot: Robot, reached: IKResult) -> Html:
     """Contraction of each winch against what it can take in."""
     colors = winch_colors(robot.winches)
     rows = [
-        ([swatch(colors[winch.name]), winch.name], number(MILLIMETRES * contraction, 2),
+        ([swatch(colors[winch.name]), winch.name], number(MILLIMETERS * contraction, 2),
          bar(abs(contraction) / (winch.travel if contraction >= 0 else winch.release or np.inf), colors[winch.name]),
-         f"{MILLIMETRES * (winch.travel if contraction >= 0 else -winch.release):.0f}".replace("-", "\N{MINUS SIGN}"))
+         f"{MILLIMETERS * (winch.travel if contraction >= 0 else -winch.release):.0f}".replace("-", "\N{MINUS SIGN}"))
         for winch, contraction in zip(robot.winches, map(float, reached.pose.contractions), strict=True)
     ]  # fmt: skip
     return table(("winch", "contraction [mm]", "", "limit [mm]"), rows, numbers=(1, 3))
@@ -155,15 +155,15 @@ def _score(network: Network) -> dict[str, str]:
 
 def _body(robot: Robot) -> str:
     mesh = robot.body.mesh
-    return f"{len(mesh.nodes)} nodes, {len(mesh.elements)} elements, {MILLIMETRES * mesh.size:.0f} mm"
+    return f"{len(mesh.nodes)} nodes, {len(mesh.elements)} elements, {MILLIMETERS * mesh.size:.0f} mm"
 
 
 def body_table(robot: Robot) -> Html:
     """Size, thickness and material."""
     body, material = robot.body, robot.body.material
     rows = [
-        ("size", f"{MILLIMETRES * body.mesh.size:.0f} mm"),
-        *([("thickness", f"{MILLIMETRES * body.thickness:.3g} mm")] if body.thickness else []),
+        ("size", f"{MILLIMETERS * body.mesh.size:.0f} mm"),
+        *([("thickness", f"{MILLIMETERS * body.thickness:.3g} mm")] if body.thickness else []),
         ("material", material.name or "by its numbers"),
         ("Young's modulus", f"{material.young / 1e3:.3g} kPa"),
         ("Poisson's ratio", f"{material.poisson:g}"),
@@ -181,8 +181,8 @@ def winch_table(robot: Robot) -> Html:
     """Place and limits of each winch."""
     colors = winch_colors(robot.winches)
     rows = [
-        ([swatch(colors[winch.name]), winch.name], place(winch.at), number(MILLIMETRES * winch.spool_radius, 1),
-         number(MILLIMETRES * winch.travel, 0), number(MILLIMETRES * winch.release, 0))
+        ([swatch(colors[winch.name]), winch.name], place(winch.at), number(MILLIMETERS * winch.spool_radius, 1),
+         number(MILLIMETERS * winch.travel, 0), number(MILLIMETERS * winch.release, 0))
         for winch in robot.winches
     ]  # fmt: skip
     heads = ("winch", "at [mm]", "spool radius [mm]", "takes in [mm]", "lets out [mm]")
@@ -193,9 +193,9 @@ def cable_table(robot: Robot) -> Html:
     """Length, via points and stopper of each cable; its spool's radius if that of one is not its winch's."""
     colors, steps = winch_colors(robot.winches), any(cable.spool_radius is not None for cable in robot.cables)
     rows = [
-        (str(count), [swatch(colors[cable.winch]), cable.winch], number(MILLIMETRES * cable.length, 1),
+        (str(count), [swatch(colors[cable.winch]), cable.winch], number(MILLIMETERS * cable.length, 1),
          str(len(cable.points) - 2), place(cable.points[-1]), f"{cable.stiffness / 1e3:.3g}",
-         *([number(MILLIMETRES * (cable.spool_radius or robot.winch(cable.winch).spool_radius), 1)] if steps else []))
+         *([number(MILLIMETERS * (cable.spool_radius or robot.winch(cable.winch).spool_radius), 1)] if steps else []))
         for count, cable in enumerate(robot.cables, 1)
     ]  # fmt: skip
     heads = ("cable", "winch", "length [mm]", "via points", "stopper [mm]", "stiffness [N/mm]",
@@ -204,8 +204,8 @@ def cable_table(robot: Robot) -> Html:
 
 
 def place(point: object) -> str:
-    """Coordinates [m] in millimetres."""
-    return ", ".join(number(MILLIMETRES * float(value), 1) for value in np.asarray(point))
+    """Coordinates [m] in millimeters."""
+    return ", ".join(number(MILLIMETERS * float(value), 1) for value in np.asarray(point))
 
 
 def number(value: float, digits: int) -> str:
@@ -215,7 +215,7 @@ def number(value: float, digits: int) -> str:
     return text.replace("-", "\N{MINUS SIGN}")
 
 
-def millimetres(error: float) -> str:
-    """An error [m] in millimetres: to a hundredth, below a tenth of a millimetre to two digits."""
-    value = MILLIMETRES * error
+def millimeters(error: float) -> str:
+    """An error [m] in millimeters: to a hundredth, below a tenth of a millimeter to two digits."""
+    value = MILLIMETERS * error
     return f"{value:.2f}" if value >= 0.1 or value == 0 else f"{value:.2g}"

@@ -16,7 +16,7 @@ from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, nam
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Places, Spread
+from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Places, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import (
     draw_arrows,
@@ -34,7 +34,7 @@ from hydrostat.units import plural
 
 
 def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:
-    """The robot as it is made: mesh, pins, winches, cables and markers, on a millimetre grid.
+    """The robot as it is made: mesh, pins, winches, cables and markers, on a millimeter grid.
 
     The title is the robot's name if left out, nothing if empty; width in inches.
     """
@@ -68,7 +68,7 @@ def draw_target(robot: Robot, pose: PoseTarget, *, title: str | None = None, wid
     ways = [np.linspace(markers[name], target, 9) for name, target in targets.items()]
     labels = Labels(sheet, rings=bodies[0].rings, avoid=np.concatenate(ways))
     for name, target in targets.items():
-        way = float(MILLIMETRES * np.linalg.norm(tracked[name] - goals[name]))
+        way = float(MILLIMETERS * np.linalg.norm(tracked[name] - goals[name]))
         words = f"{way:.0f} mm" if way >= 0.5 else "stays"
         labels.place(target, f"{shorten(name)}\N{EN SPACE}{words}")
     return sheet.figure
@@ -202,19 +202,19 @@ def draw_reached(
     sheet, panes, labels = _in_pose(robot, reached.pose, head, note, width, targets=goals, rings=rings)
     tracked = {name: reached.pose.markers[name] for name in goals}
     for ring in rings:
-        _draw_wanted(sheet, MILLIMETRES * ring)
+        _draw_wanted(sheet, MILLIMETERS * ring)
     draw_misses(sheet, panes, tracked, goals)
     for name, place in panes[0].locate_points(tracked).items():
-        labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * reached.errors[name]:.1f} mm")
+        labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETERS * reached.errors[name]:.1f} mm")
     return sheet.figure
 
 
 def _reached_note(reached: IKResult, names: list[str]) -> str:
     """Errors in words: of the markers together, of each other goal by its name."""
     markers = [reached.errors[name] for name in names]
-    parts = [f"marker error {MILLIMETRES * float(np.sqrt(np.mean(np.square(markers)))):.2f} mm rms"] if markers else []
+    parts = [f"marker error {MILLIMETERS * float(np.sqrt(np.mean(np.square(markers)))):.2f} mm rms"] if markers else []
     others = {name: error for name, error in reached.errors.items() if name not in names}
-    parts += [f"{shorten(name)} error {MILLIMETRES * error:.2f} mm" for name, error in others.items()]
+    parts += [f"{shorten(name)} error {MILLIMETERS * error:.2f} mm" for name, error in others.items()]
     return ", ".join(parts) or str(reached.status)
 
 
@@ -295,6 +295,6 @@ def _rests(pose: Equilibrium) -> str:
 
 
 def _note(contraction: float) -> str:
-    """A contraction [m] in millimetres, with its sign."""
-    number = f"{MILLIMETRES * contraction:+.1f}".replace("-", "\N{MINUS SIGN}")
+    """A contraction [m] in millimeters, with its sign."""
+    number = f"{MILLIMETERS * contraction:+.1f}".replace("-", "\N{MINUS SIGN}")
     return "0 mm" if number[1:] == "0.0" else f"{number} mm"

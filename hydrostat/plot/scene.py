@@ -32,7 +32,7 @@ def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: f
 
     Every frame that differs is a morph target of body and cables, and an animation goes from one to the next; winches,
     stoppers and markers are carried along. Cables are colored by tension, targets are there while a pose is
-    approached, a flat body is a slab of its thickness. Metres; what is up is y, as glTF wants it.
+    approached, a flat body is a slab of its thickness. Meters; what is up is y, as glTF wants it.
 
     Raises:
         InputError: frames that do not fit the robot, a time that is not above 0, a file that cannot be written.

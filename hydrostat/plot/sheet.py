@@ -1,4 +1,4 @@
-"""`PictureSheet`: an empty picture with a millimetre grid."""
+"""`PictureSheet`: an empty picture with a millimeter grid."""
 
 from dataclasses import dataclass
 
@@ -13,10 +13,10 @@ from matplotlib.path import Path
 
 from hydrostat.drawing import GRID, INK, MUTED
 
-Place = Float[np.ndarray, " 2"]  # one place, in millimetres unless its function says otherwise
-Places = Float[np.ndarray, "_ 2"]  # places, one row each, in millimetres unless their function says otherwise
+Place = Float[np.ndarray, " 2"]  # one place, in millimeters unless its function says otherwise
+Places = Float[np.ndarray, "_ 2"]  # places, one row each, in millimeters unless their function says otherwise
 Spread = Float[np.ndarray, "_ dim"]  # points or nodes of a robot [m], any number of them in one call
-MILLIMETRES = 1e3  # pictures are drawn in millimetres
+MILLIMETERS = 1e3  # pictures are drawn in millimeters
 WIDTH = 6.4  # width of a picture [inch]
 BODY = "body"  # label of an image of a body in space, by which it is known when the picture is written
 TALLEST = 1.15  # greatest height of a picture, as a multiple of its width
@@ -24,13 +24,13 @@ TALLEST = 1.15  # greatest height of a picture, as a multiple of its width
 
 @dataclass(frozen=True, eq=False)
 class PictureSheet:
-    """A picture to draw on, in millimetres, all sides to the same scale."""
+    """A picture to draw on, in millimeters, all sides to the same scale."""
 
     figure: Figure  # the whole picture
     axes: Axes  # where the body is drawn
     low: np.ndarray  # lower left corner of the axes [mm]
     high: np.ndarray  # upper right corner [mm]
-    scale: float  # millimetres of the body that one point (1/72 inch) on the picture shows
+    scale: float  # millimeters of the body that one point (1/72 inch) on the picture shows
     kept: tuple[tuple[float, float, float, float], ...] = ()  # boxes without labels: left, lower, right, upper [mm]
 
     def curve(self, points: Places, **style: object) -> None:
@@ -81,7 +81,7 @@ def new_sheet(
 ) -> PictureSheet:
     """An empty sheet that shows all of the points [mm].
 
-    The subtitle is left out with the title. If ruled it has a grid and numbers in millimetres; the bar is room for one
+    The subtitle is left out with the title. If ruled it has a grid and numbers in millimeters; the bar is room for one
     of colors, the room a free border as a share of the longest side; width in inches.
     """
     low, high = frame_points(points, room)
@@ -111,7 +111,7 @@ def frame_points(points: Places, room: float) -> tuple[Place, Place]:
 
 
 def _rule(sheet: PictureSheet) -> None:
-    """Thin grid lines at round millimetres, numbered along the left and lower sides."""
+    """Thin grid lines at round millimeters, numbered along the left and lower sides."""
     step = round_step(float((sheet.high - sheet.low).max()))
     axes = sheet.axes
     for axis, low, high in zip((axes.xaxis, axes.yaxis), sheet.low, sheet.high, strict=True):

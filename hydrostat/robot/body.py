@@ -79,7 +79,7 @@ class Body:
 
     def element_size_for(self, nodes: int) -> float:
         """Element size [m] for about so many nodes (InputError: a ready mesh, or no mesh has so few or so many)."""
-        from hydrostat.geometry import size_for, tetrahedralise, triangulate
+        from hydrostat.geometry import size_for, tetrahedralize, triangulate
 
         if self.outline is not None:
             outline = self.outline
@@ -93,7 +93,7 @@ class Body:
         if self.healing is not None:
             closed = self.healing.surface
             return size_for(
-                nodes, lambda trial: tetrahedralise(closed, trial), content=closed.volume, rim=closed.area, dim=3
+                nodes, lambda trial: tetrahedralize(closed, trial), content=closed.volume, rim=closed.area, dim=3
             )
         raise InputError("a ready mesh has its own elements, their number cannot be chosen")
 
@@ -216,7 +216,7 @@ def surface_body(
     Args:
         content: bytes of the file.
         file: its name.
-        unit: metres that a coordinate counts, if the file does not say.
+        unit: meters that a coordinate counts, if the file does not say.
         material: material of the body.
         element_size: mean length of a mesh edge [m].
         size: longest side of the bounding box [m] to scale to; None: as the file says.
@@ -229,11 +229,11 @@ def surface_body(
     _check_lengths(size=size, element_size=element_size, thickness=thickness)
 
     def make() -> Arrays:
-        from hydrostat.geometry import heal, read_surface, tetrahedralise
+        from hydrostat.geometry import heal, read_surface, tetrahedralize
 
         healing = heal(read_surface(content, name=file, unit=unit, size=size), resolution=element_size / 4)
         with _blaming_the_element_size():
-            mesh = tetrahedralise(healing.surface, element_size)
+            mesh = tetrahedralize(healing.surface, element_size)
         return _mesh_arrays(mesh) | healing.arrays()
 
     kept = keep_body(("surface", Path(file).suffix, unit, size, element_size), content, make)
@@ -260,7 +260,7 @@ def mesh_body(
     thickness: float | None = None,
     volume: Volume = Volume.ELEMENT,
 ) -> Body:
-    """Body from a ready mesh, in units of `unit` metres (InputError: the file cannot be read or holds no such mesh)."""
+    """Body from a ready mesh, in units of `unit` meters (InputError: the file cannot be read or holds no such mesh)."""
     from hydrostat.geometry import read_mesh, read_stranger
 
     _check_lengths(size=size, thickness=thickness)

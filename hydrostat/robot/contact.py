@@ -55,13 +55,13 @@ class ClosedMesh:
         volumes = np.linalg.det(corners) / 6
         sums = corners.sum(axis=1)
         volume = float(volumes.sum())
-        centre = volumes @ sums / (4 * volume)
+        center = volumes @ sums / (4 * volume)
         products = np.einsum("t,tci,tcj->ij", volumes, corners, corners) + np.einsum("t,ti,tj->ij", volumes, sums, sums)
-        return volume, middle + centre, products / (20 * volume) - np.outer(centre, centre)
+        return volume, middle + center, products / (20 * volume) - np.outer(center, center)
 
 
 def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
-    """Read an object from a surface file whose coordinates are in `unit` metres.
+    """Read an object from a surface file whose coordinates are in `unit` meters.
 
     Raises:
         InputError: no surface, an open one, one that is inside out or runs through itself, or too many triangles.

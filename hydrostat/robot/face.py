@@ -23,7 +23,7 @@ class Face(StrEnum):
 
     @property
     def flat(self) -> bool:
-        """True if cables there keep a body in its plane, up to fractions of a millimetre (decision 0029)."""
+        """True if cables there keep a body in its plane, up to fractions of a millimeter (decision 0029)."""
         return self in (Face.PAIRS, Face.MIDDLE)
 
 

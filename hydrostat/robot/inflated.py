@@ -110,7 +110,7 @@ def _blown_up(body: Body, element_size: float | None) -> Body:
 def _skin(body: Body, places: Points, side: float) -> Vector:
     """Height of the skin over points of the plane, on the side of +z or -z, a little inside [m]."""
     low, high = np.zeros(len(places)), np.full(len(places), float(np.abs(body.mesh.nodes[:, 2]).max()))
-    halvings = 14  # of the height, so that it is within a hundredth of a millimetre
+    halvings = 14  # of the height, so that it is within a hundredth of a millimeter
     for _ in range(halvings):
         middle = 0.5 * (low + high)
         outside = body.distances(np.column_stack([places, side * middle])) > 0

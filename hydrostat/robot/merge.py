@@ -191,19 +191,19 @@ def _effective(kind: str, entry: Any, factor: Decimal) -> dict[str, Any]:
     """Meaning of each key of a table, in SI; a key that is left out means the record's default."""
     defaults = {field.name: field.default for field in fields(_RECORDS[kind]) if field.default is not MISSING}
     given = {key: getattr(entry, key) for key in type(entry).model_fields}
-    values = {key: defaults.get(key) if value is None else _metres(value, factor) for key, value in given.items()}
+    values = {key: defaults.get(key) if value is None else _meters(value, factor) for key, value in given.items()}
     if kind == "body":
         values["material"] = read_material(entry.material)
     return values
 
 
-def _metres(value: Any, factor: Decimal) -> Any:
+def _meters(value: Any, factor: Decimal) -> Any:
     """Bare numbers as lengths [m], lists as tuples."""
     if isinstance(value, Decimal):
         return float(value * factor) + 0.0
     if isinstance(value, list):
-        return tuple(_metres(entry, factor) for entry in value)
-    return {key: _metres(entry, factor) for key, entry in value.items()} if isinstance(value, dict) else value
+        return tuple(_meters(entry, factor) for entry in value)
+    return {key: _meters(entry, factor) for key, entry in value.items()} if isinstance(value, dict) else value
 
 
 def _merge_text(text: str, fresh: str) -> str | None:

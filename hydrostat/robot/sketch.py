@@ -73,16 +73,16 @@ def sketch_robot(
             break
         length = _round(finer)
         body = make(element_size=length, thickness=body.thickness or 0.0)
-    centre = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
-    depth = outline.polygon.boundary.distance(ShapelyPoint(centre))
+    center = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
+    depth = outline.polygon.boundary.distance(ShapelyPoint(center))
     within = body.mesh.nodes[np.setdiff1d(np.arange(len(body.mesh.nodes)), body.mesh.boundary_nodes)]
-    tip = within[int(np.argmax(np.linalg.norm(within - centre, axis=1)))]
-    arm = tip - centre
-    turned = centre + 0.9 * (np.cos(0.5) * arm + np.sin(0.5) * np.array([-arm[1], arm[0]]))
+    tip = within[int(np.argmax(np.linalg.norm(within - center, axis=1)))]
+    arm = tip - center
+    turned = center + 0.9 * (np.cos(0.5) * arm + np.sin(0.5) * np.array([-arm[1], arm[0]]))
     return Robot(
         name=name,
         body=body,
-        pins=(Pin(at=_point(centre), radius=_round(max(0.4 * depth, 1.3 * (body.element_size or 0.0)))),),
+        pins=(Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * (body.element_size or 0.0)))),),
         markers=(Marker(name="tip", at=_point(tip)),),
         poses={"bend": PoseTarget(name="bend", targets={"tip": _point(turned)})},
     )
@@ -96,7 +96,7 @@ def _element_size(outline: Outline, nodes: int | None) -> float:
 
 
 def _round(length: float) -> float:
-    """Length rounded to half a millimetre, at least that."""
+    """Length rounded to half a millimeter, at least that."""
     return max(round(length * 2000), 1) / 2000
 
 

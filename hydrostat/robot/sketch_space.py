@@ -57,7 +57,7 @@ def sketch_surface(
     Raises:
         InputError: the file is no body.
     """
-    from hydrostat.geometry import read_surface, tetrahedralise, write_ply
+    from hydrostat.geometry import read_surface, tetrahedralize, write_ply
 
     known, nodes = get_material(material), NODES if nodes is None else nodes
     before = read_surface(content, name=file, size=size)
@@ -69,7 +69,7 @@ def sketch_surface(
 
     def fill(trial: float) -> Mesh:
         told(f"filling it with elements of {1e3 * trial:.3g} mm" + f", try {len(meshes) + 1}" * bool(meshes))
-        meshes[trial] = tetrahedralise(closed, trial)
+        meshes[trial] = tetrahedralize(closed, trial)
         return meshes[trial]
 
     length = element_size or size_for(nodes, fill, content=closed.volume, rim=closed.area, dim=3)
@@ -213,7 +213,7 @@ class _Limb:
         return near
 
     def middle(self, mesh: Mesh, share: float) -> Vector:
-        """Centre of the limb at a share of its length [m]."""
+        """Center of the limb at a share of its length [m]."""
         part = self.part(mesh, share)
         return np.average(mesh.nodes[mesh.elements[part]].mean(axis=1), axis=0, weights=mesh.volumes[part])
 
@@ -267,7 +267,7 @@ def _cover_offset(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vect
 
 
 def _space_points(points: list[Vector]) -> Points:
-    """Points that are at least a millimetre apart."""
+    """Points that are at least a millimeter apart."""
     kept = [points[0]]
     for point in points[1:]:
         if np.linalg.norm(point - kept[-1]) > 1e-3:
@@ -276,5 +276,5 @@ def _space_points(points: list[Vector]) -> Points:
 
 
 def _point(place: Float[np.ndarray, " 3"]) -> Point:
-    """Place rounded to a hundredth of a millimetre."""
+    """Place rounded to a hundredth of a millimeter."""
     return tuple(round(float(value), 5) for value in place)

@@ -52,5 +52,5 @@ class Winch:
         most = 20.0  # No winch takes in more [m]
         for field, value in (("travel", self.travel), ("release", self.release), ("spool_radius", self.spool_radius)):
             if value > most:
-                raise InputError(f"{field} must be at most {most:g} m, not {value:g}; in metres: 60 mm is 0.06")
+                raise InputError(f"{field} must be at most {most:g} m, not {value:g}; in meters: 60 mm is 0.06")
         make_member(self, "mount", Mount)

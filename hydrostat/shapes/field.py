@@ -49,8 +49,8 @@ def chain(places: Sequence[Place], radii: Sequence[float], *, blend: float = 0.0
 
 def ellipsoid(middle: Place, half_axes: Place) -> Field:
     """About the distance from an ellipsoid with axes along x, y and z [m]; right to first order at its surface."""
-    centre, axes = np.array(middle, dtype=float), np.array(half_axes, dtype=float)
-    return lambda points: ellipsoidal((points - centre) / axes, axes)
+    center, axes = np.array(middle, dtype=float), np.array(half_axes, dtype=float)
+    return lambda points: ellipsoidal((points - center) / axes, axes)
 
 
 def ellipsoidal(local: Float[np.ndarray, "points axes"], axes: Float[np.ndarray, "*_ axes"]) -> Vector:
@@ -64,12 +64,12 @@ def ellipsoidal(local: Float[np.ndarray, "points axes"], axes: Float[np.ndarray,
 
 def rounded_box(middle: Place, half_sides: Place, corner: float) -> Field:
     """Distance from a box with edges rounded by the radius `corner` [m]."""
-    centre, inner = np.array(middle, dtype=float), np.array(half_sides, dtype=float) - corner
+    center, inner = np.array(middle, dtype=float), np.array(half_sides, dtype=float) - corner
     if inner.min() < 0:
         raise InputError("the corners of a rounded box must be at most as large as the shortest half side")
 
     def distance(points: Points) -> Vector:
-        beyond = np.abs(points - centre) - inner
+        beyond = np.abs(points - center) - inner
         return np.linalg.norm(np.maximum(beyond, 0), axis=1) + np.minimum(beyond.max(axis=1), 0) - corner
 
     return distance

@@ -16,7 +16,7 @@ from hydrostat.mechanics import (
     CarriedWarp,
     ContactEnergy,
     Energy,
-    Factorisation,
+    Factorization,
     GuideEnergy,
     NeoHookean,
     ObstacleEnergy,
@@ -180,8 +180,8 @@ class BodyPhysics:
         )
 
     @cached_property
-    def rest_factors(self) -> Factorisation:
-        """Hessian of the body at rest, factorised; cables that do not pull add nothing to it."""
+    def rest_factors(self) -> Factorization:
+        """Hessian of the body at rest, factorized; cables that do not pull add nothing to it."""
         return self.assembly.with_active_terms(self.rest_unknowns).stiffness(self.rest_unknowns, np.zeros(0)).factors
 
     def round_off(self, stiffest: float = 0.0) -> RoundOff:

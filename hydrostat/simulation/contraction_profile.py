@@ -84,7 +84,7 @@ def check_profile(profile: object, robot: Robot) -> None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProfileTable:
-    """CSV of moves: a column `time_s`, and in millimetres one for each winch that moves, `left_mm` or just `left`.
+    """CSV of moves: a column `time_s`, and in millimeters one for each winch that moves, `left_mm` or just `left`.
 
     The studio, `hydrostat trajectory`, `hydrostat play` and `hydrostat simulate --play` write and read this table.
 
@@ -159,7 +159,7 @@ class ProfileTable:
 
 def _column(head: str, winches: Sequence[str]) -> str:
     """Winch that a column is of, if it is of one; else its head."""
-    bare = head.removesuffix(MILLIMETRES)
+    bare = head.removesuffix(MILLIMETERS)
     return bare if head not in winches and bare in winches else head
 
 
@@ -167,7 +167,7 @@ def profile_text(robot: Robot, profile: ContractionProfile) -> bytes:
     """Write a profile as the bytes of a `ProfileTable`; a gentle one becomes linear."""
     rows = zip(profile.times, 1e3 * profile.values + 0.0, strict=True)
     return csv_text(
-        [TIME, *(f"{winch.name}{MILLIMETRES}" for winch in robot.winches)],
+        [TIME, *(f"{winch.name}{MILLIMETERS}" for winch in robot.winches)],
         ([f"{time:.15g}", *(f"{value:.9g}" for value in row)] for time, row in rows),
     )
 
@@ -206,13 +206,13 @@ def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, f
         except ValueError:
             found[column] = math.nan
         if not math.isfinite(found[column]):
-            unit = "seconds" if column == TIME else "millimetres"
+            unit = "seconds" if column == TIME else "millimeters"
             raise InputError(f"{place}, column {column}: write a number of {unit}, not {quote(cell.strip())}")
     return found
 
 
 TIME = "time_s"
-MILLIMETRES = "_mm"  # ends the head of a column of contractions
+MILLIMETERS = "_mm"  # ends the head of a column of contractions
 """Name of the column of times [s]."""
 
 

@@ -32,7 +32,7 @@ class Equilibrium:
         markers: position of each marker [m].
         tensions: tension of each cable [N], in cable order.
         energy: total energy [J].
-        result: solver result: stop reason, residual [N], iterations, stability and the factorised Hessian.
+        result: solver result: stop reason, residual [N], iterations, stability and the factorized Hessian.
         history: history variables of the physics: cable slip at each point with friction so far and the anchors of the
             skin on obstacles with friction [m]; empty without friction.
         robot: robot that is in this pose.
@@ -109,7 +109,7 @@ class Equilibrium:
         return self.result.nodes is (self.nodes if self.carried is None else self.nodes.base)
 
     def without_factors(self) -> "Equilibrium":
-        """Pose without its factorised Hessian, to be kept with many others: that takes megabytes."""
+        """Pose without its factorized Hessian, to be kept with many others: that takes megabytes."""
         return replace(self, result=replace(self.result, stiffness=None))
 
 
@@ -196,12 +196,12 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
         raise InputError(f"{values.size} contractions given for {plural(len(winches), 'winch')}: {names}")
     if not np.isfinite(values).all():
         raise InputError("a contraction is not a finite number")
-    _check_metres(robot, values)
+    _check_meters(robot, values)
     return values
 
 
-def _check_metres(robot: Robot, contractions: Vector) -> None:
-    """Reject contractions that no winch can reach, such as values in millimetres."""
+def _check_meters(robot: Robot, contractions: Vector) -> None:
+    """Reject contractions that no winch can reach, such as values in millimeters."""
     size = robot.body.mesh.size
     most = 3.0  # A winch moves at most so many lengths of body and cable together
     if np.abs(contractions).max(initial=0.0) <= most * size:  # no winch has a lower limit
@@ -213,5 +213,5 @@ def _check_metres(robot: Robot, contractions: Vector) -> None:
         if abs(value) > most * (size + bare[winch.name]):
             raise InputError(
                 f'the contraction of winch "{winch.name}", {value:g} m, is far more than the body, {size:.3g} m, and '
-                "all of its cable; contractions are in metres: 12 mm is 0.012"
+                "all of its cable; contractions are in meters: 12 mm is 0.012"
             )

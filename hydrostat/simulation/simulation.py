@@ -79,7 +79,7 @@ class Simulation:
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
     def as_contractions(self, given: Contractions) -> Vector:
-        """Contractions as an array in winch order [m] (InputError: not one number in metres for each winch)."""
+        """Contractions as an array in winch order [m] (InputError: not one number in meters for each winch)."""
         return contraction_values(self.robot, given)
 
     def solve(

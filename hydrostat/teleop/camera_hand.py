@@ -72,7 +72,7 @@ class HandLandmarks(HandSource):
 
 
 def bends(places: Points) -> Vector:
-    """Angles of a hand as shares of half a turn: three bends a finger, then those between neighbouring fingers."""
+    """Angles of a hand as shares of half a turn: three bends a finger, then those between neighboring fingers."""
     places = places / max(float(np.abs(places).max()), np.finfo(float).tiny)  # whatever the unit, products stay finite
     fingers = [np.vstack([places[:1], places[1 + 4 * index : 5 + 4 * index]]) for index in range(len(FINGERS))]
     bones = [np.diff(finger, axis=0) for finger in fingers]

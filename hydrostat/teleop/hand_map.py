@@ -58,7 +58,7 @@ class HandMap:
             "error_m": self.error,
             "sensors": self.sensors,
             "outputs": self.outputs,
-            "centre": ridge.centre.tolist(),
+            "centre": ridge.center.tolist(),
             "level_m": ridge.level.tolist(),
             "weights_m": ridge.weights.tolist(),
             "penalty": ridge.penalty,
@@ -75,13 +75,13 @@ class HandMap:
         try:
             if table["format"] != FORMAT:
                 raise ValueError(f"its format is {table['format']!r}, not {FORMAT!r}")
-            centre, level, weights = (np.array(table[key], float) for key in ("centre", "level_m", "weights_m"))
-            ridge = Ridge(centre, level, weights, table["penalty"])
+            center, level, weights = (np.array(table[key], float) for key in ("centre", "level_m", "weights_m"))
+            ridge = Ridge(center, level, weights, table["penalty"])
             sensors, outputs = tuple(map(str, table["sensors"])), tuple(map(str, table["outputs"]))
-            shapes = ridge.centre.shape, ridge.level.shape, ridge.weights.shape
+            shapes = ridge.center.shape, ridge.level.shape, ridge.weights.shape
             if shapes != ((len(sensors),), (len(outputs),), (len(sensors), len(outputs))):
                 raise ValueError("its numbers are not as many as its names")
-            if not all(np.isfinite(each).all() for each in (ridge.centre, ridge.level, ridge.weights)):
+            if not all(np.isfinite(each).all() for each in (ridge.center, ridge.level, ridge.weights)):
                 raise ValueError("some of its numbers are not finite")
             return cls(
                 robot=str(table["robot"]),

@@ -106,7 +106,7 @@ HERE, PORT = "127.0.0.1", 9000
 
 
 class Osc(DriveSource):
-    """Messages over UDP, in millimetres: /winch/index_flexor 12.5, /marker/index 30 -50 120, /hold 1, /rest, /end.
+    """Messages over UDP, in millimeters: /winch/index_flexor 12.5, /marker/index 30 -50 120, /hold 1, /rest, /end.
 
     A word holds until the next, as that of a knob. A program that streams says /alive: from then on its silence of half
     a second makes motors hold.

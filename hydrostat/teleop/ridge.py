@@ -17,23 +17,23 @@ PENALTIES = tuple(10.0**power for power in range(-8, 3))
 
 @dataclass(frozen=True, eq=False)
 class Ridge:
-    """A straight map from inputs to outputs, centred.
+    """A straight map from inputs to outputs, centered.
 
     Attributes:
-        centre: mean of the inputs.
+        center: mean of the inputs.
         level: mean of the outputs.
         weights: (inputs, outputs).
         penalty: on the squares of the weights.
     """
 
-    centre: Vector
+    center: Vector
     level: Vector
     weights: Table
     penalty: float
 
     def __call__(self, inputs: Float[np.ndarray, "... inputs"]) -> Float[np.ndarray, "... outputs"]:
         """Outputs of inputs, one row or many."""
-        return self.level + (inputs - self.centre) @ self.weights
+        return self.level + (inputs - self.center) @ self.weights
 
 
 def fit_ridge(
@@ -60,10 +60,10 @@ def fit_ridge(
         size = max(float(np.mean((inputs - inputs.mean(0)) ** 2)), 1e-9) * len(inputs)
         tried = {size * each: left_out_error(inputs, outputs, groups, size * each) for each in PENALTIES}
         penalty = min(tried, key=lambda each: tried[each])
-    centre, level = inputs.mean(0), outputs.mean(0)
-    centred = inputs - centre
-    weights = np.linalg.solve(centred.T @ centred + penalty * np.eye(inputs.shape[1]), centred.T @ (outputs - level))
-    return Ridge(centre, level, weights, penalty)
+    center, level = inputs.mean(0), outputs.mean(0)
+    centered = inputs - center
+    weights = np.linalg.solve(centered.T @ centered + penalty * np.eye(inputs.shape[1]), centered.T @ (outputs - level))
+    return Ridge(center, level, weights, penalty)
 
 
 def left_out_error(inputs: Table, outputs: Table, groups: Sequence[int], penalty: float) -> float:

@@ -4,7 +4,7 @@
 
 For every robot the size of its mesh, and for each pose how far its markers are from their targets (root of the mean
 square) at rest and after inverse kinematics, and whether the body then passes through itself. The targets are rounded
-to whole millimetres, so about 0.5 mm is left even where a pose can be reached. They are made for the element size of
+to whole millimeters, so about 0.5 mm is left even where a pose can be reached. They are made for the element size of
 the robot's file; another one can be tried.
 """
 
@@ -19,7 +19,7 @@ import numpy as np  # isort: skip
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.geometry import find_crossings, tetrahedralise
+from hydrostat.geometry import find_crossings, tetrahedralize
 from hydrostat.robot import Robot, gallery_folder, list_gallery
 
 
@@ -34,7 +34,7 @@ def meshed(robot: Robot, element_size: float) -> Robot:
     healing = robot.body.healing
     if healing is None:
         raise InputError(f"{robot.name} has no surface to fill with other elements")
-    return replace(robot, body=replace(robot.body, mesh=tetrahedralise(healing.surface, element_size)))
+    return replace(robot, body=replace(robot.body, mesh=tetrahedralize(healing.surface, element_size)))
 
 
 def rest_error(robot: Robot, pose: hs.PoseTarget) -> float:

@@ -101,12 +101,12 @@ def _faster(one: str, other: str) -> Callable[[Mapping[str, Ran]], np.ndarray]:
 
 
 def _nearer(one: str, other: str) -> Callable[[Mapping[str, Ran]], np.ndarray]:
-    """By how many millimetres one run's best policies are nearer than another's."""
+    """By how many millimeters one run's best policies are nearer than another's."""
     return lambda ran: 10.0 * (error(ran[other]) - error(ran[one]))
 
 
 def _finer(one: str, other: str) -> Callable[[Mapping[str, Ran]], np.ndarray]:
-    """By how many millimetres the smallest tolerance that one run mastered is below another's."""
+    """By how many millimeters the smallest tolerance that one run mastered is below another's."""
     return lambda ran: 10.0 * (_clip_lengths(least(ran[other])) - _clip_lengths(least(ran[one])))
 
 

@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from hydrostat.arrays import Nodes
 from hydrostat.drawing import INK, MUTED, WINCHES
 from hydrostat.plot import (
-    MILLIMETRES,
+    MILLIMETERS,
     WIDTH,
     Attachments,
     draw_portrait,
@@ -46,7 +46,7 @@ def draw_errors(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
         mine = [row for row in rows if row.method == name]
         counts = sorted({row.samples for row in mine})
         groups = [[row for row in mine if row.samples == count] for count in counts]
-        errors = [[MILLIMETRES * row.errors["mean"] for row in group] for group in groups]
+        errors = [[MILLIMETERS * row.errors["mean"] for row in group] for group in groups]
         seconds = [float(np.mean([row.sampling + row.learning for row in group])) for group in groups]
         for axes, across in zip(panes, (counts, seconds), strict=True):
             means = [float(np.mean(each)) for each in errors]
@@ -136,7 +136,7 @@ def draw_calibration(
     ends = [np.inf, 0.0]
     for number, (name, (said, found)) in enumerate(curves.items()):
         tenths = np.array_split(np.argsort(said, kind="stable"), min(10, len(said)))
-        across, up = ([MILLIMETRES * float(values[tenth].mean()) for tenth in tenths] for values in (said, found))
+        across, up = ([MILLIMETERS * float(values[tenth].mean()) for tenth in tenths] for values in (said, found))
         ends = [min(ends[0], *across, *up), max(ends[1], *across, *up)]
         color = WINCHES[number % len(WINCHES)]
         axes.plot(across, up, color=color, linewidth=1.4, marker="o", markersize=4, label=name)

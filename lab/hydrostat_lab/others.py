@@ -1,4 +1,4 @@
-"""Baselines on the same samples: a constant, nearest neighbours, ridge regression."""
+"""Baselines on the same samples: a constant, nearest neighbors, ridge regression."""
 
 from collections.abc import Callable, Mapping
 

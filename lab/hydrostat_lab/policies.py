@@ -88,7 +88,7 @@ def ridge(_trials: NetworkReach, pairs: TriedPairs, _effort: Budget) -> Act:
 
 
 def clone_actions(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
-    """A network that repeats the actions of the pairs: behaviour cloning, by the square of the action's error."""
+    """A network that repeats the actions of the pairs: behavior cloning, by the square of the action's error."""
 
     def loss(network: "_Network", rows: Tensor) -> Tensor:
         wanted, reached = (_take_rows(part, rows) for part in (pairs.acts, pairs.reached))

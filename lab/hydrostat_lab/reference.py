@@ -29,7 +29,7 @@ class Reference:
 def run_reference(
     reference: Reference, *, seeds: int, epochs: int, progress: Progress = no_progress
 ) -> Iterator[tuple[str, Ran]]:
-    """Learn in the environment of a reference; what went by in centimetres.
+    """Learn in the environment of a reference; what went by in centimeters.
 
     Args:
         reference: experiment, with its task.
@@ -72,7 +72,7 @@ def _early(ran: Mapping[str, Ran]) -> np.ndarray:
 
 
 _HORIZON, _TESTS, _CM, _REWARDS = 50, 20, 100.0, ("sparse", "shaped")
-"""Actions of an episode, episodes of a test, centimetres of a metre, and the rewards that are compared."""
+"""Actions of an episode, episodes of a test, centimeters of a meter, and the rewards that are compared."""
 
 _PUBLISHED = 4_000
 """Actions after which the authors' code in one worker is told to succeed in all tests of FetchReach: four epochs of

@@ -33,7 +33,7 @@ def train_thesis_network(train: Samples, *, seed: int = 0, epochs: int = 300) ->
     """Train the thesis's network (R66): four layers of 30, ReLU, tanh at the end, squares of the action.
 
     Of samples of which two winches that work against one another share a number its action has those numbers, else one
-    for each winch. Inputs are raw centimetres; Adam with rate 0.001, batches of 20, the weights that were best on a
+    for each winch. Inputs are raw centimeters; Adam with rate 0.001, batches of 20, the weights that were best on a
     tenth.
 
     Raises:
@@ -53,16 +53,16 @@ def train_thesis_network(train: Samples, *, seed: int = 0, epochs: int = 300) ->
         for one, two in pairwise([inputs.shape[1], 30, 30, 30, 30, actions.shape[1]]):
             layers += [torch.nn.Linear(one, two), torch.nn.ReLU()]
         network = torch.nn.Sequential(*layers[:-1], torch.nn.Tanh())
-    optimiser = torch.optim.Adam(network.parameters(), lr=1e-3)
+    optimizer = torch.optim.Adam(network.parameters(), lr=1e-3)
     order, kept = torch.randperm(len(inputs), generator=draw), len(inputs) - max(1, len(inputs) // 10)
     learned, held = order[:kept], order[kept:]
     best, least, curve = network.state_dict(), float("inf"), np.zeros((epochs, 2))
     for epoch in range(epochs):
         for rows in learned[torch.randperm(kept, generator=draw)].split(20):
-            optimiser.zero_grad(set_to_none=True)
+            optimizer.zero_grad(set_to_none=True)
             loss = (network(inputs[rows]) - actions[rows]).square().mean()
             loss.backward()
-            optimiser.step()
+            optimizer.step()
             curve[epoch, 0] += loss.item() * len(rows) / kept
         with torch.no_grad():
             curve[epoch, 1] = float((network(inputs[held]) - actions[held]).square().mean())

@@ -54,7 +54,7 @@ class Trials(ABC):
 
 
 class NetworkReach(Trials):
-    """A robot that brings all its markers to a goal, as a learned model expects it; lengths are in centimetres.
+    """A robot that brings all its markers to a goal, as a learned model expects it; lengths are in centimeters.
 
     States and goals are coordinates of the markers, as in the thesis: 15 for a hand. Goals, and where episodes begin if
     they do not at rest, are where evenly drawn actions lead. Actions are contractions, whatever was before (R79).
@@ -141,7 +141,7 @@ class NetworkReach(Trials):
 class GymnasiumTrials(Trials):
     """A goal-based environment of gymnasium-robotics, such as FetchReach, one copy for each episode.
 
-    Its numbers are as gymnasium gives them, lengths in metres. It is for reference: our method in tasks of others.
+    Its numbers are as gymnasium gives them, lengths in meters. It is for reference: our method in tasks of others.
     """
 
     def __init__(self, make: Callable[[], Any], *, horizon: int) -> None:

@@ -42,7 +42,7 @@ def row_of(found: Compared) -> Row:
 
 
 def line(row: Row, size: float) -> str:
-    """A row as text; the body's size in metres."""
+    """A row as text; the body's size in meters."""
     numbers = "".join(f"{row[name]:8.3f}" for name in QUANTILES)
     text = f"{row['samples']:7}  {row['method']:18}{row['mean']:8.3f}{0.1 * float(row['mean']) / size:8.3f}{numbers}"
     text += f"{row['lost']:6}{row['seconds']:7.0f}"

@@ -64,7 +64,7 @@ def kuhn(rows: int, length: float = LENGTH) -> Mesh:
 
 
 def lattice(rows: int, length: float = LENGTH) -> Mesh:
-    """Cubes with a node in the middle, joined to those of their neighbours (body-centred); halved at the border."""
+    """Cubes with a node in the middle, joined to those of their neighbors (body-centered); halved at the border."""
     cells = (round(length / HEIGHT * rows), rows, rows)
     side = HEIGHT / rows
     corners, _ = grid(cells, side)
@@ -110,7 +110,7 @@ def upright(nodes: np.ndarray, elements: np.ndarray) -> np.ndarray:
 MESHES: dict[str, tuple[Callable[..., Mesh], tuple[int, ...], tuple[Kind, ...]]] = {
     "triangles, as hydrostat makes them": (drawn, (2, 4, 8), ("element", "nodal", 2, 3, 4, 6, 8)),
     "tetrahedra, cubes cut in six": (kuhn, (2, 3, 4, 6), ("element", "nodal", 4, 6, 8, 12)),
-    "tetrahedra, body-centred lattice": (lattice, (2, 3, 4), ("element", "nodal", 4, 6, 8, 12)),
+    "tetrahedra, body-centered lattice": (lattice, (2, 3, 4), ("element", "nodal", 4, 6, 8, 12)),
 }
 """Maker, numbers of elements across the height, and ways to measure the volume."""
 

@@ -48,7 +48,7 @@ def corrected(numbers: np.ndarray, turned: float, place: np.ndarray) -> np.ndarr
 
 
 def usual_turns(env: TwistEnv, keys: np.ndarray, act: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """How far a usual disc has turned before each keyframe [rad]; `act` makes actions of millimetres."""
+    """How far a usual disc has turned before each keyframe [rad]; `act` makes actions of millimeters."""
     env.reset(options={"goal": [0.5]})
     turned = []
     for key in keys:

@@ -80,9 +80,9 @@ def made(body: str, steps: int, kind: type[TwistEnv] = TwistEnv, **more: Any) ->
     return kind(robot, thing=BALL, options=TwistOptions(**options, physics=physics), contact=True)
 
 
-def as_action(millimetres: np.ndarray) -> np.ndarray:
+def as_action(millimeters: np.ndarray) -> np.ndarray:
     """The action that takes in so much."""
-    return np.clip(2e-3 * np.asarray(millimetres, dtype=float) / TRAVEL - 1.0, -1.0, 1.0)
+    return np.clip(2e-3 * np.asarray(millimeters, dtype=float) / TRAVEL - 1.0, -1.0, 1.0)
 
 
 def cycle(env: TwistEnv, act: Act, draw: dict[str, Any]) -> tuple[float, float]:

@@ -3,7 +3,7 @@
     python lab/spool_layers/spool_layers.py examples/cupping_hand
 
 Every winch has a hidden spool: 1 % larger than robot.toml says, with another layer of 0.4 mm after each turn. A ruler
-of half millimetres reads seven places over the travel. Each winch alone is then told to take in 90 % of its travel: by
+of half millimeters reads seven places over the travel. Each winch alone is then told to take in 90 % of its travel: by
 the spool of robot.toml, and by its measured curve. Errors are of the cable, and of the node of the body that is
 furthest from the pose that was meant.
 """

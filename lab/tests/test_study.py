@@ -84,7 +84,7 @@ def test_a_study_is_checked(given: dict[str, object]) -> None:
 def test_the_tables_and_figures_of_the_thesis(
     robot: Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Oracle: errors made by hand; centimetres and millimetres, means over the targets that have an equilibrium."""
+    """Oracle: errors made by hand; centimeters and millimeters, means over the targets that have an equilibrium."""
 
     def found(*given: object, options: LearnOptions) -> list[Compared]:
         distances, rows = np.array([[0.01], [0.02], [np.nan]]) + 2e-3 * options.seed, np.zeros((3, 2))

@@ -21,7 +21,7 @@ import numpy as np  # isort: skip
 from meshes import quality
 
 from hydrostat.errors import HydrostatError
-from hydrostat.geometry import Mesh, Surface, contour, heal, tetrahedralise, turned_outward
+from hydrostat.geometry import Mesh, Surface, contour, heal, tetrahedralize, turned_outward
 from hydrostat.robot import gallery_folder, load_robot
 
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "geometry"))
@@ -48,7 +48,7 @@ def shapes() -> dict[str, tuple[Surface, Surface, float]]:
     block, plate = dirty.cuboid((0, 0, 0), (0.1, 0.08, 0.06)), dirty.cuboid((0, 0, 0), (0.1, 0.08, 0.004))
     healed = {name: load_robot(gallery_folder(name)).body.healing for name in ("cupping_hand", "octopus_arm", "bear")}
     hand, arm, bear = (healing.surface for healing in healed.values() if healing is not None)
-    pair = dirty.both(ball, dirty.sphere(centre=(0.03, 0.0, 0.0)))
+    pair = dirty.both(ball, dirty.sphere(center=(0.03, 0.0, 0.0)))
     union = heal(pair, resolution=0.0006).surface
     scan = dirty.with_small_holes(dirty.with_noise(dirty.unmerged(hand), 0.0), 40)
     return {
@@ -70,7 +70,7 @@ def shapes() -> dict[str, tuple[Surface, Surface, float]]:
 
 def ours(surface: Surface, element_size: float) -> Mesh:
     """Healed and filled by hydrostat."""
-    return tetrahedralise(heal(surface, resolution=element_size / 4).surface, element_size)
+    return tetrahedralize(heal(surface, resolution=element_size / 4).surface, element_size)
 
 
 def wild(*, wide: bool) -> Callable[[Surface, float], Mesh]:

@@ -10,7 +10,7 @@ _PAGE = (
 
 
 def near_the_edge() -> hs.Robot:
-    """A square of 100 mm with two cables whose last holes are half a millimetre from its edge."""
+    """A square of 100 mm with two cables whose last holes are half a millimeter from its edge."""
     body = outline_body(
         _PAGE.encode(), file="body.svg", material=MATERIALS["polyester fibre"], element_size=0.02, thickness=0.03
     )

@@ -104,7 +104,7 @@ def test_body_in_space(check: Check, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(check: Check, tmp_path: Path) -> None:
-    """Oracle: decision 0029: on the front alone centimetres out of the plane, in pairs less than a millimetre."""
+    """Oracle: decision 0029: on the front alone centimeters out of the plane, in pairs less than a millimeter."""
     robot = load_robot(gallery_folder("letter_s"))
     found = {}
     for face in (Face.FRONT, Face.PAIRS):

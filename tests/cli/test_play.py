@@ -139,7 +139,7 @@ def test_an_error_while_playing_stops_the_motors(
     [
         (None, (), "wave.csv: there is no such file"),
         ("time_s,tail\n0,1\n", (), 'wave.csv, line 1: unknown winch "tail". Available: right, left, feet.'),
-        ("time_s,left\n0,1\n1,\n", (), 'wave.csv, line 3, column left: write a number of millimetres, not ""'),
+        ("time_s,left\n0,1\n1,\n", (), 'wave.csv, line 3, column left: write a number of millimeters, not ""'),
         ("time_s,left\n0,1\n1,99\n", (), "wave.csv, line 3, column left: 99 mm is beyond what the winch can take in"),
         ("time_s,left\n0,0\n1,50\n", ("--speed", 4), "line 3, column left: moves at 200 mm/s, the motors at 150 mm/s"),
         (WAVE, ("--speed", 9), "--speed 9: the speed must be from 0.1 to 4 times, not 9"),

@@ -364,7 +364,7 @@ def test_closing_leaves_no_gap_between_the_stop_and_the_line() -> None:
 
 
 @pytest.mark.parametrize("speed", [0.501, 5.0, 0.0, -0.1])
-def test_no_speed_above_half_a_metre_a_second_is_allowed(speed: float) -> None:
+def test_no_speed_above_half_a_meter_a_second_is_allowed(speed: float) -> None:
     with pytest.raises(InputError, match=r"speed must be above 0 and at most 0\.5"):
         LinkLimits(speed=speed)
     assert LinkLimits(speed=0.5).speed == 0.5

@@ -37,10 +37,10 @@ def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
     elif bug == "no guard of tensions":
         monkeypatch.setattr(TensionGuard, "fault", lambda *_: "")
     elif bug == "no limits":
-        initialise: Callable = BusLink.__init__
+        initialize: Callable = BusLink.__init__
 
         def without_limits(self: BusLink, *args: object, **more: object) -> None:
-            initialise(self, *args, **more)
+            initialize(self, *args, **more)
             self._low, self._high = self._low - 1.0, self._high + 1.0
 
         monkeypatch.setattr(BusLink, "__init__", without_limits)

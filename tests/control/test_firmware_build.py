@@ -37,7 +37,7 @@ def motors(robot: Robot) -> Calibration:
 
 
 def test_settings_are_the_robots_limits_in_counts(robot: Robot, motors: Calibration) -> None:
-    """By hand: a turn of 31.4 mm has 1,000 counts, so a millimetre has 31.8; of 2 A at stall a tenth is for speed."""
+    """By hand: a turn of 31.4 mm has 1,000 counts, so a millimeter has 31.8; of 2 A at stall a tenth is for speed."""
     text = firmware_settings(robot, motors, rpm=60.0)
     assert f'#define ROBOT "{robot_word(robot, motors)}"' in text
     assert "#define DCS 2\n#define SERVOS 0" in text

@@ -32,10 +32,10 @@ def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
     if bug == "goals far ahead":
         monkeypatch.setattr(bus_link, "MAX_LEAD_TIME", 5.0)
     elif bug == "no limits":
-        initialise: Callable = BusLink.__init__
+        initialize: Callable = BusLink.__init__
 
         def without_limits(self: BusLink, *args: object, **more: object) -> None:
-            initialise(self, *args, **more)
+            initialize(self, *args, **more)
             self._low, self._high = self._low - 1.0, self._high + 1.0
 
         monkeypatch.setattr(BusLink, "__init__", without_limits)

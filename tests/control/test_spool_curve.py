@@ -24,7 +24,7 @@ TRUE = add_cable_layers(OLD)
 
 
 class Bench:
-    """Two emulated winches with hidden layers, and somebody with a ruler of half millimetres."""
+    """Two emulated winches with hidden layers, and somebody with a ruler of half millimeters."""
 
     def __init__(self) -> None:
         self.servos = [EmulatedServo(1, model=1240, angle=ZERO), EmulatedServo(2, model=1240, angle=0.2)]

@@ -58,7 +58,7 @@ class Winches:
         return self.begin + self.slacks / RADIUS
 
 
-def test_ten_hidden_slacks_are_found_to_half_a_millimetre_within_a_minute() -> None:
+def test_ten_hidden_slacks_are_found_to_half_a_millimeter_within_a_minute() -> None:
     winches = Winches()
     taken = winches.take_up()
     errors = RADIUS * (np.array([each.motor.zero for each in taken]) - winches.zeros())

@@ -7,7 +7,7 @@ from scipy.optimize import nnls
 
 from hydrostat.design import activate, edge_fibres
 from hydrostat.design.muscles.activation import _Activation, element_fibres, least_effort, wanted_directions
-from hydrostat.mechanics import NewtonOptions, minimise
+from hydrostat.mechanics import NewtonOptions, minimize
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import BodyPhysics
 
@@ -72,7 +72,7 @@ def test_the_jacobian_by_the_adjoint() -> None:
     tensions = np.where(random.random(len(fibres)) < 0.4, random.uniform(0, 1.0, len(fibres)), 0.0)
 
     def rest(tensions: np.ndarray, start: np.ndarray) -> np.ndarray:
-        solved = minimise(
+        solved = minimize(
             run.assembly,
             start,
             tensions,

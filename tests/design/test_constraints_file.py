@@ -172,7 +172,7 @@ def test_zones_are_in_the_unit_of_the_robots_file(file: Path) -> None:
 
 ERRORS = {
     "clearance = 5": 'line 1: clearance: 5 has no unit; write a length as text: "12 mm"',
-    '\nclearance = "-5 mm"': "line 2: clearance must be above 0 and at most 1 m, not -0.005; in metres: 5 mm is 0.005",
+    '\nclearance = "-5 mm"': "line 2: clearance must be above 0 and at most 1 m, not -0.005; in meters: 5 mm is 0.005",
     'tension = "3 mm"': 'line 1: tension: "mm" does not measure a force; write for example "20 N"',
     'torque = "3 N"': 'line 1: torque: "N" does not measure a torque; write for example "0.1 N m"',
     "turn = 75": 'line 1: turn: 75 has no unit; write an angle as text: "75 deg"',

@@ -92,8 +92,8 @@ def test_cables_and_winches_keep_their_distances(case: str, unchecked: None) -> 
         assert np.linalg.norm(at[:index] - place, axis=1).min(initial=np.inf) >= limits.winch_gap - 2e-5
     points = [(index, np.array(point)) for index, cable in enumerate(robot.cables) for point in cable.points[1:]]
     for index, (cable, point) in enumerate(points):
-        for other, neighbour in points[:index]:
-            gap = float(np.linalg.norm(point - neighbour))
+        for other, neighbor in points[:index]:
+            gap = float(np.linalg.norm(point - neighbor))
             assert gap >= limits.hole_gap - 2e-5 or (gap < 1e-5 and other != cable)
 
 

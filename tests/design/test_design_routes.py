@@ -164,7 +164,7 @@ def test_the_error_told_is_what_its_user_finds(name: str, unchecked: None) -> No
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["usual", "hole gap", "release", "no leads"])
 def test_more_cables_do_no_harm(name: str, unchecked: None) -> None:
-    """Cables that spoil what there was are left out: by two cables the strip is brought within a few millimetres."""
+    """Cables that spoil what there was are left out: by two cables the strip is brought within a few millimeters."""
     assert designed(name).rms_error < 0.2 * at_rest(bare(), (UP, DOWN))
 
 

@@ -7,7 +7,7 @@ from builders import box_mesh, strip_mesh, strip_robot
 
 from hydrostat.design import edge_fibres
 from hydrostat.design.muscles.activation import element_fibres, wanted_directions
-from hydrostat.mechanics import NewtonOptions, minimise
+from hydrostat.mechanics import NewtonOptions, minimize
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import BodyPhysics
 
@@ -69,7 +69,7 @@ def test_wanted_directions_are_the_best_of_all_angles() -> None:
             tensions = np.zeros(count)
             # The same couple of forces at the ends of a fibre of unit length, whatever its own length is.
             tensions[fibre] = tension / fibres.energy().lengths(mesh.nodes)[fibre]
-            solved = minimise(
+            solved = minimize(
                 assembly,
                 mesh.nodes,
                 tensions,

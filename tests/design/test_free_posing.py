@@ -109,8 +109,8 @@ def test_markers_that_nobody_holds_rather_stay(farther: float) -> None:
     robot = gallery_robot("starfish")
     mesh, places = robot.body.mesh, np.array([marker.at for marker in robot.markers])
     number = [marker.name for marker in robot.markers].index("right")
-    centre, turn = mesh.nodes.mean(axis=0), np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0)
-    goal = (centre + farther * turn @ (places[number] - centre))[None]
+    center, turn = mesh.nodes.mean(axis=0), np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0)
+    goal = (center + farther * turn @ (places[number] - center))[None]
     markers = locate(mesh, places)
     held, calm = (
         markers.select_points([number]),

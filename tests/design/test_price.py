@@ -37,17 +37,17 @@ def made_graph(points: np.ndarray, edges: np.ndarray, *, worlds: int = 0) -> Rou
 
 
 def grid_graph(columns: int, rows: int) -> RouteGraph:
-    """Each point joined to its eight neighbours."""
+    """Each point joined to its eight neighbors."""
     y, x = np.divmod(np.arange(columns * rows), columns)
     near = np.maximum(np.abs(x[:, None] - x), np.abs(y[:, None] - y)) == 1
     return made_graph(np.column_stack([x, y]).astype(float), np.argwhere(np.triu(near)))
 
 
-def cloud_graph(count: int, seed: int, neighbours: int = 6) -> RouteGraph:
+def cloud_graph(count: int, seed: int, neighbors: int = 6) -> RouteGraph:
     points = np.random.default_rng(seed).random((count, 2)) * [2.0, 1.0]
     away = np.linalg.norm(points[:, None] - points, axis=2)
-    near = np.argsort(away, axis=1)[:, 1 : neighbours + 1]
-    pairs = np.column_stack([np.repeat(np.arange(count), neighbours), near.ravel()])
+    near = np.argsort(away, axis=1)[:, 1 : neighbors + 1]
+    pairs = np.column_stack([np.repeat(np.arange(count), neighbors), near.ravel()])
     return made_graph(points, np.unique(np.sort(pairs, axis=1), axis=0))
 
 

@@ -75,7 +75,7 @@ def test_the_best_tree_of_all_places_and_subsets(seed: int, count: int, phi: flo
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
-def test_with_leads_the_best_of_all_places_and_neighbours_in_contraction(seed: int) -> None:
+def test_with_leads_the_best_of_all_places_and_neighbors_in_contraction(seed: int) -> None:
     """Brute force over what is searched where there are several poses and leads."""
     trees = strip_trees(seed, poses=2)
     order = np.argsort(trees.shortenings.mean(axis=1), kind="stable")
@@ -111,8 +111,8 @@ def test_used_routes_and_taken_places_are_left_out() -> None:
 def test_leads_stay_inside_and_begin_at_the_winch() -> None:
     """Round a hole, which no straight lead may cross."""
     full = strip_mesh(20, 20, size=(0.1, 0.1))
-    centres = full.nodes[full.elements].mean(axis=1)
-    body = mesh_body(Mesh(*_used(full.nodes, full.elements[np.abs(centres - [0.05, 0.0]).max(axis=1) > 0.02])))
+    centers = full.nodes[full.elements].mean(axis=1)
+    body = mesh_body(Mesh(*_used(full.nodes, full.elements[np.abs(centers - [0.05, 0.0]).max(axis=1) > 0.02])))
     region = body_region(body, 0.005)
     assert region.body.area == pytest.approx(0.1**2 - 0.04**2)
     route = np.array([[0.085, -0.03], [0.085, 0.0], [0.085, 0.03]])

@@ -9,7 +9,7 @@ HOLED = SQUARE + "M30 30H70V70H30Z"
 
 
 def drawn_body(path: str, *, element_size: float = 0.02) -> Body:
-    """Body of an SVG path in millimetres, inside a page of 300 mm; its origin is the middle of its box."""
+    """Body of an SVG path in millimeters, inside a page of 300 mm; its origin is the middle of its box."""
     root = '<svg xmlns="http://www.w3.org/2000/svg" width="300mm" height="300mm" viewBox="0 0 300 300">'
     page = f'{root}<path d="{path}"/></svg>'
     material = MATERIALS["polyester fibre"]

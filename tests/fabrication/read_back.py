@@ -24,7 +24,7 @@ class Seen:
 
 
 def see_svg(content: bytes) -> Seen:
-    """With svgelements; a millimetre is taken from the drawing's physical size, not from its viewBox."""
+    """With svgelements; a millimeter is taken from the drawing's physical size, not from its viewBox."""
     names = {"#000000": "MARK", "#0000ff": "PINHOLE", "#ff0000": "CUT"}
     page = SVG.parse(io.BytesIO(content), reify=True, ppi=25.4)  # a pixel of svgelements is 1 mm then
     height = float(page.height)

@@ -31,7 +31,7 @@ from hydrostat.fabrication.sheets.legible import typeset
 from hydrostat.robot import MATERIALS, gallery_folder, robot_hash
 
 TOO_NEAR = [(-20, -10), (5, 12), (49.5, 22)]
-"""A route [mm] whose last hole would be half a millimetre from the seam of the square."""
+"""A route [mm] whose last hole would be half a millimeter from the seam of the square."""
 
 
 @pytest.fixture(params=["plush_kit", "foam_kit"])

@@ -26,7 +26,7 @@ def test_an_unknown_character_is_a_box():
     assert box.points == ((0, 0), (0, 6), (4, 6), (4, 0), (0, 0))
 
 
-def test_text_is_centred_and_as_wide_as_it_says():
+def test_text_is_centered_and_as_wide_as_it_says():
     """Oracle: the bounds of its strokes."""
     text = Lettering("HI 5!", 9)
     points = [point for line in text.lines((10, 20)) for point in line.points]

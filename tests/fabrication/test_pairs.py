@@ -119,14 +119,14 @@ def test_the_back_panel_read_back_has_the_holes_of_the_front_mirrored(single: Ki
     alone = SeenSvg(single.files["pattern/pattern.svg"])
     assert len(alone.circles(PatternPart.PINHOLE, panel="back")) == 0
     assert len(holes["front"]) == len(holes["back"]) == len(alone.circles(PatternPart.PINHOLE))
-    shapes = [_centred(holes["front"][:, :2]), _centred(holes["back"][:, :2] * [-1, 1])]
+    shapes = [_centered(holes["front"][:, :2]), _centered(holes["back"][:, :2] * [-1, 1])]
     np.testing.assert_allclose(_sorted(shapes[0]), _sorted(shapes[1]), atol=2e-3)
     held = {check.what: check.passed for check in pairs.checks}
     assert held["pinholes of the back are where the 35 points of the simulated cables are"]
     assert all(held.values())
 
 
-def _centred(places: np.ndarray) -> np.ndarray:
+def _centered(places: np.ndarray) -> np.ndarray:
     return places - places.mean(axis=0)
 
 
@@ -185,7 +185,7 @@ def test_marks_of_the_back_are_those_of_the_front_mirrored() -> None:
         panel = pattern.panel(side)
         rings = [shape for shape in panel.shapes if isinstance(shape, Circle) and shape.part is PatternPart.STOPPER]
         wanted = [panel.on_sheet(cable.points[-1]) for cable in robot.cables]
-        np.testing.assert_allclose([ring.centre for ring in rings], wanted)
+        np.testing.assert_allclose([ring.center for ring in rings], wanted)
     assert [(sewn.cable, sewn.panel) for sewn in pattern.stitches] == [
         (1, "front"),
         (2, "front"),

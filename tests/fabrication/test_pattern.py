@@ -55,7 +55,7 @@ def test_a_hole_is_cut_inside_itself():
 
 
 def test_the_seam_is_the_outline_itself():
-    """Oracle: the body's own outline, in millimetres from the panel's origin."""
+    """Oracle: the body's own outline, in millimeters from the panel's origin."""
     robot = crossed()
     panel = plush_pattern(robot).panel("front")
     (seam,) = drawn(panel, PatternPart.SEAM)
@@ -73,8 +73,8 @@ def test_the_back_is_the_mirror_of_the_front():
         behind = [np.subtract(line.points, back.origin) for line in drawn(back, part)]
         for one, other in zip(ahead, behind, strict=True):
             np.testing.assert_allclose(one, other, atol=1e-9)
-    assert drawn(front, PatternPart.WINCH)[0].centre == pytest.approx(front.on_sheet((-0.02, -0.01)))
-    assert drawn(back, PatternPart.WINCH)[0].centre == pytest.approx(back.on_sheet((-0.02, -0.01)))
+    assert drawn(front, PatternPart.WINCH)[0].center == pytest.approx(front.on_sheet((-0.02, -0.01)))
+    assert drawn(back, PatternPart.WINCH)[0].center == pytest.approx(back.on_sheet((-0.02, -0.01)))
     assert not drawn(back, PatternPart.PINHOLE)
     assert drawn(back, PatternPart.OPENING)
     assert not drawn(front, PatternPart.OPENING)
@@ -84,7 +84,7 @@ def test_pinholes_on_the_back_are_an_option():
     """Oracle: the cable's points through the panel's own mapping."""
     robot = crossed()
     back = plush_pattern(robot, options=PatternOptions(back_pinholes=True)).panel("back")
-    holes = {tuple(np.round(hole.centre, 6)) for hole in drawn(back, PatternPart.PINHOLE)}
+    holes = {tuple(np.round(hole.center, 6)) for hole in drawn(back, PatternPart.PINHOLE)}
     assert holes == {tuple(np.round(back.on_sheet(point), 6)) for cable in robot.cables for point in cable.points}
 
 
@@ -120,15 +120,15 @@ def test_exits_of_one_winch_that_overlap_become_one_hole_round_both():
     exits = [hole for hole in holes if hole.radius > 1]
     assert len(holes) == 3
     assert exits[0].radius == pytest.approx(1.5)
-    assert exits[0].centre == pytest.approx(panel.on_sheet((0.0005, 0.0)))
+    assert exits[0].center == pytest.approx(panel.on_sheet((0.0005, 0.0)))
 
 
 def test_lines_stop_before_holes():
-    """Oracle: distance to the hole's centre, radius 1 mm and 0.8 mm of clearance."""
+    """Oracle: distance to the hole's center, radius 1 mm and 0.8 mm of clearance."""
     panel = plush_pattern(crossed()).panel("front")
     for hole in drawn(panel, PatternPart.PINHOLE):
         for line in drawn(panel, PatternPart.CABLE):
-            assert line.geometry.distance(shapely.Point(hole.centre)) > 1.75
+            assert line.geometry.distance(shapely.Point(hole.center)) > 1.75
 
 
 def test_sheathed_stretches_are_drawn_as_tubes():

@@ -55,8 +55,8 @@ def test_a_missing_file_is_seen(plush_kit):
     assert len(differences(fingerprint(plush_kit.files), fingerprint(fewer))) == 1
 
 
-def test_a_part_that_is_half_a_millimetre_longer_is_seen(plush_kit):
-    """Oracle: a spool moved up by an additional slab of half a millimetre."""
+def test_a_part_that_is_half_a_millimeter_longer_is_seen(plush_kit):
+    """Oracle: a spool moved up by an additional slab of half a millimeter."""
     spool = next(part for part in plush_kit.printed if "spool" in part.name)
     longer = Printed(name=spool.name, title=spool.title, solid=spool.solid.scale((1.0, 1.0, 1 + 0.5 / spool.size[2])))
     path = f"parts/{spool.name}.stl"

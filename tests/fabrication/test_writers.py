@@ -73,7 +73,7 @@ def test_both_files_show_the_same():
             np.testing.assert_allclose(ours, theirs, atol=0.002)
 
 
-def test_svg_has_layers_for_inkscape_and_a_size_in_millimetres():
+def test_svg_has_layers_for_inkscape_and_a_size_in_millimeters():
     """Oracle: an XML parser; the viewBox is the size."""
     pattern = plush_pattern(crossed())
     page = ElementTree.fromstring(pattern_svg(pattern))
@@ -87,7 +87,7 @@ def test_svg_has_layers_for_inkscape_and_a_size_in_millimetres():
 
 
 def test_dxf_is_clean():
-    """Oracle: ezdxf's audit, and the header's code for millimetres."""
+    """Oracle: ezdxf's audit, and the header's code for millimeters."""
     document = ezdxf.read(io.StringIO(pattern_dxf(plush_pattern(crossed())).decode()))
     audit = document.audit()
     assert not audit.errors

@@ -6,7 +6,7 @@ from hydrostat.geometry.contour import contour
 from hydrostat.geometry.surface import Surface
 
 
-def sphere(radius: float = 0.03, centre: tuple[float, float, float] = (0.0, 0.0, 0.0), divisions: int = 4) -> Surface:
+def sphere(radius: float = 0.03, center: tuple[float, float, float] = (0.0, 0.0, 0.0), divisions: int = 4) -> Surface:
     """An icosahedron, each triangle divided in four again and again, blown up to a sphere."""
     golden = (1 + 5**0.5) / 2
     vertices = np.array(
@@ -32,7 +32,7 @@ def sphere(radius: float = 0.03, centre: tuple[float, float, float] = (0.0, 0.0,
     corners = vertices[triangles]
     inward = np.linalg.det(corners) < 0
     triangles[inward] = triangles[inward][:, ::-1]
-    return Surface(np.array(centre) + radius * vertices, triangles)
+    return Surface(np.array(center) + radius * vertices, triangles)
 
 
 def cuboid(lowest: tuple[float, float, float], highest: tuple[float, float, float]) -> Surface:
@@ -72,10 +72,10 @@ def with_flipped(surface: Surface, share: float, seed: int = 0) -> Surface:
     return Surface(surface.vertices, triangles)
 
 
-def with_hole(surface: Surface, centre: np.ndarray, radius: float) -> Surface:
+def with_hole(surface: Surface, center: np.ndarray, radius: float) -> Surface:
     """Without the triangles whose middle is nearer to a place than a radius."""
     middles = surface.vertices[surface.triangles].mean(axis=1)
-    return Surface(surface.vertices, surface.triangles[np.linalg.norm(middles - centre, axis=1) > radius])
+    return Surface(surface.vertices, surface.triangles[np.linalg.norm(middles - center, axis=1) > radius])
 
 
 def with_small_holes(surface: Surface, count: int, seed: int = 0) -> Surface:
@@ -115,9 +115,9 @@ def with_noise(surface: Surface, size: float, seed: int = 0) -> Surface:
     return Surface(surface.vertices + size * random.standard_normal(surface.vertices.shape), surface.triangles)
 
 
-def with_specks(surface: Surface, centres: np.ndarray, radius: float) -> Surface:
+def with_specks(surface: Surface, centers: np.ndarray, radius: float) -> Surface:
     """Small loose spheres beside it."""
-    return both(surface, *(sphere(radius, tuple(map(float, centre)), 1) for centre in centres))
+    return both(surface, *(sphere(radius, tuple(map(float, center)), 1) for center in centers))
 
 
 def lens(radius: float, apart: float) -> float:

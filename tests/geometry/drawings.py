@@ -14,7 +14,7 @@ Draw = Callable[[ImageDraw.ImageDraw, int], object]
 
 
 def dxf(draw: Callable[[Modelspace, Document], object], unit: int = 4) -> bytes:
-    """A DXF drawing; its unit is a millimetre unless told otherwise."""
+    """A DXF drawing; its unit is a millimeter unless told otherwise."""
     document = ezdxf.new()
     document.header["$INSUNITS"] = unit
     draw(document.modelspace(), document)

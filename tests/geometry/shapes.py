@@ -1,4 +1,4 @@
-"""Outlines to mesh, made in code; lengths in millimetres here, metres in the outlines."""
+"""Outlines to mesh, made in code; lengths in millimeters here, meters in the outlines."""
 
 import numpy as np
 from shapely import LineString, Point, Polygon, box

@@ -1,4 +1,4 @@
-"""Surface files of all kinds as bytes, made by hand here (in millimetres), for what no library writes."""
+"""Surface files of all kinds as bytes, made by hand here (in millimeters), for what no library writes."""
 
 from io import BytesIO
 from zipfile import ZIP_DEFLATED, ZipFile

@@ -129,10 +129,10 @@ def test_area_of_the_periodic_spline() -> None:
     assert area == pytest.approx(61 / 90 * 100, rel=1e-12)
 
 
-@pytest.mark.parametrize(("code", "metres"), [(1, 0.0254), (2, 0.3048), (4, 1e-3), (5, 1e-2), (6, 1.0), (13, 1e-6)])
-def test_unit(code: int, metres: float) -> None:
+@pytest.mark.parametrize(("code", "meters"), [(1, 0.0254), (2, 0.3048), (4, 1e-3), (5, 1e-2), (6, 1.0), (13, 1e-6)])
+def test_unit(code: int, meters: float) -> None:
     """Oracle: the codes of $INSUNITS in the DXF reference."""
-    assert read_outline(dxf(polyline(*SQUARE), unit=code), name="a.dxf").size == pytest.approx(20 * metres, rel=1e-12)
+    assert read_outline(dxf(polyline(*SQUARE), unit=code), name="a.dxf").size == pytest.approx(20 * meters, rel=1e-12)
 
 
 def test_size_given_wins_and_y_is_up() -> None:
@@ -226,8 +226,8 @@ def test_chains(seed: int) -> None:
     random = np.random.default_rng(seed)
     angle = np.linspace(0, 2 * np.pi, 121)[:, None]
     pieces = []
-    for centre in range(3):
-        ring = np.concatenate([3.0 * centre + np.cos(angle), np.sin(angle)], axis=1)
+    for center in range(3):
+        ring = np.concatenate([3.0 * center + np.cos(angle), np.sin(angle)], axis=1)
         cuts = np.r_[0, np.sort(random.choice(np.arange(1, 120), random.integers(0, 12), replace=False)), 120]
         for start, end in pairwise(cuts):
             piece = ring[start : end + 1] + random.uniform(-1e-6, 1e-6, 2)

@@ -7,7 +7,7 @@ from solids import ball, boundary, brick, moved
 
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.surface import Solid, Surface, covering_points
-from hydrostat.geometry.tetrahedra.tetrahedralise import fit
+from hydrostat.geometry.tetrahedra.tetrahedralize import fit
 
 
 def _star(outer: Surface) -> Mesh:

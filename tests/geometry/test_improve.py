@@ -10,9 +10,9 @@ from solids import ball, boundary, brick
 
 from hydrostat.geometry.mesh import Mesh, dihedral_angles
 from hydrostat.geometry.surface import Solid, Surface, covering_points
-from hydrostat.geometry.tetrahedra import tetrahedralise as module
+from hydrostat.geometry.tetrahedra import tetrahedralize as module
 from hydrostat.geometry.tetrahedra.stuffing import signed_volumes
-from hydrostat.geometry.tetrahedra.tetrahedralise import ImproveStage, improve, tetrahedralise
+from hydrostat.geometry.tetrahedra.tetrahedralize import ImproveStage, improve, tetrahedralize
 from hydrostat.kernel import native
 
 REGULAR = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])[[0, 2, 1, 3]]
@@ -150,7 +150,7 @@ def test_a_box_that_is_too_small_grows_to_its_surface_with_its_corners() -> None
 
 def test_the_signed_distance_is_about_zero_on_average() -> None:
     """Closed form of a ball: so the volume is met though facets are flat."""
-    mesh = tetrahedralise(ball(), 0.02)
+    mesh = tetrahedralize(ball(), 0.02)
     away = np.linalg.norm(covering_points(boundary(mesh), 0.002), axis=1) - 0.05
     assert abs(away.mean()) < 0.01 * 0.02
     assert away.min() < -0.01 * 0.02

@@ -79,7 +79,7 @@ def test_refused(nodes: np.ndarray, elements: list[list[int]], message: str) -> 
 REGULAR = [[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
 CORNER = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 LATTICE = [[0.0, 0, 0], [2, 0, 0], [1, 1, 1], [1, 1, -1]]
-"""Sommerville's: two middles of cells of the body-centred lattice and an edge between them."""
+"""Sommerville's: two middles of cells of the body-centered lattice and an edge between them."""
 
 
 def upright(nodes: np.ndarray) -> np.ndarray:

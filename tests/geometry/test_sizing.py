@@ -9,7 +9,7 @@ from solids import Maker, ball, brick, moved, ring, two_fingers
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.sizing import CLOSE, MOST, size_for
-from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+from hydrostat.geometry.tetrahedra.tetrahedralize import tetrahedralize
 from hydrostat.geometry.triangles.triangulate import triangulate
 
 SOLIDS: dict[str, tuple[Maker, int]] = {
@@ -27,7 +27,7 @@ def test_within_a_tenth_in_space(name: str) -> None:
     body, counts = maker(), {}
 
     def make(trial: float) -> Mesh:
-        mesh = tetrahedralise(body, trial)
+        mesh = tetrahedralize(body, trial)
         counts[trial] = len(mesh.nodes)
         return mesh
 
@@ -75,12 +75,12 @@ def test_too_few_for_the_shape_gives_what_comes_nearest() -> None:
     body, counts = brick(0.3, 0.01, 0.01), []
 
     def make(trial: float) -> Mesh:
-        mesh = tetrahedralise(body, trial)
+        mesh = tetrahedralize(body, trial)
         counts.append(len(mesh.nodes))
         return mesh
 
     size = size_for(12, make, content=body.volume, dim=3)
-    assert len(tetrahedralise(body, size).nodes) == min(counts) > 12
+    assert len(tetrahedralize(body, size).nodes) == min(counts) > 12
 
 
 def test_a_plate_is_told_how_many_nodes_it_needs_before_any_is_meshed() -> None:
@@ -110,9 +110,9 @@ def test_thin_bodies_are_found_beyond_sizes_that_are_refused() -> None:
     """The first guess is thicker than the plate, which the mesher refuses; smaller ones follow."""
     body = brick(0.1, 0.1, 0.005)
     with pytest.raises(SurfaceError):
-        tetrahedralise(body, 0.008)
-    size = size_for(2500, lambda trial: tetrahedralise(body, trial), content=20 * body.volume, dim=3)
-    assert len(tetrahedralise(body, size).nodes) == pytest.approx(2500, rel=CLOSE)
+        tetrahedralize(body, 0.008)
+    size = size_for(2500, lambda trial: tetrahedralize(body, trial), content=20 * body.volume, dim=3)
+    assert len(tetrahedralize(body, size).nodes) == pytest.approx(2500, rel=CLOSE)
 
 
 def test_a_body_that_is_always_refused_says_why() -> None:

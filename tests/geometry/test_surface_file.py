@@ -31,7 +31,7 @@ _BALL = sphere(divisions=2)
 
 
 def _same(one: Surface, two: Surface) -> None:
-    """The same corners of the same triangles in the same order, as far as float32 in millimetres keeps them."""
+    """The same corners of the same triangles in the same order, as far as float32 in millimeters keeps them."""
     assert len(one.vertices) == len(two.vertices)
     np.testing.assert_allclose(one.vertices[one.triangles], two.vertices[two.triangles], atol=3e-6 * two.size)
     assert one.volume == pytest.approx(two.volume, rel=1e-5)
@@ -116,9 +116,9 @@ def test_unit_and_size() -> None:
     assert read_surface(content, name="a.stl", unit=5.0, size=0.19).size == pytest.approx(0.19)
 
 
-@pytest.mark.parametrize(("unit", "metres"), [("micron", 1e-6), ("inch", 0.0254), ("meter", 1.0), ("foot", 0.3048)])
-def test_3mf_has_a_unit_of_its_own(unit: str, metres: float) -> None:
-    content = threemf(_BALL, unit, 1 / metres)
+@pytest.mark.parametrize(("unit", "meters"), [("micron", 1e-6), ("inch", 0.0254), ("meter", 1.0), ("foot", 0.3048)])
+def test_3mf_has_a_unit_of_its_own(unit: str, meters: float) -> None:
+    content = threemf(_BALL, unit, 1 / meters)
     _same(read_surface(content, name="a.3mf"), _BALL)
     assert read_surface(content, name="a.3mf", size=0.5).size == pytest.approx(0.5)
 

@@ -8,7 +8,7 @@ SQUARE = '<path d="M10,10 h20 v20 h-20 z"/>'
 
 
 def svg(shapes: str, attributes: str = 'width="100mm" height="100mm" viewBox="0 0 100 100"') -> bytes:
-    """A drawing; one unit is a millimetre unless told otherwise."""
+    """A drawing; one unit is a millimeter unless told otherwise."""
     return f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}>{shapes}</svg>'.encode()
 
 
@@ -72,7 +72,7 @@ def test_size_given_wins() -> None:
         assert np.ptp(outline.exterior[:, 1]) == pytest.approx(0.2 * 7 / 31)
 
 
-def test_y_up_and_centred() -> None:
+def test_y_up_and_centered() -> None:
     """Oracle: a triangle whose tip is at the top of the page, corner by corner."""
     outline = read('<path d="M20,10 L30,50 L10,50 Z"/>')
     expected = {(0.0, 20.0), (-10.0, -20.0), (10.0, -20.0)}

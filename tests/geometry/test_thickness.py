@@ -45,9 +45,9 @@ def test_thickness_of_a_strip() -> None:
 def test_thickness_of_a_ball() -> None:
     """Oracle: through the middle of a ball; the cube is blown up, so facets are a little askew."""
     cube = box_mesh((10, 10, 10), size=(2.0, 2.0, 2.0))
-    centred = cube.nodes - 1.0
-    size, radius = np.abs(centred).max(axis=1, keepdims=True), np.linalg.norm(centred, axis=1, keepdims=True)
-    ball = Mesh(centred * np.divide(size, radius, out=np.ones_like(size), where=radius > 0), cube.elements)
+    centered = cube.nodes - 1.0
+    size, radius = np.abs(centered).max(axis=1, keepdims=True), np.linalg.norm(centered, axis=1, keepdims=True)
+    ball = Mesh(centered * np.divide(size, radius, out=np.ones_like(size), where=radius > 0), cube.elements)
     found = measure_thickness(ball)
     assert np.median(found.chords) == pytest.approx(2.0, rel=0.03)
     assert found.chords.max() <= 2.0 + 1e-9

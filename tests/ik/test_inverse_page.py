@@ -42,8 +42,8 @@ def test_the_limits_of_the_page_hold(page: dict[str, Any]) -> None:
 
 
 def test_the_objective_of_the_page_levels_two_nodes(page: dict[str, Any]) -> None:
-    """Oracle: the heights of these nodes; without the objective they differ by millimetres."""
+    """Oracle: the heights of these nodes; without the objective they differ by millimeters."""
     nodes = list(page["level"].nodes)
-    level, other = (pose.nodes[nodes, 1] for pose in (page["levelled"].pose, page["reached"].pose))
+    level, other = (pose.nodes[nodes, 1] for pose in (page["leveled"].pose, page["reached"].pose))
     assert abs(level[0] - level[1]) < 1e-6
     assert abs(other[0] - other[1]) > 1e-3

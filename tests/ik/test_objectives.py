@@ -111,8 +111,8 @@ def test_values_of_the_others() -> None:
     assert term.errors(rest) == {"tip": pytest.approx(0.06)}
     whole = PLANE["markers"].bind(FLAT).errors(rest)
     assert whole == {"tip": pytest.approx(np.hypot(0.03, 0.06)), "top": pytest.approx(np.hypot(0.01, 0.025))}
-    centre = BODIES["centre"].bind(SPACE)
-    np.testing.assert_allclose(centre.residual(at_rest(SPACE)), [0.01, 0.0, -0.01], atol=1e-12)
+    center = BODIES["center"].bind(SPACE)
+    np.testing.assert_allclose(center.residual(at_rest(SPACE)), [0.01, 0.0, -0.01], atol=1e-12)
     slack = Effort(of="slack", weight=1.0, scale=0.2).bind(FLAT)
     np.testing.assert_allclose(slack.residual(rest), [0.0, -0.005], atol=1e-12)
     posture = state_at(FLAT, FLAT.solve(BENT[2]))
@@ -142,17 +142,17 @@ WRONG: Mapping[str, tuple[Simulation, Objective, str]] = {
         'marker "top" has a weight',
     ),
     "marker's axes": (FLAT, MarkerTarget(targets={"tip": (0, 0)}, free={"tip": "z"}), 'must be of "xy", not "z"'),
-    "centre in space": (
+    "center in space": (
         FLAT,
         CenterOfMassTarget(target=(0, 0, 0)),
-        "centre of mass has 3 coordinates, the body 2 dimensions",
+        "center of mass has 3 coordinates, the body 2 dimensions",
     ),
-    "centre nowhere": (
+    "center nowhere": (
         SPACE,
         CenterOfMassTarget(target=(0, 0, np.inf)),
-        "centre of mass is not finite: (0.0, 0.0, inf)",
+        "center of mass is not finite: (0.0, 0.0, inf)",
     ),
-    "centre's weight": (FLAT, CenterOfMassTarget(target=(0, 0), weight=np.nan), "weight of the centre of mass"),
+    "center's weight": (FLAT, CenterOfMassTarget(target=(0, 0), weight=np.nan), "weight of the center of mass"),
     "effort's weight": (FLAT, Effort(weight=-1e-3), "weight of an effort must be 0 or more, not -0.001"),
     "effort's scale": (FLAT, Effort(scale=0.0), "scale of an effort must be a number above 0, not 0"),
     "closeness's weight": (FLAT, PoseRegularizer(pose=BEFORE[2], weight=np.inf), "weight of a closeness"),
@@ -163,7 +163,7 @@ WRONG: Mapping[str, tuple[Simulation, Objective, str]] = {
     "surface in the plane": (FLAT, ShapeTarget(surface=box()), "give an outline"),
     "shape's weight": (FLAT, ShapeTarget(outline=arc(), weight=-1.0), "weight of a shape must be 0 or more, not -1"),
     "few samples": (FLAT, ShapeTarget(outline=arc(), samples=2), "samples of a shape must be a whole number from 3"),
-    "millimetres": (FLAT, ShapeTarget(outline=Outline(1e3 * arc().exterior)), "the body 200 mm; give it in metres"),
+    "millimeters": (FLAT, ShapeTarget(outline=Outline(1e3 * arc().exterior)), "the body 200 mm; give it in meters"),
     "open surface": (SPACE, ShapeTarget(surface=box().part(np.arange(11))), "surface is not closed; heal it"),
     "flat triangle": (
         SPACE,
@@ -192,7 +192,7 @@ MISTYPED: Mapping[str, tuple[type[Objective], dict[str, Any], str]] = {
     "word for a place": (MarkerTarget, {"targets": {"tip": "ab"}}, "target tip must be 2 coordinates [m], not 'ab'"),
     "complex place": (MarkerTarget, {"targets": {"tip": (1j, 0)}}, "target tip must be 2 coordinates [m], not (1j, 0)"),
     "uneven place": (MarkerTarget, {"targets": {"tip": (0, (1, 2))}}, "must be 2 coordinates [m], not (0, (1, 2))"),
-    "target in millimetres": (MarkerTarget, {"targets": {"tip": (190, 30)}}, "targets are in metres"),
+    "target in millimeters": (MarkerTarget, {"targets": {"tip": (190, 30)}}, "targets are in meters"),
     "words for a weight": (MarkerTarget, {**TIP, "weights": {"tip": "1"}}, "marker tip must be 0 or more, not '1'"),
     "one weight": (MarkerTarget, {**TIP, "weights": 2.0}, "weights of markers must be given by name"),
     "number of an axis": (MarkerTarget, {**TIP, "free": {"tip": 0}}, 'marker tip must be of "xy", not 0'),
@@ -205,14 +205,14 @@ MISTYPED: Mapping[str, tuple[type[Objective], dict[str, Any], str]] = {
     ),
     "many samples": (ShapeTarget, {"outline": arc(), "samples": 10**12}, "from 3 to 1000000, not 1e+12"),
     "broken samples": (ShapeTarget, {"outline": arc(), "samples": 5.5}, "must be a whole number from 3"),
-    "number for a centre": (CenterOfMassTarget, {"target": 0.0}, "centre of mass must be 2 coordinates [m], not 0"),
-    "word for a centre": (CenterOfMassTarget, {"target": "ab"}, "centre of mass must be 2 coordinates [m], not 'ab'"),
-    "nothing for a centre": (
+    "number for a center": (CenterOfMassTarget, {"target": 0.0}, "center of mass must be 2 coordinates [m], not 0"),
+    "word for a center": (CenterOfMassTarget, {"target": "ab"}, "center of mass must be 2 coordinates [m], not 'ab'"),
+    "nothing for a center": (
         CenterOfMassTarget,
         {"target": None},
-        "centre of mass must be 2 coordinates [m], not None",
+        "center of mass must be 2 coordinates [m], not None",
     ),
-    "centre in millimetres": (CenterOfMassTarget, {"target": (90, 20)}, "targets are in metres"),
+    "center in millimeters": (CenterOfMassTarget, {"target": (90, 20)}, "targets are in meters"),
     "word for a scale": (Effort, {"scale": "1"}, "scale of an effort must be a number above 0, not '1'"),
     "effort of nothing": (Effort, {"of": None}, "contraction, tension, slack"),
     "kind of effort": (Effort, {"of": "power"}, 'an effort must be one of contraction, tension, slack, not "power"'),

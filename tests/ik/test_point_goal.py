@@ -59,7 +59,7 @@ def test_a_tracker_follows_a_point_that_moves() -> None:
         ({"a": (0.1, 0.0)}, {"a": (0.1, 0.0), "b": (0.1, 0.0)}, 'point "b" has a target but no place'),
         ({"a": (0.1,)}, {"a": (0.1, 0.0)}, "1 coordinates"),
         ({"a": (0.1, 0.0)}, {"a": (np.nan, 0.0)}, "not finite"),
-        ({"a": (0.1, 0.0)}, {"a": (180.0, 60.0)}, "metres"),
+        ({"a": (0.1, 0.0)}, {"a": (180.0, 60.0)}, "meters"),
     ],
 )
 def test_what_is_wrong_is_named(points: dict, targets: dict, words: str) -> None:

@@ -1,4 +1,4 @@
-"""Inverse kinematics. Oracles: hidden contractions, central differences, scipy's optimisers on the same objective."""
+"""Inverse kinematics. Oracles: hidden contractions, central differences, scipy's optimizers on the same objective."""
 
 from dataclasses import replace
 
@@ -65,7 +65,7 @@ def test_hidden_contractions_are_found(name: str) -> None:
     assert reached.status is IKStatus.REACHED
 
 
-def test_the_regulariser_hides_no_target() -> None:
+def test_the_regularizer_hides_no_target() -> None:
     """It falls with the error, so that any tolerance can be met."""
     simulation = Simulation(two_markers(strip_robot()))
     options = IKOptions(tolerance=1e-9)
@@ -104,7 +104,7 @@ OPTIMA = {
 
 @pytest.mark.parametrize("name", OPTIMA)
 def test_scipy_finds_nothing_better(name: str, unchecked: None) -> None:
-    """Our objective is at most that of two bounded optimisers of another kind, begun at our answer and elsewhere."""
+    """Our objective is at most that of two bounded optimizers of another kind, begun at our answer and elsewhere."""
     robot, goals = OPTIMA[name]
     simulation = Simulation(robot)
     reached = solve_ik(simulation, PoseTarget(name="any", targets=goals))
@@ -257,7 +257,7 @@ def test_an_unknown_marker_and_a_robot_without_cables() -> None:
 
 @pytest.mark.slow
 def test_targets_far_out_of_reach_take_few_steps() -> None:
-    """Where much is left over Gauss-Newton alone creeps; the curvature of the residual is learnt."""
+    """Where much is left over Gauss-Newton alone creeps; the curvature of the residual is learned."""
     simulation = Simulation(load_robot(next(folder for folder in example_folders() if folder.name == "starfish")))
     draw = np.random.default_rng(0)
     for _ in range(4):

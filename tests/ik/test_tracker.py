@@ -76,7 +76,7 @@ def test_limits_hold_at_every_update() -> None:
 
 
 def test_slack_cables_join_under_a_limit_of_the_rate() -> None:
-    """E15: from the far side of a bend the other cable hangs loose by millimetres."""
+    """E15: from the far side of a bend the other cable hangs loose by millimeters."""
     simulation = Simulation(strip_robot(slack=0.004))
     start = simulation.solve(np.array([0.0, 0.02]))
     goal = {"tip": tuple(simulation.solve(np.array([0.025, 0.0])).markers["tip"].tolist())}

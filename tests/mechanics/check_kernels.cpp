@@ -79,7 +79,7 @@ static void factors() {
                                0, 0, size, all, second, -1, -1, 0, 0, 1, (int64_t)data.size()};
     const Fronts fronts{2, size, table, rows.data(), runs, entries.data(), diagonal.data()};
     std::vector<double> lower(all + 8), signs(size), one(second * second + 8), two(second * second + 8), spare(size * 8 + 8);
-    const int64_t negative = kernels_base.factorise(fronts, data.data(), lower.data(), signs.data(), one.data(), two.data(),
+    const int64_t negative = kernels_base.factorize(fronts, data.data(), lower.data(), signs.data(), one.data(), two.data(),
                                                     spare.data(), 1e-13);
     print("negative", {(double)negative});
     for (int sides : {1, 4, 8, 12, 16}) {

@@ -153,7 +153,7 @@ def test_nearest_semidefinite_only_lifts_negative_eigenvalues() -> None:
 
 
 def test_patterns_of_terms_that_come_and_go_keep_one_other() -> None:
-    """However many are made before one is factorised: no chain of them."""
+    """However many are made before one is factorized: no chain of them."""
     rest = np.random.default_rng(0).normal(size=(40, 2))
     pattern = begun = SparsityPattern([np.array([[0, 1]])], rest)
     for number in range(2000):

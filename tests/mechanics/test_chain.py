@@ -10,7 +10,7 @@ from hydrostat.mechanics.tension_law import ChainLaw
 
 
 def test_springs_between_slack_ones_find_their_least_energy() -> None:
-    """Four spans, the outer two slack: neighbours may differ by the limit only, and by just that where cable slips."""
+    """Four spans, the outer two slack: neighbors may differ by the limit only, and by just that where cable slips."""
     elongation = np.array([-4.386e-3, 6.35e-4, 4.31e-4, -2.302e-3])
     limits = np.array([0.0, 0.0124, 0.0737, 0.0792])
     tensions = _tensions(elongation, limits)
@@ -18,7 +18,7 @@ def test_springs_between_slack_ones_find_their_least_energy() -> None:
 
 
 @pytest.mark.parametrize("seed", range(200))
-def test_neighbouring_tensions_differ_by_no_more_than_the_limit(seed: int) -> None:
+def test_neighboring_tensions_differ_by_no_more_than_the_limit(seed: int) -> None:
     random = np.random.default_rng(seed)
     spans = int(random.integers(4, 24))
     elongation = random.uniform(-5e-3, 2e-3, spans)

@@ -9,7 +9,7 @@ from loads import Rollers, outward_areas
 from scipy.optimize import root_scalar
 
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, NewtonResult, RoundOff, WeightEnergy, minimise
+from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, NewtonResult, RoundOff, WeightEnergy, minimize
 
 MU, LAME = 11e3, 17e3
 SIDES = (0.1, 0.06, 0.04)
@@ -69,7 +69,7 @@ def equilibrium(tractions: tuple[float, float, float]) -> tuple[Mesh, NewtonResu
         WeightEnergy(mesh.nodes, areas * tractions),
         *[Rollers(sides[axis], axis, GROUND * held[sides[axis], axis]) for axis in range(3)],
     ]
-    result = minimise(
+    result = minimize(
         Assembly(energies, rest=mesh.nodes, control_count=0),
         mesh.nodes,
         np.zeros(0),

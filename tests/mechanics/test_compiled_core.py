@@ -131,7 +131,7 @@ def test_factors(mesh: Mesh, shift: float, sides: int) -> None:
     matrix.data[assembly.pattern.diagonal] += shift * np.median(matrix.data[assembly.pattern.diagonal])
     shape = (assembly.size, sides) if sides else (assembly.size,)
     right = np.random.default_rng(1).standard_normal(shape)
-    factors = assembly.pattern.analysis.factorise(matrix.data)
+    factors = assembly.pattern.analysis.factorize(matrix.data)
     assert factors.negative == int((np.linalg.eigvalsh(matrix.toarray()) < 0).sum())
     assert (factors.negative > 0) == (shift < 0)
     exact = np.linalg.solve(matrix.toarray(), right)
@@ -143,7 +143,7 @@ def test_right_hand_sides_of_few_places(mesh: Mesh) -> None:
     assembly = assembly_of(mesh)
     matrix = assembly.hessian(mesh.nodes, np.zeros(0))
     matrix.data[assembly.pattern.diagonal] *= 1.05
-    factors = assembly.pattern.analysis.factorise(matrix.data)
+    factors = assembly.pattern.analysis.factorize(matrix.data)
     for dof in range(0, assembly.size, 7):
         right = np.zeros((assembly.size, 5))
         right[dof] = np.arange(5.0)
@@ -168,7 +168,7 @@ def test_threads_make_the_same_bytes(name: str, shift: float, monkeypatch: pytes
     found = []
     for threads in (1, 2, 3, 5):
         monkeypatch.setattr(supernodal, "THREADS", threads)
-        factors = assembly.pattern.analysis.factorise(data)
+        factors = assembly.pattern.analysis.factorize(data)
         found.append((factors.negative, factors.singular, factors.solve(right).tobytes()))
     assert (found[0][0] > 0) == (shift < 0)
     assert not found[0][1]
@@ -189,7 +189,7 @@ def test_threads_end_together_at_a_singular_matrix(wrong: float, place: float, m
         matrix.data[matrix.indices == dof] = 0.0
     monkeypatch.setattr(supernodal, "LARGE", 0.0)
     monkeypatch.setattr(supernodal, "THREADS", 3)
-    assert assembly.pattern.analysis.factorise(matrix.data).singular
+    assert assembly.pattern.analysis.factorize(matrix.data).singular
 
 
 @pytest.mark.parametrize("given", ["0", "two", "-1", "1.5"])

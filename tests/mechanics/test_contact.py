@@ -17,7 +17,7 @@ from hydrostat.mechanics import (
     ObstacleEnergy,
     PinEnergy,
     RoundOff,
-    minimise,
+    minimize,
 )
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.testing import check_energy
@@ -174,7 +174,7 @@ def test_a_block_pressed_against_a_plane(dim: int) -> None:
     body = NeoHookean(rest, mesh.elements, mu=mu, lame=0.0, thickness=depth)
     pushed = pin.with_supports_moved(np.tile(0.004 * np.eye(dim)[0], (len(held), 1)))
     whole = Assembly([body, pushed, wall], rest=rest, control_count=0)
-    found = minimise(whole, rest, np.zeros(0), round_off=RoundOff(force=1e-9, energy=1e-15), options=NewtonOptions())
+    found = minimize(whole, rest, np.zeros(0), round_off=RoundOff(force=1e-9, energy=1e-15), options=NewtonOptions())
     assert found.converged
     forces = np.zeros_like(rest)
     wall.add_gradient(found.nodes, np.zeros(0), forces)

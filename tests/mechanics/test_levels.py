@@ -28,7 +28,7 @@ nodes = mesh.nodes + 0.2 * np.ptp(mesh.nodes, axis=0).min() / 4 * random.uniform
 found += [np.array([assembly.value(nodes, none)]), assembly.gradient(nodes, none)]
 for share in (0.0, 1.0):
     found.append(assembly.hessian(nodes, none, projection=share).data)
-factors = assembly.pattern.analysis.factorise(assembly.hessian(mesh.nodes, none).data)
+factors = assembly.pattern.analysis.factorize(assembly.hessian(mesh.nodes, none).data)
 for sides in (1, 4, 7, 12, 20):
     found.append(factors.solve(random.standard_normal((assembly.size, sides))))
 turned = np.zeros_like(nodes)

@@ -8,7 +8,7 @@ from scipy.optimize import root, root_scalar
 from states import CONTROLS, deform, rough_mesh
 
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, RoundOff, WeightEnergy, minimise
+from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, RoundOff, WeightEnergy, minimize
 
 MU, LAME, THICKNESS = 11e3, 17e3, 0.03
 NONE = np.zeros(CONTROLS)
@@ -111,7 +111,7 @@ def test_a_block_under_an_end_load_takes_its_closed_form(dim: int, traction: flo
         rest=mesh.nodes,
         control_count=0,
     )
-    result = minimise(
+    result = minimize(
         assembly,
         mesh.nodes,
         np.zeros(0),

@@ -18,7 +18,7 @@ from hydrostat.mechanics import (
     Reason,
     RoundOff,
     TensionLaw,
-    minimise,
+    minimize,
 )
 
 MESH = strip_mesh(12, 3)
@@ -85,7 +85,7 @@ def solve(
     controls = np.array([contraction])
     cable = assembly.energies[2]
     assert isinstance(cable, CableEnergy)
-    return minimise(
+    return minimize(
         assembly,
         MESH.nodes if start is None else start,
         controls,
@@ -159,7 +159,7 @@ def test_a_node_that_nothing_holds_stays_and_the_rest_arrives() -> None:
         stiffness=np.full(4, 10.0),
     )
     body = NeoHookean(nodes, MESH.elements, mu=11e3, lame=17e3, thickness=0.03)
-    result = minimise(
+    result = minimize(
         Assembly([body, pins], rest=nodes, control_count=0),
         nodes,
         np.zeros(0),

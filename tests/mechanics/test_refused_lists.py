@@ -59,7 +59,7 @@ MESHES = {"flat": strip_mesh(24, 6), "space": box_mesh((9, 4, 3))}
 CALLS = [(name, place) for name, places in LISTS.items() for place in places]
 
 
-def analyse(mesh: Mesh, patch: pytest.MonkeyPatch) -> None:
+def analyze(mesh: Mesh, patch: pytest.MonkeyPatch) -> None:
     """Make each call once."""
     elastic, none = NeoHookean(mesh.nodes, mesh.elements, mu=3e4, lame=1e5), np.zeros(0)
     assembly = Assembly([elastic], rest=mesh.nodes, control_count=0)
@@ -69,10 +69,10 @@ def analyse(mesh: Mesh, patch: pytest.MonkeyPatch) -> None:
     matrix.data[assembly.pattern.diagonal] *= 1.1
     native.turn(mesh.nodes, 0.1 * mesh.nodes, *elastic._groups, np.zeros_like(mesh.nodes))
     analysis = assembly.pattern.analysis
-    analysis.factorise(matrix.data).solve(np.ones((assembly.size, 3)))
+    analysis.factorize(matrix.data).solve(np.ones((assembly.size, 3)))
     patch.setattr(supernodal, "LARGE", 0.0)
     patch.setattr(supernodal, "THREADS", 3)
-    analysis.factorise(matrix.data)
+    analysis.factorize(matrix.data)
     starts = np.append(0, np.cumsum(np.full(4, 2)))
     graph_coordinates(starts, np.array([1, 3, 0, 2, 1, 3, 2, 0]), 2)  # a ring
 
@@ -112,7 +112,7 @@ def calls(request: pytest.FixtureRequest) -> dict[str, tuple[Callable, tuple]]:
         for name in LISTS:
             patch.setattr(native, name, watched(name, getattr(native, name)))
         patch.setattr(supernodal, "THREADS", 1)
-        analyse(MESHES[request.param], patch)
+        analyze(MESHES[request.param], patch)
     return found
 
 

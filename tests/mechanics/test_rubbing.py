@@ -21,7 +21,7 @@ from hydrostat.mechanics import (
     RoundOff,
     SelfFrictionEnergy,
     Stiffness,
-    minimise,
+    minimize,
 )
 from hydrostat.robot import Contact
 from hydrostat.simulation import Simulation, find_contacts, find_history_equilibrium
@@ -91,7 +91,7 @@ class Pressed:
 
         def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
             noise = RoundOff(force=1e-11, energy=1e-16)
-            return minimise(assembly, nodes, IDLE, round_off=noise, options=NewtonOptions(tolerance=1e-9))
+            return minimize(assembly, nodes, IDLE, round_off=noise, options=NewtonOptions(tolerance=1e-9))
 
         found, result = find_history_equilibrium(start, (self.nodes, None), IDLE, relax, 1e-9)
         assert result.converged, result.reason
@@ -144,7 +144,7 @@ def test_derivatives_and_balance_of_forces(dim: int) -> None:
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_a_block_slips_at_friction_times_what_presses(dim: int) -> None:
-    """Half a millimetre on; corners that pass nodes of the other mesh jolt a little, so the middle of all forces."""
+    """Half a millimeter on; corners that pass nodes of the other mesh jolt a little, so the middle of all forces."""
     forces = Pressed.begun(dim, step=7e-4).along(2.4e-3, step=3e-4)[3:]
     assert np.median(forces[:, 0] / -forces[:, -1]) == pytest.approx(FRICTION, rel=0.01)
 

@@ -36,7 +36,7 @@ def attempt(step: np.ndarray) -> StepTrial:
 def spring() -> Stiffness:
     indptr, indices = np.array([0, 2, 4], np.int32), np.array([0, 1, 0, 1], np.int32)
     assert csc_array((np.ones(4), indices, indptr), shape=(2, 2)).nnz == 4
-    factors = Analysis(indptr, indices, dim=2).factorise(np.array([1.0, 0.0, 0.0, 1.0]))
+    factors = Analysis(indptr, indices, dim=2).factorize(np.array([1.0, 0.0, 0.0, 1.0]))
     return Stiffness(factors, LowRankStiffness(columns=np.zeros((2, 0)), weights=np.zeros((0, 0))))
 
 

@@ -1,4 +1,4 @@
-"""`Stiffness`: a factorised body with cables of low rank. Oracle: the same matrix, dense, by numpy."""
+"""`Stiffness`: a factorized body with cables of low rank. Oracle: the same matrix, dense, by numpy."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def made(matrix: np.ndarray, columns: np.ndarray, weights: np.ndarray) -> Stiffn
     pattern.sort_indices()
     values = matrix.T[pattern.T.toarray() != 0]
     analysis = Analysis(pattern.indptr, pattern.indices, dim=2, points=MESH.nodes)
-    return Stiffness(analysis.factorise(values), LowRankStiffness(columns=columns, weights=weights))
+    return Stiffness(analysis.factorize(values), LowRankStiffness(columns=columns, weights=weights))
 
 
 def weights_of(kind: str, random: np.random.Generator) -> np.ndarray:

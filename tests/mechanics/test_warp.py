@@ -42,9 +42,9 @@ def test_a_rigid_spin_becomes_a_rotation(dim: int, angle: float, deformed: bool)
     random = np.random.default_rng(int(10 * angle) + dim)
     mesh = block(dim)
     nodes = deform(mesh, random) if deformed else mesh.nodes
-    turn, centre = spin(dim, random, angle), nodes[2]
-    found = made(mesh, [2])(nodes, (nodes - centre) @ turn.T)
-    expected = (nodes - centre) @ expm(turn).T + centre
+    turn, center = spin(dim, random, angle), nodes[2]
+    found = made(mesh, [2])(nodes, (nodes - center) @ turn.T)
+    expected = (nodes - center) @ expm(turn).T + center
     assert np.abs(found - expected).max() < 1e-11 * np.ptp(nodes)
 
 

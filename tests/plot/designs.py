@@ -79,7 +79,7 @@ def written(robot: Robot) -> Robot:
 
 
 def _network(robot: Robot, target: PoseTarget, tree: np.ndarray) -> Network:
-    """A network as winch trees would have led to it, its first winch taken in by a centimetre."""
+    """A network as winch trees would have led to it, its first winch taken in by a centimeter."""
     pose = Simulation(robot).solve(np.array([0.01, 0.0]))
     errors = {name: float(np.linalg.norm(pose.markers[name] - np.array(at))) for name, at in target.targets.items()}
     fibres = edge_fibres(robot.body.mesh)

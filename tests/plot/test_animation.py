@@ -69,7 +69,7 @@ def test_what_is_held_does_not_tremble() -> None:
     rows = np.flatnonzero(body[:, left + 3 : left + 12].all(axis=1))[4:-4]
     held = slice(rows[0], rows[-1]), slice(left + 3, left + 12)
     assert np.ptp(drawn[0][60:][held]) > 30
-    assert moves[held].max() <= 6  # of 255: shade from neighbours that move
+    assert moves[held].max() <= 6  # of 255: shade from neighbors that move
     assert moves.max() > 100
 
 

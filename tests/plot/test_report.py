@@ -11,7 +11,7 @@ from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_trace
 from hydrostat.errors import InputError
 from hydrostat.plot import write_report
 from hydrostat.plot.report import report_text
-from hydrostat.plot.report_tables import millimetres
+from hydrostat.plot.report_tables import millimeters
 from hydrostat.robot import robot_hash
 
 VOID = {"meta"}
@@ -113,6 +113,6 @@ def test_a_title_that_is_no_valid_text(tmp_path: Path) -> None:
     ("error", "words"),
     [(0.0123456, "12.35"), (1e-4, "0.10"), (9.87e-5, "0.099"), (1.234e-6, "0.0012"), (0.0, "0.00")],
 )
-def test_millimetres(error: float, words: str) -> None:
+def test_millimeters(error: float, words: str) -> None:
     """Oracle: by hand."""
-    assert millimetres(error) == words
+    assert millimeters(error) == words

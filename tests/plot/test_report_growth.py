@@ -45,7 +45,7 @@ def test_the_certificate_in_words() -> None:
     assert certificate_words(0.0034, one) == (
         "One more cable with a winch of its own, along the best path found by pricing 12,345 states, would promise "
         "1.20 mm rms instead of 3.40 mm rms. Moving one via point along one axis lowers the error by at most 0.025 mm "
-        "for each millimetre."
+        "for each millimeter."
     )
     assert "promises nothing beyond 1.20 mm rms." in certificate_words(0.0012, one)
     assert certificate_words(0.1, None) == "The search was stopped before it could tell what one more cable would gain."

@@ -90,4 +90,4 @@ def test_a_pose_without_markers_shows_the_shape_that_is_wanted() -> None:
 def test_a_pose_of_any_goal_can_be_drawn() -> None:
     robot = strip_robot(columns=10, rows=2)
     reached = solve_ik(Simulation(robot), objectives=[CenterOfMassTarget(target=(0.1, 0.01))])
-    assert "centre of mass error" in inline_svg(draw_reached(robot, reached), name="it", label="")
+    assert "center of mass error" in inline_svg(draw_reached(robot, reached), name="it", label="")

@@ -1,4 +1,4 @@
-"""Small robot folders: a rectangle 60 x 40 mm, centred, of few elements."""
+"""Small robot folders: a rectangle 60 x 40 mm, centered, of few elements."""
 
 import sys
 from pathlib import Path

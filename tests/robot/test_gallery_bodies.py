@@ -50,7 +50,7 @@ def test_bodies(name: str) -> None:
 @pytest.mark.parametrize("name", gallery.SHEETS)
 @pytest.mark.slow
 def test_poses(name: str) -> None:
-    """Oracle: at least two poses; each target far from rest for some marker, and with whole millimetres."""
+    """Oracle: at least two poses; each target far from rest for some marker, and with whole millimeters."""
     rest = {marker.name: np.array(marker.at) for marker in robot(name).markers}
     assert len(robot(name).poses) >= 2
     for pose in robot(name).poses.values():
@@ -88,7 +88,7 @@ def test_the_thumbs_differ() -> None:
 
 @pytest.mark.parametrize(("name", "pose"), [("cupping_hand", "pinch"), ("octopus_arm", "corkscrew")])
 def test_poses_are_reached(name: str, pose: str) -> None:
-    """Oracle: targets are simulated places in whole millimetres, so at most root(3)/2 mm is left at each marker."""
+    """Oracle: targets are simulated places in whole millimeters, so at most root(3)/2 mm is left at each marker."""
     reached = hs.solve_ik(hs.Simulation(robot(name)), robot(name).poses[pose])
     assert reached.pose.result.converged
     assert max(reached.errors.values()) < 3**0.5 / 2 * 1e-3

@@ -98,7 +98,7 @@ def test_rubber_can_be_simulated(tmp_path: Path) -> None:
 
 
 def test_unknown_name_suggests_the_nearest() -> None:
-    """Oracle: a misspelt name and one that is like none."""
+    """Oracle: a misspelled name and one that is like none."""
     with pytest.raises(InputError, match='did you mean "dragon skin 10"'):
         get_material("Dragonskin 10")
     with pytest.raises(InputError, match='unknown material "granite"; `hydrostat materials` lists all'):

@@ -20,7 +20,7 @@ def bar_png() -> bytes:
 
 
 def bar_dxf() -> bytes:
-    """The same in millimetres, 200 x 50, of two lines and two arcs."""
+    """The same in millimeters, 200 x 50, of two lines and two arcs."""
     import ezdxf
 
     document = ezdxf.new(units=4)

@@ -113,7 +113,7 @@ def _folder(folder: Path, text: str, content: bytes | None = None) -> Path:
 
 
 @pytest.mark.parametrize(
-    "extra", ["", 'size = "60 mm"\nvolume = "patch"', "@cm"], ids=["plain", "scaled", "centimetres"]
+    "extra", ["", 'size = "60 mm"\nvolume = "patch"', "@cm"], ids=["plain", "scaled", "centimeters"]
 )
 def test_load_save_load(extra: str, tmp_path: Path) -> None:
     """The same robot, text and bits; a coordinate counts as length_unit says, unless a size is given."""

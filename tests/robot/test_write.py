@@ -112,10 +112,10 @@ def test_every_key(unit: str, tmp_path: Path) -> None:
     check_round_trip(robot, tmp_path / "there")
 
 
-@pytest.mark.parametrize(("unit", "metres"), [("mm", 1e-3), ("in", 0.0254)])
+@pytest.mark.parametrize(("unit", "meters"), [("mm", 1e-3), ("in", 0.0254)])
 @pytest.mark.parametrize("ending", ["vtk", "vtu", "msh"])
-def test_triangles(unit: str, metres: float, ending: str, tmp_path: Path) -> None:
-    """Oracle: the mesh that meshio wrote, in metres, and the robot itself, read again."""
+def test_triangles(unit: str, meters: float, ending: str, tmp_path: Path) -> None:
+    """Oracle: the mesh that meshio wrote, in meters, and the robot itself, read again."""
     mesh = strip_mesh(4, 2, size=(8.0, 4.0))
     nodes = np.pad(mesh.nodes, ((0, 0), (0, 1)))
     robot_folder(tmp_path / "here")
@@ -123,14 +123,14 @@ def test_triangles(unit: str, metres: float, ending: str, tmp_path: Path) -> Non
     meshio.write(path, meshio.Mesh(nodes, [("triangle", mesh.elements)]), file_format=form)
     flat = {"extra": 'thickness = "3 mm"', "box": "[-1, -9], [0.1, 9]", "at": "1, 0", "end": "7, 1"}
     robot = load(tmp_path / "here", MESHED.format(unit=unit, ending=ending, **flat))
-    assert robot.body.mesh.nodes == pytest.approx(mesh.nodes * metres)
+    assert robot.body.mesh.nodes == pytest.approx(mesh.nodes * meters)
     assert robot.body.material.name == "flexfoam-it x"
     check_round_trip(robot, tmp_path / "there")
 
 
 @pytest.mark.parametrize("size", [None, "0.13 m"])
 def test_tetrahedra(size: str | None, tmp_path: Path) -> None:
-    """Oracle: the mesh that meshio wrote, in metres or scaled to the size asked, and the robot itself, read again."""
+    """Oracle: the mesh that meshio wrote, in meters or scaled to the size asked, and the robot itself, read again."""
     mesh = box_mesh((2, 1, 1), size=(8.0, 4.0, 4.0))
     robot_folder(tmp_path / "here")
     meshio.write(tmp_path / "here" / "body.vtk", meshio.Mesh(mesh.nodes, [("tetra", mesh.elements)]))

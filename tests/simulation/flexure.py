@@ -1,7 +1,7 @@
 """Finite flexure of a beam by a cable inside it: the reference for the beam test, a problem in one dimension.
 
 Derivation. A strip of height H, -H/2 <= Y <= H/2, plane strain, thickness b, is bent to a ring sector: the section at X
-turns by theta = kappa X, and a point goes to the radius r(Y) from the centre of bending. The principal elongations are
+turns by theta = kappa X, and a point goes to the radius r(Y) from the center of bending. The principal elongations are
 
     lambda_1 = kappa r(Y)   along the beam,        lambda_2 = r'(Y)   across it.
 
@@ -20,7 +20,7 @@ and stationary in kappa:
 
     b Integral P_1 r dY + T r(c) = 0.
 
-The first gives the axial force at once: b Integral P_1 dY = -T; the second is the moment about the centre of bending.
+The first gives the axial force at once: b Integral P_1 dY = -T; the second is the moment about the center of bending.
 So the beam carries exactly the thrust -T along the cable, and the moment may be taken about any point: about the line
 of radius 1 / kappa, which is as long as at rest, nothing cancels where the bending is small. The state (rho = r - 1 /
 kappa, s = r', M = Integral P_1 rho) obeys ordinary equations, as P_2' = (dP_2/d lambda_2) s' + (dP_2/d lambda_1) kappa

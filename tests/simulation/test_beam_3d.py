@@ -92,7 +92,7 @@ def test_a_misplaced_cable_is_told_apart() -> None:
 
 @pytest.mark.slow
 def test_the_sections_turn_out_of_the_plane_by_what_the_mesh_is_askew() -> None:
-    """The diagonals of the tetrahedra favour one side; what comes of that falls with the mesh."""
+    """The diagonals of the tetrahedra favor one side; what comes of that falls with the mesh."""
     twists = [bend(rows).twist for rows in ROWS]
     assert twists[0] > twists[1] > twists[2]
     assert twists[2] < 0.03

@@ -20,8 +20,8 @@ def reactions(simulation: Simulation, pose: Equilibrium) -> tuple[np.ndarray, np
     return pose.nodes[pins.stencils].reshape(-1, pose.nodes.shape[1]), forces.reshape(-1, pose.nodes.shape[1])
 
 
-def centre(robot: Robot, nodes: np.ndarray) -> tuple[float, np.ndarray]:
-    """Mass [kg] and its centre [m], element by element from rest volumes and the deformed centroids."""
+def center(robot: Robot, nodes: np.ndarray) -> tuple[float, np.ndarray]:
+    """Mass [kg] and its center [m], element by element from rest volumes and the deformed centroids."""
     body = robot.body
     masses = body.material.density * body.mesh.volumes * (body.thickness or 1.0)
     return float(masses.sum()), masses @ nodes[body.mesh.elements].mean(axis=1) / masses.sum()
@@ -30,12 +30,12 @@ def centre(robot: Robot, nodes: np.ndarray) -> tuple[float, np.ndarray]:
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize("pull", [-0.05, 0.01])
 def test_the_pins_carry_the_weight(name: str, pull: float) -> None:
-    """Sum of the reactions = -m g, their moment that of the weight at the centre of mass; cables inside add nothing."""
+    """Sum of the reactions = -m g, their moment that of the weight at the center of mass; cables inside add nothing."""
     robot = ROBOTS[name]()
     dim = robot.body.mesh.dim
     simulation = Simulation(replace(robot, gravity=GRAVITY[dim]))
     pose = simulation.solve(np.array([pull, -0.05]))
-    mass, middle = centre(robot, pose.nodes)
+    mass, middle = center(robot, pose.nodes)
     weight = mass * np.array(GRAVITY[dim])
     places, forces = reactions(simulation, pose)
     assert np.abs(pose.nodes - robot.body.mesh.nodes).max() > 1e-3 * robot.body.mesh.size
@@ -50,7 +50,7 @@ def test_the_pins_carry_the_weight(name: str, pull: float) -> None:
 def test_a_bar_hangs_as_long_as_its_weight_makes_it(dim: int) -> None:
     """Poisson's ratio 0: the stress at x is rho g (L - x), so the end goes down by rho g L^2 / (2 E), to first order.
 
-    What is left, 0.04 % in the plane, is that nodes carry lumped weights and tetrahedra favour a diagonal.
+    What is left, 0.04 % in the plane, is that nodes carry lumped weights and tetrahedra favor a diagonal.
     """
     length, young = 0.2, 30e3
     mesh = strip_mesh(10, 2, size=(length, 0.05)) if dim == 2 else box_mesh((10, 2, 2), size=(length, 0.05, 0.05))

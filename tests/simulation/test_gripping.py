@@ -92,7 +92,7 @@ def test_a_block_slips_at_friction_times_its_weight(dim: int) -> None:
 
 @pytest.mark.slow
 def test_what_sticks_does_not_creep() -> None:
-    """At 0.9 of its limit, and pushed up and down 200 times, it stays within a nanometre each time."""
+    """At 0.9 of its limit, and pushed up and down 200 times, it stays within a nanometer each time."""
     drag = Drag(pad(2, cells=8))
     limit = FRICTION * WEIGHT / 2e3
     for way in np.linspace(0, 1, 5)[1:]:

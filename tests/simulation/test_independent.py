@@ -1,4 +1,4 @@
-"""Poses against a second program: the same energy, coded afresh in plain loops and minimised by SciPy.
+"""Poses against a second program: the same energy, coded afresh in plain loops and minimized by SciPy.
 
 Like hydrostat it rounds off the length of a segment near 0. Its gradient is the complex step of its value, exact to the
 last digit; no formula is shared with hydrostat.

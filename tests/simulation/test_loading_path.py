@@ -66,7 +66,7 @@ def test_a_trace_of_friction_is_none(name: str) -> None:
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_tensions_obey_the_capstan_law(name: str) -> None:
-    """Neighbouring tensions differ by at most exp(mu angle), by just that where cable slips; and balance the body."""
+    """Neighboring tensions differ by at most exp(mu angle), by just that where cable slips; and balance the body."""
     simulation = Simulation(ROBOTS[name]())
     there = simulation.solve(PULL)
     back = simulation.solve(0.5 * PULL, start=there)

@@ -85,7 +85,7 @@ def test_jacobians_are_the_slopes_of_the_markers(simulation: Simulation) -> None
 
 
 def test_a_pose_that_is_not_found_leaves_nan_and_its_reason(simulation: Simulation) -> None:
-    too_much = {2: 1.0, 3: 0.2}[simulation.robot.body.mesh.dim]  # [m], but less than what is taken for millimetres
+    too_much = {2: 1.0, 3: 0.2}[simulation.robot.body.mesh.dim]  # [m], but less than what is taken for millimeters
     goals = np.concatenate([goals_of(simulation, 2), goals_of(simulation, 3)[2:] + too_much])
     hasty = Simulation(simulation.robot, options=NewtonOptions(iterations=7), body=simulation.body)
     found = hasty.solve_batch(goals, nodes=True)

@@ -113,17 +113,17 @@ def test_descent_finds_the_route_and_modulus_of_a_pose(torch: ModuleType, unchec
         simulation, contractions, routes=[routes[0] + 0.002 * lift, routes[1]], young=torch.tensor(1.3 * young)
     )
     unknown = torch.tensor([0.0, 1.0], dtype=torch.float64, requires_grad=True)
-    optimiser = torch.optim.LBFGS([unknown], line_search_fn="strong_wolfe", tolerance_grad=1e-12, tolerance_change=0)
+    optimizer = torch.optim.LBFGS([unknown], line_search_fn="strong_wolfe", tolerance_grad=1e-12, tolerance_change=0)
 
     def closure() -> Any:
-        optimiser.zero_grad()
+        optimizer.zero_grad()
         moved = [routes[0] + 1e-2 * unknown[0] * lift, routes[1]]
         pose = solve(simulation, contractions, routes=moved, young=young * unknown[1], start=goal.solved)
         loss = 1e4 * (pose.nodes - goal.nodes).square().sum()
         loss.backward()
         return loss
 
-    optimiser.step(closure)
+    optimizer.step(closure)
     assert unknown.detach().numpy() == pytest.approx([0.2, 1.3], rel=1e-5)
 
 

@@ -245,9 +245,9 @@ def _over_winches(parts: Parts, index: int, at: int) -> Iterator[str]:
             continue
         if index not in parts.new_cables and number not in parts.new_winches:
             continue
-        centre = np.array(winch.at)
-        share = nearest_shares(ends[None], np.stack([centre, centre])[None])[0][0]
-        gap = float(np.linalg.norm(ends[0] + share * (ends[1] - ends[0]) - centre))
+        center = np.array(winch.at)
+        share = nearest_shares(ends[None], np.stack([center, center])[None])[0][0]
+        gap = float(np.linalg.norm(ends[0] + share * (ends[1] - ends[0]) - center))
         if gap < 2 * winch.spool_radius - LENGTH:
             yield (
                 f"cable[{index}] between points {at} and {at + 1}: too close to {parts.winch_name(number)} of other "

@@ -68,10 +68,10 @@ class Parts:
 
 
 def mm(length: float) -> str:
-    """A length [m] in millimetres, to a hundredth."""
+    """A length [m] in millimeters, to a hundredth."""
     return f"{round(1e3 * float(length), 2) + 0.0:g} mm"
 
 
 def place(point: Iterable[float]) -> str:
-    """A place [m] in millimetres, to a tenth."""
+    """A place [m] in millimeters, to a tenth."""
     return "[" + ", ".join(f"{round(1e3 * float(value), 1) + 0.0:g}" for value in point) + "] mm"

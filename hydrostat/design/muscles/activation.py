@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry import Anchors, Mesh, locate
-from hydrostat.mechanics import FibreEnergy, NewtonOptions, NewtonResult, minimise
+from hydrostat.mechanics import FibreEnergy, NewtonOptions, NewtonResult, minimize
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
@@ -61,12 +61,12 @@ def element_fibres(mesh: Mesh, directions: Float[np.ndarray, "elements dim"]) ->
     inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
     local = np.einsum("eij,ej->ei", inverse, directions)
     slopes = np.column_stack([-local.sum(axis=1), local])
-    centre = 1.0 / (mesh.dim + 1)
+    center = 1.0 / (mesh.dim + 1)
     with np.errstate(divide="ignore"):
-        reach = centre / np.abs(slopes)
+        reach = center / np.abs(slopes)
     forward = np.where(slopes < 0, reach, np.inf).min(axis=1)
     backward = np.where(slopes > 0, reach, np.inf).min(axis=1)
-    return Fibres(mesh.elements, centre - backward[:, None] * slopes, centre + forward[:, None] * slopes)
+    return Fibres(mesh.elements, center - backward[:, None] * slopes, center + forward[:, None] * slopes)
 
 
 def wanted_directions(
@@ -120,8 +120,8 @@ def activate(
 ) -> Activation:
     """Tensions t >= 0 of least effort that bring the markers near their targets.
 
-    Minimises 1/2 |markers - targets|^2 + rho/2 |t|^2 by Gauss-Newton while the target moves from rest to where it
-    should be. The thesis leaves the regulariser open (E26, M8): squared tensions make the answer unique and spread it
+    Minimizes 1/2 |markers - targets|^2 + rho/2 |t|^2 by Gauss-Newton while the target moves from rest to where it
+    should be. The thesis leaves the regularizer open (E26, M8): squared tensions make the answer unique and spread it
     over many fibres; a sum of tensions instead would be sparse, but folds a limb at one hinge and misses the pose.
 
     Args:
@@ -197,7 +197,7 @@ class _Activation:
         return nodes, tensions, False
 
     def _rest(self, nodes: Nodes, tensions: Vector) -> NewtonResult:
-        return minimise(
+        return minimize(
             self.assembly,
             nodes,
             tensions,
@@ -227,7 +227,7 @@ def least_effort(
     *,
     most: float | Vector = np.inf,
 ) -> Vector:
-    """Minimiser 0 <= t <= most of 1/2 |J t - b|^2 + rho/2 |t|^2.
+    """Minimizer 0 <= t <= most of 1/2 |J t - b|^2 + rho/2 |t|^2.
 
     There are few rows and many fibres, so the dual is solved: t = J^T y / rho within its bounds with y = b - J t, by
     semismooth Newton with a line search on the dual's value, which is smooth and concave.

@@ -9,7 +9,7 @@ from scipy.sparse import csc_array
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.design.muscles.activation import Fibres, edge_fibres, least_effort, place_slopes
 from hydrostat.geometry import Anchors
-from hydrostat.mechanics import NewtonOptions, NewtonResult, minimise
+from hydrostat.mechanics import NewtonOptions, NewtonResult, minimize
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics
 
@@ -17,8 +17,8 @@ from hydrostat.simulation import BodyPhysics
 class FreePosing:
     """Any-time activation of muscle fibres: each update is one step nearer to where points are held.
 
-    It minimises what `activate` does, 1/2 |points - goals|^2 + rho/2 |t|^2, over tensions 0 <= t <= strength, but goes
-    on from where it is. An update linearises equilibrium and goal together (sequential quadratic programming): one
+    It minimizes what `activate` does, 1/2 |points - goals|^2 + rho/2 |t|^2, over tensions 0 <= t <= strength, but goes
+    on from where it is. An update linearizes equilibrium and goal together (sequential quadratic programming): one
     solve for each coordinate held, the dual of least effort, and a step or two of Newton whose last Hessian begins the
     next update. The bound on tensions keeps a goal out of reach from crushing the body.
 
@@ -94,7 +94,7 @@ class FreePosing:
     def _begin(self) -> NewtonResult:
         """Return the equilibrium at rest, from a start with all of the weight."""
         none = np.zeros(len(self.fibres))
-        return minimise(
+        return minimize(
             self._assembly,
             self.robot.body.mesh.nodes,
             none,
@@ -168,7 +168,7 @@ class FreePosing:
 
     def _relax(self, tensions: Vector, iterations: int) -> NewtonResult:
         """Take a few Newton steps at these tensions; the first costs no factorization."""
-        return minimise(
+        return minimize(
             self._assembly,
             self.nodes,
             tensions,
@@ -192,14 +192,14 @@ class FreePosing:
 
 @dataclass(frozen=True, eq=False)
 class _Aim:
-    """Points, where they should be [m], and how much a metre counts."""
+    """Points, where they should be [m], and how much a meter counts."""
 
     points: Anchors
     goals: Points
     weight: float
 
 
-_CALM = 0.03  # what a metre of a point that should rather stay counts beside one of a point that is held
+_CALM = 0.03  # what a meter of a point that should rather stay counts beside one of a point that is held
 _SHORTEST = 0.4
 """A muscle that is so short, as a share of its length at rest, cannot pull: the force falls with the length."""
 

@@ -257,7 +257,7 @@ def reach_from_rest(
 
 _REPLAYS = 2  # so often is a pose sought that is also what its contractions lead to from rest
 _SAME = 1e-3  # markers nearer than this share of the body's size are at the same place
-_STAYS = 0.1  # what a metre of a marker that a pose does not name counts beside one of a marker that it names
+_STAYS = 0.1  # what a meter of a marker that a pose does not name counts beside one of a marker that it names
 _RESTARTS = 1  # from where the first search ended, as rest leads to it at once
 _NO_REACH = 0.01  # a marker that moves less than this share of the body's size is not brought anywhere
 _SHORT = 0.05  # a pose that misses more than hoped by this share of the whole error is sought again

@@ -19,7 +19,7 @@ from hydrostat.robot import Robot, limit_travels
 from hydrostat.simulation import Simulation, cable_sensitivities
 
 DIGITS = 5
-"""Coordinates are rounded to a hundredth of a millimetre [digits of a metre]: nobody places a cable finer."""
+"""Coordinates are rounded to a hundredth of a millimeter [digits of a meter]: nobody places a cable finer."""
 
 
 @dataclass(frozen=True, eq=False)

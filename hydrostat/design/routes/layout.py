@@ -83,7 +83,7 @@ class Layout:
         return self.source.body.mesh.dim
 
     def robot(self, *, digits: int | None = None) -> Robot:
-        """The robot with this network; coordinates rounded to so many digits of a metre."""
+        """The robot with this network; coordinates rounded to so many digits of a meter."""
         winches = [replace(site.winch, at=_point(site.winch.at, digits)) for site in self.sites]
         cables = []
         for route in self.routes:

@@ -186,7 +186,7 @@ def _spots(layout: Layout, spacing: float) -> _Spots:
 def _nearest(zone: Zone, spots: _Spots, numbers: Vector, dim: int) -> _Spots:
     """Each place, moved along its segment to where it is nearest to a zone; those in holes stay.
 
-    A place moves as far as to its neighbours, where a distance along a straight line has one dip as long as it is
+    A place moves as far as to its neighbors, where a distance along a straight line has one dip as long as it is
     nearer to one side of the zone than to others: by golden sections.
     """
     low, high = spots.shares - spots.widths, spots.shares + spots.widths

@@ -31,7 +31,7 @@ class RefineOptions:
 def refine(bench: Bench, region: Region, trial: Trial, options: RefineOptions) -> Trial:
     """Levenberg and Marquardt over all numbers of a layout and the contractions of every pose at once.
 
-    Residuals are linearised by the adjoint; limits of the layout, on contractions and tensions are rows of each step;
+    Residuals are linearized by the adjoint; limits of the layout, on contractions and tensions are rows of each step;
     a step is pushed back into what can be built before it is tried, and taken where the cost falls.
     """
     return _Refinement(bench, region, options).run(trial)

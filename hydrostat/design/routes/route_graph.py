@@ -137,7 +137,7 @@ def route_graph(robot: Robot, region: Region, constraints: Constraints, *, spaci
 _CROWDED = 0.35  # points nearer than this share of the spacing are one
 _REACH = 2.0  # points are joined up to so many spacings away
 
-_NEIGHBOURS = {2: 12, 3: 18}
+_NEIGHBORS = {2: 12, 3: 18}
 """So many of the nearest points is each joined to, by dimension: enough directions for a cable to follow the field."""
 
 
@@ -176,7 +176,7 @@ def _near(points: Points, nodes: Int[np.ndarray, " points"], mesh_edges: Pairs, 
     # Imported here: those who do not design start sooner.
     from scipy.spatial import KDTree
 
-    count = min(_NEIGHBOURS[points.shape[1]] + 1, len(points))
+    count = min(_NEIGHBORS[points.shape[1]] + 1, len(points))
     away, near = map(np.asarray, KDTree(points).query(points, k=count, distance_upper_bound=_REACH * spacing))
     rows, columns = np.nonzero(np.isfinite(away))
     pairs = np.column_stack([rows, near[rows, columns]])

@@ -128,7 +128,7 @@ def _reach(middle: Route, side: Route, ramp: Vector, region: Region) -> Vector:
 
 
 def _smooth(route: Route) -> Route:
-    """A polyline, its ends kept, after some rounds of means of neighbours."""
+    """A polyline, its ends kept, after some rounds of means of neighbors."""
     route = route.copy()
     for _ in range(_ROUNDS):
         route[1:-1] = 0.25 * route[:-2] + 0.5 * route[1:-1] + 0.25 * route[2:]

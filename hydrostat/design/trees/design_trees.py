@@ -297,7 +297,7 @@ class _TreeDesign:
 
 
 def _point(coordinates: Vector) -> tuple[float, ...]:
-    """Coordinates to a hundredth of a millimetre, as nobody places a cable finer."""
+    """Coordinates to a hundredth of a millimeter, as nobody places a cable finer."""
     return tuple(round(float(value), 5) for value in coordinates)
 
 

@@ -142,7 +142,7 @@ def keep_apart(cables: Sequence[Route], *, gap: float, winch_gap: float) -> list
 
 
 def _places(cable: Route, index: int) -> Route:
-    """Places for one point along its cable, the nearest first: up to 0.45 of the way to its neighbours."""
+    """Places for one point along its cable, the nearest first: up to 0.45 of the way to its neighbors."""
     point, back = cable[index], cable[index - 1] - cable[index]
     ways = [back, cable[index + 1] - point] if index < len(cable) - 1 else [back]
     places = [(0.0, point)]

@@ -22,14 +22,14 @@ _SVG = "{http://www.w3.org/2000/svg}"
 
 
 class SeenSvg:
-    """An SVG as it is written (InputError: it has no size in millimetres)."""
+    """An SVG as it is written (InputError: it has no size in millimeters)."""
 
     def __init__(self, content: bytes) -> None:
         self._root = ElementTree.fromstring(content)
         width = re.fullmatch(r"([\d.]+)mm", self._root.get("width", ""))
         box = [float(number) for number in self._root.get("viewBox", "").split()]
         if width is None or len(box) != 4:
-            raise InputError("pattern.svg: no size in millimetres")
+            raise InputError("pattern.svg: no size in millimeters")
         self._scale, self._height = float(width[1]) / box[2], box[3]
 
     def circles(self, part: PatternPart, *, panel: str = "") -> Float[np.ndarray, "circles 3"]:
@@ -62,10 +62,10 @@ class SeenDxf:
         self._document = read(io.StringIO(content.decode()))
 
     @property
-    def millimetres(self) -> bool:
-        """True if the drawing is in millimetres."""
-        millimetres = 4  # value of $INSUNITS in a DXF in millimetres
-        return self._document.header.get("$INSUNITS") == millimetres
+    def millimeters(self) -> bool:
+        """True if the drawing is in millimeters."""
+        millimeters = 4  # value of $INSUNITS in a DXF in millimeters
+        return self._document.header.get("$INSUNITS") == millimeters
 
     @cached_property
     def pinholes(self) -> Float[np.ndarray, "circles 3"]:
@@ -113,13 +113,13 @@ def _same_holes(svg: Float[np.ndarray, "holes 3"], dxf: Float[np.ndarray, "other
 def _bar(svg: SeenSvg, dxf: SeenDxf) -> Check:
     drawn = max((float(np.ptp(points[:, 0])) for points in svg.paths(PatternPart.RULER)), default=0.0)
     near = dxf.level_lines[np.argmin(np.abs(dxf.level_lines - 100.0))] if len(dxf.level_lines) else 0.0
-    unit = "" if dxf.millimetres else ", but the DXF does not count millimetres"
+    unit = "" if dxf.millimeters else ", but the DXF does not count millimeters"
     scale = 0.1  # maximum error of the bar of 100 mm [mm]
     return Check(
         what="the check bar of the pattern is as long as it says",
         measured=f"{drawn:.3f} mm in the SVG, {near:.3f} mm in the DXF{unit}",
         allowed=f"100 mm, {scale:g} mm more or less",
-        passed=max(abs(drawn - 100.0), abs(float(near) - 100.0)) <= scale and dxf.millimetres,
+        passed=max(abs(drawn - 100.0), abs(float(near) - 100.0)) <= scale and dxf.millimeters,
     )
 
 
@@ -129,7 +129,7 @@ HOLES = 0.1  # maximum distance of a hole from the simulated cable [mm]
 def pattern_checks(
     robot: Robot, pattern: Pattern, svg: bytes, dxf: bytes, options: PatternOptions
 ) -> tuple[Check, ...]:
-    """Holes and scale of the SVG, and whether the DXF shows the same; InputError if it is no drawing in millimetres."""
+    """Holes and scale of the SVG, and whether the DXF shows the same; InputError if it is no drawing in millimeters."""
     seen = SeenSvg(svg)
     holes = [
         _flat_holes(robot, pattern.panel(side), seen.circles(PatternPart.PINHOLE, panel=side), options)
@@ -162,7 +162,7 @@ def _on(panel: Panel, robot: Robot) -> str:
 
 
 def patch_checks(robot: Robot, pattern: SpacePattern, svg: bytes, dxf: bytes) -> tuple[Check, ...]:
-    """Holes, seams, outlines, area and scale; InputError if it is no drawing in millimetres."""
+    """Holes, seams, outlines, area and scale; InputError if it is no drawing in millimeters."""
     seen = SeenSvg(svg)
     drawn = (_space_holes(robot, pattern, seen), _crosses(robot, pattern, seen), _outlines(pattern, seen))
     return (*drawn, *drawing_checks(seen, SeenDxf(dxf)), _seams(pattern), _area(pattern))
@@ -206,7 +206,7 @@ def _seams(pattern: SpacePattern) -> Check:
     worst = max((seam.mismatch for seam in pattern.seams), default=0.0)
     return Check(
         what=f"both sides of each of {len(pattern.seams)} seams are equally long",
-        measured=f"at most {worst:.1%} apart, beyond half a millimetre",
+        measured=f"at most {worst:.1%} apart, beyond half a millimeter",
         allowed=f"{MOST_EASE:.0%}, eased in",
         passed=worst <= MOST_EASE,
     )

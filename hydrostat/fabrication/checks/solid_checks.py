@@ -85,7 +85,7 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly])
         Check(
             what=f"the {pieces} pieces of {len(assemblies)} assemblies do not overlap",
             measured="; ".join(clashes) or "nothing shared",
-            allowed=f"a film of {1e3 * LEAST:g} micrometre",
+            allowed=f"a film of {1e3 * LEAST:g} micrometer",
             passed=not clashes,
         ),
     )

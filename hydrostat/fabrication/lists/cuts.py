@@ -29,7 +29,7 @@ points on its surface lie a little outside the mesh, and the simulation holds th
 
 @dataclass(frozen=True, kw_only=True)
 class CableCut:
-    """One cable, all in millimetres."""
+    """One cable, all in millimeters."""
 
     number: int  # number of the cable, from 1
     winch: str  # its name
@@ -89,7 +89,7 @@ def cable_cuts(
 
 @dataclass(frozen=True, kw_only=True)
 class CableRow:
-    """Line of the cut list of cables; lengths in millimetres."""
+    """Line of the cut list of cables; lengths in millimeters."""
 
     cable: Annotated[str, text_column("cable")]
     winch: Annotated[str, text_column("winch")]
@@ -133,7 +133,7 @@ def cable_table(cuts: tuple[CableCut, ...]) -> Table[CableRow]:
         notes=(
             "Body is the rest length from the place of the winch to the stopper as it was simulated, sheaths included; "
             "what is cut more than the total goes to the knot.",
-            "Spool mark: about where the line meets the spool at rest, within a centimetre or so. Mark it with a pen "
+            "Spool mark: about where the line meets the spool at rest, within a centimeter or so. Mark it with a pen "
             "before the line goes in, from the end that gets the stopper.",
             "The stopper is set on the robot: winch at zero, line pulled straight but not hard, stopper against the "
             "cloth or skin at the last hole. Where the list has a slack, it goes so far beyond the last hole.",
@@ -158,7 +158,7 @@ def check_lengths(table: Table[CableRow], simulation: Simulation) -> Check:
 
 @dataclass(frozen=True, kw_only=True)
 class SheathCut:
-    """One piece of tube, in millimetres."""
+    """One piece of tube, in millimeters."""
 
     cable: int  # number of its cable, from 1
     winch: str  # name of the winch of its cable
@@ -206,7 +206,7 @@ AT_BODY = "where the cable begins"  # end of a tube from the base that does not 
 
 @dataclass(frozen=True, kw_only=True)
 class SheathRow:
-    """Line of the cut list of tubes, or its total; lengths in millimetres."""
+    """Line of the cut list of tubes, or its total; lengths in millimeters."""
 
     cable: Annotated[str, text_column("cable")]
     winch: Annotated[str, text_column("winch")]

@@ -191,7 +191,7 @@ def _mould(plan: KitPlan) -> list[Item]:
         ),
         _item(
             BillGroup.MOULD,
-            "modelling clay",
+            "modeling clay",
             "without sulphur, seals the frames of the silicone",
             float(poured > 0),
             "clay",

@@ -38,7 +38,7 @@ class PointAccess(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class StitchRow:
-    """Point of a cable that is sewn through cloth; lengths in millimetres."""
+    """Point of a cable that is sewn through cloth; lengths in millimeters."""
 
     cable: Annotated[str, text_column("cable")]
     winch: Annotated[str, text_column("winch")]
@@ -53,7 +53,7 @@ class StitchRow:
 
 @dataclass(frozen=True, kw_only=True)
 class DepthRow:
-    """Point of a cable in a body in space; lengths in millimetres."""
+    """Point of a cable in a body in space; lengths in millimeters."""
 
     cable: Annotated[str, text_column("cable")]
     winch: Annotated[str, text_column("winch")]
@@ -72,7 +72,7 @@ class DepthRow:
 
 @dataclass(frozen=True, kw_only=True)
 class PlaneRow:
-    """Point of a cable in the middle plane of a flat body that is cast; lengths in millimetres."""
+    """Point of a cable in the middle plane of a flat body that is cast; lengths in millimeters."""
 
     cable: Annotated[str, text_column("cable")]
     winch: Annotated[str, text_column("winch")]
@@ -194,7 +194,7 @@ def plane_table(robot: Robot) -> Table[PlaneRow]:
 
 @dataclass(frozen=True, kw_only=True)
 class _CablePoint:
-    """Point of a cable; lengths in millimetres."""
+    """Point of a cable; lengths in millimeters."""
 
     cable: str
     winch: str

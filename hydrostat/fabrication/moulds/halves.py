@@ -101,7 +101,7 @@ _HALF = "Back on the bed, no support. Walls of 3 lines and 10 to 15 % infill are
 _POSITIVE = "Flat side on the bed. 10 % infill; fill and sand what silicone should not copy."
 _FRAME = "As it lies. Seal it to the board and at its joints with clay or tape: silicone finds every gap."
 _DOME = "Flat side on the bed. They lie at the corners of the first pour and leave sockets in the silicone."
-_JOINED = " Glue it to its neighbours with 3 mm dowels in the holes."
+_JOINED = " Glue it to its neighbors with 3 mm dowels in the holes."
 
 _Lying = tuple[float, float, float]
 _UP: _Lying = (0.0, 0.0, 0.0)

@@ -36,8 +36,8 @@ def loops_of(solid: Manifold) -> list[Loop]:
     vertices, triangles = triangles_of(solid)
     if not len(triangles):
         return []
-    edges, neighbours = _edges(triangles)
-    ways, tree = _tree(neighbours, len(triangles))
+    edges, neighbors = _edges(triangles)
+    ways, tree = _tree(neighbors, len(triangles))
     spare = _closing_edges(edges, tree, len(vertices))
     corners = vertices[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -45,9 +45,9 @@ def loops_of(solid: Manifold) -> list[Loop]:
     middles = corners.mean(axis=1)
     loops = []
     for number in spare:
-        one, other = neighbours[number]
+        one, other = neighbors[number]
         passed = _round(ways, int(one), int(other), number)
-        loops.append(_line(passed, vertices, edges, neighbours, middles, normals))
+        loops.append(_line(passed, vertices, edges, neighbors, middles, normals))
     return loops
 
 
@@ -72,10 +72,10 @@ def _edges(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Int[np.ndarray, "
     return sides[order][::2], (order // 3).reshape(-1, 2)
 
 
-def _tree(neighbours: Int[np.ndarray, "edges 2"], count: int) -> tuple[list[tuple[int, int, int]], set[int]]:
+def _tree(neighbors: Int[np.ndarray, "edges 2"], count: int) -> tuple[list[tuple[int, int, int]], set[int]]:
     """A tree over all triangles: of each that it hangs on, by which edge, how far from the root; and all its edges."""
     beside: list[list[tuple[int, int]]] = [[] for _ in range(count)]
-    for number, (one, other) in enumerate(neighbours.tolist()):
+    for number, (one, other) in enumerate(neighbors.tolist()):
         beside[one].append((other, number))
         beside[other].append((one, number))
     ways, tree = [(-1, -1, -1)] * count, set[int]()
@@ -128,7 +128,7 @@ def _line(
     passed: list[tuple[int, int]],
     vertices: np.ndarray,
     edges: Int[np.ndarray, "edges 2"],
-    neighbours: Int[np.ndarray, "edges 2"],
+    neighbors: Int[np.ndarray, "edges 2"],
     middles: np.ndarray,
     normals: np.ndarray,
 ) -> Loop:
@@ -136,7 +136,7 @@ def _line(
     points = []
     for triangle, number in passed:
         points.append(middles[triangle] - _IN * normals[triangle])
-        both = normals[neighbours[number]].sum(axis=0)
+        both = normals[neighbors[number]].sum(axis=0)
         spot = vertices[edges[number]].mean(axis=0)
         points.append(spot - _IN * both / max(float(np.linalg.norm(both)), 1e-9))
     return np.array(points)

@@ -28,7 +28,7 @@ TOP_RIM = 20.0  # height of the rim above the body [mm]: the funnel is in it
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Mould:
-    """A mould in two halves; lengths in millimetres."""
+    """A mould in two halves; lengths in millimeters."""
 
     kind: MouldKind  # printed halves, or silicone round a printed positive
     pull: Pull  # directions in which the halves come off, in the coordinates of the robot

@@ -122,7 +122,7 @@ def _vent(at: np.ndarray, across: Vector, tops: Vector, *, low: float, high: flo
 
 
 def roof(body: Manifold) -> tuple[Vector, Vector]:
-    """The highest y of a body in the parting plane [mm], at x a millimetre apart; places without body are left out."""
+    """The highest y of a body in the parting plane [mm], at x a millimeter apart; places without body are left out."""
     edges = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in body.slice(0.0).to_polygons()]
     if not edges:
         return np.empty(0), np.empty(0)

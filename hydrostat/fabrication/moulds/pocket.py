@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
 from hydrostat.fabrication.moulds.solids import join_solids, rod
 from hydrostat.fabrication.moulds.stance import MouldOrientation
-from hydrostat.fabrication.solids.body_solid import MILLIMETRES
+from hydrostat.fabrication.solids.body_solid import MILLIMETERS
 from hydrostat.fabrication.solids.construct import Cuboid, Sides, sides_text
 from hydrostat.geometry import Solid, Surface
 from hydrostat.robot import Mount, Robot
@@ -20,7 +20,7 @@ from hydrostat.robot import Mount, Robot
 
 @dataclass(frozen=True, kw_only=True)
 class WinchRoom(Cuboid):
-    """Box round a winch, its shaft along z through the origin; lengths in millimetres."""
+    """Box round a winch, its shaft along z through the origin; lengths in millimeters."""
 
     @classmethod
     def about_the_middle(cls, sides: Sides) -> "WinchRoom":
@@ -116,7 +116,7 @@ def _overlap_volume(one: Manifold, other: Manifold) -> float:
 
 def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
     """A place of a robot, flat or in space [mm]."""
-    return MILLIMETRES * np.array([*at, 0.0][:3])
+    return MILLIMETERS * np.array([*at, 0.0][:3])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,7 +14,7 @@ from hydrostat.fabrication.kit_options import MouldOptions
 from hydrostat.fabrication.moulds.pocket import LEAST_SKIN, LyingWinch, WinchRoom, ways_to_turn
 from hydrostat.fabrication.moulds.setting import mould_setting
 from hydrostat.fabrication.moulds.stance import MouldOrientation
-from hydrostat.fabrication.solids.body_solid import MILLIMETRES
+from hydrostat.fabrication.solids.body_solid import MILLIMETERS
 from hydrostat.fabrication.solids.construct import Cuboid
 from hydrostat.robot import Robot
 
@@ -44,7 +44,7 @@ class PocketRoom:
         radii = np.maximum(away[fits] - 0.5, 0.5) * _STRIDE * self.step
         spots = self._low + self.step * (_STRIDE * np.argwhere(fits) + 0.5)
         spots = (spots + np.array([0.0, 0.0, self.stance.height])) @ self.stance.axes
-        return scale * spots / MILLIMETRES, scale * radii / MILLIMETRES
+        return scale * spots / MILLIMETERS, scale * radii / MILLIMETERS
 
     @cached_property
     def step(self) -> float:

@@ -78,7 +78,7 @@ def _find_pull(vertices: bytes, triangles: bytes, count: int) -> Pull:
     shares, costs = _rate_directions(surface, tried)
     best = 3
     leaders = tried[np.argsort(costs, kind="stable")[:best]]
-    rings = (9.0, 4.5, 2.2, 1.1, 0.5)  # angles at which neighbours of the best direction are tried [degrees]
+    rings = (9.0, 4.5, 2.2, 1.1, 0.5)  # angles at which neighbors of the best direction are tried [degrees]
     for angle in np.radians(rings):
         near = np.vstack([_ring(leader, angle) for leader in leaders])
         more_shares, more_costs = _rate_directions(surface, near)

@@ -9,7 +9,7 @@ from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.moulds.stance import MouldOrientation, find_stance
-from hydrostat.fabrication.solids.body_solid import MILLIMETRES, body_solid
+from hydrostat.fabrication.solids.body_solid import MILLIMETERS, body_solid
 from hydrostat.robot import Body, Pin, Robot
 
 
@@ -43,5 +43,5 @@ def _pinned_nodes(body: Body, pins: tuple[Pin, ...]) -> Float[np.ndarray, "held 
     held = np.zeros(len(mesh.nodes), dtype=bool)
     for pin in pins:
         held |= pin.holds(mesh)
-    nodes = MILLIMETRES * mesh.nodes[held]
+    nodes = MILLIMETERS * mesh.nodes[held]
     return np.column_stack([nodes, np.zeros((len(nodes), 3 - mesh.dim))])

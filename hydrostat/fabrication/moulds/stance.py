@@ -103,14 +103,14 @@ def high_points(
     bump of the mould into the cavity holds no air.
     """
     heights = vertices @ up
-    neighbours = _neighbours(len(vertices), triangles)
-    summits = [summit for summit, prominence in _summits(heights, neighbours) if prominence >= rise]
+    neighbors = _neighbors(len(vertices), triangles)
+    summits = [summit for summit, prominence in _summits(heights, neighbors) if prominence >= rise]
     ceilings = TriangleMesh(vertices, triangles).facing @ up > 0
-    middles = [_middle(summit, vertices, heights, neighbours) for summit in summits if ceilings[summit]]
+    middles = [_middle(summit, vertices, heights, neighbors) for summit in summits if ceilings[summit]]
     return np.array(middles, dtype=np.int64)
 
 
-def _summits(heights: Vector, neighbours: list[list[int]]) -> list[tuple[int, float]]:
+def _summits(heights: Vector, neighbors: list[list[int]]) -> list[tuple[int, float]]:
     """Each local maximum with how far it stands above the highest pass to a higher one, by falling height."""
     order = np.argsort(-heights, kind="stable")
     peak = np.full(len(heights), -1, dtype=np.int64)
@@ -118,7 +118,7 @@ def _summits(heights: Vector, neighbours: list[list[int]]) -> list[tuple[int, fl
     found: list[tuple[int, float]] = []
 
     for vertex in order.tolist():
-        regions = {root_of(parent, other) for other in neighbours[vertex] if peak[other] >= 0}
+        regions = {root_of(parent, other) for other in neighbors[vertex] if peak[other] >= 0}
         if not regions:
             peak[vertex] = vertex
             continue
@@ -133,11 +133,11 @@ def _summits(heights: Vector, neighbours: list[list[int]]) -> list[tuple[int, fl
     return sorted(found, key=lambda summit: (-heights[summit[0]], summit[0]))
 
 
-def _middle(summit: int, vertices: np.ndarray, heights: Vector, neighbours: list[list[int]]) -> int:
+def _middle(summit: int, vertices: np.ndarray, heights: Vector, neighbors: list[list[int]]) -> int:
     """The vertex in the middle of the flat top round a summit."""
     top, waiting = {summit}, [summit]
     while waiting:
-        for other in neighbours[waiting.pop()]:
+        for other in neighbors[waiting.pop()]:
             if other not in top and heights[other] > heights[summit] - _TOP:
                 top.add(other)
                 waiting.append(other)
@@ -145,10 +145,10 @@ def _middle(summit: int, vertices: np.ndarray, heights: Vector, neighbours: list
     return int(members[np.argmin(np.linalg.norm(vertices[members] - vertices[members].mean(axis=0), axis=1))])
 
 
-def _neighbours(count: int, triangles: Int[np.ndarray, "triangles 3"]) -> list[list[int]]:
+def _neighbors(count: int, triangles: Int[np.ndarray, "triangles 3"]) -> list[list[int]]:
     joined: list[list[int]] = [[] for _ in range(count)]
     for one, two, three in triangles.tolist():
         joined[one].append(two)
         joined[two].append(three)
         joined[three].append(one)
-    return joined  # of a closed surface each edge is walked both ways, so all neighbours are there
+    return joined  # of a closed surface each edge is walked both ways, so all neighbors are there

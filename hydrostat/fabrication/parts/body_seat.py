@@ -19,7 +19,7 @@ from shapely.ops import unary_union
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plan import POST, post
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.body_solid import MILLIMETRES, body_solid
+from hydrostat.fabrication.solids.body_solid import MILLIMETERS, body_solid
 from hydrostat.fabrication.solids.construct import Construction, Corner, Cylinder, Prism, sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Pin, Robot
@@ -190,7 +190,7 @@ def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPl
         return "the body is flat"
     if len(robot.pins) != 1:
         return f"it has {len(robot.pins)} pins" if robot.pins else "it has no pin"
-    ways = MILLIMETRES * np.array([robot.cables[index].points[:2] for index in cables])
+    ways = MILLIMETERS * np.array([robot.cables[index].points[:2] for index in cables])
     back = (ways[:, 0] - ways[:, 1]).mean(axis=0)
     body, turn = body_solid(robot.body), _upright(back)
     body = body.transform(np.column_stack([turn, np.zeros(3)]))
@@ -200,7 +200,7 @@ def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPl
     if low > 1.0 or top < 1.0:
         return "it is not pinned at the end where its cables begin"
     pinned = robot.pins[0].holds(robot.body.mesh)
-    own = Polygon(box(*_bounds(MILLIMETRES * robot.body.mesh.nodes[pinned] @ turn.T)))
+    own = Polygon(box(*_bounds(MILLIMETERS * robot.body.mesh.nodes[pinned] @ turn.T)))
     cavity = _outline(body, top, options)
     if cavity is None or cavity.area > _WIDER * own.buffer(5.0).area:
         return "another part of it is next to the pinned end"
@@ -232,10 +232,10 @@ def _upright(back: np.ndarray) -> Float[np.ndarray, "3 3"]:
 def _reach(pin: Pin, turn: Float[np.ndarray, "3 3"]) -> tuple[float, float]:
     """From where to where a pin holds, along z of the seat [mm]."""
     if pin.box is not None:
-        heights = MILLIMETRES * np.array(pin.box) @ turn[2]
+        heights = MILLIMETERS * np.array(pin.box) @ turn[2]
         return float(heights.min()), float(heights.max())
-    middle = MILLIMETRES * float(np.dot(pin.at or (0.0, 0.0, 0.0), turn[2]))
-    return middle - MILLIMETRES * pin.radius, middle + MILLIMETRES * pin.radius
+    middle = MILLIMETERS * float(np.dot(pin.at or (0.0, 0.0, 0.0), turn[2]))
+    return middle - MILLIMETERS * pin.radius, middle + MILLIMETERS * pin.radius
 
 
 def _outline(body: Manifold, top: float, options: PartOptions) -> Polygon | None:

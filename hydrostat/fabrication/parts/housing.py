@@ -63,7 +63,7 @@ def roof_of(options: PartOptions) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Housing:
-    """A plate and a box round a spool; lengths in millimetres, z above the face of the motor."""
+    """A plate and a box round a spool; lengths in millimeters, z above the face of the motor."""
 
     motor: Motor  # motor under it
     spool: Spool  # spool in it

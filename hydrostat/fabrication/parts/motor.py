@@ -59,7 +59,7 @@ def board_for(motors: int) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class FaceScrew:
-    """A screw with a pan head that holds something on a motor; lengths in millimetres."""
+    """A screw with a pan head that holds something on a motor; lengths in millimeters."""
 
     size: str  # size of the thread, such as "M2"
     hole: float  # diameter of a printed hole that it passes freely [mm]
@@ -85,7 +85,7 @@ _LENGTHS = (3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Shaft:
-    """A shaft with one flat, which faces +x; lengths in millimetres."""
+    """A shaft with one flat, which faces +x; lengths in millimeters."""
 
     diameter: float  # diameter of the round part [mm]
     across: float  # from the flat to the round side opposite [mm]
@@ -103,7 +103,7 @@ class Shaft:
 
 @dataclass(frozen=True, kw_only=True)
 class Horn:
-    """A disc on the output of a servo, which a coupling with a shaft is screwed on; lengths in millimetres."""
+    """A disc on the output of a servo, which a coupling with a shaft is screwed on; lengths in millimeters."""
 
     radius: float  # radius of the disc [mm]
     height: float  # height of its top above the face of the motor [mm]
@@ -114,7 +114,7 @@ class Horn:
 
 @dataclass(frozen=True, kw_only=True)
 class Motor:
-    """A geared motor; lengths in millimetres."""
+    """A geared motor; lengths in millimeters."""
 
     key: str  # by which it is chosen
     title: str  # title to buy it by

@@ -7,7 +7,7 @@ from hydrostat.fabrication.solids.construct import Construction, Cylinder
 
 @dataclass(frozen=True, kw_only=True)
 class Screw:
-    """A screw with a flat countersunk head; lengths in millimetres."""
+    """A screw with a flat countersunk head; lengths in millimeters."""
 
     title: str  # title to buy it by
     length: float  # with its head [mm]

@@ -37,7 +37,7 @@ def capacity(width: float, radius: float, cable: float, layers: int) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Groove:
-    """Place where a cable is wound, or a pair of cables next to each other; lengths in millimetres."""
+    """Place where a cable is wound, or a pair of cables next to each other; lengths in millimeters."""
 
     radius: float  # radius of the middle of the cable in the first layer [mm]
     width: float  # width of its floor [mm]

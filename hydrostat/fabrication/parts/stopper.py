@@ -33,7 +33,7 @@ _FLOOR = 0.8
 _TIP = 0.4  # below the point of the screw: plastic, and air [mm]
 _SMOOTH = 0.6  # chamfer of what lies on the cloth and of what a hand feels [mm]
 
-_OFF_CENTRE = 0.8
+_OFF_CENTER = 0.8
 """Distance of the middle of the button from the screw towards the cable, so that it is pulled flat [mm]."""
 
 _EXIT = 300.0  # angle where the cable leaves, round the post from where it comes up [degrees]
@@ -118,9 +118,9 @@ def _track(options: PartOptions) -> float:
 
 def _button(options: PartOptions, height: float) -> Construction:
     """The outline of both pieces: a disc about a point between the screw and the cable, its lower edge smooth."""
-    radius = _OFF_CENTRE + _track(options) + _RIM
+    radius = _OFF_CENTER + _track(options) + _RIM
     side = ((0, 0), (radius - _SMOOTH, 0), (radius, _SMOOTH), (radius, height), (0, height))
-    return Revolve(side).move(_OFF_CENTRE, 0, 0)
+    return Revolve(side).move(_OFF_CENTER, 0, 0)
 
 
 def _rib_angles(options: PartOptions) -> list[float]:

@@ -206,7 +206,7 @@ class Exit:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class WinchUnit:
-    """Motor, spool and housing of one winch; lengths in millimetres."""
+    """Motor, spool and housing of one winch; lengths in millimeters."""
 
     winch: str  # its name
     cables: tuple[int, ...]  # index of each of its cables in the robot, in the order of the grooves

@@ -93,7 +93,7 @@ def cut_chord(mesh: SkinMesh, patch: Patch, number: int, chord: Chord) -> SkinMe
     target = _in_space(patch, chord)
     cut, _, side = cut_at_zero(mesh, field, mesh.patch == number)
     pieces = cut.pieces(4 * cut.patch + side)
-    sides = cut.neighbours
+    sides = cut.neighbors
     inner = (cut.patch[sides] == number).all(axis=1)
     border = inner & (pieces[sides[:, 0]] != pieces[sides[:, 1]])
     middles = cut.vertices[cut.edges[0]].mean(axis=1)
@@ -115,10 +115,10 @@ def _worst_place(patch: Patch, limit: float) -> Float[np.ndarray, " 2"]:
     groups = _groups(triangles, label)
     worst = int(np.bincount(groups, excess).argmax())
     weights = np.where(groups == worst, excess, 0.0)
-    centres = patch.flat[triangles].mean(axis=1)
-    mean = np.average(centres, axis=0, weights=weights)
-    there = np.where(weights > 0, np.linalg.norm(centres - mean, axis=1), np.inf)
-    return centres[int(there.argmin())]
+    centers = patch.flat[triangles].mean(axis=1)
+    mean = np.average(centers, axis=0, weights=weights)
+    there = np.where(weights > 0, np.linalg.norm(centers - mean, axis=1), np.inf)
+    return centers[int(there.argmin())]
 
 
 def _groups(triangles: Int[np.ndarray, "triangles 3"], label: Int[np.ndarray, " triangles"]) -> Int[np.ndarray, " _"]:

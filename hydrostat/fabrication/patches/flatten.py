@@ -120,7 +120,7 @@ def _energy(patch: Patch) -> float:
 
 
 def _tutte(disc: Disc) -> Float[np.ndarray, "vertices 2"]:
-    """Onto a circle of the patch's area, every inner vertex in the middle of its neighbours."""
+    """Onto a circle of the patch's area, every inner vertex in the middle of its neighbors."""
     around = disc.vertices[disc.rim]
     lengths = np.linalg.norm(np.roll(around, -1, axis=0) - around, axis=1)
     angles = 2 * np.pi * np.concatenate([[0.0], np.cumsum(lengths)[:-1]]) / lengths.sum()

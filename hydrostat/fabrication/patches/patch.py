@@ -45,7 +45,7 @@ def disc_of(mesh: SkinMesh, number: int) -> Disc:
     Where it touches itself in one vertex only, that becomes two: corners are one vertex if an edge joins them.
     """
     inside = np.flatnonzero(mesh.patch == number)
-    corners, ends = mesh.triangles[inside].ravel(), mesh.neighbours
+    corners, ends = mesh.triangles[inside].ravel(), mesh.neighbors
     place = np.full(len(mesh.triangles), -1)
     place[inside] = np.arange(len(inside))
     shared = (mesh.patch[ends] == number).all(axis=1)

@@ -27,7 +27,7 @@ class SkinMesh(TriangleMesh):
         return edges, index.reshape(-1, 3)
 
     @cached_property
-    def neighbours(self) -> Int[np.ndarray, "edges 2"]:
+    def neighbors(self) -> Int[np.ndarray, "edges 2"]:
         """The two triangles at each edge."""
         edges, of = self.edges
         order = np.argsort(of.ravel(), kind="stable")
@@ -35,7 +35,7 @@ class SkinMesh(TriangleMesh):
 
     def pieces(self, label: Int[np.ndarray, " triangles"]) -> Int[np.ndarray, " triangles"]:
         """Number the connected groups of triangles with one label, in the order of their first triangles."""
-        sides = self.neighbours
+        sides = self.neighbors
         same = sides[label[sides[:, 0]] == label[sides[:, 1]]]
         return number_groups(same, len(self.triangles))
 

@@ -97,7 +97,7 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
     """A pinhole, or a cross on the seam line where the cable passes between two stitches."""
     x, y = place
     if not hole.in_seam:
-        return (Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, centre=place, radius=options.pinhole / 2),)
+        return (Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, center=place, radius=options.pinhole / 2),)
     cross = 2.0
     return tuple(
         LaserLine(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
@@ -106,7 +106,7 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
 
 
 def _cable_lines(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options: PatternOptions) -> tuple[Shape, ...]:
-    """The cable between neighbouring holes on this patch: solid outside, dashed inside."""
+    """The cable between neighboring holes on this patch: solid outside, dashed inside."""
     shapes: list[Shape] = []
     clear = options.pinhole / 2 + _CLEAR
     for (hole, place), (following, there) in pairwise(own):

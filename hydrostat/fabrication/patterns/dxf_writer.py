@@ -20,7 +20,7 @@ _WRITING = Lock()  # dates are switched off for all drawings of a process: one a
 
 
 def pattern_dxf(pattern: Pattern) -> bytes:
-    """The bytes of the drawing (R2010, millimetres): layers MARK, PINHOLE and CUT, closed polylines and circles."""
+    """The bytes of the drawing (R2010, millimeters): layers MARK, PINHOLE and CUT, closed polylines and circles."""
     with _WRITING, _without_dates():
         text = StringIO()
         document = pattern_document(pattern)
@@ -55,7 +55,7 @@ def _sort_classes(document: "Drawing") -> None:
 def _draw(space: "Modelspace", shape: Shape) -> None:
     layer = {"layer": shape.layer.upper()}
     if isinstance(shape, Circle):
-        space.add_circle(shape.centre, shape.radius, dxfattribs=layer)
+        space.add_circle(shape.center, shape.radius, dxfattribs=layer)
     else:
         space.add_lwpolyline(shape.points, close=shape.closed, dxfattribs=layer)
 

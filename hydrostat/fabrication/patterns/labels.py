@@ -33,37 +33,37 @@ class FreeSpace:
 
     def beside(self, at: Place, width: float, height: float, *, gap: float) -> Place:
         """Middle of a box as near to a place as there is room, else where it crosses the least [mm]."""
-        centres = _round(at, width, height, gap + np.arange(0, 14, 1.5))
-        crossings = self._crossings(centres, _boxes(centres, width, height))
-        leaders = shapely.linestrings(np.stack([np.broadcast_to(at, centres.shape), centres], axis=1))
+        centers = _round(at, width, height, gap + np.arange(0, 14, 1.5))
+        crossings = self._crossings(centers, _boxes(centers, width, height))
+        leaders = shapely.linestrings(np.stack([np.broadcast_to(at, centers.shape), centers], axis=1))
         through_text = 3  # so is a line to a label through another, for so many
         crossings += through_text * _hits(self._texts, leaders)
-        x, y = centres[np.argmin(crossings)].tolist()
+        x, y = centers[np.argmin(crossings)].tolist()
         return x, y
 
     def clear_beside(self, at: Place, width: float, height: float, *, gap: float) -> Place | None:
         """Middle of a box near to a place that crosses nothing [mm]; None if there is none."""
-        centres = _round(at, width, height, gap + np.arange(0, 2.5, 0.5))
+        centers = _round(at, width, height, gap + np.arange(0, 2.5, 0.5))
         tight = 1.05  # empty cloth kept round the small figures at holes [mm]
-        crossings = self._crossings(centres, _boxes(centres, width, height, tight))
+        crossings = self._crossings(centers, _boxes(centers, width, height, tight))
         if crossings.min():
             return None
-        x, y = centres[np.argmin(crossings)].tolist()
+        x, y = centers[np.argmin(crossings)].tolist()
         return x, y
 
     def anywhere(self, width: float, height: float) -> Place | None:
         """Middle of a box with most room, preferably near the middle of the panel [mm]; None if there is none."""
         left, bottom, right, top = self._inside.bounds
         x, y = np.meshgrid(np.arange(left, right, 3.0), np.arange(bottom, top, 3.0))
-        centres = np.column_stack([x.ravel(), y.ravel()])
-        centres = centres[shapely.contains_xy(self._inside, centres)]
-        boxes = _boxes(centres, width, height)
-        free = self._crossings(centres, boxes) == 0
+        centers = np.column_stack([x.ravel(), y.ravel()])
+        centers = centers[shapely.contains_xy(self._inside, centers)]
+        boxes = _boxes(centers, width, height)
+        free = self._crossings(centers, boxes) == 0
         if not free.any():
             return None
-        centres, boxes, middle = centres[free], boxes[free], self._inside.centroid
-        far = np.hypot(centres[:, 0] - middle.x, centres[:, 1] - middle.y)
-        x, y = centres[np.argmax(self._room(boxes) - 0.05 * far)].tolist()
+        centers, boxes, middle = centers[free], boxes[free], self._inside.centroid
+        far = np.hypot(centers[:, 0] - middle.x, centers[:, 1] - middle.y)
+        x, y = centers[np.argmax(self._room(boxes) - 0.05 * far)].tolist()
         return x, y
 
     def take(self, middle: Place, width: float, height: float) -> None:
@@ -76,9 +76,9 @@ class FreeSpace:
         """Keep what is placed later off a line to a label."""
         self._taken.append(line.geometry)
 
-    def _crossings(self, centres: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+    def _crossings(self, centers: np.ndarray, boxes: np.ndarray) -> np.ndarray:
         """Weighted number of objects that each box overlaps; another label weighs more, and a box outside most."""
-        outside = ~shapely.contains_xy(self._inside, centres)
+        outside = ~shapely.contains_xy(self._inside, centers)
         over_text = 10  # a label over another is as bad as one over so many more lines
         return _hits(self._taken, boxes) + over_text * _hits(self._texts, boxes) + 1000 * outside
 
@@ -106,9 +106,9 @@ def _hits(taken: list[BaseGeometry], geometries: np.ndarray) -> np.ndarray:
     return np.bincount(found, minlength=len(geometries))
 
 
-def _boxes(centres: np.ndarray, width: float, height: float, clearance: float = _CLEARANCE) -> np.ndarray:
+def _boxes(centers: np.ndarray, width: float, height: float, clearance: float = _CLEARANCE) -> np.ndarray:
     half = np.array([width / 2 + clearance, height / 2 + clearance])
-    low, high = centres - half, centres + half
+    low, high = centers - half, centers + half
     return shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
 
 

@@ -36,7 +36,7 @@ def cable_marks(
     """Cables from hole to hole, solid outside and dashed inside; sheaths as tubes; a ring at each stopper."""
     marks: list[Shape] = []
     pinholes = tuple(pinholes)
-    holes = shapely.union_all([shapely.Point(hole.centre).buffer(hole.radius + _CLEAR) for hole in pinholes])
+    holes = shapely.union_all([shapely.Point(hole.center).buffer(hole.radius + _CLEAR) for hole in pinholes])
     sheath = 3.0  # width of the drawn sheath [mm]
     stopper = 3.0  # radius of the ring round the hole at a stopper [mm]
     for cable, sewn in zip(robot.cables, stitches, strict=True):
@@ -51,7 +51,7 @@ def cable_marks(
             if sewn.stitches[index].after is Side.INSIDE:
                 drawn = dash_lines(drawn)
             marks.extend(trace(drawn, Layer.MARK, PatternPart.CABLE))
-        marks.append(Circle(layer=Layer.MARK, part=PatternPart.STOPPER, centre=place(cable.points[-1]), radius=stopper))
+        marks.append(Circle(layer=Layer.MARK, part=PatternPart.STOPPER, center=place(cable.points[-1]), radius=stopper))
     return tuple(marks)
 
 
@@ -59,7 +59,7 @@ def winch_marks(robot: Robot, seam: Polygon) -> tuple[Shape, ...]:
     """A circle as large as the largest spool where each winch sits in the body."""
     return tuple(
         Circle(
-            layer=Layer.MARK, part=PatternPart.WINCH, centre=place(winch.at), radius=1e3 * robot.largest_spool(winch)
+            layer=Layer.MARK, part=PatternPart.WINCH, center=place(winch.at), radius=1e3 * robot.largest_spool(winch)
         )
         for winch in robot.winches
         if seam.contains(shapely.Point(place(winch.at)))
@@ -80,7 +80,7 @@ def marker_marks(robot: Robot) -> tuple[Shape, ...]:
 
 def decoration_marks(robot: Robot, seam: Polygon, pinholes: Iterable[Pinhole]) -> tuple[Shape, ...]:
     """Return the decorations of the body, such as eyes, with gaps at the holes."""
-    holes = shapely.union_all([shapely.Point(hole.centre).buffer(hole.radius + _CLEAR) for hole in pinholes])
+    holes = shapely.union_all([shapely.Point(hole.center).buffer(hole.radius + _CLEAR) for hole in pinholes])
     lines = [LineString([place(point) for point in line]) for line in robot.body.marks]
     drawn = [line.intersection(seam).difference(holes) for line in lines]
     return tuple(mark for line in drawn for mark in trace(line, Layer.MARK, PatternPart.DECORATION))

@@ -92,8 +92,8 @@ def opening_at(
     narrow, room = room is not None or bool(pinholes), inner if room is None else inner.intersection(room)
     if not len(winches) or not reach or room.is_empty:
         return None
-    centre = shapely.shortest_line(room, shapely.Point(winches.mean(axis=0))).interpolate(0.0)
-    off = [shapely.Point(hole.centre).buffer(hole.radius + options.cloth + _PLACKET) for hole in pinholes]
+    center = shapely.shortest_line(room, shapely.Point(winches.mean(axis=0))).interpolate(0.0)
+    off = [shapely.Point(hole.center).buffer(hole.radius + options.cloth + _PLACKET) for hole in pinholes]
     room = room.difference(shapely.union_all(off))
     row = np.linalg.svd(winches - winches.mean(axis=0))[2][0] if len(winches) > 1 else np.array([1.0, 0.0])
     wanted = 2 * (np.abs((winches - winches.mean(axis=0)) @ row).max() + reach)
@@ -105,7 +105,7 @@ def opening_at(
     for shift in shifts if narrow else shifts[:1]:
         for angle in turns:
             direction = row @ _turn(np.radians(angle))
-            middle = np.array(centre.coords[0]) + shift * np.array([-direction[1], direction[0]])
+            middle = np.array(center.coords[0]) + shift * np.array([-direction[1], direction[0]])
             slits.append(_slit(room, middle, direction, wanted))
     longest = max(slit.length for slit in slits)
     if longest <= reach:

@@ -19,7 +19,7 @@ _SAME = 0.01  # points nearer than this [mm] are one point
 class Pinhole:
     """One hole, for one cable or several."""
 
-    centre: Place  # [mm]
+    center: Place  # [mm]
     radius: float  # [mm]
     uses: tuple[tuple[int, int], ...]  # (cable, point) index pairs of the cable points that it serves
     winch: str = ""  # name of the winch whose cables leave through it; empty for a hole further along
@@ -33,11 +33,11 @@ class Pinhole:
     @property
     def circle(self) -> Circle:
         """The hole for the laser."""
-        return Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, centre=self.centre, radius=self.radius)
+        return Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, center=self.center, radius=self.radius)
 
     def gap(self, other: "Pinhole") -> float:
         """Cloth between two holes [mm], below 0 where they overlap."""
-        return float(np.hypot(*np.subtract(self.centre, other.centre))) - self.radius - other.radius
+        return float(np.hypot(*np.subtract(self.center, other.center))) - self.radius - other.radius
 
 
 def find_pinholes(robot: Robot, seam: Polygon, options: PatternOptions) -> tuple[Pinhole, ...]:
@@ -50,11 +50,11 @@ def find_pinholes(robot: Robot, seam: Polygon, options: PatternOptions) -> tuple
     for cable_index, cable in enumerate(robot.cables):
         outside = robot.winch(cable.winch).mount is Mount.WORLD
         for index, point in enumerate(cable.points):
-            centre = (1e3 * point[0], 1e3 * point[1])
-            if index == 0 and outside and not seam.intersects(shapely.Point(centre)):
+            center = (1e3 * point[0], 1e3 * point[1])
+            if index == 0 and outside and not seam.intersects(shapely.Point(center)):
                 continue
             exit_of = cable.winch if index == 0 else ""
-            found[cable_index, index] = Pinhole(centre, options.pinhole / 2, ((cable_index, index),), exit_of)
+            found[cable_index, index] = Pinhole(center, options.pinhole / 2, ((cable_index, index),), exit_of)
     return _merge(found.values())
 
 
@@ -63,19 +63,19 @@ def pinhole_problems(pinholes: Iterable[Pinhole], seam: Polygon, options: Patter
     pinholes = tuple(pinholes)
     problems = []
     for hole in pinholes:
-        distance = seam.boundary.distance(shapely.Point(hole.centre))
-        inside = seam.contains(shapely.Point(hole.centre))
+        distance = seam.boundary.distance(shapely.Point(hole.center))
+        inside = seam.contains(shapely.Point(hole.center))
         needed = hole.radius + options.cloth
         if not inside or distance < needed:
             where = f"{distance:.2f} mm {'from' if inside else 'beyond'} the seam"
             problems.append(
-                f"{hole.name} = {_text(hole.centre)} is {where}, but its pinhole needs {needed:.4g} mm. Move it inwards"
+                f"{hole.name} = {_text(hole.center)} is {where}, but its pinhole needs {needed:.4g} mm. Move it inwards"
             )
     for one, other in combinations(pinholes, 2):
         if one.gap(other) < 0:
-            apart = np.hypot(*np.subtract(one.centre, other.centre))
+            apart = np.hypot(*np.subtract(one.center, other.center))
             problems.append(
-                f"{one.name} = {_text(one.centre)} and {other.name} are {apart:.2f} mm apart: their pinholes of "
+                f"{one.name} = {_text(one.center)} and {other.name} are {apart:.2f} mm apart: their pinholes of "
                 f"{2 * one.radius:.4g} mm overlap. Move one away, or both onto one point"
             )
     return tuple(problems)
@@ -94,7 +94,7 @@ def _merge(pinholes: Iterable[Pinhole]) -> tuple[Pinhole, ...]:
 
 
 def _one_hole(one: Pinhole, other: Pinhole) -> bool:
-    same_point = np.hypot(*np.subtract(one.centre, other.centre)) < _SAME
+    same_point = np.hypot(*np.subtract(one.center, other.center)) < _SAME
     return bool(same_point or (one.winch and one.winch == other.winch and one.gap(other) < 0))
 
 
@@ -102,14 +102,14 @@ def _join(one: Pinhole, other: Pinhole) -> Pinhole:
     """The smallest hole round two."""
     uses = tuple(sorted((*one.uses, *other.uses)))
     winch = one.winch or other.winch
-    shift = np.subtract(other.centre, one.centre)
+    shift = np.subtract(other.center, one.center)
     apart = float(np.hypot(*shift))
     if apart < _SAME or apart + min(one.radius, other.radius) <= max(one.radius, other.radius):
         larger = max(one, other, key=lambda hole: hole.radius)
-        return Pinhole(larger.centre, larger.radius, uses, winch)
+        return Pinhole(larger.center, larger.radius, uses, winch)
     radius = (apart + one.radius + other.radius) / 2
-    centre = np.add(one.centre, shift * ((radius - one.radius) / apart))
-    return Pinhole((float(centre[0]), float(centre[1])), radius, uses, winch)
+    center = np.add(one.center, shift * ((radius - one.radius) / apart))
+    return Pinhole((float(center[0]), float(center[1])), radius, uses, winch)
 
 
 def _text(place: Place) -> str:

@@ -72,21 +72,21 @@ class Circle:
 
     layer: Layer  # operation of the laser along it
     part: PatternPart  # part of the panel that it stands for
-    centre: Place  # [mm]
+    center: Place  # [mm]
     radius: float  # [mm]
 
     def move(self, dx: float, dy: float) -> Self:
         """Return the circle shifted by an offset [mm]."""
-        return replace(self, centre=(self.centre[0] + dx, self.centre[1] + dy))
+        return replace(self, center=(self.center[0] + dx, self.center[1] + dy))
 
     def mirror(self) -> Self:
         """Return the circle mirrored about x = 0."""
-        return replace(self, centre=(-self.centre[0], self.centre[1]))
+        return replace(self, center=(-self.center[0], self.center[1]))
 
     @property
     def geometry(self) -> BaseGeometry:
         """The circle, without its inside, for shapely."""
-        return shapely.Point(self.centre).buffer(self.radius).exterior
+        return shapely.Point(self.center).buffer(self.radius).exterior
 
 
 Shape = LaserLine | Circle  # anything on a sheet

@@ -12,13 +12,13 @@ COLORS = {Layer.MARK: "#000000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"}
 """Stroke of each layer: LightBurn and its like tell operations apart by these."""
 
 
-_DIGITS = 3  # micrometres are enough
+_DIGITS = 3  # micrometers are enough
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def pattern_svg(pattern: Pattern) -> bytes:
-    """The bytes of the drawing: millimetres, a group for each layer in the order of work, one for each panel within."""
+    """The bytes of the drawing: millimeters, a group for each layer in the order of work, one for each panel within."""
     width, height = number(pattern.width, _DIGITS), number(pattern.height, _DIGITS)
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -50,7 +50,7 @@ def _layer(pattern: Pattern, layer: Layer) -> Iterable[str]:
 def shape_element(drawn: Shape, height: float) -> Html:
     """A shape as an SVG element on a sheet of this height [mm]; the y axis turns over, as SVG counts it downwards."""
     if isinstance(drawn, Circle):
-        x, y = drawn.centre
+        x, y = drawn.center
         cx, cy, r = (number(value, _DIGITS) for value in (x, height - y, drawn.radius))
         return shape("circle", class_=drawn.part, cx=cx, cy=cy, r=r)
     way = [(x, height - y) for x, y in drawn.points]

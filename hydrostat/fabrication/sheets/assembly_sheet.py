@@ -63,7 +63,7 @@ def _shorter(paper: Paper) -> float:
 def sheet_pictures(
     plan: KitPlan, lists: Lists, findings: KitFindings, views: Sequence[Camera]
 ) -> dict[PictureName, Canvas]:
-    """Pictures by name, in millimetres of paper; views of a body in space, the best first."""
+    """Pictures by name, in millimeters of paper; views of a body in space, the best first."""
     robot, stitches, tight = plan.robot, plan.work.stitches, _shorter(plan.options.paper)
     told = note_lines(findings.problems, (*findings.warnings, *findings.notes), robot)
     boxed = 4.0 * sum(math.ceil(len(words) / 130) for words in told) + (4.0 if told else 0.0)

@@ -290,7 +290,7 @@ def _grommets(plan: KitPlan) -> bool:
 
 
 def _sew(plan: KitPlan) -> AssemblyStep:
-    sides = "front and back" if _flat(plan) else "neighbouring patches"
+    sides = "front and back" if _flat(plan) else "neighboring patches"
     between = "Sew the gusset strips between them, notch to notch" if plan.work.gusset else "Match the notches"
     tucked = ", all lines tucked inside, clear of the seam" if plan.robot.cables else ""
     return AssemblyStep(

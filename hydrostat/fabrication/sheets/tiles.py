@@ -155,7 +155,7 @@ def _compile(source: str) -> bytes:
 
 
 def _page(pattern: Pattern, grid: TileGrid, tile: Tile) -> str:
-    """A tile with its frame, its crosses, the names of its neighbours, and its foot."""
+    """A tile with its frame, its crosses, the names of its neighbors, and its foot."""
     size = grid.width, grid.height
     drawing = _image(pattern, tile.shapes, (tile.left, tile.top, *size), size, _WIDTHS)
     right, bottom = MARGIN + grid.width, MARGIN + grid.height

@@ -1,1 +1,1 @@
-"""Solids in millimetres: what is printed, how it is put together, and the files that carry it."""
+"""Solids in millimeters: what is printed, how it is put together, and the files that carry it."""

@@ -21,7 +21,7 @@ class Placed:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PartAssembly:
-    """Things put together, in millimetres."""
+    """Things put together, in millimeters."""
 
     name: str  # name of the assembly
     pieces: tuple[Placed, ...]  # in the order in which they are put together

@@ -1,4 +1,4 @@
-"""`body_solid`: the body of a robot as a solid, in millimetres."""
+"""`body_solid`: the body of a robot as a solid, in millimeters."""
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -8,7 +8,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Body
 
-MILLIMETRES = 1e3  # in a metre
+MILLIMETERS = 1e3  # in a meter
 
 
 def body_solid(body: Body) -> Manifold:
@@ -21,8 +21,8 @@ def body_solid(body: Body) -> Manifold:
         return _extrude_body(body)
     if body.healing is not None:
         surface = body.healing.surface
-        return closed_solid(MILLIMETRES * surface.vertices, surface.triangles)
-    return closed_solid(MILLIMETRES * body.mesh.nodes, body.mesh.boundary)
+        return closed_solid(MILLIMETERS * surface.vertices, surface.triangles)
+    return closed_solid(MILLIMETERS * body.mesh.nodes, body.mesh.boundary)
 
 
 def closed_solid(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray, "triangles 3"]) -> Manifold:
@@ -58,9 +58,9 @@ def _solid(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray,
 
 def _extrude_body(body: Body) -> Manifold:
     """A flat body as thick as it is simulated."""
-    thickness = MILLIMETRES * (body.thickness or 0.0)
+    thickness = MILLIMETERS * (body.thickness or 0.0)
     rings = body.outline.rings if body.outline is not None else _rings(body.mesh)
-    profile = CrossSection([np.ascontiguousarray(MILLIMETRES * ring) for ring in rings])
+    profile = CrossSection([np.ascontiguousarray(MILLIMETERS * ring) for ring in rings])
     return Manifold.extrude(profile, thickness).translate((0.0, 0.0, -thickness / 2))
 
 

@@ -2,7 +2,7 @@
 
     plate = Box((40, 30, 3)) - Cylinder(3, 1.7).move(20, 15, 0)
 
-`solid_of` makes triangles of a construction; `step.py` makes a model of true cylinders and planes. All in millimetres.
+`solid_of` makes triangles of a construction; `step.py` makes a model of true cylinders and planes. All in millimeters.
 """
 
 from collections.abc import Iterable

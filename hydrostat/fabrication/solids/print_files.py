@@ -14,7 +14,7 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 
 
 def stl_bytes(printed: Printed) -> bytes:
-    """A part as binary STL in millimetres; the header names it. One copy: STL knows no count."""
+    """A part as binary STL in millimeters; the header names it. One copy: STL knows no count."""
     vertices, triangles = printed.file_mesh
     corners = vertices[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -97,7 +97,7 @@ _RELATIONS = (
 
 
 def three_mf_plates(parts: tuple[Printed, ...], title: str, *, bed: tuple[float, float]) -> tuple[bytes, ...]:
-    """Parts as 3MF in millimetres, a file for each bed, each part as often as it is needed; ValueError for no parts."""
+    """Parts as 3MF in millimeters, a file for each bed, each part as often as it is needed; ValueError for no parts."""
     if not parts:
         raise ValueError("a 3MF needs a part")
     plates = lay_plates(parts, bed)

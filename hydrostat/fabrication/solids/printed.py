@@ -24,7 +24,7 @@ def file_mesh(solid: Manifold) -> FileMesh:
     Vertices that rounding puts in one place become one; triangles that lose a corner by this go, as do two that then
     lie back to back. Where this would open the surface (booleans leave slivers thinner than 32 bits can tell, and
     bodies may touch in an edge), such vertices are instead put beside each other, some 0.00002 mm apart: then files
-    that know vertices by their place alone, as STL does, have the very neighbours of the solid.
+    that know vertices by their place alone, as STL does, have the very neighbors of the solid.
     """
     mesh = solid.to_mesh64()
     corners = _round_corners(np.asarray(mesh.vert_properties, dtype=float)[:, :3])
@@ -94,7 +94,7 @@ SHELL = 1.2  # thickness of the shell that slicers print whole by themselves [mm
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Printed:
-    """A solid as it lies on the print bed, in millimetres: z up, its lowest point at z = 0."""
+    """A solid as it lies on the print bed, in millimeters: z up, its lowest point at z = 0."""
 
     name: str  # stem of its files, of letters, digits and underscores
     title: str  # title for a person

@@ -27,7 +27,7 @@ _NO_DATE = "1970-01-01T00:00:00"
 
 
 def step_bytes(printed: Printed) -> bytes:
-    """A part as STEP (ISO 10303-21) in millimetres, made from its `model`. One copy; its header has no date.
+    """A part as STEP (ISO 10303-21) in millimeters, made from its `model`. One copy; its header has no date.
 
     Raises InputError: build123d is not installed, or the part has no model.
     """

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 MOST_ENTITIES = 20_000  # a drawing with more entities, counting what its blocks repeat, is refused
 
 _FARTHEST = 1e100
-_METRES = {
+_METERS = {
     1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 25.4e-9, 9: 25.4e-6, 10: 0.9144,
     13: 1e-6, 14: 0.1,
 }  # fmt: skip
@@ -109,7 +109,7 @@ def _listening() -> Iterator[list[str]]:
 
 def _unit(document: "Document") -> float | None:
     """Length of one unit of the drawing [m]; None if it names none."""
-    return _METRES.get(document.header.get("$INSUNITS", 0))
+    return _METERS.get(document.header.get("$INSUNITS", 0))
 
 
 @dataclass

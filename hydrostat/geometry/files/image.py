@@ -167,7 +167,7 @@ def _notes(found: Silhouette, page: Page) -> tuple[str, ...]:
 
 
 def _largest(patches: tuple[PixelPatch, ...], page: Page) -> str:
-    """Describe the largest of some patches: its position and size, in millimetres of the body."""
+    """Describe the largest of some patches: its position and size, in millimeters of the body."""
     patch, scale = max(patches, key=lambda one: one.area), page.scale[0]
     x, y = patch.place[0] - page.origin[0], page.origin[1] - patch.place[1]
     across, where = 1e3 * scale * patch.extent, [round(1e3 * scale * value, 1) + 0.0 for value in (x, y)]

@@ -15,7 +15,7 @@ from hydrostat.geometry.mesh import Mesh
 def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Mesh:
     """Mesh of tetrahedra, or of triangles if there are none, from a VTK, VTU or Gmsh file.
 
-    A coordinate counts `unit` metres, unless the longest side of the bounding box is to be `size` [m]. Raises
+    A coordinate counts `unit` meters, unless the longest side of the bounding box is to be `size` [m]. Raises
     InputError if the file cannot be read or holds neither tetrahedra nor flat triangles.
     """
     reader = _READERS.get(path.suffix.lower())

@@ -24,7 +24,7 @@ def read_outline(
 ) -> Outline:
     """Read the outline of a body [m] from a drawing or a picture; its name says which kind it is, and stands in errors.
 
-    The x axis points right, y up, the origin is the centre of the bounding box or that of the `page`: of another
+    The x axis points right, y up, the origin is the center of the bounding box or that of the `page`: of another
     drawing, which this one was drawn over. `size` is the longest side of the bounding box [m], not needed where the
     file has a unit. `inner` says whether shapes in the body are holes, or drawn on it.
 

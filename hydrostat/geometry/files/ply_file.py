@@ -237,9 +237,9 @@ def _faces(
 
 
 def write_ply(surface: Surface) -> bytes:
-    """Surface as binary PLY: float32 coordinates in millimetres, the same bytes for the same surface."""
+    """Surface as binary PLY: float32 coordinates in millimeters, the same bytes for the same surface."""
     head = (
-        "ply\nformat binary_little_endian 1.0\ncomment millimetres\n"
+        "ply\nformat binary_little_endian 1.0\ncomment millimeters\n"
         f"element vertex {len(surface.vertices)}\nproperty float x\nproperty float y\nproperty float z\n"
         f"element face {len(surface.triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
     )

@@ -162,7 +162,7 @@ def shapes_of(rings: list[Ring], name: str) -> list[Polygon]:
 
 
 def outline_on_page(body: Ring, holes: list[Ring], page: Page, name: str) -> Outline:
-    """Outline in metres of rings in the drawing's units; OutlineError, with the file's name, if they are none."""
+    """Outline in meters of rings in the drawing's units; OutlineError, with the file's name, if they are none."""
     try:
         return Outline(page.places(body), tuple(page.places(hole) for hole in holes))
     except OutlineError as error:

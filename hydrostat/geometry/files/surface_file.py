@@ -40,7 +40,7 @@ _STRANGERS = {
 def read_surface(content: bytes, *, name: str, unit: float = 1e-3, size: float | None = None) -> Surface:
     """Read the surface in a file, with all its faults, which `heal` repairs.
 
-    The ending of its name tells the format. A coordinate counts `unit` metres where the file has no unit (all but 3MF);
+    The ending of its name tells the format. A coordinate counts `unit` meters where the file has no unit (all but 3MF);
     `size`, the longest side of the bounding box [m], overrules any unit. Raises SurfaceError: another ending, another
     content than the ending says, empty, too large, damaged, cut short, without triangles, with coordinates that are no
     numbers, or without a size.
@@ -84,7 +84,7 @@ def _check_kind(content: bytes, name: str, suffix: str) -> None:
 
 
 def _surface(soup: Soup, name: str, unit: float, size: float | None) -> Surface:
-    """Check the contents of a file and scale them to metres."""
+    """Check the contents of a file and scale them to meters."""
     if not len(soup.triangles):
         raise SurfaceError(f"{name}: holds no triangles: export the body as a surface")
     check_count(name, "triangles", len(soup.triangles), room=np.inf)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _COMMAND = re.compile(r"[A-DF-Za-df-z]")  # of a path; an e is part of a number
 _NUMBER = re.compile(r"\d+\.?\d*|\.\d+")
-_METRES = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6, "q": 0.25e-3}
+_METERS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6, "q": 0.25e-3}
 _PIXEL = 0.0254 / 96
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z]*)\s*")
 _NO_SHAPES = {
@@ -65,7 +65,7 @@ def _open(content: bytes, name: str) -> _SvgDocument:
         said = printable(root.get("viewBox", ""))[:60]
         raise OutlineError(f"{name}: its viewBox, {said!r}, must be four numbers, the last two above 0: save it again")
     sheet = _sheet(root)
-    unit = _normalise(root)
+    unit = _normalize(root)
     return _SvgDocument(ElementTree.tostring(root), unit, sheet)
 
 
@@ -171,10 +171,10 @@ def _sheet(root: ElementTree.Element) -> tuple[float, float, float, float] | Non
 
 def _pixels(length: tuple[float, str]) -> float:
     """Length in pixels."""
-    return length[0] * _METRES.get(length[1], _PIXEL) / _PIXEL
+    return length[0] * _METERS.get(length[1], _PIXEL) / _PIXEL
 
 
-def _normalise(root: ElementTree.Element) -> tuple[float, float] | None:
+def _normalize(root: ElementTree.Element) -> tuple[float, float] | None:
     """Make one user unit one pixel; return the length of a user unit along x and y [m], if it has one."""
     sides = [_length(root.get(key)) for key in ("width", "height")]
     box = _box(root.attrib.pop("viewBox", ""))
@@ -182,7 +182,7 @@ def _normalise(root: ElementTree.Element) -> tuple[float, float] | None:
     for key, side, extent in zip(("width", "height"), sides, box[2:] if box else (None, None), strict=True):
         pixels = extent or (_pixels(side) if side else 1000.0)
         root.set(key, repr(pixels))
-    lengths = [side[0] * _METRES[side[1]] if side and side[1] in _METRES else None for side in sides]
+    lengths = [side[0] * _METERS[side[1]] if side and side[1] in _METERS else None for side in sides]
     if box is None:
         return (_PIXEL, _PIXEL) if any(lengths) else None
     units = [length / extent for length, extent in zip(lengths, box[2:], strict=True) if length]

@@ -14,7 +14,7 @@ from hydrostat.errors import SurfaceError
 from hydrostat.geometry.files.soup import MOST_TEXT_BYTES, MOST_TRIANGLES, Soup, check_count
 
 _MOST_DEPTH = 50
-_METRES = {
+_METERS = {
     "micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0, "inch": 0.0254, "foot": 0.3048,
 }  # fmt: skip
 _ROOT_KIND = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
@@ -181,8 +181,8 @@ def _read_item(attributes: dict[str, str], part: str, model: _Model) -> tuple[_K
 
 def _read_objects(model: _Model, name: str) -> Soup:
     """Meshes of all built objects, moved to their positions."""
-    if model.unit not in _METRES:
-        raise SurfaceError(f"{name}: its unit {model.unit[:40]!r} is none of {', '.join(_METRES)}: export it again")
+    if model.unit not in _METERS:
+        raise SurfaceError(f"{name}: its unit {model.unit[:40]!r} is none of {', '.join(_METERS)}: export it again")
     if not model.items:
         raise SurfaceError(f"{name}: builds nothing: export the surface again as 3MF or STL")
     places, triangles, vertex_count, triangle_count = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0, 0
@@ -199,7 +199,7 @@ def _read_objects(model: _Model, name: str) -> Soup:
             places.append(points @ transform[:3, :3] + transform[3, :3])
         triangles.append(vertex_count + (corners[:, ::-1] if turn else corners))
         vertex_count += len(points)
-    return Soup(np.concatenate(places), np.concatenate(triangles), _METRES[model.unit])
+    return Soup(np.concatenate(places), np.concatenate(triangles), _METERS[model.unit])
 
 
 def _meshes(model: _Model, name: str) -> Iterator[tuple[_Object, np.ndarray]]:

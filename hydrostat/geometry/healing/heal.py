@@ -31,7 +31,7 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     Triangles are kept, and with them sharp edges, as long as that gives a closed body: vertices are merged, repeated
     triangles left out, patches turned one way, holes closed that are no longer around than 24 times the resolution [m],
     specks removed. Only where this is not enough (crossings, overlaps, larger holes, edges with more than two
-    triangles) the body is made anew, as the region whose generalised winding number is above one half (Jacobson et al.
+    triangles) the body is made anew, as the region whose generalized winding number is above one half (Jacobson et al.
     2013, by the fast sum of Barill et al. 2018), on a grid of the resolution; edges and corners are rounded then by up
     to about half of it. A quarter of the element size is a good choice. What overlaps is united. Cavities stay if they
     are closed and clean: all their triangles look one way, inward; a closed part that looks outward inside another is

@@ -34,7 +34,7 @@ MEAN_EDGE = (6 + 8 * np.sqrt(0.75)) / 14
 
 
 def lattice(box: Float[np.ndarray, "2 3"], cell: float, wanted: Wanted | None = None) -> tuple[Nodes, Elements]:
-    """Nodes [m] and tetrahedra of a lattice of cells [m] that covers a box with a cell to spare, centred on it.
+    """Nodes [m] and tetrahedra of a lattice of cells [m] that covers a box with a cell to spare, centered on it.
 
     Its tetrahedra are all alike, with dihedral angles of 60 and 90 degrees: each edge of a face between two cells makes
     one with the middles of both (Labelle and Shewchuk 2007). Only those with a cell that is `wanted`, by its middle
@@ -90,7 +90,7 @@ def bisect(nodes: Nodes, elements: Elements, chosen: Bool[np.ndarray, " elements
     """Divide chosen tetrahedra at the middle of their longest edges, and whatever shares these edges.
 
     An edge is divided only while it is the longest of all tetrahedra that have it, so others with longer edges are
-    divided first. On the body-centred cubic lattice this leaves four shapes of tetrahedra, the lattice's own and
+    divided first. On the body-centered cubic lattice this leaves four shapes of tetrahedra, the lattice's own and
     three more, however often it is done; no angle gets below 45 degrees.
     """
     every, which = edges_of(elements)

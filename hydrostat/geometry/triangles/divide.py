@@ -23,7 +23,7 @@ class Spacing:
     values: Float[np.ndarray, " places"]  # spacing at these positions
 
     def __call__(self, points: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, " points"]:
-        """Wanted distance of neighbours at some points."""
+        """Wanted distance of neighbors at some points."""
         fine = np.flatnonzero(self.values < 0.999)
         wanted = np.ones(len(points))
         growth = 0.3  # how much the spacing may grow for each unit of distance
@@ -213,8 +213,8 @@ def _split_where_crossing(divisions: tuple[Division, ...]) -> Draft:
             return draft
         lines = np.asarray(linestrings(draft.points[draft.edges]))
         first, second = STRtree(lines).query(lines, predicate="intersects")
-        neighbours = (draft.edges[first][:, :, None] == draft.edges[second][:, None, :]).any(axis=(1, 2))
-        for edge in np.unique(first[~neighbours])[::-1]:
+        neighbors = (draft.edges[first][:, :, None] == draft.edges[second][:, None, :]).any(axis=(1, 2))
+        for edge in np.unique(first[~neighbors])[::-1]:
             ring, number = draft.place(int(edge))
             draft = draft.with_division(ring, draft.divisions[ring].split(number))
     raise OutlineError("the outline comes too near to itself for this element size: take smaller elements")

@@ -15,7 +15,7 @@ _EQUILATERAL = 2.0 * np.sqrt(3.0)
 
 
 def push_apart(draft: Draft, spacing: Spacing, steps: int) -> Draft:
-    """Let neighbours that are too close push each other apart (DistMesh, Persson & Strang 2004)."""
+    """Let neighbors that are too close push each other apart (DistMesh, Persson & Strang 2004)."""
     first_inside = int(draft.starts[-1])
     for _ in range(steps):
         points, triangles = draft.points, draft.triangles
@@ -34,13 +34,13 @@ def push_apart(draft: Draft, spacing: Spacing, steps: int) -> Draft:
 
 
 def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Draft:
-    """Minimise the sum over triangles of (mean ratio) ** power, with a new triangulation between rounds.
+    """Minimize the sum over triangles of (mean ratio) ** power, with a new triangulation between rounds.
 
     The mean ratio is (a^2 + b^2 + c^2) / (4 sqrt(3) area): one for an equilateral triangle, without bound for a
     flat one. Boundary nodes that are no corners slide along their ring.
     """
     for _ in range(rounds):
-        candidates = (_minimise(draft, power, iterations, slide) for slide in (True, False))
+        candidates = (_minimize(draft, power, iterations, slide) for slide in (True, False))
         moved = next((moved for moved in candidates if sound(moved)), draft)
         if not _score(moved, power) < _score(draft, power) - 1e-3:
             return draft
@@ -73,15 +73,15 @@ def _energy(points: Points, triangles: Elements, power: float) -> tuple[float, P
     squares = np.einsum("tcd,tcd->t", opposite, opposite)
     ratio = squares / (_EQUILATERAL * doubled)
     turned = np.stack([-opposite[..., 1], opposite[..., 0]], axis=-1)
-    centred = 6.0 * (corners - corners.mean(axis=1, keepdims=True))
+    centered = 6.0 * (corners - corners.mean(axis=1, keepdims=True))
     weight = (power * ratio ** (power - 1.0))[:, None, None]
-    slope = weight * (centred / (_EQUILATERAL * doubled)[:, None, None] - (ratio / doubled)[:, None, None] * turned)
+    slope = weight * (centered / (_EQUILATERAL * doubled)[:, None, None] - (ratio / doubled)[:, None, None] * turned)
     for corner in range(3):
         np.add.at(gradient, triangles[:, corner], slope[:, corner])
     return float((ratio**power).sum()), gradient
 
 
-def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft:
+def _minimize(draft: Draft, power: float, iterations: int, slide: bool) -> Draft:
     """Draft moved at fixed triangles, its boundary nodes only if they may slide."""
     from scipy.optimize import minimize  # Imported here: bodies in space are read sooner.
 

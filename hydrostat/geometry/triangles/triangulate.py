@@ -30,7 +30,7 @@ def triangulate(outline: Outline, element_size: float) -> Mesh:
     spacing = _inner_spacing(draft)
     draft = _with_all_sides(Draft(draft.divisions, _seeds(draft, spacing)))
     for _ in range(6):
-        added = _gap_centres(draft, spacing)
+        added = _gap_centers(draft, spacing)
         if not len(added):
             break
         draft = _with_all_sides(Draft(draft.divisions, np.concatenate([draft.interior, added])))
@@ -87,24 +87,24 @@ def _seeds(draft: Draft, spacing: Spacing) -> Points:
     return lattice[(wanted > 0.9) & (away > 0.65 * wanted)]
 
 
-def _gap_centres(draft: Draft, spacing: Spacing) -> Points:
-    """Circle centres of triangles much larger than wanted, the largest first, none too near to another."""
-    centres, radii = _circles(draft)
-    wanted = spacing(centres)
+def _gap_centers(draft: Draft, spacing: Spacing) -> Points:
+    """Circle centers of triangles much larger than wanted, the largest first, none too near to another."""
+    centers, radii = _circles(draft)
+    wanted = spacing(centers)
     excess = radii / wanted
     order = np.argsort(-excess, kind="stable")
     order = order[excess[order] > 0.8]
-    order = order[contains_xy(draft.polygon, centres[order, 0], centres[order, 1])]
-    order = order[distance(draft.polygon.boundary, shapely_points(centres[order])) > 0.5 * wanted[order]]
+    order = order[contains_xy(draft.polygon, centers[order, 0], centers[order, 1])]
+    order = order[distance(draft.polygon.boundary, shapely_points(centers[order])) > 0.5 * wanted[order]]
     taken: list[int] = []
     for index in order:
-        if not taken or np.linalg.norm(centres[taken] - centres[index], axis=1).min() > 0.8 * wanted[index]:
+        if not taken or np.linalg.norm(centers[taken] - centers[index], axis=1).min() > 0.8 * wanted[index]:
             taken.append(int(index))
-    return centres[taken]
+    return centers[taken]
 
 
 def _circles(draft: Draft) -> tuple[Points, np.ndarray]:
-    """Centre and radius of the circle through the corners of each triangle."""
+    """Center and radius of the circle through the corners of each triangle."""
     corners = draft.points[draft.triangles]
     b, c = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     scale = 0.5 / (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])

@@ -1,4 +1,4 @@
-"""`CenterOfMassTarget`: the centre of mass at a point."""
+"""`CenterOfMassTarget`: the center of mass at a point."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -36,15 +36,15 @@ class CenterOfMassTarget(Objective):
         """Return the residual on this robot.
 
         Raises:
-            InputError: a target that is no place in the body's space, not finite or not in metres, or a weight below 0.
+            InputError: a target that is no place in the body's space, not finite or not in meters, or a weight below 0.
         """
-        target = place("target of the centre of mass", self.target, simulation.robot.body.mesh)
-        weight = not_negative("weight of the centre of mass", self.weight)
+        target = place("target of the center of mass", self.target, simulation.robot.body.mesh)
+        weight = not_negative("weight of the center of mass", self.weight)
         masses = simulation.body.masses
-        return _Centre(weight, masses / masses.sum(), target)
+        return _Center(weight, masses / masses.sum(), target)
 
 
-class _Centre(Residual):
+class _Center(Residual):
     def __init__(self, weight: float, shares: Vector, target: Vector) -> None:
         self._weight, self._shares, self._target = weight, shares, target
 
@@ -56,4 +56,4 @@ class _Centre(Residual):
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
         distance = float(np.linalg.norm(self._shares @ posture.nodes - self._target))
-        return {"centre of mass": distance} if self._weight > 0 else {}
+        return {"center of mass": distance} if self._weight > 0 else {}

@@ -45,7 +45,7 @@ class PointTarget(Objective):
 
         Raises:
             InputError: no points, one without a target or the other way round, a place that is not in the body's space,
-                not finite or not in metres, or a weight below 0.
+                not finite or not in meters, or a weight below 0.
         """
         mesh = simulation.robot.body.mesh
         points = by_name("points of the body", self.points, '{"knuckle": (0.1, 0.02)}')
@@ -83,7 +83,7 @@ class MarkerTarget(Objective):
 
         Raises:
             InputError: no targets, a marker that it does not have, a target that is no place in the body's space, not
-                finite or not in metres, a weight below 0, an axis that there is not.
+                finite or not in meters, a weight below 0, an axis that there is not.
         """
         robot = simulation.robot
         mesh = robot.body.mesh

@@ -53,7 +53,7 @@ class StateJacobian:
 
 
 class Residual(ABC):
-    """Objective on one robot: 1/2 |residual|^2, a residual in metres.
+    """Objective on one robot: 1/2 |residual|^2, a residual in meters.
 
     `hydrostat.testing.check_objective` tells whether a term is right.
     """
@@ -115,7 +115,7 @@ def posture_of(
 
 
 def winch_to_cable_matrix(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
-    """B: contraction of each cable per metre of its winch's contraction; 0 for other winches."""
+    """B: contraction of each cable per meter of its winch's contraction; 0 for other winches."""
     cables, winches = simulation.cables, np.arange(len(simulation.robot.winches))
     return np.where(cables.winches[:, None] == winches, cables.ratios[:, None], 0.0)
 
@@ -208,7 +208,7 @@ def by_name(what: str, given: object, example: str) -> Mapping[str, Any]:
 def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"] | None = None) -> Vector:
     """Place to go for a part of a body at rest [m], which counts along the axes that are held, or along all.
 
-    What is no place, of another dimension, not finite, or so far away that it cannot be in metres, is an InputError.
+    What is no place, of another dimension, not finite, or so far away that it cannot be in meters, is an InputError.
     """
     found = numbers(given)
     if found is None or found.ndim != 1:
@@ -220,7 +220,7 @@ def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"
     low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
     ways = np.maximum(np.maximum(low - found, found - high), 0.0)
     way = float(np.linalg.norm(ways if held is None else ways[held]))
-    farthest = 100.0  # sizes of its body that a target may be away; in millimetres it is a thousand
+    farthest = 100.0  # sizes of its body that a target may be away; in millimeters it is a thousand
     if way > farthest * mesh.size:
-        raise InputError(f"{what} is {way:.4g} m away from a body of {mesh.size:.3g} m; targets are in metres")
+        raise InputError(f"{what} is {way:.4g} m away from a body of {mesh.size:.3g} m; targets are in meters")
     return found

@@ -183,7 +183,7 @@ def _check(name: str, shell: Shell, mesh: Mesh) -> None:
     largest = 10.0  # a body does not get so many times longer or shorter
     if not 1 / largest < size / mesh.size < largest:
         raise InputError(
-            f"the {name} is {1e3 * size:.4g} mm large, the body {1e3 * mesh.size:.4g} mm; give it in metres"
+            f"the {name} is {1e3 * size:.4g} mm large, the body {1e3 * mesh.size:.4g} mm; give it in meters"
         )
     if not (shell.measures > 0).all():
         raise InputError(f"the {name} has {np.sum(shell.measures == 0)} triangles without area; heal it first")

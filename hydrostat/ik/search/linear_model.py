@@ -209,9 +209,9 @@ def least_squares(
     limits: Float[np.ndarray, "limits size"],
     room: Float[np.ndarray, " limits"],
 ) -> Float[np.ndarray, " size"] | None:
-    """Minimise |matrix x - right| with limits x <= room; None if no x is within the limits.
+    """Minimize |matrix x - right| with limits x <= room; None if no x is within the limits.
 
-    By a QR factorisation it becomes the problem of the least distance, and that one of nonnegative least squares
+    By a QR factorization it becomes the problem of the least distance, and that one of nonnegative least squares
     (Lawson and Hanson 1974, chapter 23). `matrix` must have full column rank.
     """
     from scipy.linalg import solve_triangular  # Imported here: not every command needs it.

@@ -33,7 +33,7 @@ class IKOptions:
         effort: marker error, as a fraction of the body's size, that the tension at full travel of a winch is worth: a
             small regularizer against co-contraction. It falls with the error, so it hides no target.
         tolerance: error, as a fraction of the body's size, at which a goal counts as reached.
-        progress: minimum relative decrease of the objective that the linearised problem must predict; below it the
+        progress: minimum relative decrease of the objective that the linearized problem must predict; below it the
             search ends.
         iterations: maximum number of steps from one start.
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
@@ -96,7 +96,7 @@ class ModelStep(NamedTuple):
 
 
 class InverseProblem:
-    """One problem of inverse kinematics: a robot, terms, limits. States are seen, linearised and judged here."""
+    """One problem of inverse kinematics: a robot, terms, limits. States are seen, linearized and judged here."""
 
     def __init__(
         self,
@@ -264,7 +264,7 @@ def effort_weight(residual: Rows, size: float, most: float) -> float:
     return max(min(most, share * error), _LEAST_WEIGHT)
 
 
-_LEAST_WEIGHT = 1e-8  # of the effort; enough to keep the linearised problem well posed
+_LEAST_WEIGHT = 1e-8  # of the effort; enough to keep the linearized problem well posed
 
 
 def _full_tension(simulation: Simulation) -> float:

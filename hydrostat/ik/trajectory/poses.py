@@ -30,7 +30,7 @@ def follow(
 
     A step is taken when the nodes come to rest where the predictor x + dx/da da has put them, within `jump` [m]; else
     it is halved. On a branch the distance falls with the square of the step, where a cable becomes taut with the step
-    itself; at a snap it stays, however small the step is. Only the last pose keeps its factorised Hessian.
+    itself; at a snap it stays, however small the step is. Only the last pose keeps its factorized Hessian.
 
     Raises:
         NotConvergedError: no equilibrium is found at some time.

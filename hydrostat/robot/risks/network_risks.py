@@ -192,7 +192,7 @@ def _safe_travels(robot: Robot) -> dict[str, float]:
 
 
 def limit_travels(robot: Robot, kept: Collection[str] = ()) -> Robot:
-    """The robot with travels that neither use up a cable nor squeeze the body too far, rounded down to a millimetre.
+    """The robot with travels that neither use up a cable nor squeeze the body too far, rounded down to a millimeter.
 
     Winches that are kept, by name, stay as they are.
     """

@@ -1,4 +1,4 @@
-"""Words for risks: lengths and places in millimetres, several parts with the same risk in one line."""
+"""Words for risks: lengths and places in millimeters, several parts with the same risk in one line."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -34,12 +34,12 @@ def told_together(found: Iterable[Risk]) -> Iterator[str]:
 
 
 def mm(length: float) -> str:
-    """Length [m] in millimetres, to three digits, micrometres at best."""
+    """Length [m] in millimeters, to three digits, micrometers at best."""
     return f"{round(1e3 * length, 3):.3g} mm"
 
 
 def place(point: Float[np.ndarray, " dim"]) -> str:
-    """Place [m] in millimetres."""
+    """Place [m] in millimeters."""
     return "[" + ", ".join(f"{round(1e3 * value):d}" for value in point) + "] mm"
 
 

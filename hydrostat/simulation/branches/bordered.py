@@ -29,7 +29,7 @@ class PathPoint:
     Attributes:
         nodes: node positions [m].
         share: share of the way from the first contractions to the goal.
-        stiffness: factorised Hessian.
+        stiffness: factorized Hessian.
         tangent: direction of the branch.
         residual: largest component of a nodal force [N].
         allowed: residual [N] at which it counts as converged.

@@ -21,7 +21,7 @@ Slopes = Float[np.ndarray, "markers dim winches"]
 
 
 LONG_ENOUGH = 2e-4
-"""Modelled time of a factorisation [s] from which on threads pay: below, they mostly wait for Python's lock."""
+"""Modelled time of a factorization [s] from which on threads pay: below, they mostly wait for Python's lock."""
 
 
 class PoseRow(NamedTuple):

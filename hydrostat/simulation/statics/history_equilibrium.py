@@ -9,25 +9,25 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics import Assembly, NewtonResult, Reason, Stiffness
 
 Relax = Callable[[Assembly, Nodes, Stiffness | None], NewtonResult]
-"""Minimises the sum of energies from nodes [m], with the Hessian there if it is known."""
+"""Minimizes the sum of energies from nodes [m], with the Hessian there if it is known."""
 
 
 def find_history_equilibrium(
     assembly: Assembly, start: tuple[Nodes, Stiffness | None], controls: Vector, relax: Relax, floor: float
 ) -> tuple[Assembly, NewtonResult]:
-    """Minimise and correct the quantities held fixed, such as friction limits, until both agree (E14).
+    """Minimize and correct the quantities held fixed, such as friction limits, until both agree (E14).
 
-    Without energies that have a history this is one minimisation.
+    Without energies that have a history this is one minimization.
 
     Args:
         assembly: the sum, with a first guess of what is held fixed.
         start: initial positions [m], and the Hessian there if it is known.
         controls: contractions [m].
-        relax: function that minimises the energy.
+        relax: function that minimizes the energy.
         floor: force that rounding hides [N].
 
     Returns:
-        The sum as corrected, and how the last minimisation ended; its iterations are of all.
+        The sum as corrected, and how the last minimization ended; its iterations are of all.
     """
     nodes, stiffness = start
     iterations = corrections = last = 0

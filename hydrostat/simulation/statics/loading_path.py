@@ -32,7 +32,7 @@ class LoadingPath:
     """Incremental loading: follows contractions from pose to pose, as energies with a history ask for (E14).
 
     Contractions go straight from where they are to where they shall be, in even increments that take in or let out at
-    most a small part of a cable. In each the energy is minimised while what depends on the path, such as the limits of
+    most a small part of a cable. In each the energy is minimized while what depends on the path, such as the limits of
     friction, is held fixed; this is corrected until it is in balance with the shape that is found.
     """
 

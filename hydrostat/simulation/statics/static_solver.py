@@ -17,7 +17,7 @@ from hydrostat.mechanics import (
     Reason,
     RoundOff,
     Stiffness,
-    minimise,
+    minimize,
 )
 from hydrostat.robot import Robot
 
@@ -105,7 +105,7 @@ class StaticSolver:
             nodes: initial node positions [m].
             controls: contraction of each winch [m].
             stiffness: the Hessian near there, such as that of the last result; then the first step is the prediction
-                dx/da and costs no factorisation.
+                dx/da and costs no factorization.
             iterations: most steps, if fewer than the options allow.
             tolerance: tolerance, if looser than that of the options.
             exact: True if `stiffness` is that of `nodes` up to rounding, and not of positions nearby.
@@ -116,7 +116,7 @@ class StaticSolver:
             options = replace(options, iterations=min(iterations, options.iterations))
         if tolerance is not None:
             options = replace(options, tolerance=max(tolerance, options.tolerance))
-        return minimise(
+        return minimize(
             self.assembly,
             nodes,
             controls,
@@ -143,14 +143,14 @@ class StaticSolver:
         """Return the same solver with a node accuracy [m] for a body of a given size [m]; itself if None.
 
         Raises:
-            InputError: an accuracy that is not above 0, or so rough that it is hardly in metres.
+            InputError: an accuracy that is not above 0, or so rough that it is hardly in meters.
         """
         if accuracy is not None and not (isinstance(accuracy, int | float | np.number) and accuracy > 0):
             raise InputError(f"accuracy must be above 0 m, not {accuracy!r}")
         roughest = 0.1  # So far from equilibrium, in sizes of the body, no pose is of use
         if accuracy is not None and accuracy > roughest * size:
             raise InputError(
-                f"accuracy, {accuracy:g} m, is too rough for a body of {size:.3g} m; it is in metres: 0.01 mm is 1e-5"
+                f"accuracy, {accuracy:g} m, is too rough for a body of {size:.3g} m; it is in meters: 0.01 mm is 1e-5"
             )
         return self if accuracy is None else replace(self, options=replace(self.options, accuracy=accuracy))
 

@@ -21,7 +21,7 @@ from hydrostat.mechanics import (
     NewtonResult,
     RoundOff,
     Stiffness,
-    minimise,
+    minimize,
 )
 from hydrostat.robot import Robot, check_not_negative, check_number
 from hydrostat.simulation.body_physics import BodyPhysics
@@ -40,7 +40,7 @@ class StepOptions:
     Attributes:
         scheme: name of a scheme in `SCHEMES`.
         drag: drag force per mass and velocity [1/s]; 0 for none.
-        halvings: maximum number of times a step is halved if its minimisation fails.
+        halvings: maximum number of times a step is halved if its minimization fails.
 
     Raises:
         InputError: an unknown scheme, a negative drag, or a negative number of halvings.
@@ -76,7 +76,7 @@ class _MotionState:
 
 
 class Dynamics:
-    """Steps in time as minimisations, from a state of motion to the next (E4, E5)."""
+    """Steps in time as minimizations, from a state of motion to the next (E4, E5)."""
 
     def __init__(
         self,
@@ -175,7 +175,7 @@ class Dynamics:
     def _advance(
         self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions
     ) -> tuple[Motion, NewtonResult]:
-        """Take one step; return the motion and its last minimisation. If that failed, the motion is invalid."""
+        """Take one step; return the motion and its last minimization. If that failed, the motion is invalid."""
         begin = _state(motion)
         end, rates = begin, []
         acceleration = _stack_rows(motion.accelerations, motion, 2)
@@ -191,7 +191,7 @@ class Dynamics:
             places = (1 - share) * motion.pin_shifts + share * shifts
             statics = self._remembering(history, end.nodes, at, places, motion.time + share * dt)
             energies = self._energies(base, step, options.drag, statics)
-            assembly, result = self._minimise(energies, controls, base, end.nodes, acceleration, step)
+            assembly, result = self._minimize(energies, controls, base, end.nodes, acceleration, step)
             iterations += result.iterations
             if not result.converged:
                 return motion, replace(result, iterations=iterations)
@@ -224,7 +224,7 @@ class Dynamics:
             energies.append(self.memory.energy(base.metrics, step))
         return energies
 
-    def _minimise(
+    def _minimize(
         self,
         energies: list[Energy],
         controls: Vector,
@@ -244,7 +244,7 @@ class Dynamics:
         noise = self._noise(step)
 
         def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
-            return minimise(assembly, nodes, controls, round_off=noise, options=self._options, stiffness=known)
+            return minimize(assembly, nodes, controls, round_off=noise, options=self._options, stiffness=known)
 
         return find_history_equilibrium(assembly, (start, None), controls, relax, noise.force)
 

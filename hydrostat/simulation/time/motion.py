@@ -32,7 +32,7 @@ class Motion:
             friction.
         carried: unknowns of moving obstacles [m], their velocities [m/s] and accelerations [m/s^2]; None if no obstacle
             moves.
-        result: result of the last minimisation of the step; its energy is that of the step, its iterations are those of
+        result: result of the last minimization of the step; its energy is that of the step, its iterations are those of
             all.
     """
 

@@ -116,7 +116,7 @@ class Driver(Stage):
         return True
 
     def drag(self, hit: Hit) -> None:
-        """Down takes in, up lets out, millimetre by millimetre."""
+        """Down takes in, up lets out, millimeter by millimeter."""
         if self._pull is not None:
             name, begun, start = self._pull
             self.turn(name, begun + start.world[-1] - hit.world[-1])

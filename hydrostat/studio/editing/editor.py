@@ -36,7 +36,7 @@ class Editor(Stage):
         depth = 0.005  # how deep below the skin of a body in space winches and cables are placed at first [m]
         self.depth = depth  # how deep below the skin of a body in space winches and cables are placed [m]
         self.draft: CableDraft | None = None  # the cable that is being laid
-        self.snap = 0.0  # places of parts are multiples of it [m]; 0: of a tenth of a millimetre
+        self.snap = 0.0  # places of parts are multiples of it [m]; 0: of a tenth of a millimeter
         self.ruler: Ruler | None = None  # laid with its tool; None: it is not
         self.several = False  # whether a press adds to what is selected, as with Shift: fingers have none
         self._chosen: tuple[str, ...] = ()

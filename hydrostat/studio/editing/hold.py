@@ -47,8 +47,8 @@ def below_skin(body: Body, at: Point, depth: float) -> Point:
 
 
 def tidy(at: Point) -> Point:
-    """A place in whole tenths of a millimetre."""
-    digits = 4  # places are whole tenths of a millimetre: decimals of a metre
+    """A place in whole tenths of a millimeter."""
+    digits = 4  # places are whole tenths of a millimeter: decimals of a meter
     return tuple(round(float(value), digits) + 0.0 for value in at)
 
 

@@ -12,7 +12,7 @@ from hydrostat.drawing import PAPER, Html, tag
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKResult, solve_ik
 from hydrostat.plot import (
-    MILLIMETRES,
+    MILLIMETERS,
     REACHED,
     Chapter,
     body_part,
@@ -131,7 +131,7 @@ def _hero(solved: SolvedPoses) -> Html:
         error = float(np.sqrt(np.mean(errors**2)))
         tension = max(float(np.max(reached.pose.tensions)) for reached in solved.reached)
         share = f"{100 * error / robot.body.mesh.size:.1f} % of the body's size"
-        steps.append(fact(f"{MILLIMETRES * error:.1f}", "mm rms", f"of all markers in all poses: {share}", best=True))
+        steps.append(fact(f"{MILLIMETERS * error:.1f}", "mm rms", f"of all markers in all poses: {share}", best=True))
         steps.append(fact(f"{tension:.1f}", "N", "maximum cable tension in these poses"))
     return tag(
         "div",

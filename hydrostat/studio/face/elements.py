@@ -104,7 +104,7 @@ def _shares(robot: Robot, contractions: Mapping[str, float]) -> list[float]:
 
 
 class OutlineEditor(ui.element, component="static/outline_editor.js"):
-    """Corners, curves and holes on a grid in millimetres.
+    """Corners, curves and holes on a grid in millimeters.
 
     A click adds corners to the loop that is begun, and closes it at its first corner; corners are dragged, a click on
     an edge puts one in, Delete removes one, a double click makes one round or sharp. What a screen sends is checked

@@ -17,7 +17,7 @@ class _Message(BaseModel):
 
 
 class Pointer(_Message):
-    """The pointer, in metres of the body.
+    """The pointer, in meters of the body.
 
     A "grab" begins what "drag"s go on with and a "release" ends; a "click" is both at one place. `stamp` returns with
     the first frame that has the answer.

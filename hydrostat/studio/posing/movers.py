@@ -157,7 +157,7 @@ GAIN = 0.5
 error, in sizes of the body. An arm that is dragged out of reach yanks no other for the hair that it would gain."""
 
 ROUGH = 1e-3
-"""Force that may be left over while something moves, as a share of the largest tension: nobody sees a micrometre, and
+"""Force that may be left over while something moves, as a share of the largest tension: nobody sees a micrometer, and
 updates take little more than half the time. What comes to rest is followed to the end."""
 
 STRIDE = 0.05

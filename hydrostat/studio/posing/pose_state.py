@@ -167,7 +167,7 @@ def with_pose(robot: Robot, name: str, held: Mapping[str, HeldPoint]) -> Robot:
 
 
 def same_as(robot: Robot, name: str) -> str:
-    """The first other pose with the same targets as one, to a tenth of a millimetre; "" if there is none."""
+    """The first other pose with the same targets as one, to a tenth of a millimeter; "" if there is none."""
     own = robot.pose(name).targets
     same = 1e-4  # poses whose targets are nearer to each other are the same [m]
     for pose in robot.poses.values():

@@ -50,7 +50,7 @@ class Outlining:
         self._set(read_loops(raw))
 
     def drawing(self) -> bytes:
-        """The loops as SVG in millimetres (InputError: they are no body)."""
+        """The loops as SVG in millimeters (InputError: they are no body)."""
         return loops_svg(self.loops)[0]
 
     def apply_outline(self, work: Work) -> Reshaped:
@@ -87,7 +87,7 @@ def _spoke(step: float, steps: int) -> tuple[float, float]:
 
 
 def reshape_outline(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
-    """Give a flat robot another outline, an SVG in millimetres (InputError: it is no body, or no pin lies in it).
+    """Give a flat robot another outline, an SVG in millimeters (InputError: it is no body, or no pin lies in it).
 
     Coordinates of a body count from the middle of its drawing, so what stays is moved when that moves: `corner` is what
     of the robot lies in the upper left corner of the drawing [mm].

@@ -106,7 +106,7 @@ TITLE = "Meshing"
 _MODULES = (  # what a process that meshes needs; a process that has them already answers at once
     "hydrostat.studio.starting.sketch",
     "hydrostat.geometry.files.outline_file",
-    "hydrostat.geometry.tetrahedra.tetrahedralise",
+    "hydrostat.geometry.tetrahedra.tetrahedralize",
     "hydrostat.plot",
 )
 

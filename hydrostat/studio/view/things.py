@@ -82,7 +82,7 @@ class Dot:
     about: str = ""  # of a flag: key of the part whose words it shows while the pointer is there
     stuck: bool = True  # whether it moves with the body
     chosen: bool = False  # whether it is selected
-    radius: float = 0.0  # in metres, for pins that reach so far; 0: just the sign
+    radius: float = 0.0  # in meters, for pins that reach so far; 0: just the sign
     faint: bool = False  # whether it is proposed only
 
 

@@ -1,4 +1,4 @@
-"""`HydrostatRobot`: the winches of a soft robot as a robot of LeRobot; actions and observations are millimetres."""
+"""`HydrostatRobot`: the winches of a soft robot as a robot of LeRobot; actions and observations are millimeters."""
 
 import threading
 import time

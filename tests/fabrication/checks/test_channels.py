@@ -15,7 +15,7 @@ def test_a_tube_that_rises_to_the_skin_and_dives_again_is_refused():
     assert problem.startswith("cable 1: its tube comes within 1.5 mm of the skin at [0, 0, 18] mm, but needs 2.0 mm")
 
 
-def test_half_a_millimetre_deeper_it_is_not():
+def test_half_a_millimeter_deeper_it_is_not():
     robot = foam_brick([(-70, 0, 0), (-30, 0, 0), (0, 0, 17.9), (30, 0, 0), (45, 0, 0)], sheathed=((0, 3),))
     assert channel_problems(robot, OPTIONS) == ()
 

@@ -58,11 +58,11 @@ def test_holes_in_each_others_columns_are_seen():
     holes = [shape for shape in front.shapes if shape.part is PatternPart.PINHOLE]
     one, two = holes[1], holes[2]
     swapped = {
-        one.centre: replace(one, centre=(one.centre[0], two.centre[1])),
-        two.centre: replace(two, centre=(two.centre[0], one.centre[1])),
+        one.center: replace(one, center=(one.center[0], two.center[1])),
+        two.center: replace(two, center=(two.center[0], one.center[1])),
     }
     shapes = tuple(
-        swapped.get(shape.centre, shape) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes
+        swapped.get(shape.center, shape) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes
     )
     assert not checked(dxf=pattern_dxf(replace(pattern, panels=(replace(front, shapes=shapes), *others))))[1]
 
@@ -86,5 +86,5 @@ def test_a_page_that_is_scaled_is_seen():
 
 
 def test_a_drawing_without_a_size_is_refused():
-    with pytest.raises(InputError, match="no size in millimetres"):
+    with pytest.raises(InputError, match="no size in millimeters"):
         checked(b'<svg xmlns="http://www.w3.org/2000/svg"/>')

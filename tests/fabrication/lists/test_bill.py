@@ -110,7 +110,7 @@ def test_what_closes_a_mould() -> None:
     robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08))
     foam = FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0)
     plain = needs(given(robot, foam=foam, pieces=(CUBE,)))
-    assert not {"bolt M4 with nut", "rod of 3 mm", "glue for plastic", "modelling clay"} & set(plain)
+    assert not {"bolt M4 with nut", "rod of 3 mm", "glue for plastic", "modeling clay"} & set(plain)
     assert plain["sealer"].quantity == 1
     cut = needs(given(robot, foam=replace(foam, bolts=8, dowels=6), pieces=(CUBE,)))
     assert cut["bolt M4 with nut"].quantity == 8
@@ -118,7 +118,7 @@ def test_what_closes_a_mould() -> None:
     assert "6 dowels" in cut["rod of 3 mm"].specification
     assert cut["glue for plastic"].quantity == 1
     silicone = needs(given(robot, foam=replace(foam, silicone=1e6, silicone_mass=1180.0, dowels=2), pieces=(CUBE,)))
-    assert "modelling clay" in silicone
+    assert "modeling clay" in silicone
     assert "sealer" not in silicone
     with pytest.raises(InputError, match="bolts must not be negative, not -1"):
         replace(foam, bolts=-1)

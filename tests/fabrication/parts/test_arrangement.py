@@ -124,7 +124,7 @@ def test_one_unit_is_turned_and_slid_until_it_is_inside():
     assert "does not fit within the seam" in problems(arrange_units([brick("a", 0, 9.0, deep=30.0)], strip, 21.0))[0]
 
 
-def test_neighbours_turn_away_from_each_other():
+def test_neighbors_turn_away_from_each_other():
     """Oracle: across they would meet, slid too; face to face, with 5 mm of housing each, not."""
     wide = box(-200, -200, 200, 200)
     near = arrange_units([brick("a", -3, 0), brick("b", 3, 0)], wide, 31.0)

@@ -63,7 +63,7 @@ def test_everything_fits_on_the_base(name: str, motor: Motor, unchecked: None):
 
 @pytest.mark.slow
 def test_a_motor_beside_its_hole_is_found():
-    """The check can fail: a motor pushed by half a millimetre against the base."""
+    """The check can fail: a motor pushed by half a millimeter against the base."""
     base, _ = base_of("fish_tail")
     pieces = base.assembly.pieces
     motor = next(piece for piece in pieces if piece.name.startswith("motor_n20"))

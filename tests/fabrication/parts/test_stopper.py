@@ -59,7 +59,7 @@ def test_the_lid_does_not_turn_with_the_screw(turned: float):
 
 @pytest.mark.parametrize("options", CABLES)
 def test_the_screw_holds_and_does_not_come_out_at_the_cloth(options: PartOptions):
-    """Oracle: heights in the assembly: three millimetres of thread, and plastic under the point pressed down."""
+    """Oracle: heights in the assembly: three millimeters of thread, and plastic under the point pressed down."""
     base, lid, screw = (piece.solid for piece in stopper(options).assembly.pieces)
     point, head = screw.bounding_box()[2], screw.bounding_box()[5]
     assert base.bounding_box()[5] - point >= 3.0

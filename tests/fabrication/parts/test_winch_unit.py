@@ -65,7 +65,7 @@ def test_units_of_the_gallery(name: str, motor: Motor, unchecked: None):
 
 
 def test_a_spool_too_high_is_found():
-    """The check of interference can fail: the spool half a millimetre higher."""
+    """The check of interference can fail: the spool half a millimeter higher."""
     (unit, *_) = units_of(gallery_robot("letter_s"))
     pieces = tuple(
         replace(piece, solid=piece.solid.translate((0, 0, 0.5 if piece.name.startswith("spool") else 0)))

@@ -43,7 +43,7 @@ def folded(rows: int = 7) -> Disc:
 
 
 def cap(angle: float, radius: float = 50.0, rings: int = 16, columns: int = 48) -> Disc:
-    """A cap of a sphere, its rim that far from its pole as seen from the centre [mm]."""
+    """A cap of a sphere, its rim that far from its pole as seen from the center [mm]."""
     tilt = np.repeat(angle * np.arange(1, rings + 1) / rings, columns)
     turn = np.tile(2 * np.pi * np.arange(columns) / columns, rings)
     ring = np.column_stack([np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)])

@@ -38,7 +38,7 @@ def test_a_lens_is_cut_along_its_edge():
     mesh = skin_mesh(ellipsoid_body((0.12, 0.05, 0.1), cells=12))
     assert thin_direction(mesh) == pytest.approx([0, 1, 0])
     cut = front_and_back(mesh)
-    line = cut.vertices[np.unique(cut.edges[0][(cut.patch[cut.neighbours] == [0, 1]).all(axis=1)])]
+    line = cut.vertices[np.unique(cut.edges[0][(cut.patch[cut.neighbors] == [0, 1]).all(axis=1)])]
     assert np.abs(line[:, 1]).max() < 2.0
     front = cut.vertices[cut.triangles[cut.patch == 0]].mean(axis=1)
     assert (front[:, 1] < 2.0).all()
@@ -48,7 +48,7 @@ def test_the_seam_of_a_flat_ball_is_as_long_as_its_equator():
     ball = skin_of_ball(40.0)
     flat = SkinMesh(vertices=ball.vertices * [1, 0.9, 1], triangles=ball.triangles, patch=ball.patch)
     cut = front_and_back(flat)
-    sides = cut.patch[cut.neighbours]
+    sides = cut.patch[cut.neighbors]
     ends = cut.vertices[cut.edges[0][sides[:, 0] != sides[:, 1]]]
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum()
     assert length == pytest.approx(2 * np.pi * 40.0, rel=0.005)

@@ -62,7 +62,7 @@ def test_the_slit_keeps_off_pinholes_on_the_back():
 
     def gap(pattern: Pattern) -> float:
         box = shapely.Polygon(back_parts(pattern, PatternPart.ZIPPER)[0].points)
-        return min(box.distance(shapely.Point(hole.centre)) - hole.radius for hole in holes)
+        return min(box.distance(shapely.Point(hole.center)) - hole.radius for hole in holes)
 
     assert gap(plain) < 0
     assert gap(careful) > 1.49

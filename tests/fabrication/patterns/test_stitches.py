@@ -85,7 +85,7 @@ def test_stitches_are_where_the_cable_is_and_have_a_hole():
     robot = crossed()
     pattern = plush_pattern(robot)
     front = pattern.panel("front")
-    holes = [shape.centre for shape in front.shapes if shape.part is PatternPart.PINHOLE]
+    holes = [shape.center for shape in front.shapes if shape.part is PatternPart.PINHOLE]
     for cable, stitches in zip(robot.cables, pattern.stitches, strict=True):
         for point, stitch in zip(cable.points, stitches.stitches, strict=True):
             assert stitch.place == pytest.approx([1e3 * x for x in point])

@@ -135,7 +135,7 @@ def plush(*, name: str = "Sam", winches: int = 1, cables: int = 2, **more: Any) 
     robot = _robot(name, body, routes, winches, Mount.BODY)
     seam = body.outline.polygon if body.outline is not None else None
     assert seam is not None
-    return _given(robot, method=Method.PLUSH, stitches=cable_stitches(robot, _millimetres(seam)), **more)
+    return _given(robot, method=Method.PLUSH, stitches=cable_stitches(robot, _millimeters(seam)), **more)
 
 
 def foam(*, name: str = "Sam", winches: int = 2, cables: int = 2, silicone: bool = False, **more: Any) -> Given:
@@ -231,7 +231,7 @@ def changed(given: Given, **facts: Any) -> Given:
     return Given(change_plan(given.plan, **facts), made, replace(given.findings, **told))
 
 
-def _millimetres(polygon: Any) -> Any:
+def _millimeters(polygon: Any) -> Any:
     from shapely.affinity import scale
 
     return scale(polygon, 1e3, 1e3, origin=(0, 0))

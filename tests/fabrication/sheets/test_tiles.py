@@ -63,7 +63,7 @@ def off_scale(content: bytes, pattern: Pattern, folder: Path) -> float:
     """Largest error of the bar and of the distances between the pinholes of the first tile [mm]."""
     page = printed(content, 2, folder)
     seen = blue_places(page)
-    wanted = np.array([s.centre for s in pattern.panel("front").shapes if s.part is PatternPart.PINHOLE])
+    wanted = np.array([s.center for s in pattern.panel("front").shapes if s.part is PatternPart.PINHOLE])
     assert len(seen) == len(wanted) == 5
     spans = [np.sort([np.linalg.norm(a - b) for i, a in enumerate(p) for b in p[:i]]) for p in (seen, wanted)]
     return max(abs(bar_length(page) - 100.0), float(np.abs(spans[0] - spans[1]).max()))
@@ -111,7 +111,7 @@ def test_lines_survive_a_grey_printer_and_the_margin_is_white(pattern, tmp_path)
 
 @needs_poppler
 @pytest.mark.slow
-def test_neighbours_show_the_same_in_their_overlap(pattern, tmp_path):
+def test_neighbors_show_the_same_in_their_overlap(pattern, tmp_path):
     """Oracle: pixels: the 10 mm that two pages share differ nowhere by more than a hair."""
     content = tiled_pdf(pattern, Paper.A4)
     one, other = (printed(content, page, tmp_path).min(axis=2) < 128 for page in (2, 3))
@@ -144,7 +144,7 @@ def test_pages_are_named_and_explained(pattern):
 def two_spots(width: float, height: float) -> Pattern:
     """A sheet with a ring in its lower left and one in its upper right corner."""
     rings = [
-        Circle(layer=Layer.CUT, part=PatternPart.EDGE, centre=place, radius=5.0)
+        Circle(layer=Layer.CUT, part=PatternPart.EDGE, center=place, radius=5.0)
         for place in ((10.0, 10.0), (width - 10.0, height - 10.0))
     ]
     return Pattern(name="spots", panels=(), shapes=tuple(rings), width=width, height=height)
@@ -205,7 +205,7 @@ def test_any_name_makes_pages(name):
 def test_no_line_is_lost(seed):
     """Oracle: shapely: the windows of the printed tiles together cover every shape of a sheet of scattered rings."""
     places = np.random.default_rng(seed).uniform(10, 690, size=(9, 2))
-    rings = [Circle(layer=Layer.CUT, part=PatternPart.EDGE, centre=(float(x), float(y)), radius=8.0) for x, y in places]
+    rings = [Circle(layer=Layer.CUT, part=PatternPart.EDGE, center=(float(x), float(y)), radius=8.0) for x, y in places]
     sheet = Pattern(name="rings", panels=(), shapes=tuple(rings), width=700.0, height=700.0)
     assert lost(sheet, tile_grid(sheet, Paper.LETTER).printed) < 1e-6
 
@@ -226,7 +226,7 @@ def lost(sheet: Pattern, tiles: tuple[Tile, ...]) -> float:
 
 def test_a_page_with_nothing_of_its_own_is_saved():
     """Oracle: by hand: a ring in the 10 mm that two tiles share, as far to the right as it fits on the first."""
-    ring = Circle(layer=Layer.CUT, part=PatternPart.EDGE, centre=(185.0, 100.0), radius=4.0)
+    ring = Circle(layer=Layer.CUT, part=PatternPart.EDGE, center=(185.0, 100.0), radius=4.0)
     bar = LaserLine(layer=Layer.MARK, part=PatternPart.RULER, points=((1.0, 1.0), (101.0, 1.0)))
     sheet = Pattern(name="ring", panels=(), shapes=(ring, bar), width=370.0, height=200.0)
     assert [tile.name for tile in tile_grid(sheet, Paper.A4).printed] == ["A1"]

@@ -90,7 +90,7 @@ def test_cylinders_stay_cylinders(tmp_path):
     ],
 )
 def test_both_backends_turn_and_move_alike(placed):
-    """Oracle: each other, on a shape that is nowhere its own mirror image; its centre of mass and its box."""
+    """Oracle: each other, on a shape that is nowhere its own mirror image; its center of mass and its box."""
     shape = placed(Prism(LETTER, 2) + Box((1, 1, 7)))
     model, solid = model_of(shape), solid_of(shape)
     np.testing.assert_allclose(box_of(model), np.array(solid.bounding_box()).reshape(2, 3), atol=1e-6)

@@ -75,7 +75,7 @@ def add_key(page: "Page", time: float, taken: float) -> None:
     """A keyframe of the first winch [mm]."""
     seek(page, time)
     before = page.locator("svg[aria-label=Timeline] rect[data-key]").count()
-    box = page.get_by_label("winch_1, millimetres")
+    box = page.get_by_label("winch_1, millimeters")
     box.fill(f"{taken:g}")
     box.press("Enter")
     page.get_by_role("button", name="Add").first.click()
@@ -147,7 +147,7 @@ def test_from_the_gallery_to_a_kit_and_back(studio: Studio, window: Open, tmp_pa
         go(page, "pose")
         start = place(page, "marker:right")
         drag(page, "marker:right", -30, -60)
-        # the held marker has a target, an error in millimetres, and cables that pull it most of the way there
+        # the held marker has a target, an error in millimeters, and cables that pull it most of the way there
         page.get_by_label("Release right").wait_for()
         page.wait_for_function(
             "([x, y]) => { const [marker, target] = ['marker', 'target'].map("

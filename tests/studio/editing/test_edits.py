@@ -108,7 +108,7 @@ def test_new_parts_have_names_of_their_own(starfish: Robot) -> None:
     assert robot.pins[-1].radius == starfish.pins[0].radius
 
 
-def test_a_via_point_is_put_between_its_neighbours_and_sheaths_keep_their_segments(starfish: Robot) -> None:
+def test_a_via_point_is_put_between_its_neighbors_and_sheaths_keep_their_segments(starfish: Robot) -> None:
     sheathed = change(starfish, ["cable:0"], sheathed=((0, 1), (3, 5)))
     points = sheathed.cables[0].points
     at = tuple(((np.array(points[2]) + points[3]) / 2).tolist())

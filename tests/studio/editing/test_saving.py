@@ -85,7 +85,7 @@ travel = "20 mm"
 [[winch]]
 name = "right"
 at = [-20, -5]
-spool_radius = "0.3 cm" # in centimetres
+spool_radius = "0.3 cm" # in centimeters
 travel = "20 mm"
 
 # all cables

@@ -40,7 +40,7 @@ def without(robot: Robot, name: str) -> Robot:
 
 
 def hold(poser: Poser, key: str, at: tuple[float, ...]) -> None:
-    """Drag something a centimetre to the right."""
+    """Drag something a centimeter to the right."""
     assert poser.grab(Hit(key=key, rest=at, world=at))
     poser.drag(Hit(world=(at[0] + 0.01, *at[1:])))
     poser.release()

@@ -34,7 +34,7 @@ camera.azimuth = 0.4; camera.elevation = 0.3; camera.place();
 cover.see(nodes, camera, null);
 let length = 0;
 cover.outline((ax, ay, bx, by) => (length += Math.hypot(bx - ax, by - ay)));
-found.outline = length / camera.metre;
+found.outline = length / camera.meter;
 camera.azimuth = 0; camera.elevation = 0; camera.place();
 const rest = nodes.map((value, i) => value + (i % 3 === 0 ? 3 : 0));
 const spot = (...place) => camera.project(...place, [0, 0, 0]).slice(0, 2);

@@ -49,7 +49,7 @@ part("drag", () => down(150, 200), () => { for (let x = 160; x <= 230; x += 10) 
 const target = camera.target.x;
 part("beside", () => down(20, 20), () => move(60, 20), () => up(60, 20));
 found.panned = target - camera.target.x;
-found.metre = camera.metre;
+found.meter = camera.meter;
 view.brush = true;
 part("brush", () => down(20, 20), () => move(60, 20), () => up(60, 20));
 view.brush = false;
@@ -82,13 +82,13 @@ def test_pointer(tmp_path: Path) -> None:
     assert grab.rest == pytest.approx(grab.world, abs=1e-9)
     # one at once, the newest of the others with the next animation frame, the last before the end
     spots = [grab, *(drag for drag in drags if isinstance(drag, Pointer))]
-    places = [200 + spot.world[0] * found["metre"] for spot in spots]
+    places = [200 + spot.world[0] * found["meter"] for spot in spots]
     assert [round(place) for place in places] == [150, 160, 230, 350]
     assert spots[-1].rest is None
     assert [spot.stamp for spot in spots] == sorted(spot.stamp for spot in spots)
 
     assert told["beside"] == []
-    assert round(found["panned"] * found["metre"]) == 40
+    assert round(found["panned"] * found["meter"]) == 40
     assert [message.kind for message in told["brush"]] == ["grab", "drag", "release"]
     for name in ("escape", "blur", "cancel"):
         assert [message.kind for message in told[name]] == ["grab", "drag", "release"]

@@ -86,12 +86,12 @@ class _Card:
                 self._pull = ui.label("0.0 N").classes("studio-hint studio-figure").style("line-height: 1")
                 self._pull.tooltip("Maximum tension of its cables")
             self._box = ui.number(min=least, max=most, step=step, format="%.1f", suffix="mm", value=0.0)
-            self._box.props(f'dense outlined aria-label="{winch.name}, millimetres"').classes("drive-box")
+            self._box.props(f'dense outlined aria-label="{winch.name}, millimeters"').classes("drive-box")
             self._box.style("width: 88px; flex: none")
             self._box.mark(f"box-{winch.name}")
         self._color = f"color-mix(in oklab, {color}, white var(--lift, 0%))"
         self._knob.on_turn(
-            lambda millimetres: page.act(driver.turn, winch.name, 1e-3 * millimetres), page.doing(driver.let_go)
+            lambda millimeters: page.act(driver.turn, winch.name, 1e-3 * millimeters), page.doing(driver.let_go)
         )
         self._box.on("update:model-value", self._on_typed)  # only what a person types comes this way
         self._box.on("focus", lambda: self._type(True))

@@ -186,7 +186,7 @@ def _tables(page: WindowPage) -> None:
     largest = 4_000_000  # no table is larger [bytes]
     with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 380px"):
         ui.label("Import contractions").classes("studio-title")
-        ui.label("A table with a column time_s and one for each winch by its name, in millimetres. It takes the place "
+        ui.label("A table with a column time_s and one for each winch by its name, in millimeters. It takes the place "
                  "of the keyframes; undo brings them back.").classes("studio-hint")  # fmt: skip
 
         async def load(event: events.UploadEventArguments) -> None:

@@ -304,7 +304,7 @@ def _level(draft: BodyDraft, flat: bool) -> str | None:
 
 
 class _Length:
-    """A length that a person reads and types in millimetres."""
+    """A length that a person reads and types in millimeters."""
 
     def __init__(self, label: str, ask: Callable[[float], None], mark: str) -> None:
         self._ask, self._shown = ask, None

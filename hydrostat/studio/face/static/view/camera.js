@@ -30,8 +30,8 @@ export class Camera {
     this.place();
   }
 
-  get metre() {
-    return this.height / this.span; // pixels in a metre, at the target
+  get meter() {
+    return this.height / this.span; // pixels in a meter, at the target
   }
 
   begin(flat) {
@@ -43,7 +43,7 @@ export class Camera {
 
   /** What a person has moved to stays in view: all is drawn larger or smaller as the shorter side is. */
   resize(width, height) {
-    const scale = this.metre / Math.min(this.width, this.height);
+    const scale = this.meter / Math.min(this.width, this.height);
     this.width = Math.max(width, 1);
     this.height = Math.max(height, 1);
     if (this.moved) this.span = this.height / (scale * Math.min(this.width, this.height));
@@ -90,9 +90,9 @@ export class Camera {
     return out;
   }
 
-  /** Pixels in a metre at a point. */
+  /** Pixels in a meter at a point. */
   density(point) {
-    if (this.flat || this.parallel) return this.metre;
+    if (this.flat || this.parallel) return this.meter;
     const depth = (point[0] - this.now.position.x) * this.toward.x + (point[1] - this.now.position.y) * this.toward.y
       + (point[2] - this.now.position.z) * this.toward.z;
     return this.height / (2 * Math.tan(OPENING / 2) * Math.max(-depth, 1e-6));
@@ -139,7 +139,7 @@ export class Camera {
   }
 
   pan(dx, dy) {
-    this.target.addScaledVector(this.right, -dx / this.metre).addScaledVector(this.up, dy / this.metre);
+    this.target.addScaledVector(this.right, -dx / this.meter).addScaledVector(this.up, dy / this.meter);
     this.changed();
   }
 
@@ -219,8 +219,8 @@ export class Camera {
       }
       const size = Math.max((high[0] - low[0]) / wide, (high[1] - low[1]) / tall, 1e-6);
       const u = (low[0] + high[0] - this.width) / 2, v = (this.height - low[1] - high[1]) / 2;
-      this.target.addScaledVector(this.right, (u + (size * (right - left)) / 2) / this.metre)
-        .addScaledVector(this.up, (v + (size * (top - bottom)) / 2) / this.metre);
+      this.target.addScaledVector(this.right, (u + (size * (right - left)) / 2) / this.meter)
+        .addScaledVector(this.up, (v + (size * (top - bottom)) / 2) / this.meter);
       this.span *= size;
     }
     this.moved = false;

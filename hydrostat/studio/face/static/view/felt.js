@@ -16,22 +16,22 @@ function ringPath(rings, camera) {
   return path;
 }
 
-/** Faint squares, a round number of millimetres wide. */
+/** Faint squares, a round number of millimeters wide. */
 export function drawGrid(pen, view) {
   const { camera, theme } = view;
-  const rough = 70 / camera.metre;
+  const rough = 70 / camera.meter;
   const nice = Math.pow(10, Math.floor(Math.log10(rough)));
   const step = [1, 2, 5, 10].map((k) => k * nice).find((value) => value >= rough);
   const tall = camera.span / 2, wide = tall * (camera.width / camera.height);
   const { x, y } = camera.target;
   pen.beginPath();
   for (let k = Math.ceil((x - wide) / step); k * step < x + wide; k++) {
-    const at = Math.round((k * step - x + wide) * camera.metre) + 0.5;
+    const at = Math.round((k * step - x + wide) * camera.meter) + 0.5;
     pen.moveTo(at, 0);
     pen.lineTo(at, camera.height);
   }
   for (let k = Math.ceil((y - tall) / step); k * step < y + tall; k++) {
-    const at = Math.round((y + tall - k * step) * camera.metre) + 0.5;
+    const at = Math.round((y + tall - k * step) * camera.meter) + 0.5;
     pen.moveTo(0, at);
     pen.lineTo(camera.width, at);
   }

@@ -49,8 +49,8 @@ export class Field {
     }
     this.pixels.fill(0);
     const nodes = widened(view.nodes, view.skin.loops);
-    const metre = camera.metre / CELL, left = camera.target.x - wide / 2 / metre, top = camera.target.y + tall / 2 / metre;
-    const x = (node) => (nodes[3 * node] - left) * metre - 0.5, y = (node) => (top - nodes[3 * node + 1]) * metre - 0.5;
+    const meter = camera.meter / CELL, left = camera.target.x - wide / 2 / meter, top = camera.target.y + tall / 2 / meter;
+    const x = (node) => (nodes[3 * node] - left) * meter - 0.5, y = (node) => (top - nodes[3 * node + 1]) * meter - 0.5;
     for (let f = 0; f < faces.length; f += 3) {
       const a = faces[f], b = faces[f + 1], c = faces[f + 2];
       this.triangle(wide, tall, x(a), y(a), values[a], x(b), y(b), values[b], x(c), y(c), values[c]);

@@ -281,10 +281,10 @@ export class Overlay {
 
   scaleBar(view) {
     const { pen } = this;
-    const millimetre = view.camera.metre / 1000;
-    const nice = Math.pow(10, Math.floor(Math.log10(120 / millimetre)));
-    const length = [5, 2, 1].map((k) => k * nice).find((value) => value * millimetre <= 120);
-    const wide = length * millimetre, x = view.camera.flat ? 20 : 92, y = this.height - 22;
+    const millimeter = view.camera.meter / 1000;
+    const nice = Math.pow(10, Math.floor(Math.log10(120 / millimeter)));
+    const length = [5, 2, 1].map((k) => k * nice).find((value) => value * millimeter <= 120);
+    const wide = length * millimeter, x = view.camera.flat ? 20 : 92, y = this.height - 22;
     pen.strokeStyle = view.theme.ink;
     pen.lineWidth = 2;
     pen.lineCap = "butt";

@@ -65,7 +65,7 @@ function smooth(position, faces, normal) {
     const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
     const ux = position[b] - position[a], uy = position[b + 1] - position[a + 1], uz = position[b + 2] - position[a + 2];
     const vx = position[c] - position[a], vy = position[c + 1] - position[a + 1], vz = position[c + 2] - position[a + 2];
-    // in squared millimetres, so that they are far from the smallest numbers
+    // in squared millimeters, so that they are far from the smallest numbers
     const x = 1e6 * (uy * vz - uz * vy), y = 1e6 * (uz * vx - ux * vz), z = 1e6 * (ux * vy - uy * vx);
     normal[a] += x; normal[a + 1] += y; normal[a + 2] += z;
     normal[b] += x; normal[b + 1] += y; normal[b + 2] += z;

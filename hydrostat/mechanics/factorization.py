@@ -1,6 +1,6 @@
-"""`Analysis` and `Factorisation`: a symmetric sparse matrix ready to be solved with.
+"""`Analysis` and `Factorization`: a symmetric sparse matrix ready to be solved with.
 
-A finite element matrix has one pattern and is factorised thousands of times. So all that follows from the pattern is
+A finite element matrix has one pattern and is factorized thousands of times. So all that follows from the pattern is
 done once, by the `Analysis`:
 
 1. An order of the nodes in which little fills in, the cheaper of nested dissection (George 1973; `ordering`) and
@@ -8,11 +8,11 @@ done once, by the `Analysis`:
 2. The elimination tree (Liu 1990), supernodes, and how much they are merged (`symbolic`).
 3. The place of every number (`supernodal.plan`).
 
-A `Factorisation` is then one call of compiled code: the multifrontal method (Duff and Reid 1983; `fronts`). There
+A `Factorization` is then one call of compiled code: the multifrontal method (Duff and Reid 1983; `fronts`). There
 is no pivoting: an indefinite matrix may lose digits, and one that meets a tiny pivot is called singular. That suits
 Newton, which wants to know whether a matrix is definite, and solves mostly with those that are.
 
-SuperLU does the same from outside: slower, and independent. Figures: docs/decisions/0007-factorisation.md.
+SuperLU does the same from outside: slower, and independent. Figures: docs/decisions/0007-factorization.md.
 """
 
 from typing import TYPE_CHECKING, Literal, Protocol, runtime_checkable
@@ -42,8 +42,8 @@ DISTANCES = 3
 ORDERING = 12e-6
 """Modelled time to find an elimination order [s], per node."""
 
-FACTORISATIONS = 200
-"""So many factorisations of one pattern are counted on."""
+FACTORIZATIONS = 200
+"""So many factorizations of one pattern are counted on."""
 
 
 @runtime_checkable
@@ -71,14 +71,14 @@ class Factors(Protocol):
 
 
 class Analysis:
-    """Symbolic analysis shared by the factorisations of all matrices with one sparsity pattern.
+    """Symbolic analysis shared by the factorizations of all matrices with one sparsity pattern.
 
     Threads may share it.
 
     Attributes:
-        backend: name of the back end that factorises, "supernodal" or "superlu".
+        backend: name of the back end that factorizes, "supernodal" or "superlu".
         tree: supernodal elimination tree; only with the supernodal back end.
-        found: modelled time [s] of a factorisation of the pattern for which this order was found.
+        found: modeled time [s] of a factorization of the pattern for which this order was found.
     """
 
     def __init__(
@@ -89,10 +89,10 @@ class Analysis:
         dim: int,
         points: Nodes | None = None,
         like: "Analysis | None" = None,
-        uses: int = FACTORISATIONS,
+        uses: int = FACTORIZATIONS,
         backend: Backend = "auto",
     ) -> None:
-        """Analyse the pattern of a symmetric matrix.
+        """Analyze the pattern of a symmetric matrix.
 
         Args:
             indptr: start of each column, (dofs + 1,), as in `csc_array`.
@@ -100,8 +100,8 @@ class Analysis:
             dim: degrees of freedom of a node, side by side.
             points: positions of the nodes, (nodes, any dimension).
             like: analysis of a pattern with fewer entries; its order is taken where a better one would not pay.
-            uses: expected number of factorisations, by which that order competes with a new one.
-            backend: who factorises.
+            uses: expected number of factorizations, by which that order competes with a new one.
+            backend: who factorizes.
 
         Raises:
             ValueError: `dim` does not divide the degrees of freedom, or there are more or fewer points than nodes.
@@ -118,17 +118,17 @@ class Analysis:
             self.tree, self.found = _cheapest_tree(indptr, indices, dim, points, known)
             self._supernodal = SupernodalAnalysis(self.tree, indptr, indices, dim)
 
-    def factorise(self, data: Vector) -> "Factorisation":
+    def factorize(self, data: Vector) -> "Factorization":
         """Factorise the matrix with these values, in the order of `indices`."""
         if self.backend == "supernodal":
-            return Factorisation(self._supernodal.factorise(np.require(data, float, ["C", "W"]), TINY))
+            return Factorization(self._supernodal.factorize(np.require(data, float, ["C", "W"]), TINY))
         from scipy.sparse import csc_array
 
         matrix = csc_array((data, self._indices, self._indptr), shape=(self._size, self._size))
-        return Factorisation(SuperLUFactors(matrix))
+        return Factorization(SuperLUFactors(matrix))
 
 
-class Factorisation:
+class Factorization:
     """Factorisation A = L S L^T with S = diag(+-1), or an equivalent one.
 
     Attributes:
@@ -164,16 +164,16 @@ class Factorisation:
         return self._factors.expand(reduced)
 
 
-def factorise(matrix: "csc_array") -> Factorisation:
+def factorize(matrix: "csc_array") -> Factorization:
     """Factorise one symmetric matrix whose pattern is not used again."""
-    return Factorisation(SuperLUFactors(matrix))
+    return Factorization(SuperLUFactors(matrix))
 
 
 class SuperLUFactors:
     """LU without row exchanges of a symmetric matrix.
 
     Attributes:
-        singular: True if the factorisation broke down or exchanged rows.
+        singular: True if the factorization broke down or exchanged rows.
         negative: number of negative pivots.
     """
 
@@ -221,34 +221,34 @@ def _cheapest_tree(
 ) -> tuple[symbolic.EliminationTree, float]:
     """Return the supernodes of the best known elimination order, or of a given order if a search would not pay.
 
-    With the modelled time of a factorisation for which the order was found [s].
+    With the modeled time of a factorization for which the order was found [s].
     """
-    starts, neighbours = ordering.block_graph(indptr, indices, dim)
+    starts, neighbors = ordering.block_graph(indptr, indices, dim)
     if known is not None:
-        tree, (_, found, uses) = symbolic.supernodes(starts, neighbours, known[0].order, dim), known
+        tree, (_, found, uses) = symbolic.supernodes(starts, neighbors, known[0].order, dim), known
         if uses * (tree.seconds - found) <= ORDERING * len(tree.order):
             return tree, found
-    distances = ordering.graph_coordinates(starts, neighbours, DISTANCES)
+    distances = ordering.graph_coordinates(starts, neighbors, DISTANCES)
     coordinates = distances if points is None else np.hstack([points, distances])
     leaf = 64  # Parts of so many nodes are ordered by minimum degree
     orders = [
-        ordering.nested_dissection(starts, neighbours, coordinates, leaf, SHARES),
-        _minimum_degree(starts, neighbours),
+        ordering.nested_dissection(starts, neighbors, coordinates, leaf, SHARES),
+        _minimum_degree(starts, neighbors),
     ]
-    trees = [symbolic.supernodes(starts, neighbours, order, dim) for order in orders]
+    trees = [symbolic.supernodes(starts, neighbors, order, dim) for order in orders]
     best = min(trees, key=lambda tree: tree.seconds)
     return best, best.seconds
 
 
-def _minimum_degree(starts: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
-    """SuperLU's multiple minimum degree (Liu 1985), by an incomplete factorisation that drops nearly all it finds."""
+def _minimum_degree(starts: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
+    """SuperLU's multiple minimum degree (Liu 1985), by an incomplete factorization that drops nearly all it finds."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import spilu
 
     nodes = len(starts) - 1
     degrees = np.diff(starts)
-    indices = np.concatenate([neighbours, np.arange(nodes)])
+    indices = np.concatenate([neighbors, np.arange(nodes)])
     columns = np.concatenate([np.repeat(np.arange(nodes), degrees), np.arange(nodes)])
-    data = np.concatenate([np.full(len(neighbours), -1.0), degrees + 1.0])
+    data = np.concatenate([np.full(len(neighbors), -1.0), degrees + 1.0])
     graph = csc_array((data, (indices, columns)), shape=(nodes, nodes))
     return np.argsort(spilu(graph, drop_tol=1e9, fill_factor=1, permc_spec="MMD_AT_PLUS_A").perm_c)

@@ -1,4 +1,4 @@
-"""The factorisation. Oracle: dense eigenvalues and dense solves; SuperLU, an independent program."""
+"""The factorization. Oracle: dense eigenvalues and dense solves; SuperLU, an independent program."""
 
 import copy
 import pickle
@@ -8,17 +8,17 @@ import pytest
 from scipy.sparse import block_diag, coo_array, csc_array, eye_array, kron
 from scipy.spatial import Delaunay
 
-from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
+from hydrostat.mechanics.factorization import Analysis, Backend, Factorization, factorize
 from hydrostat.mechanics.supernodal import SupernodalAnalysis
 
 BACKENDS: tuple[Backend, ...] = ("supernodal", "superlu")
 
 
-def factorised(matrix: csc_array, *, dim: int = 1, points: np.ndarray | None = None, backend: Backend) -> Factorisation:
-    """One factorisation by an analysis of its own."""
+def factorized(matrix: csc_array, *, dim: int = 1, points: np.ndarray | None = None, backend: Backend) -> Factorization:
+    """One factorization by an analysis of its own."""
     matrix = csc_array(matrix)
     matrix.sort_indices()
-    return Analysis(matrix.indptr, matrix.indices, dim=dim, points=points, backend=backend).factorise(matrix.data)
+    return Analysis(matrix.indptr, matrix.indices, dim=dim, points=points, backend=backend).factorize(matrix.data)
 
 
 def body(nodes: int, dim: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
@@ -33,7 +33,7 @@ def body(nodes: int, dim: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
 
 
 def elastic(graph: np.ndarray, dim: int, seed: int = 0) -> csc_array:
-    """A symmetric matrix with a random block of `dim` for every pair of neighbours, far from definite."""
+    """A symmetric matrix with a random block of `dim` for every pair of neighbors, far from definite."""
     random = np.random.default_rng(seed)
     size = len(graph) * dim
     values = random.standard_normal((size, size)) * np.kron(graph, np.ones((dim, dim)))
@@ -50,7 +50,7 @@ def shifted(matrix: csc_array, negative: int) -> csc_array:
     return csc_array(matrix - shift * eye_array(matrix.shape[0]))
 
 
-def assert_right(factor: Factorisation, matrix: csc_array, accuracy: float) -> None:
+def assert_right(factor: Factorization, matrix: csc_array, accuracy: float) -> None:
     """Pivots count the eigenvalues below 0, and the solutions are those of a dense solve."""
     dense = matrix.toarray()
     eigenvalues = np.linalg.eigvalsh(dense)
@@ -71,7 +71,7 @@ def assert_right(factor: Factorisation, matrix: csc_array, accuracy: float) -> N
 def test_definite_against_dense(nodes: int, dim: int, with_points: bool, backend: Backend) -> None:
     points, graph = body(nodes, max(dim, 2))
     matrix = shifted(elastic(graph, dim), 0)
-    factor = factorised(matrix, dim=dim, points=points if with_points else None, backend=backend)
+    factor = factorized(matrix, dim=dim, points=points if with_points else None, backend=backend)
     assert_right(factor, matrix, 1e-10)
 
 
@@ -82,7 +82,7 @@ def test_indefinite_against_dense(nodes: int, dim: int, negative: int, backend: 
     points, graph = body(nodes, max(dim, 2), seed=negative)
     matrix = shifted(elastic(graph, dim, seed=negative), negative)
     # Without pivoting an indefinite matrix may cost digits.
-    assert_right(factorised(matrix, dim=dim, points=points, backend=backend), matrix, 1e-7)
+    assert_right(factorized(matrix, dim=dim, points=points, backend=backend), matrix, 1e-7)
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -95,7 +95,7 @@ def test_patterns_at_random_against_dense(seed: int, backend: Backend) -> None:
         values = np.where(random.random((size, size)) < 3 / size, random.standard_normal((size, size)), 0.0)
         parts.append(values + values.T + np.diag(random.standard_normal(size) + 0.1))
     matrix = shifted(csc_array(block_diag(parts)), int(seed % 3))
-    assert_right(factorised(matrix, backend=backend), matrix, 1e-7)
+    assert_right(factorized(matrix, backend=backend), matrix, 1e-7)
 
 
 @pytest.mark.parametrize("negative", [0, 3])
@@ -105,19 +105,19 @@ def test_a_dense_matrix(size: int, negative: int) -> None:
     if size <= negative:
         return
     matrix = shifted(elastic(np.ones((size, size)), 1, seed=size), negative)
-    assert_right(factorised(matrix, backend="supernodal"), matrix, 1e-9)
+    assert_right(factorized(matrix, backend="supernodal"), matrix, 1e-9)
 
 
 def test_a_single_node() -> None:
     matrix = csc_array(np.array([[4.0, 1.0, 0.0], [1.0, -3.0, 0.0], [0.0, 0.0, 2.0]]))
-    assert_right(factorised(matrix, dim=3, points=np.zeros((1, 3)), backend="supernodal"), matrix, 1e-12)
+    assert_right(factorized(matrix, dim=3, points=np.zeros((1, 3)), backend="supernodal"), matrix, 1e-12)
 
 
 def test_points_that_coincide() -> None:
     """Coordinates are only a hint: with useless ones it is slower, not wrong."""
     _, graph = body(150, 2)
     matrix = shifted(elastic(graph, 2), 0)
-    assert_right(factorised(matrix, dim=2, points=np.zeros((150, 2)), backend="supernodal"), matrix, 1e-10)
+    assert_right(factorized(matrix, dim=2, points=np.zeros((150, 2)), backend="supernodal"), matrix, 1e-10)
 
 
 def test_a_matrix_that_misses_entries_of_its_blocks() -> None:
@@ -125,7 +125,7 @@ def test_a_matrix_that_misses_entries_of_its_blocks() -> None:
     matrix = elastic(graph, 2).toarray()
     matrix[np.random.default_rng(0).random(matrix.shape) < 0.5] = 0.0
     matrix = shifted(csc_array(np.tril(matrix) + np.tril(matrix).T), 2)
-    assert_right(factorised(matrix, dim=2, backend="supernodal"), matrix, 1e-7)
+    assert_right(factorized(matrix, dim=2, backend="supernodal"), matrix, 1e-7)
 
 
 @pytest.mark.parametrize("negative", [0, 20])
@@ -135,7 +135,7 @@ def test_back_ends_agree(negative: int) -> None:
     laplacian = np.diag(graph.sum(axis=1)) - graph
     block = 2 * np.eye(3) + 0.3
     matrix = csc_array(kron(csc_array(laplacian), block) + (0.1 if negative == 0 else -2.3) * eye_array(2700))
-    ours, theirs = (factorised(matrix, dim=3, points=points, backend=backend) for backend in BACKENDS)
+    ours, theirs = (factorized(matrix, dim=3, points=points, backend=backend) for backend in BACKENDS)
     assert ours.negative == theirs.negative
     assert (ours.negative == 0) == (negative == 0)
     right = np.random.default_rng(0).standard_normal((2700, 4))
@@ -158,17 +158,17 @@ def test_a_breakdown_is_called_singular(dense: np.ndarray, backend: Backend) -> 
     """The last one is regular, but not without a row exchange, after which pivots do not say what eigenvalues do."""
     pattern = csc_array(np.ones_like(dense))
     analysis = Analysis(pattern.indptr, pattern.indices, dim=1, backend=backend)
-    factor = analysis.factorise(dense.T.ravel())
+    factor = analysis.factorize(dense.T.ravel())
     assert factor.singular
     assert not factor.definite
-    assert factorise(csc_array(dense)).singular
+    assert factorize(csc_array(dense)).singular
 
 
 def test_a_free_body_is_singular() -> None:
     """A graph's Laplacian has the constant vector in its kernel."""
     points, graph = body(200, 3)
     matrix = csc_array(kron(csc_array(np.diag(graph.sum(axis=1)) - graph), np.eye(3)))
-    assert factorised(matrix, dim=3, points=points, backend="supernodal").singular
+    assert factorized(matrix, dim=3, points=points, backend="supernodal").singular
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -183,24 +183,24 @@ def test_numbers_that_are_none_are_singular(bad: float, backend: Backend) -> Non
     for row, column in [(0, 0), (7, 7), (359, 359), *zip(matrix.indices[::500], columns[::500], strict=True)]:
         data = matrix.data.copy()
         data[((matrix.indices == row) & (columns == column)) | ((matrix.indices == column) & (columns == row))] = bad
-        assert analysis.factorise(data).singular
-    assert analysis.factorise(np.full(len(matrix.data), bad)).singular
-    assert_right(analysis.factorise(matrix.data), matrix, 1e-10)
+        assert analysis.factorize(data).singular
+    assert analysis.factorize(np.full(len(matrix.data), bad)).singular
+    assert_right(analysis.factorize(matrix.data), matrix, 1e-10)
 
 
 @pytest.mark.parametrize("negative", [0, 5])
 def test_the_same_bits_twice(negative: int) -> None:
-    """Whatever was factorised in between, and in an analysis of its own."""
+    """Whatever was factorized in between, and in an analysis of its own."""
     points, graph = body(200, 3)
     matrix = shifted(elastic(graph, 3), negative)
     matrix.sort_indices()
     right = np.random.default_rng(0).standard_normal((600, 3))
     analysis = Analysis(matrix.indptr, matrix.indices, dim=3, points=points)
-    first = analysis.factorise(matrix.data)
+    first = analysis.factorize(matrix.data)
     early = first.solve(right), first.solve(right[:, 0])
-    analysis.factorise(-2 * matrix.data)
+    analysis.factorize(-2 * matrix.data)
     for other in (analysis, Analysis(matrix.indptr, matrix.indices, dim=3, points=points)):
-        again = other.factorise(matrix.data)
+        again = other.factorize(matrix.data)
         for solved in (again, first):
             assert np.array_equal(solved.solve(right), early[0])
             assert np.array_equal(solved.solve(right[:, 0]), early[1])
@@ -212,7 +212,7 @@ def test_what_comes_in_is_left_alone() -> None:
     matrix.sort_indices()
     right = np.ones((120, 2))
     data = matrix.data.copy()
-    Analysis(matrix.indptr, matrix.indices, dim=2, points=points).factorise(data).solve(right)
+    Analysis(matrix.indptr, matrix.indices, dim=2, points=points).factorize(data).solve(right)
     assert np.array_equal(data, matrix.data)
     assert (right == 1).all()
 
@@ -223,7 +223,7 @@ def test_right_hand_sides_in_any_layout() -> None:
     matrix = shifted(elastic(graph, 2), 0)
     right = np.random.default_rng(0).standard_normal((120, 6))
     for backend in BACKENDS:
-        factor = factorised(matrix, dim=2, backend=backend)
+        factor = factorized(matrix, dim=2, backend=backend)
         every = factor.solve(right)
         assert factor.solve(np.asfortranarray(right)) == pytest.approx(every, rel=1e-12)
         assert factor.solve(right[:, ::2]) == pytest.approx(every[:, ::2], rel=1e-12)
@@ -242,8 +242,8 @@ def test_sizes_that_do_not_go_together() -> None:
 def test_one_off() -> None:
     _, graph = body(60, 2)
     matrix = shifted(elastic(graph, 2), 3)
-    assert_right(factorise(matrix), matrix, 1e-7)
-    assert_right(factorise(matrix), matrix, 1e-7)
+    assert_right(factorize(matrix), matrix, 1e-7)
+    assert_right(factorize(matrix), matrix, 1e-7)
 
 
 def test_ordering_finds_the_separator_of_a_grid() -> None:
@@ -256,7 +256,7 @@ def test_ordering_finds_the_separator_of_a_grid() -> None:
     )
     graph = coo_array((np.ones(pairs.shape[1]), (pairs[0], pairs[1])), shape=(320, 320))
     matrix = csc_array(graph + graph.T + 5 * eye_array(320))
-    assert_right(factorised(matrix, points=np.stack([x.ravel(), y.ravel()], 1), backend="supernodal"), matrix, 1e-10)
+    assert_right(factorized(matrix, points=np.stack([x.ravel(), y.ravel()], 1), backend="supernodal"), matrix, 1e-10)
 
 
 def test_factors_that_go_give_nothing_away_that_is_still_in_use() -> None:
@@ -270,11 +270,11 @@ def test_factors_that_go_give_nothing_away_that_is_still_in_use() -> None:
         matrix.indices.astype(np.int32),
         2,
     )
-    factors, right = analysis.factorise(matrix.data, 1e-13), np.ones(160)
+    factors, right = analysis.factorize(matrix.data, 1e-13), np.ones(160)
     before = factors.solve(right)
     for again in (copy.copy(factors), pickle.loads(pickle.dumps(factors))):
         assert (again.solve(right) == before).all()
     del again
-    others = [analysis.factorise(share * matrix.data, 1e-13) for share in (2.0, 3.0, 4.0)]
+    others = [analysis.factorize(share * matrix.data, 1e-13) for share in (2.0, 3.0, 4.0)]
     assert (factors.solve(right) == before).all()
     assert others[0].solve(right) == pytest.approx(before / 2)

@@ -29,7 +29,7 @@ from solids import (
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh, dihedral_angles
 from hydrostat.geometry.surface import Solid, Surface
-from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, fit, tetrahedralise
+from hydrostat.geometry.tetrahedra.tetrahedralize import CLOSE, fit, tetrahedralize
 
 BODIES: dict[str, tuple[Maker, float]] = {
     "ball": (ball, 0.02),
@@ -61,14 +61,14 @@ def assert_good(mesh: Mesh, body: Surface, element_size: float) -> None:
 def test_meshes_are_good(name: str) -> None:
     maker, element_size = BODIES[name]
     body = maker()
-    assert_good(tetrahedralise(body, element_size), body, element_size)
+    assert_good(tetrahedralize(body, element_size), body, element_size)
 
 
 @pytest.mark.parametrize("name", ["ball", "box on the lattice", "ring"])
 def test_edges_are_as_long_as_asked_for(name: str) -> None:
     """Bodies of few elements have many outer edges, which are shorter."""
     maker, element_size = BODIES[name]
-    assert tetrahedralise(maker(), element_size).edge_lengths.mean() == pytest.approx(element_size, rel=0.15)
+    assert tetrahedralize(maker(), element_size).edge_lengths.mean() == pytest.approx(element_size, rel=0.15)
 
 
 @pytest.mark.slow
@@ -78,7 +78,7 @@ def test_volume_area_and_distance_converge_with_order_two() -> None:
     sizes = np.array([0.03, 0.015, 0.0075])
     volume, area, away = [], [], []
     for size in sizes:
-        mesh = tetrahedralise(body, float(size))
+        mesh = tetrahedralize(body, float(size))
         outer = boundary(mesh)
         volume.append(abs(outer.volume / body.volume - 1))
         area.append(abs(outer.area / body.area - 1))
@@ -100,14 +100,14 @@ def test_closed_forms_of_box_cone_and_ring() -> None:
         (surface(make.cone(0.03, 0.06, sections=96)), 0.008, np.pi * 0.03**2 * 0.02, np.pi * 0.03 * (0.03 + 0.0670820)),
         (ring(), 0.01, 2 * np.pi**2 * 0.05 * 0.02**2, 4 * np.pi**2 * 0.05 * 0.02),
     ):
-        outer = boundary(tetrahedralise(made, element_size))
+        outer = boundary(tetrahedralize(made, element_size))
         assert outer.volume == pytest.approx(volume, rel=0.015)
         assert outer.area == pytest.approx(area, rel=0.02)
 
 
 def test_corners_and_edges_of_a_box_are_found() -> None:
     """Closed form: the distance of its corners, and of points on its edges, from the mesh."""
-    mesh = tetrahedralise(brick(0.1, 0.06, 0.04), 0.01)
+    mesh = tetrahedralize(brick(0.1, 0.06, 0.04), 0.01)
     outer = Solid(boundary(mesh))
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     corners = signs * [0.05, 0.03, 0.02]
@@ -124,12 +124,12 @@ def _digest(mesh: Mesh) -> str:
 
 @pytest.mark.slow
 def test_the_same_bytes_on_two_runs_and_in_a_fresh_process() -> None:
-    digest = _digest(tetrahedralise(two_fingers(0.005), 0.012))
-    assert _digest(tetrahedralise(two_fingers(0.005), 0.012)) == digest
+    digest = _digest(tetrahedralize(two_fingers(0.005), 0.012))
+    assert _digest(tetrahedralize(two_fingers(0.005), 0.012)) == digest
     script = (
-        "from solids import two_fingers; from test_tetrahedralise import _digest; "
-        "from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise; "
-        "print(_digest(tetrahedralise(two_fingers(0.005), 0.012)))"
+        "from solids import two_fingers; from test_tetrahedralize import _digest; "
+        "from hydrostat.geometry.tetrahedra.tetrahedralize import tetrahedralize; "
+        "print(_digest(tetrahedralize(two_fingers(0.005), 0.012)))"
     )
     done = subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parent, capture_output=True, check=True)
     assert done.stdout.decode().strip() == digest
@@ -145,28 +145,28 @@ def test_turned_shifted_and_mirrored_bodies_are_as_good(name: str) -> None:
         moved(body, turned=1.3, about=(3, -1, 1), shift=(0.013, -0.4, 1)),
         mirrored(body),
     ):
-        assert_good(tetrahedralise(other, element_size), other, element_size)
+        assert_good(tetrahedralize(other, element_size), other, element_size)
 
 
 @pytest.mark.parametrize("scale", [1e-5, 1e-2, 200.0])
 def test_scale_does_not_matter(scale: float) -> None:
-    """The same mesh, scaled: bodies of a micrometre and of 20 m."""
+    """The same mesh, scaled: bodies of a micrometer and of 20 m."""
     body = brick(0.1, 0.06, 0.04)
-    expected, mesh = tetrahedralise(body, 0.0124), tetrahedralise(moved(body, scale=scale), 0.0124 * scale)
+    expected, mesh = tetrahedralize(body, 0.0124), tetrahedralize(moved(body, scale=scale), 0.0124 * scale)
     np.testing.assert_array_equal(mesh.elements, expected.elements)
     np.testing.assert_allclose(mesh.nodes / scale, expected.nodes, atol=1e-6)
 
 
 def test_far_from_the_origin() -> None:
-    """100 m away rounding is a hundred-thousandth of a nanometre."""
+    """100 m away rounding is a hundred-thousandth of a nanometer."""
     body = moved(ball(), shift=(100, -100, 100))
-    assert_good(tetrahedralise(body, 0.02), body, 0.02)
+    assert_good(tetrahedralize(body, 0.02), body, 0.02)
 
 
 @pytest.mark.slow
 def test_tiny_triangles_do_not_matter() -> None:
     """A ball of 80,000 triangles beside one of 20,000: within what both are off the ball."""
-    fine, coarse = (tetrahedralise(ball(divisions=divisions), 0.025) for divisions in (6, 5))
+    fine, coarse = (tetrahedralize(ball(divisions=divisions), 0.025) for divisions in (6, 5))
     assert_good(fine, ball(divisions=6), 0.025)
     assert fine.volumes.sum() == pytest.approx(coarse.volumes.sum(), rel=2e-3)
 
@@ -176,7 +176,7 @@ def test_tiny_triangles_do_not_matter() -> None:
 def test_fingers_near_each_other_are_not_grown_together(gap: float, turned: float) -> None:
     """Turned against the lattice, whose edges then pass the gap every way. Oracle: the Euler characteristic."""
     body = moved(two_fingers(gap), turned=turned)
-    mesh = tetrahedralise(body, 0.01)
+    mesh = tetrahedralize(body, 0.01)
     assert_proper(mesh)
     assert euler(boundary(mesh)) == 2
     assert dihedral_angles(mesh.nodes, mesh.elements).min() >= 12
@@ -186,13 +186,13 @@ def test_fingers_near_each_other_are_not_grown_together(gap: float, turned: floa
 @pytest.mark.parametrize("seed", range(10))
 def test_random_bodies_are_good(seed: int) -> None:
     body = capsules(seed)
-    assert_good(tetrahedralise(body, 0.01), body, 0.01)
+    assert_good(tetrahedralize(body, 0.01), body, 0.01)
 
 
 @pytest.mark.slow
 def test_a_hollow_stays() -> None:
     """Closed form: the volume of the wall; the cavity is a second part of the boundary."""
-    mesh = tetrahedralise(hollow(0.05, 0.03), 0.01)
+    mesh = tetrahedralize(hollow(0.05, 0.03), 0.01)
     assert mesh.volumes.sum() == pytest.approx(hollow(0.05, 0.03).volume, rel=0.01)
     assert euler(boundary(mesh)) == 4
     assert np.linalg.norm(mesh.nodes, axis=1).min() == pytest.approx(0.03, rel=0.05)
@@ -201,7 +201,7 @@ def test_a_hollow_stays() -> None:
 @pytest.mark.slow
 def test_a_gap_smaller_than_the_elements_stays_open() -> None:
     """Nothing of the mesh is in the gap, and elements are small only about it."""
-    mesh = tetrahedralise(two_fingers(0.002), 0.01)
+    mesh = tetrahedralize(two_fingers(0.002), 0.01)
     middles = mesh.nodes[mesh.elements].mean(axis=1)
     assert not ((middles[:, 0] > 0.065) & (np.abs(middles[:, 1] - 0.015) < 0.0005)).any()
     sizes = np.cbrt(8.5 * mesh.volumes)
@@ -216,7 +216,7 @@ def test_all_of_a_body_but_a_crumb_is_there_and_a_fin_too() -> None:
     import trimesh
 
     body = surface(trimesh.boolean.union([make.icosphere(3, 0.02), make.box((0.06, 0.003, 0.015))], engine="manifold"))
-    assert_good(tetrahedralise(body, 0.009), body, 0.009)
+    assert_good(tetrahedralize(body, 0.009), body, 0.009)
 
 
 ADVICE = re.compile(r"take ([0-9.e+-]+) mm or (less|more)$")
@@ -242,14 +242,14 @@ def test_advice_in_a_refusal_is_true(name: str) -> None:
     maker, element_size, kind, text = REFUSED[name]
     body = maker()
     with pytest.raises(kind, match=text) as refused:
-        tetrahedralise(body, element_size)
+        tetrahedralize(body, element_size)
     assert "\n" not in str(refused.value)
     found = ADVICE.search(str(refused.value))
     assert found
     advised = 1e-3 * float(found[1])
     assert (advised < element_size) == (found[2] == "less")
     if not name.endswith("too small"):  # which takes long
-        mesh = tetrahedralise(body, advised)
+        mesh = tetrahedralize(body, advised)
         assert_proper(mesh)
         assert mesh.volumes.sum() == pytest.approx(body.volume, rel=0.05)
 
@@ -257,4 +257,4 @@ def test_advice_in_a_refusal_is_true(name: str) -> None:
 @pytest.mark.parametrize("element_size", [0.0, -1.0, float("nan"), float("inf")])
 def test_sizes_that_are_none(element_size: float) -> None:
     with pytest.raises(InputError, match="the element size must be positive"):
-        tetrahedralise(ball(), element_size)
+        tetrahedralize(ball(), element_size)

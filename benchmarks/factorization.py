@@ -1,11 +1,11 @@
-"""How long a factorisation and a solve take, of bodies of several sizes, by both back ends.
+"""How long a factorization and a solve take, of bodies of several sizes, by both back ends.
 
-    python benchmarks/factorisation.py [--repeat 30] [--largest 9000]
+    python benchmarks/factorization.py [--repeat 30] [--largest 9000]
 
 The matrix is a mesh's graph Laplacian with a block for every edge: it has the pattern of the Hessian of an elastic
 body, definite as at rest ("definite"), or lowered until some eigenvalues are negative ("indefinite"). CPU time, the
 median of many runs; the residual is that of one solve of the definite matrix, relative to the right-hand side. SuperLU
-analyses anew each time, so there its analysis is part of each factorisation.
+analyses anew each time, so there its analysis is part of each factorization.
 """
 
 import argparse
@@ -71,16 +71,16 @@ def row(body: Body, backend: Backend, repeat: int) -> str:
     count, dim = body.nodes.shape
     right = np.random.default_rng(0).standard_normal((count * dim, 16))
 
-    def analyse() -> Analysis:
+    def analyze() -> Analysis:
         return Analysis(definite.indptr, definite.indices, dim=dim, points=body.nodes, backend=backend)
 
-    analysis = analyse()
-    factor, other = analysis.factorise(definite.data), analysis.factorise(indefinite.data)
+    analysis = analyze()
+    factor, other = analysis.factorize(definite.data), analysis.factorize(indefinite.data)
     residual = np.abs(definite @ factor.solve(right[:, 0]) - right[:, 0]).max() / np.abs(right[:, 0]).max()
     figures = (
-        median_ms(analyse, 3) if backend == "supernodal" else 0.0,
-        median_ms(lambda: analysis.factorise(definite.data), repeat),
-        median_ms(lambda: analysis.factorise(indefinite.data), repeat),
+        median_ms(analyze, 3) if backend == "supernodal" else 0.0,
+        median_ms(lambda: analysis.factorize(definite.data), repeat),
+        median_ms(lambda: analysis.factorize(indefinite.data), repeat),
         median_ms(lambda: factor.solve(right[:, 0]), repeat),
         median_ms(lambda: factor.solve(right), repeat),
     )

@@ -1,4 +1,4 @@
-"""`tetrahedralise`: good tetrahedra from a closed surface; `fit`: their distance from it."""
+"""`tetrahedralize`: good tetrahedra from a closed surface; `fit`: their distance from it."""
 
 from dataclasses import dataclass
 
@@ -140,7 +140,7 @@ _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""
 
 
-def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
+def tetrahedralize(surface: Surface, element_size: float) -> Mesh:
     """Fill a closed surface, oriented outward, with tetrahedra whose edges have about the element size [m] in the mean.
 
     A lattice is cut along the surface (`stuffing.py`), then its nodes move until the elements are well shaped and their
