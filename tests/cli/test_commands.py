@@ -107,7 +107,7 @@ def test_pose_writes_one_pose_or_a_folder_for_each(run: Run, tmp_path: Path, sta
 @pytest.mark.slow
 def test_design_writes_robot_report_score_and_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
     arguments = (
-        *("--pose", "wave", "--method", "trees", "--winches", 1, "--cables", 2, "--kit"),
+        *("--pose", "wave", "--method", "trees", "--winches", 2, "--cables", 2, "--kit"),
         *("--out", tmp_path / "out"),
     )
     code, out, err = run("design", starfish, *arguments)
