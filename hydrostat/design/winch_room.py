@@ -95,7 +95,7 @@ def _flat_zones(robot: Robot, constraints: Constraints, box: Cuboid, winches: in
 
 
 def _find_taken_parts(robot: Robot, around: float) -> BaseGeometry:
-    """Pins, where the body is clamped, and small closed shapes drawn on it, such as eyes, with room around [mm]."""
+    """Pins, where the body is clamped, and small closed shapes drawn on it, such as eyes, and around these [mm]."""
     parts: list[BaseGeometry] = []
     for pin in robot.pins:
         if pin.box is not None:
@@ -105,8 +105,8 @@ def _find_taken_parts(robot: Robot, around: float) -> BaseGeometry:
             parts.append(shapely.Point(1e3 * np.array(pin.at[:2])).buffer(1e3 * pin.radius))
     closed = [line for line in robot.body.marks if len(line) > 3 and np.linalg.norm(line[0] - line[-1]) < _SAME]
     small = [line for line in closed if np.ptp(line, axis=0).max() < _EYE * robot.body.mesh.size]
-    parts += [shapely.Polygon(1e3 * line).buffer(0.0) for line in small]
-    return shapely.union_all(parts).buffer(1e3 * around)
+    parts += [shapely.Polygon(1e3 * line).buffer(1e3 * around) for line in small]
+    return shapely.union_all(parts)
 
 
 def _grid(room: BaseGeometry) -> Points:

@@ -71,15 +71,17 @@ def test_winches_stand_in_no_pin_and_on_no_eye(unchecked: None) -> None:
     bare = replace(robot, pins=(Pin(at=(0.0, 0.2), radius=0.09),))
     places = robot.body.mesh.nodes
     found = [winch_room(each, limits, 3)[0] for each in (drawn, bare)]
-    allowed, free = (np.min([zone.distances(places) for zone in zones], axis=0) < 0 for zones in found)
-    taken = np.linalg.norm(places - pin.at, axis=1) < pin.radius + limits.spool_radius
+    away, before = (np.min([zone.distances(places) for zone in zones], axis=0) for zones in found)
+    free = before < 0
+    taken = np.linalg.norm(places - pin.at, axis=1) < 0.99 * pin.radius
     on_eye = np.linalg.norm(places - eye.mean(axis=0), axis=1) < 0.006 + limits.spool_radius
     assert (free & taken).any()
     assert (free & on_eye).any()
-    assert not (allowed & (taken | on_eye)).any()
-    far = np.linalg.norm(places - pin.at, axis=1) > 1.5 * (pin.radius + limits.spool_radius)
+    assert (away[taken | on_eye] >= 0).all()
+    far = np.linalg.norm(places - pin.at, axis=1) > 2 * pin.radius
     far &= np.linalg.norm(places - eye.mean(axis=0), axis=1) > 0.02
-    assert (allowed[far] == free[far]).all()
+    assert (away[far & (before < -1e-3)] <= 1e-4).all()
+    assert (away >= before - 2e-4).all()
 
 
 def test_zones_of_ones_own_count(unchecked: None) -> None:
