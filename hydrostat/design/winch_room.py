@@ -1,7 +1,7 @@
 """`built_in`, `winch_room`: where a body has room for motor and spool (a configuration space), and how strong."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,13 +21,16 @@ from hydrostat.fabrication import (
     Method,
     Motor,
     PartOptions,
+    demand_of,
+    find_motor,
     largest_torque,
     pocket_room,
     seam_of,
     sides_text,
     unit_room,
 )
-from hydrostat.robot import Body, Cable, Robot, Winch, sewn_robot
+from hydrostat.ik import IKResult
+from hydrostat.robot import Body, Cable, Mount, Robot, Winch, sewn_robot
 from hydrostat.units import plural
 
 
@@ -43,7 +46,21 @@ def built_in(robot: Robot, constraints: Constraints, *, winches: int, cables: in
     if motor is None:
         raise InputError(_no_room(robot, constraints, each, winches))
     own = constraints.torque or math.inf
-    return replace(constraints, winch_zones=zones, torque=min(own, largest_torque(motor)))
+    return replace(constraints, winch_zones=zones, torque=min(own, _torque_to_hold(motor)))
+
+
+def find_holding_torque(robot: Robot, reached: Sequence[IKResult]) -> float | None:
+    """Torque that the motor of a kit holds for long [N m], if poses ask for more; None if not, or for no motor."""
+    if not any(winch.mount is Mount.BODY for winch in robot.winches):
+        return None
+    torques = demand_of(robot, reached).torques
+    motor = find_motor(robot, torques, KitOptions())
+    return _torque_to_hold(motor) if float(torques.max()) > largest_torque(motor) else None
+
+
+def _torque_to_hold(motor: Motor) -> float:
+    """Torque that poses may ask of a motor for long [N m], with room for solvers that end near it."""
+    return largest_torque(motor) / _NEAR
 
 
 def find_no_room(robot: Robot) -> str | None:
@@ -285,6 +302,7 @@ def _without_holes(part: shapely.Polygon) -> list[shapely.Polygon]:
     ]
 
 
+_NEAR = 1.002  # torques may end so many times above their limit, or half of that
 _HOUR = 30  # between the turns that are tried [degrees]
 _APART = 5.0  # between the places of a rim that are looked at [mm]
 _ROUGH = 0.2  # by so much may the seam be drawn simpler [mm]

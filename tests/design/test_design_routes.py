@@ -18,7 +18,7 @@ from hydrostat.design.routes import finalists
 from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import demand_of, find_refusals
-from hydrostat.ik import Limits, solve_ik
+from hydrostat.ik import solve_ik
 from hydrostat.robot import Marker, Mount, Pin, PoseTarget, Robot, Winch, robot_hash
 from hydrostat.simulation import BodyPhysics, Simulation
 
@@ -155,7 +155,7 @@ def test_every_constraint_has_a_case() -> None:
 def test_the_error_told_is_what_its_user_finds(name: str, unchecked: None) -> None:
     """Oracle: inverse kinematics of a fresh simulation."""
     network = designed(name)
-    limits = Limits(tension=network.constraints.tension_limit)
+    limits = network.constraints.limits
     for reached in network.reached:
         fresh = solve_ik(Simulation(network.robot), reached.target, limits=limits)
         assert reached.rms_error == pytest.approx(fresh.rms_error, rel=1e-9)
@@ -257,7 +257,7 @@ def test_improving_never_does_worse(poses: tuple[PoseTarget, ...], unchecked: No
     )
     stage = network.trace.stages[0]  # type: ignore[union-attr]
     assert stage.words == "as it was"
-    reach = Limits(tension=limits.tension_limit)
+    reach = limits.limits
     errors = [solve_ik(Simulation(stage.robot), pose, limits=reach).rms_error for pose in poses]
     assert network.rms_error <= float(np.sqrt(np.mean(np.square(errors)))) * (1 + 1e-6)
 

@@ -91,7 +91,9 @@ def test_a_kit_never_refuses_what_a_design_returned(name: str, winches: int, cab
     network = design_cables(robot, [pose], winches=winches, cables=cables, options=SMALL)
     made = replace(network.robot, poses={pose.name: pose})
     assert refused(made, demand=demand_of(made, network.reached)) == []
-    kit = build_kit(made, options=KitOptions(tension=network.constraints.tension_limit))
+    kit = build_kit(
+        made, options=KitOptions(tension=network.constraints.tension_limit, torque=network.constraints.torque)
+    )
     assert kit.problems == ()
     assert find_demand(made, tension=network.constraints.tension_limit).tensions.max() <= 1.001 * 20.0
 

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
 from moulds.mould_robots import blob_body, foam_robot, slab_body
+from plot.designs import plain_network
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.design_cables import design_cables
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.finalists import kit_fits
-from hydrostat.design.winch_room import _example, built_in, find_no_room, winch_room
+from hydrostat.design.winch_room import _example, built_in, find_holding_torque, find_no_room, winch_room
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.fabrication import (
@@ -30,7 +31,7 @@ from hydrostat.fabrication import (
     unit_room,
     ways_to_lie,
 )
-from hydrostat.robot import Marker, Pin, PoseTarget, Robot
+from hydrostat.robot import Marker, Mount, Pin, PoseTarget, Robot
 
 
 @pytest.mark.parametrize("name", ["starfish", "letter_e"])
@@ -112,6 +113,22 @@ def test_a_pocket_fits_wherever_there_is_room_in_foam(unchecked: None) -> None:
     assert not any(map(fits, places[away > 8e-3][::8]))
 
 
+def test_torque_to_hold_is_asked_for_where_a_motor_holds_for_seconds_only() -> None:
+    """Oracle: the smallest motor bears 49 N mm for long and half of 196 N mm for seconds, each with a margin of 2."""
+    network = plain_network()
+    (arm,) = {winch.spool_radius for winch in network.robot.winches}
+
+    def asked(torque: float) -> float | None:
+        tensions = np.array([torque / arm, 0.0])
+        reached = [replace(one, pose=replace(one.pose, tensions=tensions)) for one in network.reached]
+        return find_holding_torque(network.robot, reached)
+
+    assert asked(0.0244) is None
+    assert asked(0.04) == pytest.approx(0.0245, rel=3e-3)
+    outside = [replace(winch, mount=Mount.WORLD) for winch in network.robot.winches]
+    assert find_holding_torque(network.robot.with_network(outside, network.robot.cables), network.reached) is None
+
+
 @pytest.mark.slow
 def test_a_design_in_foam_can_be_built(unchecked: None) -> None:
     """Oracle: the whole kit, which raises for every reason not to build it."""
@@ -176,5 +193,6 @@ def test_a_small_body_gives_the_torque_that_the_motor_that_fits_holds() -> None:
 
 def test_where_the_strongest_motor_fits_a_cable_pulls_as_asked(unchecked: None) -> None:
     limits = built_in(gallery_robot("starfish"), Constraints(), winches=2, cables=6)
-    assert limits.torque == largest_torque(MOTORS[-1])
+    assert limits.torque == pytest.approx(largest_torque(MOTORS[-1]), rel=3e-3)
+    assert limits.torque < largest_torque(MOTORS[-1])
     assert limits.tension_limit == Constraints().tension

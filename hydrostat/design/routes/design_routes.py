@@ -24,7 +24,7 @@ from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.watch import Watch, unseen
-from hydrostat.design.winch_room import built_in
+from hydrostat.design.winch_room import built_in, find_holding_torque
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
 from hydrostat.robot import Robot
@@ -322,7 +322,26 @@ class RouteSearch:
             )
         judged.sort(key=self.finalists.cost)
         first = next((place for place, network in enumerate(judged) if kit_fits(network)), 0)
+        held = self._hold(judged[first]) if complete and self.constraints.built_in else None
+        if held is not None:
+            judged.insert(first, held)
         return judged[first], [*judged[:first], *judged[first + 1 :]]
+
+    def _hold(self, network: Alternative) -> Alternative | None:
+        """Refine a network that its motors hold for seconds until they hold it for long; None if that costs much."""
+        torque = find_holding_torque(network.robot, network.reached)
+        if torque is None:
+            return None
+        usual, self.bench.constraints = self.constraints, replace(self.constraints, torque=torque)
+        layout = layout_of(network.robot, self.bench.constraints)
+        trial = self.bench.reach_poses(layout, None)
+        finalists = replace(self.finalists, constraints=self.bench.constraints)
+        held = None if trial is None else finalists.judge(self.growth.refine(trial).layout)
+        if held is not None and kit_fits(held) and held.built < (1 + _WORTH) * network.built:
+            self.constraints = self.bench.constraints
+            return held
+        self.bench.constraints = usual
+        return None
 
     @property
     def _fitting_constraints(self) -> Constraints:
@@ -363,6 +382,7 @@ _STRONG = 0.1  # what the effort of stronger paths counts
 _DRAWN = 6  # sketches that are solved for each that is grown
 _LIKELY = 2  # of them, that are refined with what differs as built
 _GLANCE = 5  # steps of inverse kinematics that tell how good a sketch is
+_WORTH = 0.1  # errors may be so much larger where motors hold poses for long
 _LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
 _LOOKED_AT_LATE = 4  # where the search was ended before
 _REFINED = 2  # networks that are refined to the end
