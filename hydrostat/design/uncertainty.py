@@ -63,11 +63,6 @@ class BuildTolerances:
             sewing=0.0, friction=(0.0, 0.0), young=0.0, thickness=0.0, stiffness=0.0, pins=0.0, slack=0.0, spool=0.0
         )
 
-    @property
-    def mean_friction(self) -> float:
-        """The coefficient of friction that is expected."""
-        return 0.5 * (self.friction[0] + self.friction[1])
-
     def draw(self, robot: Robot, chance: np.random.Generator) -> Robot:
         """Make a robot as it might be built; every draw takes as many random numbers, whatever the deviations are.
 

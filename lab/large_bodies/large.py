@@ -1,6 +1,6 @@
 """One equilibrium of large bodies from rest: where its time goes, and what its arithmetic alone would take.
 
-    python benchmarks/large.py [--sizes 4.7,3.5,3.0,4.2/2] [--threads 1,2] [--share 0.1]
+    python lab/large_bodies/large.py [--sizes 4.7,3.5,3.0,4.2/2] [--threads 1,2] [--share 0.1]
 
 The cupping hand by element size [mm]; "/2" cuts each edge of that mesh in two, for bodies larger than our mesher makes.
 All cables take in random contractions up to a share of their length. Wall clock of the second of two solves, for the

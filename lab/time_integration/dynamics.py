@@ -1,6 +1,6 @@
 """What a step in time costs, which scheme gives most for it, and how masses are best shared among nodes.
 
-    python benchmarks/dynamics.py [--quick]
+    python lab/time_integration/dynamics.py [--quick]
 
 CPU time of one thread, after a step that is not counted.
 """
@@ -24,7 +24,7 @@ from hydrostat.mechanics import SCHEMES
 from hydrostat.robot import Body, Material, Pin, Relaxation, Robot, Source
 
 GRAVITY = 9.80665
-EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 FOAM = Material(young=30e3, poisson=0.3, density=40)
 
 

@@ -1,6 +1,6 @@
 """What friction of cables does to every example, and what it costs.
 
-python benchmarks/friction.py [--quick] [--friction 0.2] [EXAMPLE ...]
+python lab/cable_friction/friction.py [--quick] [--friction 0.2] [EXAMPLE ...]
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """How far one equilibrium is from the floor: beside a C++ trial of the same body and poses, at equal accuracy.
 
-    python benchmarks/floor.py TRIAL [--rounds 3] [--poses 30] [--steps 60] [--profile] [--parts]
+    python lab/solver_floor/floor.py TRIAL [--rounds 3] [--poses 30] [--steps 60] [--profile] [--parts]
 
 TRIAL is a folder with the built trial: `hand.npz`, `sim.py` and `libcore.so`; its Python packages (pymetis, cvxopt) are
 found with --packages. Both solve in turn, on one thread, the same poses: 30 from rest, and random walks of the

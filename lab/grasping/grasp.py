@@ -1,6 +1,6 @@
 """How hard a tennis ball is pulled out of the gallery's hands and gripper, with bands.
 
-    python benchmarks/grasp.py [--step 4] [--closings 1 4] [--bands] [NAME ...]
+    python lab/grasping/grasp.py [--step 4] [--closings 1 4] [--bands] [NAME ...]
 
 A rigid ball of 67 mm is held deep in the hand at rest, clear of it; the robot closes by the contractions that inverse
 kinematics finds for a pose without the ball, and by several times these, as far as its winches go; then the ball is
@@ -28,7 +28,7 @@ import hydrostat as hs
 from hydrostat.errors import HydrostatError
 from hydrostat.grasp import PullOptions, moved_thing, pull_bands, pull_out, read_thing
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 GRASPS = {
     "caging_gripper": ("close", (0, 0, 72), (0.0, 0.0, 1.0), "5.88"),
     "cupping_hand": ("fist", (10, -55, 86), (0.0, 0.0, 1.0), "2.45"),
