@@ -6,7 +6,7 @@ from manifold3d import CrossSection, Manifold
 from mould_robots import foam_robot, slab_body
 
 from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
-from hydrostat.fabrication.moulds import mould as mould_module
+from hydrostat.fabrication.moulds import setting
 from hydrostat.fabrication.moulds.linked import interlock_count, linking_number, loops_of
 from hydrostat.fabrication.moulds.mould import TOLERATED, Mould, make_mould
 
@@ -86,7 +86,7 @@ def test_what_is_linked_would_cut_the_body_when_it_is_lifted() -> None:
 
 
 def mould_of(solid: Manifold, kind: MouldKind, monkeypatch: pytest.MonkeyPatch) -> Mould:
-    monkeypatch.setattr(mould_module, "body_solid", lambda body: solid)
+    monkeypatch.setattr(setting, "body_solid", lambda body: solid)
     return make_mould(foam_robot(slab_body()), MouldOptions(kind=kind))
 
 

@@ -22,7 +22,6 @@ from hydrostat.fabrication.moulds.mould import TOP_RIM, Mould, make_mould, mould
 from hydrostat.fabrication.moulds.openings import Sprue, make_sprue
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.solids.assembly import interferences
-from hydrostat.fabrication.solids.body_solid import body_solid
 from hydrostat.robot import MATERIALS, Pin, Robot
 
 PARTS = ("upper", "lower", "cavity", "sprue", "vents", "bolts", "slots", "keys")
@@ -73,8 +72,6 @@ def failed(robot: Robot, mould: Mould) -> list[str]:
 def test_checks_of_a_mould_hold_and_fail_on_geometry(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keys that fill the cavity, a sprue beside the mould, one that ends in the wall, a half with a hole too many."""
     robot = foam_robot(slab_body())
-    pull = find_pull(body_solid(robot.body))
-    monkeypatch.setattr(mould_module, "find_pull", lambda solid: pull)
     for kind in MouldKind:
         assert failed(robot, make_mould(robot, MouldOptions(kind=kind, bed=BIG))) == []
     whole = make_mould(robot, MouldOptions(bed=BIG))
