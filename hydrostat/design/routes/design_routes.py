@@ -191,15 +191,15 @@ class RouteSearch:
         """Draw networks along the limbs, and grow the best of them by further cables that help."""
         count = self.options.starts + 1
         drawn = sketches(self.proposals, bare, winches=self.winches, cables=self.cables, count=_DRAWN * count)
-        trials = [self.bench.reach_poses(layout, None, iterations=_GLANCE) for layout in drawn]
         rough: list[Trial] = []
-        for number, trial in enumerate(trials):
-            self.progress("Drawing networks", number, len(trials))
+        for number, layout in enumerate(drawn):
+            self.progress("Drawing networks", number, len(drawn))
+            trial = self.bench.reach_poses(layout, None, iterations=_GLANCE)
             if trial is not None:
                 rough.append(growth.refine_briefly(trial, directions=0))
                 if rough[-1].cost < (1 - _HELPS) * bare.cost and rough[-1].cost <= min(one.cost for one in rough):
                     self._note_network("drawn along the limbs", rough[-1])
-        self.progress("Drawing networks", len(trials), len(trials))
+        self.progress("Drawing networks", len(drawn), len(drawn))
         rough.sort(key=lambda trial: trial.cost)
         helpful: list[Trial] = []
         for trial in map(growth.refine_briefly, rough[: _LIKELY * count]):
