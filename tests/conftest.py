@@ -1,44 +1,23 @@
 """Array shapes and types of what is public are checked while the tests run; one thread of BLAS; two kits."""
 
 import gc
-import os
 import sys
-import tempfile
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ[_name] = "1"
-
-if "HYDROSTAT_CACHE" not in os.environ:  # meshed bodies, kept for this run and shared by its workers
-    _CACHE = tempfile.TemporaryDirectory(prefix="hydrostat-tests-")
-    os.environ["HYDROSTAT_CACHE"] = _CACHE.name
 
 _HERE = Path(__file__).parent
 sys.path[:0] = [str(_HERE), str(_HERE / "fabrication"), str(_HERE.parent / "benchmarks")]
 
+from run_setup import pytest_runtest_setup, unchecked  # noqa: E402, F401, I001 - before NumPy is imported
+
 import pytest  # noqa: E402
 import shape_checks  # noqa: E402
-from jaxtyping import config  # noqa: E402
 
 if TYPE_CHECKING:
     from hydrostat.fabrication import Kit
 
 shape_checks.install("hydrostat")
-
-
-def pytest_runtest_setup() -> None:
-    """Check the first calls of each function in each test."""
-    shape_checks.begin_test()
-
-
-@pytest.fixture
-def unchecked() -> Iterator[None]:
-    """No shape checks in this test: for many solves, whose shapes other tests check."""
-    config.update("jaxtyping_disable", True)
-    yield
-    config.update("jaxtyping_disable", False)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

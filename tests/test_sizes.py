@@ -48,6 +48,13 @@ PARTICIPLE = re.compile(
 )
 FRAGMENT = re.compile(r"(what|how|whether|where|which|whose|of|that|as)\b")
 
+BRITISH = re.compile(
+    r'colour|(?<!")centre|neighbour|metre|behaviour|(?<!native\.)factoris[ei]|'
+    r"(?:minimi|optimi|lineari|normali|initiali|tetrahedrali)s(?:e|ing|ation)",
+    re.IGNORECASE,
+)
+"""Spellings that CONTRIBUTING.md does not want; the compiled core and map.json keep theirs."""
+
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -113,6 +120,11 @@ def many_parameters(texts: dict[str, str]) -> dict[str, int]:
         for name, function in functions(syntax(text))
         if (count := parameters(function)) > PARAMETERS
     }
+
+
+def british(texts: dict[str, str]) -> list[str]:
+    """Words of files in British spelling."""
+    return [f"{path}: {word}" for path, text in texts.items() for word in BRITISH.findall(text)]
 
 
 def twice(texts: dict[str, str]) -> list[str]:
@@ -263,6 +275,11 @@ def test_docstrings_begin_with_a_verb_or_a_noun(texts: dict[str, str]) -> None:
     assert headless(texts) == []
 
 
+def test_spelling_is_american(texts: dict[str, str]) -> None:
+    pages = {str(page.relative_to(ROOT)): page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md")}
+    assert british(texts | pages) == []
+
+
 def test_docstrings_list_names_that_exist(texts: dict[str, str]) -> None:
     assert unknown_entries(texts) == []
 
@@ -291,6 +308,7 @@ def test_the_checks_can_fail() -> None:
     asking += '\n    def _f(): "How."\n\n\nX = 1\n"""Where."""\nY = 1\n"""Whereabouts."""\n'
     assert sorted(headless({"h/a/b.py": asking})) == ["h/a/b.py: How.", "h/a/b.py: Where.", "h/a/b.py: x: of y."]
     assert headless({"h/b.py": '"""What."""'}) == ["h/b.py: What."]
+    assert british({"p": 'Centre("centre", native.factorise, Minimise)'}) == ["p: Centre", "p: Minimise"]
     listed = 'def f(a):\n    """Do.\n\n    Args:\n        a: one.\n        b: two.\n    """\n'
     assert unknown_entries({"p": listed}) == ["p: f: b"]
     named = "def moved():\n    def turned(): ...\ndef move(): ...\nclass _B:\n    def _held(self): ...\n"

@@ -119,7 +119,7 @@ class Analysis:
             self._supernodal = SupernodalAnalysis(self.tree, indptr, indices, dim)
 
     def factorize(self, data: Vector) -> "Factorization":
-        """Factorise the matrix with these values, in the order of `indices`."""
+        """Factorize the matrix with these values, in the order of `indices`."""
         if self.backend == "supernodal":
             return Factorization(self._supernodal.factorize(np.require(data, float, ["C", "W"]), TINY))
         from scipy.sparse import csc_array
@@ -129,7 +129,7 @@ class Analysis:
 
 
 class Factorization:
-    """Factorisation A = L S L^T with S = diag(+-1), or an equivalent one.
+    """Factorization A = L S L^T with S = diag(+-1), or an equivalent one.
 
     Attributes:
         negative: number of negative pivots, which is the number of negative eigenvalues.
@@ -165,7 +165,7 @@ class Factorization:
 
 
 def factorize(matrix: "csc_array") -> Factorization:
-    """Factorise one symmetric matrix whose pattern is not used again."""
+    """Factorize one symmetric matrix whose pattern is not used again."""
     return Factorization(SuperLUFactors(matrix))
 
 
@@ -178,7 +178,7 @@ class SuperLUFactors:
     """
 
     def __init__(self, matrix: "csc_array") -> None:
-        """Factorise a symmetric matrix."""
+        """Factorize a symmetric matrix."""
         from scipy.sparse.linalg import splu
 
         self.singular, self.negative = True, 0

@@ -27,7 +27,7 @@ class FreeSpace:
         self._inside = inside
         lines = [shapely.get_coordinates(shape.geometry) for shape in shapes]
         pairs = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
-        self._taken: list[BaseGeometry] = list(shapely.linestrings(pairs))
+        self._taken: list[BaseGeometry] = np.asarray(shapely.linestrings(pairs), dtype=object).tolist()
         self._texts: list[BaseGeometry] = []
         shapely.prepare(inside)
 
@@ -35,7 +35,7 @@ class FreeSpace:
         """Middle of a box as near to a place as there is room, else where it crosses the least [mm]."""
         centers = _round(at, width, height, gap + np.arange(0, 14, 1.5))
         crossings = self._crossings(centers, _boxes(centers, width, height))
-        leaders = shapely.linestrings(np.stack([np.broadcast_to(at, centers.shape), centers], axis=1))
+        leaders = np.asarray(shapely.linestrings(np.stack([np.broadcast_to(at, centers.shape), centers], axis=1)))
         through_text = 3  # so is a line to a label through another, for so many
         crossings += through_text * _hits(self._texts, leaders)
         x, y = centers[np.argmin(crossings)].tolist()
