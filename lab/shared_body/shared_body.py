@@ -1,6 +1,6 @@
 """What the physics of a body cost once, and each network on it; prints a table.
 
-    python benchmarks/shared_body.py
+    python lab/shared_body/shared_body.py
 
 CPU time on one thread, the least of several runs. A "network" is `Simulation(robot, body=...)`: its cables' energies;
 "its analysis" is the order of elimination and the fronts of that network, made when it is first factorized.
