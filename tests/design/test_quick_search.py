@@ -17,7 +17,7 @@ from hydrostat.design import (
     violations,
 )
 from hydrostat.design.region import body_region
-from hydrostat.ik import Limits, solve_ik
+from hydrostat.ik import solve_ik
 from hydrostat.robot import Marker, limit_travels
 from hydrostat.simulation import Simulation
 
@@ -29,13 +29,15 @@ def test_networks_keep_all_limits_and_have_the_error_that_is_told() -> None:
     robot = assign_cable_sides(gallery_robot("pig"))
     pose = robot.pose("hello")
     limits = Constraints(tension=15.0)
-    first, last = propose_routes(robot, DesignRequest(poses=(pose,), winches=2, cables=4, constraints=limits))
+    request = DesignRequest(poses=(pose,), winches=2, cables=4, constraints=limits)
+    first, last = propose_routes(robot, request)
     assert (first.is_refined, last.is_refined, last.is_buildable) == (False, True, True)
     for one in (first, last):
         assert violations(one.robot, limits, body_region(robot.body, limits.clearance)) == []
         assert limit_travels(one.robot).winches == one.robot.winches
     simulation = Simulation(last.robot)
-    reached = solve_ik(simulation, pose, limits=Limits(tension=15.0))
+    searched = QuickSearch(robot, request).constraints  # with the torque of the motors that fit
+    reached = solve_ik(simulation, pose, limits=searched.limits)
     assert last.error == pytest.approx(reached.rms_error, rel=0.02)
     assert last.built == pytest.approx(expected_error(simulation, [reached], BuildTolerances.of(robot.body)), rel=0.02)
     places = {marker.name: marker.at for marker in robot.markers}
