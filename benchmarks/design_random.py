@@ -39,7 +39,7 @@ from hydrostat.robot import Mount, PoseTarget, Robot, Winch
 from hydrostat.simulation import Simulation
 
 TRIES = 60
-"""Walks that one cable is drawn from, before the network is begun anew."""
+"""Walks that one cable is drawn from, before the network is begun again."""
 
 NETWORKS = 2000
 """Networks begun, before it is held to be impossible."""

@@ -11,7 +11,7 @@ Further methods, not among those that are usually printed: `reach` are routes wi
 routes that are designed for the half-way poses too.
 
 Columns, errors in mm rms over markers and poses: `model`, as designed; `built`, median and 90 % of the draws;
-`mu 0.3`, 90 % with friction 0.3 in all cables; `held out`, poses that hidden networks reach, solved anew in the model.
+`mu 0.3`, 90 % with friction 0.3 in all cables; `held out`, poses that hidden networks reach, solved again in the model.
 """
 
 import argparse

@@ -5,7 +5,7 @@
 The matrix is a mesh's graph Laplacian with a block for every edge: it has the pattern of the Hessian of an elastic
 body, definite as at rest ("definite"), or lowered until some eigenvalues are negative ("indefinite"). CPU time, the
 median of many runs; the residual is that of one solve of the definite matrix, relative to the right-hand side. SuperLU
-analyses anew each time, so there its analysis is part of each factorization.
+analyses again each time, so there its analysis is part of each factorization.
 """
 
 import argparse

@@ -4,13 +4,13 @@
 
 Three winches with emulated servos pull at springs, in seven runs of ten those of Dynamixel, else those of Feetech,
 while a host tells them goals 50 times a second. Bytes are dropped, flipped, doubled and delayed both ways; servos fall
-silent, get stuck, run hot, begin anew; lines are unplugged, hosts die or sleep; cables are cut or jammed, where motors
+silent, get stuck, run hot, begin again; lines are unplugged, hosts die or sleep; cables are cut or jammed, where motors
 tell the torque of their current, so that a guard can know. A third of the springs pull as hard as the bounds of current
 allow half-way already. Half of the servos have a watchdog that does not stop them, as those of the 330 series, and
 Feetech's have none.
 With --boards two to four lines with one to three motors each are joined as one bus, four runs of ten of Dynamixel, two
 of Feetech, four of boards with our firmware, emulated too; what is hard befalls one or more of them, and somebody arms
-them anew afterwards.
+them again afterwards.
 Time is that of the emulation. Counted are motions beyond limits, pulls more than 5 % above what the bound of the
 current allows (of boards: for longer than 60 ms), motors that move later than 250 ms after the last goal they were
 told, and faults that are told in other words than their own or, where there is one bus, of another winch.

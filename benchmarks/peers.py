@@ -76,7 +76,7 @@ NEWTON = ("newton==1.8.0", "warp-lang==1.19.0", "numpy==2.4.6")
 
 PEERS = (
     Peer("hydrostat", "ours.py", "kept"),
-    Peer("hydrostat, body made anew", "ours.py", "anew"),
+    Peer("hydrostat, body made again", "ours.py", "again"),
     Peer("scikit-fem, SuperLU", "scikit_fem.py", "", packages=("scikit-fem==12.0.2", *SCIPY)),
     Peer("jax-fem, SuperLU", "jax_fem_assembly.py", "", packages=(*JAX_FEM, "meshio==5.3.5", *SCIPY)),
     Peer("MuJoCo flex", "mujoco_flex.py", "svk", "St. Venant-Kirchhoff", MUJOCO),

@@ -22,7 +22,7 @@ shape_checks.install("hydrostat")
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Flags: one for tests that compare with reference files, one for the hour's work."""
-    parser.addoption("--refresh-references", action="store_true", help="write the reference files anew")
+    parser.addoption("--refresh-references", action="store_true", help="write the reference files again")
     parser.addoption("--quick", action="store_true", help="each test with its first case only, and none that is slow")
 
 
@@ -76,5 +76,5 @@ def foam_kit() -> "Kit":
 
 @pytest.fixture
 def refresh_references(request: pytest.FixtureRequest) -> bool:
-    """Whether references are written anew."""
+    """Whether references are written again."""
     return bool(request.config.getoption("--refresh-references"))

@@ -21,7 +21,7 @@ def first_column(points: Float[np.ndarray, "points dim"]) -> Float[np.ndarray, "
 
 @pytest.fixture(autouse=True)
 def fresh() -> None:
-    """Check the first calls of a test anew, also where this test began with many."""
+    """Check the first calls of a test again, also where this test began with many."""
     begin_test()
 
 

@@ -1,6 +1,6 @@
 """A held body under dead loads, as every peer gets it, and how a peer is timed on it; needs NumPy alone.
 
-A peer is a file beside this one with a function `prepare(body, variant)`. It returns a function that begins anew from
+A peer is a file beside this one with a function `prepare(body, variant)`. It returns a function that begins again from
 the rest shape each time it is called and gives the nodes again and again, better each time. `main` runs it in a process
 of its own: only the time between two answers counts.
 """

@@ -1,6 +1,6 @@
 """hydrostat itself, through what its users call, with the same body, pins and forces.
 
-Variants: "kept", a `Simulation` that is there already, with the body's Hessian at rest factorized; "anew", the body's
+Variants: "kept", a `Simulation` that is there already, with the body's Hessian at rest factorized; "again", the body's
 physics made for every solve. An answer is a solve of its own, each with a smaller tolerance, and its own time.
 """
 

@@ -105,7 +105,7 @@ class Bus(ABC):
         """Switch torque on where they stand, each bounded to a current [A] (HydrostatError: one did not take it)."""
 
     def restart_watchdog(self) -> None:  # noqa: B027 - where nothing watches by itself there is nothing to do
-        """Let the own watchdogs of armed motors begin anew: they may have fired while others were armed.
+        """Let the own watchdogs of armed motors begin again: they may have fired while others were armed.
 
         Raises:
             HydrostatError: one does not.

@@ -241,7 +241,7 @@ class BusLink(Link):
             index = int(np.nan_to_num(beyond, nan=np.inf).argmax())
             raise HydrostatError(
                 f"{self._names[index]} stands at {1e3 * self._places[index]:.1f} mm, beyond its limits of "
-                f"{1e3 * self._low[index]:.1f} to {1e3 * self._high[index]:.1f} mm; calibrate it anew"
+                f"{1e3 * self._low[index]:.1f} to {1e3 * self._high[index]:.1f} mm; calibrate it again"
             )
         if armed:
             self._judge_following(now)
@@ -251,7 +251,7 @@ class BusLink(Link):
                 raise HydrostatError(words)
 
     def _judge_following(self, now: float) -> None:
-        """Raise that a motor stands away from its goal: it is stuck, or has lost its power and begun anew."""
+        """Raise that a motor stands away from its goal: it is stuck, or has lost its power and begun again."""
         follows = np.abs(self._goal - self._places) < BEHIND
         follows |= np.abs(self._places - self._mark) > 1e-4
         self._mark = np.where(follows, self._places, self._mark)
@@ -273,7 +273,7 @@ class BusLink(Link):
         if self._over.is_set() or not self.facts:
             needed = "identify the motors"
         elif self._bus.lost_position:
-            needed = "calibrate them anew, as a motor or its board was switched off or reset since (docs/motors.md)"
+            needed = "calibrate them again, as a motor or its board was switched off or reset since (docs/motors.md)"
         elif not self._calibration.is_complete:
             needed = "calibrate them"
         if needed:

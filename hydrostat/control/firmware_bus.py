@@ -13,7 +13,7 @@ from hydrostat.control.bus import Bus, MotorFacts, Port, Reading, steady
 from hydrostat.errors import HydrostatError
 
 PROOF = 0.05  # current at which the watchdog is tried [A]
-ANEW = "it was switched off or reset, and its motors count anew; calibrate them anew"
+ANEW = "it was switched off or reset, and its motors count again; calibrate them again"
 
 
 class FirmwareBus(Bus):
@@ -75,7 +75,7 @@ class FirmwareBus(Bus):
             if self._robot not in ("", told[4]):
                 raise HydrostatError(
                     f"the board was built for {told[4]}, not for {self._robot} as it is now; "
-                    "write it anew by `hydrostat firmware`, or mind the order of the ports"
+                    "write it again by `hydrostat firmware`, or mind the order of the ports"
                 )
             if int(told[5]) != len(self._scale):
                 raise HydrostatError(f"the board was built for {told[5]} motors, and {len(self._scale)} are asked for")
@@ -95,7 +95,7 @@ class FirmwareBus(Bus):
     def arm(self, currents: Vector) -> None:
         """Switch torque on where they stand; the board refuses more current than its settings allow."""
         with self._lock:
-            marked = self._surely("I").endswith(" marked")  # numbers of lines begin anew with this one
+            marked = self._surely("I").endswith(" marked")  # numbers of lines begin again with this one
             self._see_that_it_counts_on(marked)
             bounds = " ".join(str(max(1, round(1e3 * most))) for most in currents[self._order].tolist())
             self._must(f"A {bounds}", "its bounds of current")

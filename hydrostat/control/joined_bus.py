@@ -49,7 +49,7 @@ class JoinedBus(Bus):
             raise
 
     def restart_watchdog(self) -> None:
-        """Let the watchdogs of all parts begin anew."""
+        """Let the watchdogs of all parts begin again."""
         self._each(lambda bus, _: bus.restart_watchdog())
 
     def read(self) -> Reading:

@@ -20,7 +20,7 @@ class Link(ABC):
     Only `Motors` uses a link, from one thread at a time. While anything shall move it calls `send` and `read` in turn,
     about 60 times a second, and less often where solving is slow; only the newest command counts, none is queued.
     Neither waits for a motor. A link that fails raises a `HydrostatError` that says what to do. On that, and on any
-    other error, `stop` is called and nothing is sent before somebody asks anew.
+    other error, `stop` is called and nothing is sent before somebody asks again.
 
     Whoever puts real motors behind this keeps four promises: they stop `SILENCE` seconds after the last `send`, even
     if this process has died, so the watch is on the side of the motors; they stop on any error of theirs, and on

@@ -111,7 +111,7 @@ class Motors:
         Reading all motors of a line takes milliseconds: who has news for them may look again a little later.
 
         Raises:
-            HydrostatError: of the link, or there was no `drive` for too long; the motors hold, and must be asked anew.
+            HydrostatError: of the link, or there was no `drive` for too long; the motors hold, and must be asked again.
         """
         before = self.places
         try:

@@ -107,7 +107,7 @@ def _make_emulated_bus(calibration: Calibration, tensions: Callable[[Vector], Ve
     def load(index: int) -> Callable[[float], float]:
         def torque(_: float) -> float:
             nonlocal known, torques
-            if known != chain.now:  # all anew at each step
+            if known != chain.now:  # all again at each step
                 taken = np.array([m.contraction(s.angle) for m, s in zip(calibration.motors, servos, strict=True)])
                 known, torques = chain.now, calibration.radii(taken) * tensions(taken)
             return float(torques[index])

@@ -15,7 +15,7 @@ from hydrostat.control.dynamixel_packets import Packet, PacketReader
 from hydrostat.errors import HydrostatError
 
 TURNED = 0.75 * 2 * np.pi
-"""No servo turns so far between two answers [rad]: who says so has begun to count anew."""
+"""No servo turns so far between two answers [rad]: who says so has begun to count again."""
 LATELY = 0.1
 """Maximum age of a reading [s] by which a motor may be told to hold without asking for its position first."""
 ANEW = "lost power for a moment, and its turn count. Run hydrostat calibrate again"

@@ -70,7 +70,7 @@ def measure_spool(
     """Let a winch take cable in step by step, and ask at each where the mark is; it then goes back to its zero.
 
     Motors cannot measure this by themselves: they feel forces, and know no length. While somebody reads, motors stand
-    and are told nothing; each step is armed anew.
+    and are told nothing; each step is armed again.
 
     Args:
         link: to all motors, identified and calibrated.
@@ -100,7 +100,7 @@ def measure_spool(
     if len(turned) < LEAST:
         raise HydrostatError(
             f"{motor.winch}: its motor stood after {1e3 * taken:.0f} of {1e3 * most:.0f} mm; let its cable "
-            f"off the body, or allow more than {motor.current:g} A in motors.toml, and begin anew"
+            f"off the body, or allow more than {motor.current:g} A in motors.toml, and begin again"
         )
     return fit_spool(motor, np.array(turned), np.array(readings))
 
@@ -133,7 +133,7 @@ def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve
     try:
         fitted = replace(motor, radius=radius, curve=tuple(zip(angles, lengths, strict=True)))
     except InputError as error:
-        raise HydrostatError(f"readings of {error}; read them anew") from None
+        raise HydrostatError(f"readings of {error}; read them again") from None
     curve = SpoolCurve(
         motor=fitted, turned=turned, readings=taken + (found[1] - found[0]), before=_cable_length(motor, turned)
     )
@@ -141,7 +141,7 @@ def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve
     if (worst := float(beside.max())) > WITHIN:
         raise HydrostatError(
             f"{motor.winch}: reading {int(beside.argmax()) + 1} of {len(turned)} is {1e3 * worst:.1f} mm beside every "
-            "curve that a spool can have; begin this winch anew"
+            "curve that a spool can have; begin this winch again"
         )
     return curve
 

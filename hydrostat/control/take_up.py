@@ -29,7 +29,7 @@ APART = 8e-4
 LAG = 4e-3
 """A motor this far behind its goal that feels nothing does not follow [m]."""
 LATE, AGAIN = 0.08, 20
-"""Motors that were told nothing for so long [s] are armed anew where they stand, at most so many times."""
+"""Motors that were told nothing for so long [s] are armed again where they stand, at most so many times."""
 OLD = 0.2
 """A reading so old is an error [s]."""
 
@@ -155,7 +155,7 @@ class _Taker:
         if apart > APART:
             raise HydrostatError(
                 f"{self._name(index)}: its cable begins to pull {1e3 * apart:.1f} mm apart in two measurements; "
-                "see that it runs freely and that its spool is fast on its motor, then begin anew"
+                "see that it runs freely and that its spool is fast on its motor, then begin again"
             )
         origin = self._from[index]
         place = replace(origin, zero=0.0, turns=1)

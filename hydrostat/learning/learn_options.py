@@ -19,7 +19,7 @@ class LearnOptions:
         batch: samples in a step.
         rate: largest learning rate; it rises, then falls as a cosine.
         slopes: weight of errors of slopes beside those of values; 0 learns from values alone.
-        directions: along which slopes are compared, drawn anew in each step.
+        directions: along which slopes are compared, drawn again in each step.
         tensions: weight of errors of tensions beside those of markers.
         tension_slopes: weight of errors of their slopes, where samples hold them.
         effort: weight of tension and contraction in the inverse network, so that its answer is unique.

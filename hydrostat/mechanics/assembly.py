@@ -70,7 +70,7 @@ class Assembly:
     def with_active_terms(self, nodes: Nodes) -> "Assembly":
         """Sum with the terms that count near `nodes`; itself where none come and go.
 
-        The pattern is analyzed anew only when a pair of nodes meets that never met before.
+        The pattern is analyzed again only when a pair of nodes meets that never met before.
         """
         return self.with_terms([energy.with_active_terms(nodes) for energy in self.energies])
 

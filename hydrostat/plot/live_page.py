@@ -30,7 +30,7 @@ class LivePage:
         self._file: tuple[int, bytes] = (0, b"")
 
     def __reduce__(self) -> tuple[type["LivePage"], tuple[str]]:
-        """Make anew, without pictures, what is copied or sent: a page is where it was opened."""
+        """Make again, without pictures, what is copied or sent: a page is where it was opened."""
         return LivePage, (self._title,)
 
     @property

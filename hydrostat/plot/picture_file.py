@@ -72,7 +72,7 @@ def figure_pixels(figure: Figure, *, dpi: float | None = None) -> UInt8[np.ndarr
 
 @contextmanager
 def _sharp(figure: Figure) -> Iterator[None]:
-    """Images of bodies pixel by pixel, while an SVG is made; else they would be sampled anew, and coarser."""
+    """Images of bodies pixel by pixel, while an SVG is made; else they would be sampled again, and coarser."""
     images = [image for image in figure.findobj(AxesImage) if image.get_label() == BODY]
     for image in images:
         image.set_interpolation("none")

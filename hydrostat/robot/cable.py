@@ -123,7 +123,7 @@ def name_cables(cables: Iterable[Cable]) -> tuple[Cable, ...]:
             while (name := _usual_name(cable.winch, number)) in taken:
                 number += 1
             taken.add(name)
-            cable = copy(cable)  # not made anew: all else is checked, and designs make robots by the thousand
+            cable = copy(cable)  # not made again: all else is checked, and designs make robots by the thousand
             object.__setattr__(cable, "name", name)
         named.append(cable)
     return tuple(named)

@@ -59,7 +59,7 @@ class Simulation:
         Args:
             robot: body and network.
             options: convergence options of Newton's method.
-            body: the physics of its body, if they are at hand; making them anew takes longer than all else here.
+            body: the physics of its body, if they are at hand; making them again takes longer than all else here.
             energies: more physics, such as a magnet or a floor; controls of theirs are the winches' contractions.
 
         Raises:

@@ -54,7 +54,7 @@ def solve_torch(
     """Equilibrium as `Simulation.solve` finds it; `backward` costs one solve with the factorized Hessian.
 
     Tensors of any float type and device are taken; all is computed in float64 on the CPU. What is left out stays as
-    in the robot; what is given takes its place, for which a simulation is built anew, on the same body physics unless
+    in the robot; what is given takes its place, for which a simulation is built again, on the same body physics unless
     `young` or `poisson` is given. Second derivatives are refused.
 
     Args:

@@ -67,7 +67,7 @@ def fit_ridge(
 
 
 def left_out_error(inputs: Table, outputs: Table, groups: Sequence[int], penalty: float) -> float:
-    """Root mean square error on each pose by what the others teach, without fitting anew.
+    """Root mean square error on each pose by what the others teach, without fitting again.
 
     For a linear fit the error of rows left out together is (I - H)^-1 e, with their part H of its projection and their
     errors e in it.

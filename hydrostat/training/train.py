@@ -342,7 +342,7 @@ def _read_whole(path: Path) -> Iterator[None]:
     try:
         yield
     except Exception:  # noqa: BLE001 pickles and archives that were cut short raise what they like
-        raise InputError(f"{path}: is missing or damaged; begin anew, without --resume") from None
+        raise InputError(f"{path}: is missing or damaged; begin again, without --resume") from None
 
 
 def _resume_model(copies: Any, options: TrainOptions, folder: Path) -> Any:

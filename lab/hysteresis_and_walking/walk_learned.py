@@ -8,7 +8,7 @@ all. Cost is in time steps of the simulator (20 ms each); judging costs nothing.
 
     hand      the keyframes of robot.toml, played in turn: amplitude 20 mm, lag 1/3, period 1 s
     found     the gait that lab/hysteresis_and_walking/walk.py found at friction 0.6 (24.1 mm, 0.35, 0.83 s), 40 tries
-    search    the same search here, from `hand`, one episode each try, with friction drawn anew
+    search    the same search here, from `hand`, one episode each try, with friction drawn again
     gait      SAC with hindsight, actions are gaits for half a second
     steps     SAC with hindsight, actions are changes of contractions, each tenth of a second
     steps-tqc the same by TQC

@@ -8,7 +8,7 @@ they were told, at the end of a frame, where each key is held and on the way bet
 knows the same loads as the motors feel.
 
 With --clock time is that of this computer. A frame is late when it begins more than 5 ms after its time, and lost when
-its time passed while another went on; motors that were stopped are armed anew, and told.
+its time passed while another went on; motors that were stopped are armed again, and told.
 No motor of metal turns.
 """
 
@@ -76,7 +76,7 @@ class TenWinches:
         return self.radii * [servo.angle for servo in self.servos]
 
     def torque(self, index: int) -> float:
-        """Of a cable; all are known anew at each step."""
+        """Of a cable; all are known again at each step."""
         if self._known != self.chain.now:
             self._known, self._torques = self.chain.now, self.radii * self.pulls(self.places)
         return 0.0 if index == self.cut else float(self._torques[index])

@@ -47,7 +47,7 @@ def test_keys_turn_winches_and_bars_are_shown(starfish: Path, port: list[str]) -
     assert len(last) == 1
     assert float(last[0][1]) == pytest.approx(7.0, abs=0.4)
     assert re.search(kind + r": left  \[#+-+\] +7\.\d mm" + (r" +-?[0-9.]+ A" if port else ""), text)
-    assert "\x1b[5A" in text  # three bars, a state and a help are drawn anew
+    assert "\x1b[5A" in text  # three bars, a state and a help are drawn again
 
 
 @pytest.mark.slow

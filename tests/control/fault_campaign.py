@@ -15,19 +15,19 @@ MOVED = 5e-5  # steps of a servo and its rounding are less [m]
 BYTES = ("drop", "flip", "double", "delay", "half")
 GUARDED = ("cut", "jammed")
 """Only a guard can tell of these, where motors tell the torque of their current."""
-HARD = ("deaf", "stuck", "hot", "anew", "unplugged", "host dies", "host sleeps", *GUARDED)
+HARD = ("deaf", "stuck", "hot", "again", "unplugged", "host dies", "host sleeps", *GUARDED)
 WORDS = {
     "deaf": ("has not answered",),
     "stuck": ("does not follow",),
     "hot": ("too hot",),
-    "anew": ("lost power", "does not follow", "slack or broken"),  # its torque is off, and no cable is felt
+    "again": ("lost power", "does not follow", "slack or broken"),  # its torque is off, and no cable is felt
     "unplugged": ("is gone",),
     "host dies": ("",),
     "host sleeps": ("no command for",),
     "cut": ("slack or broken",),
     "jammed": ("measured tension",),
 }
-WHOSE = {"deaf", "stuck", "hot", "anew", *GUARDED}  # words name the winch
+WHOSE = {"deaf", "stuck", "hot", "again", *GUARDED}  # words name the winch
 
 
 class Noise:
@@ -148,7 +148,7 @@ class Campaign:
         self.late = 0.0
         if kind in ("deaf", "stuck", "hot"):
             servo.ails = InjectedFaults(**{kind: True, "deaf_watchdog": servo.ails.deaf_watchdog})
-        elif kind == "anew":
+        elif kind == "again":
             servo.begin_anew()
         elif kind == "unplugged":
             rig.chain.gone = True

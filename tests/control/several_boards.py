@@ -22,8 +22,8 @@ from hydrostat.robot import Winch
 ZERO = 4.0  # angle of servos with nothing taken in, so that a turn ends on their way [rad]
 COUNTS = 2000.0
 KINDS = ("dynamixel", "feetech", "firmware")
-HARMS = ("deaf", "mute", "stuck", "hot", "anew", "unplugged", *GUARDED)
-TOLD = WORDS | {"mute": ("has not answered",), "anew": (*WORDS["anew"], "switched off or reset", "has not answered")}
+HARMS = ("deaf", "mute", "stuck", "hot", "again", "unplugged", *GUARDED)
+TOLD = WORDS | {"mute": ("has not answered",), "again": (*WORDS["again"], "switched off or reset", "has not answered")}
 FIRMWARE = TOLD | {"deaf": TOLD["mute"], "hot": TOLD["mute"], "stuck": ("stall",)}  # a board is heard as a whole
 
 
@@ -94,13 +94,13 @@ class Boards:
         elif kind in GUARDED:
             (cut if kind == "cut" else jam)(servo)
         elif isinstance(chain, EmulatedBoard):
-            if kind == "anew":
+            if kind == "again":
                 chain.begin_anew()
             elif kind == "stuck":
                 servo.ails = InjectedFaults(stuck=True)
             else:
                 chain.deaf = True
-        elif kind == "anew":
+        elif kind == "again":
             servo.begin_anew()
         else:
             for each in chain.servos if kind == "mute" else [servo]:
@@ -209,7 +209,7 @@ class BoardsCampaign(Campaign):
         return False
 
     def _once_more(self, rig: Boards) -> None:
-        """A person who arms them anew, come what may: nothing may leave its limits by that."""
+        """A person who arms them again, come what may: nothing may leave its limits by that."""
         rig.heal()
         self._again(rig)  # type: ignore[arg-type]
         if rig.link.state is LinkState.ARMED:

@@ -165,7 +165,7 @@ def test_a_servo_that_lost_its_turns_is_not_armed_again(models: tuple[int, ...])
     rig.servos[1].begin_anew()
     with pytest.raises(HydrostatError, match="index extensor reports: lost power for a moment"):
         rig.go(rig.places, 0.1)
-    with pytest.raises(HydrostatError, match="calibrate them anew, as a motor"):
+    with pytest.raises(HydrostatError, match="calibrate them again, as a motor"):
         rig.link.arm()
 
 
@@ -192,10 +192,10 @@ def test_a_board_that_was_reset_is_told_and_not_armed_again() -> None:
 
     go(30)
     board.hang()  # its hardware watchdog resets it
-    with pytest.raises(HydrostatError, match=r"has not answered|switched off or reset, and its motors count anew"):
+    with pytest.raises(HydrostatError, match=r"has not answered|switched off or reset, and its motors count again"):
         go(60)
     board.run(0.3)
-    with pytest.raises(HydrostatError, match=r"was switched off or reset|calibrate them anew"):
+    with pytest.raises(HydrostatError, match=r"was switched off or reset|calibrate them again"):
         link.arm()
     where = board.winches[0].angle
     board.run(0.5)

@@ -100,7 +100,7 @@ def test_a_robot_on_its_board_is_driven_within_its_limits(robot: Robot, motors: 
     found = Calibration(tuple(replace(each, zero=0.0) for each in motors.motors))
     bus, link = link_of(robot_word(robot, found), found)
     assert [fact.number for fact in link.identify()] == [2, 1]
-    with pytest.raises(HydrostatError, match="calibrate them anew, as a motor or its board was switched off or reset"):
+    with pytest.raises(HydrostatError, match="calibrate them again, as a motor or its board was switched off or reset"):
         link.arm()
     bus.mark()
     bus, link = link_of(robot_word(robot, found), found)

@@ -147,7 +147,7 @@ def test_a_large_hole_is_closed_about_flat() -> None:
     dirty = with_hole(sphere(divisions=4), _TOP, 2 * 0.03 * np.sin(angle / 2))
     healing = _healed(dirty)
     cap = np.pi * height**2 * (3 * 0.03 - height) / 3
-    assert _says(healing, "1 hole", "made anew")
+    assert _says(healing, "1 hole", "made again")
     assert 4 / 3 * np.pi * 0.03**3 - 1.1 * cap < healing.volume_after < 4 / 3 * np.pi * 0.03**3
     assert 0.02 < healing.patched < 0.15
     assert healing.largest_distance < _FINE / 2
@@ -160,7 +160,7 @@ def test_overlapping_spheres_are_united() -> None:
     pair = both(sphere(divisions=4), sphere(0.03, (apart, 0.0, 0.001), 4))
     exact = 8 / 3 * np.pi * 0.03**3 - lens(0.03, np.hypot(apart, 0.001))
     healing = _healed(pair)
-    assert _says(healing, "run through each other", "2 parts", "made anew")
+    assert _says(healing, "run through each other", "2 parts", "made again")
     assert healing.volume_after == pytest.approx(exact, rel=0.005)
     assert healing.volume_before == pytest.approx(8 / 3 * np.pi * 0.03**3, rel=0.005)
     assert healing.largest_distance < _FINE
@@ -256,7 +256,7 @@ def test_all_at_once() -> None:
     dirty = with_small_holes(with_noise(with_hole(sphere(divisions=4), _TOP, 0.01), 2e-4), 30)
     dirty = with_specks(unmerged(with_flipped(dirty, 0.1)), np.array([[0.05, 0.0, 0.0]]), 0.001)
     healing = _healed(dirty)
-    assert _says(healing, "flipped", "hole", "loose speck", "made anew")
+    assert _says(healing, "flipped", "hole", "loose speck", "made again")
     assert healing.volume_after == pytest.approx(4 / 3 * np.pi * 0.03**3, rel=0.02)
     assert healing.largest_distance < _FINE
 

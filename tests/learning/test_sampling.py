@@ -249,7 +249,7 @@ def _works(stat: Path) -> bool:
 
 
 def test_a_folder_grows_to_a_larger_count_and_to_no_smaller_one(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
-    """The oracle is a run that was asked for all at once; a kill before the short last file is made anew is tried."""
+    """The oracle is a run that was asked for all at once; a kill before the short last file is made again is tried."""
     sample_robot(replace(plan, count=12), tmp_path)
     first = (tmp_path / "samples-000000.npy").stat().st_mtime_ns
     SampleFolder.begin(tmp_path, plan)  # a run that was killed just then

@@ -203,7 +203,7 @@ def test_a_guess_beneath_the_floor_is_no_guess() -> None:
 
 
 def test_a_pose_whose_nodes_were_moved_brings_no_factors() -> None:
-    """Oracle: factors made anew at the moved nodes."""
+    """Oracle: factors made again at the moved nodes."""
     simulation = Simulation(ROBOT)
     pose = simulation.solve(PULL)
     moved = replace(pose, nodes=pose.nodes + 1e-3 * np.sin(40 * pose.nodes))

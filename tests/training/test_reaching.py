@@ -281,14 +281,14 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
     with pytest.raises(InputError, match="begun with method = ddpg-her, not sac-her"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
     (tmp_path / "curve.json").write_text("{")
-    with pytest.raises(InputError, match=r"curve.json: is missing or damaged; begin anew, without --resume"):
+    with pytest.raises(InputError, match=r"curve.json: is missing or damaged; begin again, without --resume"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
     point = CurvePoint(steps=4, equilibria=8, mean=0.0, median=0.0, worst=0.0, success=0.0)
     whole = json.dumps({"options": asdict(TrainOptions()), "curve": [asdict(point)]})
     (tmp_path / "curve.json").write_text(whole)
     (tmp_path / "checkpoint-4").mkdir()
     (tmp_path / "checkpoint-4" / "model.zip").write_bytes(b"PK half of it")
-    with pytest.raises(InputError, match=r"checkpoint-4: is missing or damaged; begin anew"):
+    with pytest.raises(InputError, match=r"checkpoint-4: is missing or damaged; begin again"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
 
 

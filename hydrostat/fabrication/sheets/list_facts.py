@@ -166,7 +166,7 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
     mind += [
         f"The firmware needs to know this motor: hydrostat firmware ROBOT --motor {plan.motor.key} --out DIR.",
         "10 kOhm from each PWM pin to GND keeps motors off while the board starts; 10 uF from RESET to GND, put in "
-        "after the firmware is written, keeps it from starting anew when a program opens its port.",
+        "after the firmware is written, keeps it from starting again when a program opens its port.",
         "A motor that runs away at once has its two wires swapped: the board stops it after 0.2 s.",
     ]
     if len(plan.boards) > 1:

@@ -170,7 +170,7 @@ class _Reader:
             raise ValueError
         if blocks * whole > MOST_BYTES:
             raise InputError(f"{self.name}: unpacks to more than {MOST_BYTES / 1e6:.0f} MB: save a coarser mesh")
-        # the head is encoded on its own, so the rest begins anew
+        # the head is encoded on its own, so the rest begins again
         start = size * (3 + blocks)
         rest = source[start if encoding == "raw" else 4 * -(-start // 3) :]
         content, at, result = self._encoded_slice(rest, encoding, 0, sum(packed)), 0, []

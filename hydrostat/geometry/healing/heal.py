@@ -31,7 +31,7 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     Triangles are kept, and with them sharp edges, as long as that gives a closed body: vertices are merged, repeated
     triangles left out, patches turned one way, holes closed that are no longer around than 24 times the resolution [m],
     specks removed. Only where this is not enough (crossings, overlaps, larger holes, edges with more than two
-    triangles) the body is made anew, as the region whose generalized winding number is above one half (Jacobson et al.
+    triangles) the body is made again, as the region whose generalized winding number is above one half (Jacobson et al.
     2013, by the fast sum of Barill et al. 2018), on a grid of the resolution; edges and corners are rounded then by up
     to about half of it. A quarter of the element size is a good choice. What overlaps is united. Cavities stay if they
     are closed and clean: all their triangles look one way, inward; a closed part that looks outward inside another is
@@ -161,7 +161,7 @@ def _made_anew(
             f"{most_patched:.0%} are: scan what is missing, or close the holes in the program it comes from"
         )
     lost = _lost_pieces(kept, off.lost, made)
-    anew = [f"made anew on a grid of {1e3 * made.spacing:.3g} mm: edges and corners are rounded by up to half of it"]
+    anew = [f"made again on a grid of {1e3 * made.spacing:.3g} mm: edges and corners are rounded by up to half of it"]
     if made.spacing > want:
         anew.append(f"the grid is coarser than the {1e3 * want:.3g} mm asked for, which would have too many points")
     return Healing(

@@ -93,7 +93,7 @@ def _slivers(mesh: Mesh) -> Iterator[str]:
         yield (
             f"body: {count} of {len(angles)} tetrahedra {'is a sliver' if count == 1 else 'are slivers'} (below "
             f"{least_dihedral:.0f} degrees between two faces; the worst {angles[flattest]:.1f}, at {where}): too stiff "
-            f"and slow to solve; mesh the body anew"
+            f"and slow to solve; mesh the body again"
         )
 
 

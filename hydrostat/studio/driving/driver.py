@@ -171,7 +171,7 @@ class Driver(Stage):
         self._tell()
 
     def set_loop(self, loop: bool) -> None:
-        """Let playing begin anew at the end, or stop there."""
+        """Let playing begin again at the end, or stop there."""
         self.player.rounds = inf if loop else 1
         self._tell()
 

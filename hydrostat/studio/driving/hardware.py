@@ -40,7 +40,7 @@ class Hardware:
     """Motors behind the studio: connected and armed by a person, told by a thread of their own.
 
     They follow the contractions that the screen shows, as fast as their link allows. They hold on any error, when
-    nobody looks at the page, when the robot is changed, and when they are told to; then they must be armed anew.
+    nobody looks at the page, when the robot is changed, and when they are told to; then they must be armed again.
 
     Attributes:
         allowed: True if this user may turn motors of this machine; guests may not.
@@ -146,7 +146,7 @@ class Hardware:
         self._ring()
 
     def hold(self, why: str = "") -> None:
-        """Let motors stand; they must be armed anew. Nothing happens where none turn.
+        """Let motors stand; they must be armed again. Nothing happens where none turn.
 
         It waits for no other thread, not even for one that arms them just now: they are not armed then.
         """

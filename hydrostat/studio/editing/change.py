@@ -128,7 +128,7 @@ def sheaths(segments: Collection[int]) -> tuple[tuple[int, int], ...]:
 def remesh(
     robot: Robot, *, element_size: float | None = None, thickness: float | None = None, material: str | None = None
 ) -> Body:
-    """The body of a robot, made anew; takes a while if the elements are others. What is left out stays.
+    """The body of a robot, made again; takes a while if the elements are others. What is left out stays.
 
     The element size is the length of a mesh edge [m], the thickness that of a flat body [m], the material one of the
     table. A number out of its range, an unknown material, or a body whose elements are given is an InputError.

@@ -42,7 +42,7 @@ class Ruler:
     points: tuple[Point, ...]  # one or two places [m]
 
     def to(self, at: Point) -> "Ruler":
-        """The same laid on one more place; one that was full begins anew there."""
+        """The same laid on one more place; one that was full begins again there."""
         return Ruler((*self.points, at) if len(self.points) < 2 else (at,))
 
     @property

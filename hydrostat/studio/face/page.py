@@ -48,7 +48,7 @@ class WindowPage:
     def on_new(
         self, topics: Topic | Sequence[Topic], state: Callable[[], object], room: ui.element, build: Callable[[], Any]
     ) -> None:
-        """Fill a room, and fill it anew after a topic rang where the state that it shows is another by then."""
+        """Fill a room, and fill it again after a topic rang where the state that it shows is another by then."""
         drawn: list[object] = []
 
         def show() -> None:
@@ -94,7 +94,7 @@ class WindowPage:
         self.act(self.session.go, stage)
 
     def show_panel(self, build: Callable[["WindowPage"], None]) -> None:
-        """Fill panel and bottom anew."""
+        """Fill panel and bottom again."""
         self._passing.clear()
         for room in (self.panel, self.bottom, self.whole):
             room.clear()

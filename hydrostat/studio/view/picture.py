@@ -1,4 +1,4 @@
-"""`Show`, `Picture`: what all screens show, as bytes that are made anew only where something has changed; `packet`."""
+"""`Show`, `Picture`: what all screens show, as bytes that are made again only where something has changed; `packet`."""
 
 import json
 import struct

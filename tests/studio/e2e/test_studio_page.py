@@ -51,7 +51,7 @@ def drag(page: "Page", key: str, dx: float, dy: float) -> None:
 
 
 def moved(page: "Page", x: float, y: float, *, seconds: float) -> bool:
-    """Move the pointer; whether the screen painted anew within some time."""
+    """Move the pointer; whether the screen painted again within some time."""
     from playwright.sync_api import TimeoutError as LateError
 
     before = page.evaluate("__app.painted")

@@ -416,6 +416,6 @@ def test_the_ruler_measures_between_parts_and_places(editor: Editor, document: D
     assert editor.ruler.words == "50.0 mm (x 30.0, y 40.0)"
     assert "50.0 mm" in [thing.label for thing in editor.things() if isinstance(thing, Dot)]
     editor.click(on((0.0, 0.0)))
-    assert editor.ruler.words == "", "it begins anew"
+    assert editor.ruler.words == "", "it begins again"
     editor.take(Tool.MOVE)
     assert editor.ruler is None

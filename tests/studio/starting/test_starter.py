@@ -67,7 +67,7 @@ def test_each_gallery_robot_has_a_small_picture_and_words() -> None:
 
 @pytest.mark.slow
 def test_pictures_are_of_the_robots_as_they_are() -> None:
-    """Oracle: the picture drawn anew; another robot's differs a lot."""
+    """Oracle: the picture drawn again; another robot's differs a lot."""
     from io import BytesIO
 
     import numpy as np

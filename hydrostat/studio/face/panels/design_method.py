@@ -42,12 +42,12 @@ def design_method(page: WindowPage) -> None:
         spread = ui.label(NO_SPREAD).classes("studio-hint").props('data-testid="design-no-spread"')
 
     def send(value: Any) -> None:
-        if value is not None and value is not _shown(designer.wishes.method):
+        if value is not None and value is not _find_method(designer.wishes.method):
             page.act(lambda: designer.wish(method=value))
 
     def show() -> None:
         wishes = designer.wishes
-        choice.set_value(_shown(wishes.method))
+        choice.set_value(_find_method(wishes.method))
         room.set_visibility(wishes.method.grows_trees)
         spread.set_visibility(0 < wishes.winches == wishes.cables)
         for refresh in shows:
@@ -57,8 +57,8 @@ def design_method(page: WindowPage) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _shown(method: DesignMethod) -> DesignMethod:
-    """The choice that stands for a method: winch trees of one setting are the thesis's search."""
+def _find_method(method: DesignMethod) -> DesignMethod:
+    """Find the choice that stands for a method: winch trees of one setting are the thesis's search."""
     return DesignMethod.CHANG2018 if method.grows_trees else method
 
 

@@ -132,7 +132,7 @@ def _gravity(page: WindowPage) -> None:
 
 
 def _outline(page: WindowPage) -> None:
-    """For a body that was drawn: its outline can be drawn anew."""
+    """For a body that was drawn: its outline can be drawn again."""
     starter, document = page.session.starter, page.session.document
 
     async def draw() -> None:

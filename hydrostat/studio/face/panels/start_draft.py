@@ -31,7 +31,7 @@ FINENESS = {True: (120, 250, 600), False: (400, 900, 2500)}  # nodes of a coarse
 
 
 def draft_view(page: WindowPage) -> Callable[[], None]:
-    """Build it; returns what shows it anew."""
+    """Build it; returns what shows it again."""
     starter = page.session.starter
     with ui.row().classes("items-center no-wrap w-full gap-3"):
         back = ui.button(icon="arrow_back", on_click=page.doing(starter.drop)).mark("back")

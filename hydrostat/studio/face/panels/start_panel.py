@@ -22,7 +22,7 @@ from hydrostat.studio.starting.shelf import Card, gallery_cards, suggestions
 
 
 def outline_view(page: WindowPage) -> Callable[[], None]:
-    """Build it; returns what shows it anew."""
+    """Build it; returns what shows it again."""
     starter = page.session.starter
     outlining = starter.outlining
     if outlining is None:
@@ -267,7 +267,7 @@ def _head(icon: str, words: str) -> None:
         ui.label(words)
 
 
-VIEWS = {"shelf": shelf_view, "draft": draft_view, "outline": outline_view}  # each gives what shows it anew
+VIEWS = {"shelf": shelf_view, "draft": draft_view, "outline": outline_view}  # each gives what shows it again
 
 
 def start_panel(page: WindowPage) -> None:

@@ -29,7 +29,7 @@ export class Cover {
     this.cut = null;
   }
 
-  /** Look at the nodes anew. */
+  /** Look at the nodes again. */
   see(nodes, camera, cut) {
     const { spots, faces, front } = this;
     Object.assign(this, { nodes, cut });

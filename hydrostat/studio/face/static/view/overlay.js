@@ -26,7 +26,7 @@ export class Overlay {
     return this.pen.isPointInPath(area.path, x * this.ratio, y * this.ratio);
   }
 
-  /** Draw all of a view anew. */
+  /** Draw all of a view again. */
   draw(view) {
     const { pen, ratio } = this;
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);

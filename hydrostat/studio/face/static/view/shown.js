@@ -58,7 +58,7 @@ export class Shown {
   /** Make ready to draw a body in space; who shows one on a screen does. */
   openRenderer() {}
 
-  /** Show another scene; what is the same in it is kept. Returns whether one has to look at it anew. */
+  /** Show another scene; what is the same in it is kept. Returns whether one has to look at it again. */
   build(head, arrays) {
     const flat = head.dim === 2;
     const other = flat !== this.camera.flat || !same(arrays.rest, this.rest) || !same(arrays.faces, this.faces);
@@ -79,7 +79,7 @@ export class Shown {
     return elsewhere;
   }
 
-  /** Whether a body is so much larger or smaller than before that one has to look anew. */
+  /** Whether a body is so much larger or smaller than before that one has to look again. */
   grown(rest) {
     const size = (table) => table.reduce((most, value) => Math.max(most, Math.abs(value)), 1e-9);
     const ratio = size(rest) / size(this.rest);
