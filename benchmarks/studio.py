@@ -188,7 +188,9 @@ def waiting_times(robot: Robot, wishes: Wishes) -> list[list[float]]:
         poser.step(0.0)
         poser.show_pose(name)
         begun, seen, found = time.monotonic(), None, []
-        while not found or poser.proposals.searching:
+        is_done = False
+        while not is_done:
+            is_done = bool(found) and not poser.proposals.searching  # asked first, so that the last network counts
             poser.step(0.0)
             proposal = poser.proposals.latest_proposal(robot)
             if proposal is not None and proposal is not seen:
