@@ -46,7 +46,7 @@ def arm_motors(
     link = BusLink(bus, robot.winches, calibration, log=log)
     try:
         constants = np.array([fact.constant for fact in link.identify()])
-        link.guard = TensionGuard(known or pulls, constants, tuple(winch.name for winch in robot.winches))
+        link.guard = TensionGuard(known or pulls, constants, calibration.labels)
         link.arm()
         places = link.read(time.monotonic())
     except BaseException:

@@ -99,7 +99,7 @@ class BusLink(Link):
         self.facts: tuple[MotorFacts, ...] = ()
         self.reading: Reading | None = None
         self._bus, self._calibration, self.guard, self._log, self._clock = bus, calibration, guard, log, clock
-        self.limits, self._names = limits or LinkLimits(), _winch_names(calibration)
+        self.limits, self._names = limits or LinkLimits(), calibration.labels
         self._low = np.array([-winch.release for winch in winches], dtype=float)
         self._high = np.array([winch.travel for winch in winches], dtype=float)
         self._places = self._goal = np.zeros(len(winches))
@@ -321,9 +321,3 @@ class BusLink(Link):
     def _say(self, words: str) -> None:
         with suppress(Exception):
             self._log(f"{self._bus.kind}: {self._clock() - self._began:.3f} s: {words}")
-
-
-def _winch_names(calibration: Calibration) -> list[str]:
-    """Names of the winches, with those of their boards where there are several."""
-    several = calibration.boards > 1
-    return [f"{motor.winch} (board {motor.board})" if several else motor.winch for motor in calibration.motors]

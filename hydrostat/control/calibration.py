@@ -107,6 +107,12 @@ class Calibration:
         """Number of boards or serial lines that its motors are connected to."""
         return max(motor.board for motor in self.motors)
 
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the winches for messages, with those of their boards where there are several."""
+        several = self.boards > 1
+        return tuple(f"{motor.winch} (board {motor.board})" if several else motor.winch for motor in self.motors)
+
     def places(self, board: int) -> list[int]:
         """Places of the motors of a board in the order of the winches."""
         return [place for place, motor in enumerate(self.motors) if motor.board == board]

@@ -175,9 +175,10 @@ class FirmwareBus(Bus):
             raise HydrostatError(f"the board did not take {name}; it says: {told}")
 
     def _surely(self, words: str) -> str:
-        """The answer to a line, asked up to three times (HydrostatError: none)."""
+        """The answer to a line, asked up to three times (HydrostatError: none); earlier refusals no longer count."""
         for _ in range(3):
             if (told := self._ask(words)) is not None:
+                self._refused = ""
                 return told
         raise HydrostatError("the board does not answer; look at its power, its cable and the baud rate, 250000")
 

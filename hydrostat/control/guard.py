@@ -87,7 +87,7 @@ class TensionGuard:
         since = now - self._missed
         for index in np.flatnonzero(np.nan_to_num(since, nan=-1.0) >= limits.seconds).tolist():
             return (
-                f"{self._names[index]}: cable slack or broken ({max(felt[index], 0.0):.1f} N measured, "
-                f"{model[index]:.1f} N expected)"
+                f"{self._names[index]}: cable slack or broken, or its motor lost power "
+                f"({max(felt[index], 0.0):.1f} N measured, {model[index]:.1f} N expected)"
             )
         return ""

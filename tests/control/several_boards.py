@@ -52,9 +52,9 @@ class Boards:
             WinchMotor(winch=w.name, board=found[n][0], number=found[n][1], zero=zero, radius=RADIUS, current=CURRENT)
             for n, w in enumerate(winches)
         ]
-        self._names = tuple(winch.name for winch in winches)
-        self.bus = JoinedBus(parts)
-        self.link = BusLink(self.bus, winches, Calibration(tuple(spools)), clock=self.chain.clock)
+        self.bus, calibration = JoinedBus(parts), Calibration(tuple(spools))
+        self._names = calibration.labels
+        self.link = BusLink(self.bus, winches, calibration, clock=self.chain.clock)
 
     def pull(self, reaches: list[float]) -> None:
         """Let springs pull, as hard as the bounds of currents at their reaches [m]."""
@@ -169,7 +169,10 @@ class BoardsCampaign(Campaign):
         """What noise has left behind is over: a watchdog that has fired is told after half a second."""
         for attempt in range(5):
             if rig.link.state is LinkState.ARMED:
-                words = self._drive(rig, 0.8, self.within(rig))  # type: ignore[arg-type]
+                goal = self.within(rig)  # type: ignore[arg-type]
+                near = np.abs(goal - rig.places) < 3e-3  # a motor that stands at its goal hides that it does not move
+                goal += np.where(near, np.where(goal > HIGH / 4, -6e-3, 6e-3), 0.0)
+                words = self._drive(rig, 0.8, goal)  # type: ignore[arg-type]
                 if not words:
                     return
                 if attempt:
@@ -200,11 +203,10 @@ class BoardsCampaign(Campaign):
         self._once_more(rig)
 
     def _named(self, words: str, harmed: dict[int, str], rig: Boards) -> bool:
-        """Whether words name a board that was harmed (the guard: its winch), and what was done to it."""
+        """Whether words name a board that was harmed, and what was done to it."""
         told = FIRMWARE if rig.kind == "firmware" else TOLD
         for board, harm in harmed.items():
-            named = [f"winch {place}:" for place in rig.lines[board]] if harm in GUARDED else [f"board {board + 1}"]
-            if any(name in words for name in named) and any(each in words for each in told[harm]):
+            if f"board {board + 1}" in words and any(each in words for each in told[harm]):
                 return True
         return False
 

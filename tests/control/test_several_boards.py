@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from emulated_board import BoardMotor, EmulatedBoard
 from firmware_bench import Board
-from several_boards import HARMS, BoardsCampaign
+from several_boards import COUNTS, HARMS, Boards, BoardsCampaign
 
 from hydrostat.control import bus_link
 from hydrostat.control.bus import Reading
 from hydrostat.control.bus_link import BusLink
+from hydrostat.control.calibration import Calibration
 from hydrostat.control.firmware_bus import ANEW, FirmwareBus, line_of
 from hydrostat.control.joined_bus import JoinedBus
 from hydrostat.errors import HydrostatError
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.usefixtures("unchecked")
 
 @pytest.mark.slow
 def test_faults_on_several_boards_leave_motors_within_limits_standing_in_time_and_told() -> None:
-    campaign = BoardsCampaign(np.random.default_rng(20), seconds=1.0, share=0.25)
+    campaign = BoardsCampaign(np.random.default_rng(24), seconds=1.0, share=0.25)
     while campaign.injected < 3000:
         campaign.run()
     assert not campaign.wrong
@@ -40,7 +41,7 @@ def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
 
         monkeypatch.setattr(BusLink, "__init__", without_limits)
     elif bug == "boards without names":
-        monkeypatch.setattr(bus_link, "_winch_names", lambda calibration: [motor.winch for motor in calibration.motors])
+        monkeypatch.setattr(Calibration, "labels", property(lambda self: tuple(motor.winch for motor in self.motors)))
     elif bug == "an unplugged board is hushed up":
         read = JoinedBus._each
 
@@ -93,6 +94,31 @@ def test_a_bug_is_caught(bug: str, caught: str, monkeypatch: pytest.MonkeyPatch)
         if any(caught in word for word in campaign.wrong):
             return
     pytest.fail(f"not caught: {campaign.wrong}")
+
+
+def test_the_guard_names_board_and_cause_of_a_servo_that_lost_power_within_one_turn() -> None:
+    """Oracle: the injected fault. Its count does not jump, so only its cable reports it."""
+    rig = Boards(np.random.default_rng(1), "dynamixel")
+    rig.pull([0.03] * rig.count)
+    rig.begin()
+    goal = np.full(rig.count, 0.015)
+    rig.go(goal, 1.0, speed=0.06)
+    rig.chains[1].servos[0].begin_anew()
+    with pytest.raises(HydrostatError, match=r"\(board 2\): cable slack or broken, or its motor lost power"):
+        rig.go(goal, 3.0, speed=0.06)
+
+
+def test_a_line_damaged_before_arming_is_no_fault_after_it() -> None:
+    """Oracle: the emulated board. It refuses the damaged line, then arms; later refusals are still reported."""
+    board = EmulatedBoard([BoardMotor(low=-200, high=4000)])
+    bus = FirmwareBus(board, [COUNTS], clock=board.clock, wait=board.wait)
+    bus.identify()
+    board.write(b"7 G 12 ")
+    bus.arm(np.array([0.1]))
+    assert bus.read().faults == ("",)
+    bus.write(np.array([1e3]), np.array([1.0]))
+    board.wait(0.01)
+    assert bus.read().faults == ("refused: limit",)
 
 
 def test_the_emulated_board_answers_as_the_firmware_does() -> None:

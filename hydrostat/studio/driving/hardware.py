@@ -119,7 +119,7 @@ class Hardware:
         except BaseException:
             link.close()
             raise
-        names = tuple(self._names(robot))
+        names = calibration.labels
         link.guard = TensionGuard(self._expected_tensions, np.array([fact.constant for fact in facts]), names)
         with self._lock:  # another window may have connected, or the studio closed, meanwhile
             if self._over.is_set() or self._link is not None or self._robot is not robot:
