@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from hydrostat.design.built_error import BuiltErrors, built_errors, expected_error
     from hydrostat.design.constraints import RANGES, STEPPED, Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
+    from hydrostat.design.corrected_error import corrected_errors, spread_markers
     from hydrostat.design.craft import Craft, SewingTimes, build_effort, front, sewing_minutes
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.faced import assign_cable_sides
@@ -100,6 +101,7 @@ __all__ = [
     "build_effort",
     "built_errors",
     "cable_name",
+    "corrected_errors",
     "design_cables",
     "edge_fibres",
     "expected_error",
@@ -123,6 +125,7 @@ __all__ = [
     "score_card",
     "sewing_minutes",
     "size_of",
+    "spread_markers",
     "turns",
     "violations",
 ]

@@ -11,7 +11,7 @@ from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import NotConvergedError
 from hydrostat.ik import IKResult
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.simulation import Simulation, cable_sensitivities
+from hydrostat.simulation import Equilibrium, Simulation, cable_sensitivities
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -75,12 +75,16 @@ def played_error(robot: Robot, poses: Sequence[PoseTarget], commands: Sequence[V
     simulation = Simulation(robot)
     squares = []
     for pose, command in zip(poses, commands, strict=True):
-        solved = simulation.solve(np.asarray(command), strict=False)
-        if not solved.result.converged:
-            return float("inf")
-        misses = [np.subtract(solved.markers[name], target) for name, target in pose.targets.items()]
-        squares.append(np.mean(np.sum(np.square(misses), axis=1)))
+        squares.append(mean_square(simulation.solve(np.asarray(command), strict=False), pose))
     return float(np.sqrt(np.mean(squares)))
+
+
+def mean_square(played: Equilibrium, pose: PoseTarget) -> float:
+    """Mean squared distance of the markers of a pose from their targets [m^2]; infinite without an equilibrium."""
+    if not played.result.converged:
+        return float("inf")
+    misses = [np.subtract(played.markers[name], target) for name, target in pose.targets.items()]
+    return float(np.mean(np.sum(np.square(misses), axis=1)))
 
 
 def expected_error(simulation: Simulation, reached: Sequence[IKResult], uncertainty: BuildTolerances) -> float:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
+    from hydrostat.ik.correct_contractions import correct_contractions
     from hydrostat.ik.ik_result import IKResult, IKStatus
     from hydrostat.ik.limits import Limits, spool_arms
     from hydrostat.ik.linearized_pose import LinearizedPose, unconstrained_motion
@@ -61,6 +62,7 @@ __all__ = [
     "Trajectory",
     "TrajectoryOptions",
     "begin_robot",
+    "correct_contractions",
     "find_reach",
     "least_squares",
     "load_target_outline",

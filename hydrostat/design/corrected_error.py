@@ -1,0 +1,77 @@
+"""`corrected_errors`: pose errors of built robots after one round of correction by measured markers."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.design.built_error import BuiltErrors, mean_square
+from hydrostat.design.uncertainty import BuildTolerances
+from hydrostat.ik import IKResult, Limits, correct_contractions
+from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation
+
+MEASURED = 5
+"""Number of markers that are measured in each pose, if it has targets for so many."""
+
+NOISE = 5e-4
+"""Standard deviation of each measured coordinate [m]: a ruler or a photo."""
+
+
+def corrected_errors(
+    robot: Robot,
+    reached: Sequence[IKResult],
+    uncertainty: BuildTolerances,
+    *,
+    limits: Limits | None = None,
+    measured: int = MEASURED,
+    noise: float = NOISE,
+    draws: int = 40,
+    seed: int = 0,
+) -> BuiltErrors:
+    """Play poses on robots drawn at random, measure markers, correct the contractions once and play again.
+
+    The robots are those of `built_errors` with the same seed. Each pose is corrected by itself, by
+    `hydrostat.ik.correct_contractions`, from the markers of `spread_markers`.
+
+    Args:
+        robot: the robot of the design.
+        reached: its poses, as its own winches reach them in the model.
+        uncertainty: build tolerances.
+        limits: limits of the winches, in addition to travel and release.
+        measured: maximum number of measured markers in each pose.
+        noise: standard deviation of each measured coordinate [m].
+        draws: number of robots.
+        seed: random seed.
+    """
+    model, rest = Simulation(robot), {marker.name: np.array(marker.at) for marker in robot.markers}
+    names = [spread_markers({name: rest[name] for name in one.pose_target.targets}, measured) for one in reached]
+    found = []
+    for number in range(draws):
+        built = Simulation(uncertainty.draw(robot, np.random.default_rng([seed, number])))
+        chance = np.random.default_rng([seed, number, 1])
+        squares = []
+        for one, chosen in zip(reached, names, strict=True):
+            played = built.solve(one.pose.contractions, strict=False)
+            if played.result.converged:
+                places = {
+                    name: played.markers[name] + noise * chance.standard_normal(rest[name].shape) for name in chosen
+                }
+                contractions = correct_contractions(model, one, places, limits=limits)
+                played = built.solve(contractions, strict=False)
+            squares.append(mean_square(played, one.pose_target))
+        found.append(np.sqrt(np.mean(squares)))
+    return BuiltErrors(drawn=np.array(found), model=float(np.sqrt(np.mean([one.rms_error**2 for one in reached]))))
+
+
+def spread_markers(places: dict[str, Vector], count: int) -> list[str]:
+    """Names of up to `count` places: the farthest from their mean, then each time the farthest from those chosen."""
+    if len(places) <= count:
+        return list(places)
+    near = [np.mean(list(places.values()), axis=0)]
+    chosen: list[str] = []
+    while len(chosen) < count:
+        left = [name for name in places if name not in chosen]
+        chosen.append(max(left, key=lambda name: min(float(np.linalg.norm(places[name] - one)) for one in near)))
+        near = [places[name] for name in chosen]
+    return chosen

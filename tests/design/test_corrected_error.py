@@ -1,0 +1,35 @@
+"""Built robots after one correction. Oracles: the model, linear tolerances, places on a line."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+from hydrostat.design import BuildTolerances, built_errors, corrected_errors, spread_markers
+from hydrostat.ik import solve_ik
+from hydrostat.robot import PoseTarget
+from hydrostat.simulation import Simulation
+
+ROBOT = strip_robot(columns=10, rows=3)
+NONE = BuildTolerances.none()
+
+
+def test_one_correction_takes_back_what_winches_can(unchecked: None) -> None:
+    """Spools of 1 % other radii act as other contractions; a robot as its model keeps its error, and noise adds."""
+    tip = Simulation(ROBOT).solve(np.array([0.014, 0.004])).markers["tip"]
+    reached = [solve_ik(Simulation(ROBOT), PoseTarget(name="up", targets={"tip": tuple(tip.tolist())}))]
+    exact = corrected_errors(ROBOT, reached, NONE, noise=0.0, draws=1)
+    assert exact.drawn[0] == pytest.approx(exact.model, abs=1e-7)
+    spools = replace(NONE, spool=0.01)
+    played = built_errors(ROBOT, [reached[0].pose_target], [reached[0].pose.contractions], spools, draws=4)
+    corrected = corrected_errors(ROBOT, reached, spools, noise=0.0, draws=4)
+    assert (corrected.drawn < 0.05 * played.drawn).all()
+    noisy = corrected_errors(ROBOT, reached, NONE, noise=5e-4, draws=30)
+    assert np.sqrt(np.mean(noisy.drawn**2)) == pytest.approx(np.sqrt(2) * 5e-4, rel=0.3)
+
+
+def test_measured_markers_are_far_from_one_another() -> None:
+    places = {name: np.array([x, 0.0]) for name, x in zip("abcdefg", (0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.5), strict=True)}
+    assert spread_markers(places, 3) == ["g", "a", "d"]
+    assert spread_markers(places, 7) == list("abcdefg")

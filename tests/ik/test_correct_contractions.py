@@ -1,0 +1,67 @@
+"""One round of correction. Oracles: the order of Gauss-Newton where winches miss cable, and the model itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+from hydrostat.errors import InputError
+from hydrostat.ik import IKResult, Limits, correct_contractions, solve_ik
+from hydrostat.robot import PoseTarget
+from hydrostat.simulation import Simulation
+
+ROBOT = strip_robot(columns=10, rows=3)
+SIMULATION = Simulation(ROBOT)
+
+
+@pytest.fixture(scope="module")
+def reached() -> IKResult:
+    """A pose within reach, held by both cables."""
+    tip = SIMULATION.solve(np.array([0.014, 0.004])).markers["tip"]
+    return solve_ik(SIMULATION, PoseTarget(name="up", targets={"tip": tuple(tip.tolist())}))
+
+
+def test_a_robot_like_its_model_keeps_its_contractions(reached: IKResult) -> None:
+    corrected = correct_contractions(SIMULATION, reached, {"tip": reached.pose.markers["tip"]})
+    assert corrected == pytest.approx(reached.pose.contractions, abs=1e-7)
+
+
+def test_what_winches_miss_is_taken_back_up_to_second_order(reached: IKResult) -> None:
+    """Winches of the built robot take in less than they are told; half of that leaves a quarter of the error."""
+    left = []
+    for missing in (np.array([1e-3, 2e-4]), np.array([5e-4, 1e-4])):
+        played = SIMULATION.solve(reached.pose.contractions - missing).markers["tip"]
+        corrected = correct_contractions(SIMULATION, reached, {"tip": played})
+        again = SIMULATION.solve(corrected - missing).markers["tip"]
+        left.append(float(np.linalg.norm(again - reached.pose_target.targets["tip"])))
+        assert left[-1] < 0.1 * np.linalg.norm(played - reached.pose_target.targets["tip"])
+    assert left[0] / left[1] == pytest.approx(4.0, rel=0.3)
+
+
+def test_a_correction_stays_within_the_travel_of_winches(reached: IKResult) -> None:
+    least = reached.pose.contractions.max() + 1e-4
+    robot = replace(ROBOT, winches=tuple(replace(winch, travel=float(least)) for winch in ROBOT.winches))
+    far = np.subtract(reached.pose.markers["tip"], (0.0, 0.02))
+    kept = solve_ik(Simulation(robot), reached.pose_target)
+    corrected = correct_contractions(Simulation(robot), kept, {"tip": far})
+    assert corrected.max() == pytest.approx(least, abs=1e-9)
+    assert corrected.min() >= 0.0
+    gentle = Limits(tension=1.1 * float(reached.pose.tensions.max()))
+    held = SIMULATION.solve(correct_contractions(SIMULATION, reached, {"tip": far}, limits=gentle))
+    assert held.tensions.max() < 1.25 * reached.pose.tensions.max()
+
+
+@pytest.mark.parametrize(
+    ("measured", "words"),
+    [
+        ({"nose": (0.1, 0.0)}, 'no target for marker "nose"'),
+        ({"tip": (0.1, 0.0, 0.0)}, "2 finite numbers"),
+        ({"tip": (0.1, float("nan"))}, "2 finite numbers"),
+        ({}, "at least one marker"),
+    ],
+)
+def test_what_was_not_measured_so_is_told_in_one_line(measured: dict, words: str, reached: IKResult) -> None:
+    with pytest.raises(InputError, match=words) as error:
+        correct_contractions(SIMULATION, reached, measured)
+    assert "\n" not in str(error.value)
