@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics import NewtonOptions
     from hydrostat.plot import draw_network, draw_pose, draw_reached, draw_rest
     from hydrostat.robot import (
+        BodyPart,
         Cable,
         Contact,
         Marker,
@@ -78,6 +79,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BatchResult",
+    "BodyPart",
     "Branch",
     "BuildTolerances",
     "Cable",

@@ -80,7 +80,8 @@ template <int D> double value(const Elements& all, const double* displacements) 
             stretch += G[i][i];
             for (int j = 0; j < D; j++) stretch += 0.5 * G[i][j] * G[i][j];
         }
-        total += group.volume * (all.mu * (stretch - log_j) + 0.5 * all.lame * log_j * log_j);
+        Lanes mu = load<Lanes>(all.mu + element), lame = load<Lanes>(all.lame + element);
+        total += group.volume * (mu * (stretch - log_j) + 0.5 * lame * log_j * log_j);
     }
     return sum(total);
 }
@@ -94,11 +95,11 @@ template <int D> void gradient(const Elements& all, const double* displacements,
         group.differentiate(displacements, G);
         Lanes change = change_of<D>(G);
         inverse_transposed<D>(G, 1.0 + change, T);
-        Lanes pressure = all.lame * log1p(change);
+        Lanes mu = load<Lanes>(all.mu + element), pressure = load<Lanes>(all.lame + element) * log1p(change);
         for (int i = 0; i < D; i++)  // P = mu (G + I - F^-T) + pressure F^-T
             for (int j = 0; j < D; j++) {
                 Lanes rest = i == j ? 1.0 - T[i][j] : -T[i][j];
-                T[i][j] = group.volume * (all.mu * (G[i][j] + rest) + pressure * T[i][j]);
+                T[i][j] = group.volume * (mu * (G[i][j] + rest) + pressure * T[i][j]);
             }
         for (int i = 0; i < D; i++) forces[0][i] = Lanes{};
         for (int corner = 1; corner < C; corner++)
@@ -158,7 +159,7 @@ template <int D> struct Negative {
     Lanes U[D][D], V[D][D], stretch[D][D], even[D][D], odd[D][D];
     bool some = false;
 
-    INLINE Negative(const Lanes (&G)[D][D], Lanes J, Lanes log_j, double mu, double lame) {
+    INLINE Negative(const Lanes (&G)[D][D], Lanes J, Lanes log_j, Lanes mu, Lanes lame) {
         Lanes F[D][D], squares[D][D], s[D];
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) F[i][j] = i == j ? 1.0 + G[i][j] : G[i][j];
@@ -264,12 +265,13 @@ template <int D> bool hessian(const Elements& all, const double* displacements, 
                 spatial[corner][i] = Lanes{};
                 for (int j = 0; j < D; j++) spatial[corner][i] += T[i][j] * group.slope(corner, j);
             }
-        Lanes straight = group.volume * all.lame, crossed = group.volume * (all.mu - all.lame * log_j);
+        Lanes mu = load<Lanes>(all.mu + element), lame = load<Lanes>(all.lame + element);
+        Lanes straight = group.volume * lame, crossed = group.volume * (mu - lame * log_j);
         for (int a = 0, pair = 0; a < C; a++)
             for (int b = 0; b <= a; b++, pair++) {
                 Lanes along{};
                 for (int i = 0; i < D; i++) along += group.slope(a, i) * group.slope(b, i);
-                along *= group.volume * all.mu;
+                along *= group.volume * mu;
                 for (int i = 0; i < D; i++)
                     for (int j = 0; j < D; j++) {
                         Lanes entry = straight * spatial[a][i] * spatial[b][j] + crossed * spatial[b][i] * spatial[a][j];
@@ -277,7 +279,7 @@ template <int D> bool hessian(const Elements& all, const double* displacements, 
                     }
             }
         if (share > 0.0) {
-            Negative<D> negative(G, J, log_j, all.mu, all.lame);
+            Negative<D> negative(G, J, log_j, mu, lame);
             if (negative.some) {
                 Lanes local[C][D], found[D][D];
                 for (int corner = 0; corner < C; corner++)

@@ -10,7 +10,8 @@ struct Elements {
     const int32_t* stencils;
     const double* gradients;
     const double* volumes;
-    double mu, lame;
+    const double* mu;    // Lame's parameters of each element, in groups like the volumes
+    const double* lame;
 };
 
 // Where the blocks of elements go in a matrix: the first number of each block, by element and its two corners; the

@@ -52,29 +52,39 @@ struct Packed {
     Elements all;
 
     Packed(const Reals<2>& field, const Array<const int32_t, 3>& stencils, const Array<const double, 4>& gradients, const Reals<2>& volumes,
-           int64_t terms, double mu, double lame) {
+           int64_t terms) {
         int64_t groups = (int64_t)stencils.shape(0), corners = (int64_t)stencils.shape(1);
         demand(stencils.shape(2) == 8 && gradients.shape(3) == 8 && volumes.shape(1) == 8, "groups must be of 8");
         demand((corners == 3 || corners == 4) && (int64_t)gradients.shape(1) == corners &&
                    (int64_t)gradients.shape(2) == corners - 1, "elements must be simplices");
         demand((int64_t)gradients.shape(0) == groups && (int64_t)volumes.shape(0) == groups &&
                    terms <= 8 * groups && terms > 8 * (groups - 1), "as many groups of each");
-        all = {groups, terms, (int)corners - 1, stencils.data(), gradients.data(), volumes.data(), mu, lame};
+        all = {groups, terms, (int)corners - 1, stencils.data(), gradients.data(), volumes.data(), nullptr, nullptr};
         demand((int)field.shape(1) == all.dim, "dim of the nodes");
         demand_corners(all, (int64_t)field.shape(0));
+    }
+
+    // Lame's parameters: (2, groups, 8), mu first.
+    void take_moduli(const Reals<3>& moduli) {
+        demand(moduli.shape(0) == 2 && (int64_t)moduli.shape(1) == all.groups && moduli.shape(2) == 8,
+               "two moduli of each element");
+        all.mu = moduli.data();
+        all.lame = moduli.data() + 8 * all.groups;
     }
 };
 
 double value(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
-             Reals<2> volumes, int64_t terms, double mu, double lame) {
-    Packed packed(displacements, stencils, gradients, volumes, terms, mu, lame);
+             Reals<2> volumes, int64_t terms, Reals<3> moduli) {
+    Packed packed(displacements, stencils, gradients, volumes, terms);
+    packed.take_moduli(moduli);
     Free free(9.0 * terms);
     return kernels.value(packed.all, displacements.data());
 }
 
 void gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
-              Reals<2> volumes, int64_t terms, double mu, double lame, Array<double, 2> total) {
-    Packed packed(displacements, stencils, gradients, volumes, terms, mu, lame);
+              Reals<2> volumes, int64_t terms, Reals<3> moduli, Array<double, 2> total) {
+    Packed packed(displacements, stencils, gradients, volumes, terms);
+    packed.take_moduli(moduli);
     demand(total.shape(0) == displacements.shape(0) &&
                total.shape(1) == displacements.shape(1), "shape of the total");
     Free free(15.0 * terms);
@@ -82,9 +92,10 @@ void gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<co
 }
 
 void hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
-             Reals<2> volumes, int64_t terms, double mu, double lame, double share, Array<const int64_t, 3> slots,
+             Reals<2> volumes, int64_t terms, Reals<3> moduli, double share, Array<const int64_t, 3> slots,
              Array<const int64_t, 1> strides, Array<double, 1> data) {
-    Packed packed(displacements, stencils, gradients, volumes, terms, mu, lame);
+    Packed packed(displacements, stencils, gradients, volumes, terms);
+    packed.take_moduli(moduli);
     const size_t corners = stencils.shape(1);
     demand((int64_t)slots.shape(0) == terms && slots.shape(1) == corners && slots.shape(2) == corners &&
                strides.shape(0) == displacements.shape(0), "shapes of displacements, slots and strides");
@@ -99,7 +110,7 @@ void hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<con
 
 void turn(Reals<2> nodes, Reals<2> step, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
           Reals<2> volumes, int64_t terms, Array<double, 2> right) {
-    Packed packed(nodes, stencils, gradients, volumes, terms, 0.0, 0.0);
+    Packed packed(nodes, stencils, gradients, volumes, terms);
     demand(step.shape(0) == nodes.shape(0) &&
                step.shape(1) == nodes.shape(1) && right.shape(0) == nodes.shape(0) &&
                right.shape(1) == nodes.shape(1), "shapes of nodes, step and right");
@@ -323,10 +334,10 @@ NB_MODULE(_native, module) {
     for (const Kernels* found : levels()) names.append(found->name);
     module.attr("levels") = names;
     module.attr("instructions") = kernels.name;
-    module.attr("interface") = 7;  // kernel.py asks for it: raise both where the arguments of a function change
+    module.attr("interface") = 8;  // kernel.py asks for it: raise both where the arguments of a function change
     module.def("value", &value);
-    module.def("gradient", &gradient, given(), given(), given(), given(), given(), given(), given(), filled());
-    module.def("hessian", &hessian, given(), given(), given(), given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("gradient", &gradient, given(), given(), given(), given(), given(), given(), filled());
+    module.def("hessian", &hessian, given(), given(), given(), given(), given(), given(), given(), given(), given(), filled());
     module.def("turn", &turn, given(), given(), given(), given(), given(), given(), filled());
     module.def("factorise", &factorise, given(), given(), given(), given(), given(), given(), filled(), filled(), filled(), filled(), filled(), given());
     module.def("factorise_together", &factorise_together, given(), given(), given(), given(), given(), given(), filled(), filled(),

@@ -175,9 +175,17 @@ def _body_lines(body: "Body") -> list[str]:
         angle = f"smallest angle between faces {dihedral_angles(mesh.nodes, mesh.elements).min():.2g}°"
     name = material.name or "custom material"
     return [
-        f"{name}: {_mass_text(volume * material.density)}, {_volume_text(volume)}",
+        f"{name}: {_mass_text(body.mass)}, {_volume_text(volume)}",
+        *(_part_line(body, index) for index in range(len(body.parts))),
         f"thickness {1e3 * thin:.0f} to {1e3 * thick:.0f} mm ({few:.1f} to {many:.0f} elements across); {angle}",
     ]
+
+
+def _part_line(body: "Body", index: int) -> str:
+    """Material, mass and number of elements of a part."""
+    part, own = body.parts[index], body.element_materials == index + 1
+    name = "rigid" if part.material is None else part.material.name or "custom material"
+    return f"part {part.name}: {name}, {_mass_text(float(body.element_masses[own].sum()))}, {own.sum()} elements"
 
 
 def _mass_text(mass: float) -> str:

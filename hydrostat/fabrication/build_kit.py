@@ -21,7 +21,7 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
 from hydrostat.progress import Progress
-from hydrostat.robot import Face, Robot, describe_cable_side, sewn_robot
+from hydrostat.robot import Body, Face, Robot, describe_cable_side, sewn_robot
 from hydrostat.units import plural
 
 
@@ -161,9 +161,17 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
     return KitFindings(
         checks=checks,
         problems=tuple(dict.fromkeys((*known, *made, *large, *failed))),
-        warnings=(*work.warnings, *rigid.warnings, *lists.warnings),
+        warnings=(*_part_warnings(plan.robot.body), *work.warnings, *rigid.warnings, *lists.warnings),
         notes=(*work.notes, *rigid.notes, *plan.demand.far),
     )
+
+
+def _part_warnings(body: Body) -> tuple[str, ...]:
+    """Warn of parts, which no pattern or mold of the kit has."""
+    if not body.parts:
+        return ()
+    names = ", ".join(f'"{part.name}"' for part in body.parts)
+    return (f"body.part: the kit makes the body of one material; make and place {names} yourself",)
 
 
 def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, bytes]:

@@ -284,16 +284,21 @@ def element_groups(
     stencils: Stencils, gradients: Float[np.ndarray, "terms corners dim"], volumes: Float[np.ndarray, " terms"]
 ) -> ElementGroups:
     """Elements with their shape gradients [1/m] and volumes [m^3] in groups."""
-    count, missing = len(stencils), -len(stencils) % 8
-
-    def group_terms(array: np.ndarray, kind: type) -> np.ndarray:
-        filled = np.concatenate([array, np.zeros((missing, *array.shape[1:]))])
-        groups = filled.reshape(-1, 8, *array.shape[1:])
-        return np.ascontiguousarray(np.moveaxis(groups, 1, -1), dtype=kind)
-
     return ElementGroups(
-        group_terms(stencils, np.int32), group_terms(gradients, float), group_terms(volumes, float), count
+        _group_terms(stencils, np.int32), _group_terms(gradients, float), _group_terms(volumes, float), len(stencils)
     )
+
+
+def group_moduli(mu: Float[np.ndarray, " terms"], lame: Float[np.ndarray, " terms"]) -> Float[np.ndarray, "2 groups 8"]:
+    """Lame's parameters of each element [Pa], grouped like the elements."""
+    return np.stack([_group_terms(mu, float), _group_terms(lame, float)])
+
+
+def _group_terms(array: np.ndarray, kind: type) -> np.ndarray:
+    """Rows of elements in groups of eight, the last one filled up with zeros."""
+    filled = np.concatenate([array, np.zeros((-len(array) % 8, *array.shape[1:]))])
+    groups = filled.reshape(-1, 8, *array.shape[1:])
+    return np.ascontiguousarray(np.moveaxis(groups, 1, -1), dtype=kind)
 
 
 def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:

@@ -5,11 +5,19 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.kernel import native
-from hydrostat.mechanics.energy import Blocks, ElementGroups, Energy, HessianBlocks, ScatterMap, element_groups
+from hydrostat.mechanics.energy import (
+    Blocks,
+    ElementGroups,
+    Energy,
+    HessianBlocks,
+    ScatterMap,
+    element_groups,
+    group_moduli,
+)
 
 
 class NeoHookean(Energy):
@@ -26,22 +34,34 @@ class NeoHookean(Energy):
         nodes: Nodes,
         elements: Elements,
         *,
-        mu: float,
-        lame: float | None,
+        mu: float | Vector,
+        lame: float | Vector | None,
         thickness: float = 1.0,
         volumes: Float[np.ndarray, " elements"] | None = None,
+        materials: Int[np.ndarray, " elements"] | None = None,
     ) -> None:
         """Material of Lame's parameters `mu` and `lame` [Pa] on the rest shape `nodes`.
 
-        `lame` is None where another energy resists a change of volume, such as `PatchVolume`. `thickness` [m] is that
-        of a flat body; leave it out in space. `volumes` [m^3] stand for those of the rest shape if given.
+        Args:
+            nodes: rest positions [m].
+            elements: corners of each element.
+            mu: shear modulus, one number or one for each element.
+            lame: Lame's first parameter, likewise; None where another energy resists a change of volume, such as
+                `PatchVolume`.
+            thickness: thickness of a flat body [m]; leave it out in space.
+            volumes: volume of each element [m^3], in place of that of the rest shape.
+            materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
+                default.
         """
         dim = nodes.shape[1]
         corners = nodes[elements]
         spans = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
         inverse = np.linalg.inv(spans)
         self.stencils = np.ascontiguousarray(elements)
-        self.mu, self.lame, self.volumetric = mu, lame or 0.0, lame is not None
+        count = len(elements)
+        self.mu, self.lame = np.broadcast_to(mu, count), np.broadcast_to(0.0 if lame is None else lame, count)
+        self.volumetric = lame is not None
+        self.materials = np.zeros(count, dtype=np.int64) if materials is None else materials
         own = np.linalg.det(spans) / (2.0 if dim == 2 else 6.0) * thickness
         self.volumes = own if volumes is None else volumes
         self.shape_gradients = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
@@ -56,10 +76,10 @@ class NeoHookean(Energy):
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Computed from the displacement gradient G = F - I, so that little is lost to rounding near rest."""
-        return native.value(nodes - self._rest, *self._groups, self.mu, self.lame)
+        return native.value(nodes - self._rest, *self._groups, self._moduli)
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self._forces(nodes, self.mu, self.lame)
+        return self._forces(nodes, self._moduli)
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.projected_hessian(nodes, controls, 0.0)
@@ -71,33 +91,37 @@ class NeoHookean(Energy):
         slots = size**2 * np.arange(terms)[:, None, None] + size * corner + corner[:, None]
         strides = np.full(terms * corners, size)
         apart = self._apart(nodes), *self._groups_apart
-        native.hessian(*apart, self.mu, self.lame, share, slots, strides, blocks.reshape(-1))
+        native.hessian(*apart, self._moduli, share, slots, strides, blocks.reshape(-1))
         return blocks
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
-        native.gradient(nodes - self._rest, *self._groups, self.mu, self.lame, total)
+        native.gradient(nodes - self._rest, *self._groups, self._moduli, total)
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
-        native.hessian(nodes - self._rest, *self._groups, self.mu, self.lame, share, *places)
+        native.hessian(nodes - self._rest, *self._groups, self._moduli, share, *places)
 
     def least_volume(self, nodes: Nodes) -> float:
         return native.least_volume(nodes, self.stencils, self._padded, self._axes)
 
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
-        works = {"mu": self._work(nodes, field, 1.0, 0.0)}
+        """By mu and lame of each material, and by the thickness."""
+        one, none = np.ones(len(self.stencils)), np.zeros(len(self.stencils))
+        shear = self._work(nodes, field, one, none)
+        squeeze = self._work(nodes, field, none, one) if self.volumetric else none
+        works = {"mu": np.bincount(self.materials, shear)}
         if self.volumetric:
-            works["lame"] = self._work(nodes, field, 0.0, 1.0)
-        whole = self.mu * works["mu"] + self.lame * works.get("lame", 0.0)
-        return {**works, "thickness": whole}
+            works["lame"] = np.bincount(self.materials, squeeze)
+        return {**works, "thickness": np.array([float(self.mu @ shear + self.lame @ squeeze)])}
 
-    def _work(self, nodes: Nodes, field: Nodes, mu: float, lame: float) -> Vector:
-        """Work of the forces along a field, were Lame's parameters these."""
-        return np.array([float((self._forces(nodes, mu, lame) * field[self.stencils]).sum())])
+    def _work(self, nodes: Nodes, field: Nodes, mu: Vector, lame: Vector) -> Vector:
+        """Work of the forces of each element along a field, were Lame's parameters these."""
+        forces = self._forces(nodes, group_moduli(mu, lame))
+        return (forces * field[self.stencils]).sum(axis=(1, 2))
 
-    def _forces(self, nodes: Nodes, mu: float, lame: float) -> Blocks:
+    def _forces(self, nodes: Nodes, moduli: Float[np.ndarray, "2 groups 8"]) -> Blocks:
         """Gradient of each element, were Lame's parameters these."""
         total = np.zeros((self.stencils.size, nodes.shape[1]))
-        native.gradient(self._apart(nodes), *self._groups_apart, mu, lame, total)
+        native.gradient(self._apart(nodes), *self._groups_apart, moduli, total)
         return total.reshape(*self.stencils.shape, -1)
 
     def _apart(self, nodes: Nodes) -> Nodes:
@@ -112,3 +136,7 @@ class NeoHookean(Energy):
     @cached_property
     def _groups(self) -> ElementGroups:
         return element_groups(self.stencils, self.shape_gradients, self.volumes)
+
+    @cached_property
+    def _moduli(self) -> Float[np.ndarray, "2 groups 8"]:
+        return group_moduli(self.mu, self.lame)

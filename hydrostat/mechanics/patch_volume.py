@@ -14,24 +14,31 @@ from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.neo_hookean import NeoHookean
 
 
-def grow_patches(elements: Elements, size: int) -> Int[np.ndarray, " elements"]:
-    """Index of the patch of each element; every element is in one patch of about `size` elements.
+def grow_patches(
+    elements: Elements, size: int, materials: Int[np.ndarray, " elements"] | None = None
+) -> Int[np.ndarray, " elements"]:
+    """Index of the patch of each element; every element is in one patch of about `size` elements of one material.
 
     A patch grows from an element beside the last patches by the neighbor across a face that has the most nodes in
     common with it, so that it stays compact: in space, a ring of elements about an edge. What is left over between
     full patches, less than half a patch, joins the neighbor with which it has the most nodes in common. The same
     elements in the same order always make the same patches.
     """
-    return _Growth(elements, size).run()
+    return _Growth(elements, size, materials).run()
 
 
 class _Growth:
     """Patches while they grow."""
 
-    def __init__(self, elements: Elements, size: int) -> None:
+    def __init__(self, elements: Elements, size: int, materials: Int[np.ndarray, " elements"] | None) -> None:
         self.corners = [frozenset(element) for element in elements.tolist()]
         self.size = size
         self.neighbors = _across_faces(elements)
+        if materials is not None:
+            self.neighbors = [
+                [other for other in near if materials[other] == own]
+                for own, near in zip(materials, self.neighbors, strict=True)
+            ]
         self.patch = [-1] * len(elements)
         self.nodes: list[set[int]] = []
         self.members: list[list[int]] = []
@@ -119,8 +126,9 @@ class PatchVolume(Energy):
         elements: Elements,
         patches: Int[np.ndarray, " elements"],
         *,
-        lame: float,
+        lame: float | Vector,
         thickness: float = 1.0,
+        materials: Int[np.ndarray, " elements"] | None = None,
     ) -> None:
         """Patches of elements on the rest shape `nodes`.
 
@@ -128,14 +136,18 @@ class PatchVolume(Energy):
             nodes: rest positions [m].
             elements: all elements of the body.
             patches: index of the patch of each element, counted from 0 without gaps.
-            lame: Lame's first parameter, lambda [Pa].
+            lame: Lame's first parameter, lambda [Pa], one number or one for each element; all of a patch are equal.
             thickness: thickness of a flat body [m]; leave it out in space.
+            materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
+                default.
         """
         shape = NeoHookean(nodes, elements, mu=0.0, lame=0.0, thickness=thickness)
         order = np.argsort(patches, kind="stable")
-        self.lame = lame
         self.volumes = np.bincount(patches, shape.volumes)
         self._starts = np.concatenate([[0], np.cumsum(np.bincount(patches))])
+        first = order[self._starts[:-1]]  # an element of each patch
+        self.lame = np.broadcast_to(lame, len(elements))[first]
+        self._materials = np.zeros(len(first), dtype=np.int64) if materials is None else materials[first]
         self.stencils, self._places = _stencils(elements[order], self._starts)
         self._shares = shape.volumes[order] / np.repeat(self.volumes, np.diff(self._starts))
         self._padded = np.zeros((*elements.shape, 3))
@@ -153,7 +165,7 @@ class PatchVolume(Energy):
         changes = self.changes(nodes)
         if not (changes > -1.0).all():
             return np.inf
-        return 0.5 * self.lame * float(self.volumes @ np.log1p(changes) ** 2)
+        return 0.5 * float((self.lame * self.volumes) @ np.log1p(changes) ** 2)
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         blocks = np.zeros((*self.stencils.shape, nodes.shape[1]))
@@ -172,8 +184,8 @@ class PatchVolume(Energy):
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         blocks = np.zeros((*self.stencils.shape, nodes.shape[1]))
         native.patch_gradient(nodes - self._rest, self.volumes, blocks, *self._patch_data)
-        work = np.array([float((blocks * field[self.stencils]).sum())])
-        return {"lame": work, "thickness": self.lame * work}
+        work = (blocks * field[self.stencils]).sum(axis=(1, 2))
+        return {"lame": np.bincount(self._materials, work), "thickness": np.array([float(self.lame @ work)])}
 
     @property
     def _patch_data(self) -> tuple:

@@ -146,6 +146,10 @@ class FlatPane(Pane):
         stitches = {"linewidth": 1.2, "linestyle": (0, (2.4, 2.0)), "dash_capstyle": "butt"}
         for ring in seams:
             sheet.curve(np.concatenate([ring, ring[:1]]), color=STITCH, zorder=3.2, **stitches)
+        for part, loops in zip(self.robot.body.parts, self.robot.body.part_rings, strict=True):
+            color = mix(mix(INK, FELT, 0.6 if part.is_rigid else 0.85), PAPER, pale)
+            borders = [MILLIMETERS * nodes[loop] for loop in loops]
+            sheet.area(borders, facecolor=color, edgecolor=mix(INK, FELT, 0.4), linewidth=0.8, zorder=3.25)
         for anchors in self.robot.body.mark_anchors:
             sheet.curve(MILLIMETERS * anchors.positions(nodes), color=mix(INK, PAPER, pale), linewidth=1.5, zorder=3.3)
         if mesh:

@@ -14,7 +14,7 @@ from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.plot.targets import rest_errors
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Robot, robot_hash
+from hydrostat.robot import BodyPart, Robot, robot_hash
 
 NARROW = 4.9  # width of pictures that stand side by side [inch]: the narrower, the larger their letters
 
@@ -167,9 +167,17 @@ def body_table(robot: Robot) -> Html:
         ("material", material.name or "by its numbers"),
         ("Young's modulus", f"{material.young / 1e3:.3g} kPa"),
         ("Poisson's ratio", f"{material.poisson:g}"),
+        *((f"part {part.name}", part_text(part)) for part in body.parts),
         ("mesh", f"{len(body.mesh.nodes)} nodes, {len(body.mesh.elements)} elements"),
     ]
     return table(("", ""), rows, numbers=(1,))
+
+
+def part_text(part: BodyPart) -> str:
+    """Material of a part of the body."""
+    if part.material is None:
+        return "rigid"
+    return part.material.name or f"{part.material.young / 1e3:.3g} kPa"
 
 
 def place_table(robot: Robot) -> Html:

@@ -2,13 +2,13 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from hydrostat.arrays import Points
 from hydrostat.closed_set import make_member
@@ -17,6 +17,7 @@ from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Th
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.checks import check_positive
 from hydrostat.robot.materials import Material, get_material
+from hydrostat.robot.part import BodyPart
 
 
 class Source(StrEnum):
@@ -55,6 +56,7 @@ class Body:
     thickness: float | None = None  # thickness of a flat body [m]; None in space
     volume: Volume = Volume.ELEMENT  # measure of volume change
     inner: Inner = Inner.HOLES  # meaning of shapes within the outer line of a drawing
+    parts: tuple[BodyPart, ...] = ()  # regions of other materials, or rigid
     mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
     outline: Outline | None = field(default=None, compare=False, repr=False)  # outline of a flat drawn body
     marks: tuple[Float[np.ndarray, "_ 2"], ...] = field(
@@ -76,6 +78,78 @@ class Body:
         if self.mesh.dim == 3 and self.thickness is not None:
             raise InputError("thickness is only for flat bodies; remove it")
         _check_lengths(size=self.size, element_size=self.element_size, thickness=self.thickness)
+        if self.parts:
+            _ = self.element_materials  # checks the parts
+
+    def with_parts(self, parts: Iterable[BodyPart]) -> "Body":
+        """Return the body with these parts in place of its own, its mesh fitted to their borders.
+
+        Raises InputError: parts that do not fit, see `element_materials`.
+        """
+        from hydrostat.robot.conform import conform
+
+        parts = tuple(parts)
+        whole = replace(self, parts=parts)  # parts that do not fit are told before the mesh is changed
+        return replace(whole, mesh=conform(self.mesh, parts)) if parts else whole
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """Material of the body, then that of each part."""
+        return (self.material, *(part.material_in(self.material) for part in self.parts))
+
+    @cached_property
+    def element_materials(self) -> Int[np.ndarray, " elements"]:
+        """Index in `materials` of each element.
+
+        Raises InputError: a part of another dimension, of a name that another has, that holds no element, or overlaps.
+        """
+        middles = self.mesh.nodes[self.mesh.elements].mean(axis=1)
+        found = np.zeros(len(middles), dtype=np.int64)
+        for index, part in enumerate(self.parts):
+            where = f"body.part[{index}]"
+            if part.name in [other.name for other in self.parts[:index]]:
+                raise InputError(f'{where}.name: there are two of the name "{part.name}"; names must be unique')
+            if part.dim > self.mesh.dim:
+                raise InputError(f"{where}: has {part.dim} coordinates, but the body has {self.mesh.dim}")
+            held = part.holds(middles)
+            if not held.any():
+                raise InputError(
+                    f'{where}: "{part.name}" holds no element: it lies outside the body or is thinner than an element; '
+                    "move it, enlarge it, or take a smaller element_size"
+                )
+            shared = held & (found > 0)
+            if shared.any():
+                other = self.parts[found[shared][0] - 1].name
+                raise InputError(
+                    f'{where}: "{part.name}" overlaps "{other}" in {int(shared.sum())} elements; move one of them'
+                )
+            found[held] = index + 1
+        found.setflags(write=False)
+        return found
+
+    @cached_property
+    def part_rings(self) -> tuple[tuple[Int[np.ndarray, " _"], ...], ...]:
+        """Nodes along the closed borders of each part of a flat body, the part to the left; empty in space."""
+        if self.mesh.dim == 3:
+            return tuple(() for _ in self.parts)
+        own = [self.mesh.elements[self.element_materials == index + 1] for index in range(len(self.parts))]
+        return tuple(tuple(_rings(Mesh(self.mesh.nodes, elements).boundary)) for elements in own)
+
+    @cached_property
+    def element_masses(self) -> Float[np.ndarray, " elements"]:
+        """Mass of each element [kg]."""
+        densities = np.array([material.density for material in self.materials])
+        return densities[self.element_materials] * (self.thickness or 1.0) * self.mesh.volumes
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+        return float(self.element_masses.sum())
+
+    def lame(self) -> tuple[Float[np.ndarray, " elements"], Float[np.ndarray, " elements"]]:
+        """Lame's parameters mu and lambda of each element [Pa]."""
+        mu, lame = np.array([material.lame for material in self.materials])[self.element_materials].T
+        return mu, lame
 
     def element_size_for(self, nodes: int) -> float:
         """Element size [m] for about so many nodes (InputError: a ready mesh, or no mesh has so few or so many)."""
@@ -125,6 +199,22 @@ class Body:
         beyond = distances > 0
         distances[beyond] = distance(self.outline.polygon, shapely_points(points[beyond]))
         return distances
+
+
+def _rings(edges: Int[np.ndarray, "edges 2"]) -> Iterator[Int[np.ndarray, " _"]]:
+    """Closed chains of directed edges."""
+    following: dict[int, list[int]] = {}
+    for start, end in edges.tolist():
+        following.setdefault(start, []).append(end)
+    while following:
+        ring = [min(following)]
+        while ring[-1] in following:
+            ends = following[ring[-1]]
+            here = ring[-1]
+            ring.append(ends.pop())
+            if not ends:
+                del following[here]
+        yield np.array(ring[:-1])
 
 
 def _check_lengths(**lengths: float | None) -> None:

@@ -97,7 +97,7 @@ def _blown_up(body: Body, element_size: float | None) -> Body:
     counts = [len(ring) for ring in outline.rings]
     content = b"".join(ring.tobytes() for ring in outline.rings)
     kept = keep_body(("inflated", counts, thickness, spacing), content, make)
-    return surface_body(
+    inflated = surface_body(
         write_ply(Surface(kept["vertices"], kept["triangles"])),
         file="inflated.ply",
         unit=1e-3,
@@ -105,6 +105,7 @@ def _blown_up(body: Body, element_size: float | None) -> Body:
         element_size=element_size or body.element_size or body.mesh.size / 25,
         volume=body.volume,
     )
+    return inflated.with_parts(body.parts)
 
 
 def _skin(body: Body, places: Points, side: float) -> Vector:

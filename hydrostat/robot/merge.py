@@ -194,6 +194,7 @@ def _effective(kind: str, entry: Any, factor: Decimal) -> dict[str, Any]:
     values = {key: defaults.get(key) if value is None else _meters(value, factor) for key, value in given.items()}
     if kind == "body":
         values["material"] = read_material(entry.material)
+        values["part"] = tuple(entry.part)
     return values
 
 

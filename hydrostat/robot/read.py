@@ -13,10 +13,11 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.contact import Contact, Obstacle, closed_mesh
+from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, Relaxation, get_material
+from hydrostat.robot.part import BodyPart, PartShape
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.tables_file import TablesFile, read_text
 from hydrostat.robot.winch import Winch
@@ -133,9 +134,7 @@ class RobotReader(TablesFile):
             given["friction"] = float(entry.friction)
         given |= _given_keys(entry, "mass")
         if entry.file is not None:
-            file = self._file("obstacle.file", entry.file)
-            content = read_stranger(file, name=file.name)
-            given["mesh"] = closed_mesh(content, file.name, unit=units.scale_up(Decimal(1), self.unit, units.LENGTH))
+            given["mesh"] = self._closed_mesh("obstacle.file", entry.file)
         given["path"] = tuple((key.time, self.point(key.at)) for key in entry.path)
         return Obstacle(name=entry.name, shape=entry.shape, at=self.point(entry.at), **given)
 
@@ -180,7 +179,7 @@ class RobotReader(TablesFile):
                 make = partial(surface_body, content, unit=unit, **given)
             else:
                 make = partial(outline_body, content, **given)
-        return self.at(
+        body = self.at(
             "body",
             lambda: make(
                 material=material,
@@ -190,6 +189,31 @@ class RobotReader(TablesFile):
             ),
             otherwise=f"body.{source}",
         )
+        parts = tuple(
+            self.at(f"body.part[{index}]", partial(self._part, part)) for index, part in enumerate(entry.part)
+        )
+        return self.at("", lambda: body.with_parts(parts)) if parts else body
+
+    def _part(self, entry: Any) -> BodyPart:
+        if entry.rigid == (entry.material is not None):
+            raise InputError("give either material or rigid = true")
+        if (entry.file is not None) != (entry.shape is PartShape.MESH):
+            raise InputError('shape = "mesh" needs a file, and no other shape has one')
+        given: dict[str, Any] = {key: self.point(getattr(entry, key)) for key in ("at", "to") if getattr(entry, key)}
+        if entry.radius is not None:
+            given["radius"] = units.scale_up(entry.radius, self.unit, units.LENGTH)
+        if entry.file is not None:
+            given["mesh"] = self._closed_mesh("body.part.file", entry.file)
+            given.setdefault("at", (0.0, 0.0, 0.0))
+        if entry.material is not None:
+            given["material"] = read_material(entry.material)
+        points = tuple(self.point(point) for point in entry.points)
+        return BodyPart(name=entry.name, shape=entry.shape, points=points, **given, **_given_keys(entry, "density"))
+
+    def _closed_mesh(self, key: str, name: str) -> ClosedMesh:
+        file = self._file(key, name)
+        content = read_stranger(file, name=file.name)
+        return closed_mesh(content, file.name, unit=units.scale_up(Decimal(1), self.unit, units.LENGTH))
 
     def _need(self, entry: Any, source: Source) -> None:
         """Refuse a body without the sizes that it needs."""

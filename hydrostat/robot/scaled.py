@@ -28,6 +28,9 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     for obstacle in robot.obstacles:
         if obstacle.mesh is not None:
             raise InputError(f'obstacle "{obstacle.name}" has the size of its file; scale that in CAD')
+    for part in robot.body.parts:
+        if part.mesh is not None:
+            raise InputError(f'part "{part.name}" of the body has the size of its file; scale that in CAD')
 
     def length(value: float) -> float:
         return float(f"{factor * value:.12g}")
@@ -49,7 +52,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     contact = robot.contact
     return replace(
         robot,
-        body=_scaled_body(robot, factor),
+        body=_scaled_body(robot, factor).with_parts(part.with_transform(point, factor) for part in robot.body.parts),
         pins=tuple(
             replace(pin, at=None if pin.at is None else point(pin.at), radius=length(pin.radius), box=ends(pin.box))
             for pin in robot.pins

@@ -26,6 +26,7 @@ from hydrostat.robot.contact import ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.materials import MOST_BRANCHES
+from hydrostat.robot.part import PartShape
 from hydrostat.robot.winch import Mount
 from hydrostat.units import quote
 
@@ -147,6 +148,29 @@ Gravity = Annotated[
 ]
 
 
+AnyMaterial = Annotated[
+    Annotated[Text, Tag("<name>")]
+    | Annotated[NamedMaterialTable, Tag("<named>")]
+    | Annotated[MaterialTable, Tag("<numbers>")],
+    Discriminator(_material_tag),
+]
+
+
+class PartTable(TomlTable):
+    """[[body.part]]."""
+
+    name: Name
+    shape: PartShape
+    at: Coordinates | None = None
+    to: Coordinates | None = None
+    radius: Number | None = None
+    points: Annotated[list[Coordinates], Field(max_length=1000)] = []
+    file: Text | None = None
+    material: AnyMaterial | None = None
+    rigid: bool = False
+    density: Density | None = None
+
+
 class BodyTable(TomlTable):
     """[body]."""
 
@@ -156,14 +180,10 @@ class BodyTable(TomlTable):
     size: Length | None = None
     element_size: Length | None = None
     thickness: Length | None = None
-    material: Annotated[
-        Annotated[Text, Tag("<name>")]
-        | Annotated[NamedMaterialTable, Tag("<named>")]
-        | Annotated[MaterialTable, Tag("<numbers>")],
-        Discriminator(_material_tag),
-    ]
+    material: AnyMaterial
     volume: Volume | None = None
     inner: Inner | None = None
+    part: list[PartTable] = []
 
 
 class PinTable(TomlTable):
@@ -271,6 +291,7 @@ REFUSED = {
     "body.material.young": _NAMED,
     "body.material.poisson": _NAMED,
     "body.material.density": _NAMED,
+    "part": "parts belong to the body; begin each with [[body.part]]",
 }
 """Known keys where they may not stand, and why."""
 

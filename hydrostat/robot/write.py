@@ -19,6 +19,7 @@ from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.marker import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
+from hydrostat.robot.part import BodyPart
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.unfinished import temporary_path
 from hydrostat.robot.winch import Mount
@@ -85,7 +86,8 @@ def robot_hash(robot: Robot) -> str:
 def _files(robot: Robot) -> dict[str, bytes]:
     """Return the files next to robot.toml: the file of the body, then those of obstacles."""
     files = {robot.body.file: robot.body.content}
-    return files | {each.mesh.file: each.mesh.content for each in robot.obstacles if each.mesh is not None}
+    shapes = (each.mesh for each in (*robot.body.parts, *robot.obstacles))
+    return files | {mesh.file: mesh.content for mesh in shapes if mesh is not None}
 
 
 def robot_text(robot: Robot) -> str:
@@ -154,7 +156,29 @@ class _Writer:
         volume = {"volume": str(body.volume)} if body.volume is not Volume.ELEMENT else {}
         inner = {"inner": str(body.inner)} if body.inner is not Inner.HOLES else {}
         given = {"material": self.material(body.material), **volume, **inner}
+        if body.parts:
+            tables = self._toml.aot()
+            for part in body.parts:
+                table = self._toml.table()
+                table.update(self.part(part))
+                tables.append(table)
+            given["part"] = tables
         return {str(body.source): body.file, **_lengths(lengths), **given}
+
+    def part(self, part: BodyPart) -> dict[str, Any]:
+        entry: dict[str, Any] = {"name": part.name, "shape": str(part.shape)}
+        for key in ("at", "to"):
+            if getattr(part, key) is not None:
+                entry[key] = self.point(getattr(part, key))
+        if part.radius is not None:
+            entry["radius"] = self.number(part.radius)
+        if part.points:
+            entry["points"] = self.points(part.points)
+        if part.mesh is not None:
+            entry["file"] = part.mesh.file
+        if part.material is not None:
+            return {**entry, "material": self.material(part.material)}
+        return {**entry, "rigid": True, "density": units.format_quantity(part.density or 0.0, units.DENSITY)}
 
     def material(self, material: Material) -> Any:
         """Name of the table, or an inline table of the name or the numbers, then the viscosity."""

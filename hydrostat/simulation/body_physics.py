@@ -65,22 +65,21 @@ class BodyPhysics:
         body = robot.body
         self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles
         self.material, self.thickness = body.material, body.thickness
-        mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.material.lame
+        mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.lame()
         self.carriages = _carriages(robot, in_time=in_time)
         moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.carriages.items()]
         self.rest_unknowns = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
         patched = body.volume is Volume.PATCH
-        self.elastic = NeoHookean(
-            self.rest_unknowns, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness
-        )
+        kinds = {"thickness": thickness, "materials": body.element_materials}
+        self.elastic = NeoHookean(self.rest_unknowns, mesh.elements, mu=mu, lame=None if patched else lame, **kinds)
         self.pins = _pins(robot)
         carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
         self.masses = _masses(robot)
         self.inertias = np.concatenate([self.masses, *carried]) if carried else self.masses
         energies: list[Energy] = [self.elastic, self.pins]
         if patched:
-            patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim])
-            energies.append(PatchVolume(self.rest_unknowns, mesh.elements, patches, lame=lame, thickness=thickness))
+            patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim], body.element_materials)
+            energies.append(PatchVolume(self.rest_unknowns, mesh.elements, patches, lame=lame, **kinds))
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.own_contact = None if robot.contact is None else len(energies)
@@ -194,8 +193,8 @@ class BodyPhysics:
     def _scales(self) -> tuple[float, float, float, float]:
         """Modulus x volume [J], largest coordinate [m], stiffest pin [N/m], size [m]."""
         body, pins, *_ = self._given
-        mu, lame = body.material.lame
-        scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
+        mu, lame = body.lame()
+        scale = float((2 * mu + lame) @ body.mesh.volumes) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
         springs = [pin.stiffness for pin in pins]
         lengths = [carriage.length for carriage in self.carriages.values()]  # of axes, at which A A^T - I pulls
@@ -237,11 +236,9 @@ def _obstacle_masses(obstacle: Obstacle, carriage: RigidBodyDofs) -> Float[np.nd
 
 
 def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
-    body = robot.body
-    masses = body.material.density * (body.thickness or 1.0) * body.mesh.volumes
-    elements = body.mesh.elements
-    shares = np.repeat(masses / elements.shape[1], elements.shape[1])
-    return np.bincount(elements.ravel(), shares, len(body.mesh.nodes))
+    elements = robot.body.mesh.elements
+    shares = np.repeat(robot.body.element_masses / elements.shape[1], elements.shape[1])
+    return np.bincount(elements.ravel(), shares, len(robot.body.mesh.nodes))
 
 
 def _pins(robot: Robot) -> PinEnergy:

@@ -34,7 +34,7 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
     """
     grid = _operators(robot.body.mesh)
     shape = _Stretch(grid, nodes)
-    mu, _ = robot.body.material.lame
+    mu, _ = robot.body.lame()
     return grid.average @ (mu * np.sqrt(1.5 * shape.deviation) / shape.volume)
 
 

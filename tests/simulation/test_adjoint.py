@@ -12,7 +12,7 @@ from builders import FOAM, box_mesh, mesh_body, strip_mesh
 from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, locate
 from hydrostat.mechanics import NewtonOptions
-from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Volume, Winch
+from hydrostat.robot import BodyPart, Cable, Marker, Material, Mount, Pin, Robot, Volume, Winch
 from hydrostat.simulation import Simulation
 from hydrostat.simulation.route_points import route_points
 from hydrostat.simulation.sensitivities.adjoint import Sensitivity, sensitivity
@@ -71,7 +71,19 @@ def stepped(robot: Robot) -> Robot:
     return robot.with_network(robot.winches, cables)
 
 
+def in_parts(robot: Robot) -> Robot:
+    """With weight, a stiffer stretch and a rigid end."""
+    stiff = Material(young=90e3, poisson=0.42, density=300.0)
+    parts = (
+        BodyPart(name="stiff", shape="box", at=(0.03, -1.0), to=(0.08, 1.0), material=stiff),
+        BodyPart(name="end", shape="box", at=(0.1, -1.0), to=(0.15, 1.0), density=1240.0),
+    )
+    heavy = heavy_patches(robot)
+    return replace(heavy, body=replace(heavy.body, parts=parts))
+
+
 CASES = {
+    "parts": (in_parts(strip()), [0.02, 0.009]),
     "taut": (strip(), [0.02, 0.009]),
     "large": (strip(), [0.05, 0.0095]),
     "cubic zone": (strip(), [0.004, 0.0098]),
@@ -205,6 +217,23 @@ def test_by_body_and_pins(loss: Loss) -> None:
         thick = robot.body.thickness
         found = loss.difference(lambda h: with_body(robot, thickness=thick + h), 3e-4)
         assert slopes.thickness == pytest.approx(found, rel=1e-6)
+
+
+def test_by_numbers_of_parts(unchecked: None) -> None:
+    loss = Loss(in_parts(strip()), np.array([0.02, 0.009]))
+    slopes, (stiff, end) = loss.slopes(), loss.robot.body.parts
+    material = stiff.material
+    assert material is not None
+
+    def change(**values: float) -> Robot:
+        return with_body(loss.robot, parts=(replace(stiff, material=replace(material, **values)), end))
+
+    for name, step in (("young", 900.0), ("poisson", 1e-3), ("density", 30.0)):
+        found = loss.difference(lambda h, name=name: change(**{name: getattr(material, name) + h}), step)
+        assert getattr(slopes, f"part_{name}")[0] == pytest.approx(found, rel=1e-5)
+    heavier = loss.difference(lambda h: with_body(loss.robot, parts=(stiff, replace(end, density=1240.0 + h))), 100.0)
+    assert slopes.part_density[1] == pytest.approx(heavier, rel=1e-5)
+    assert slopes.part_young[1] == slopes.part_poisson[1] == 0.0
 
 
 def test_the_projected_hessian_or_a_wrong_sign_would_fail() -> None:

@@ -40,7 +40,7 @@ def all_needs(
 def filling_mass(plan: KitPlan) -> float:
     """Mass of what the body is made of: its volume at rest times the density of its material [g]."""
     body = plan.robot.body
-    return 1e3 * float(body.mesh.volumes.sum()) * (body.thickness or 1.0) * body.material.density
+    return 1e3 * body.mass
 
 
 def _item(

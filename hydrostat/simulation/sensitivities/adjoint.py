@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -9,7 +10,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics import Assembly, CableEnergy, Stiffness
-from hydrostat.robot import Material
+from hydrostat.robot import Material, Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
@@ -59,9 +60,12 @@ class Sensitivity:
         cable_stiffness: derivative by each cable's stiffness [m/N].
         friction: derivative by the friction coefficient mu of each cable; 0 for cables without friction.
         pin_stiffness: derivative by each pin's stiffness [m/N].
-        young: derivative by Young's modulus [1/Pa].
-        poisson: derivative by Poisson's ratio [-].
-        density: derivative by the density, through the weight [m^3/kg]; 0 without gravity.
+        young: derivative by Young's modulus of the body, with that of rigid parts in proportion [1/Pa].
+        poisson: derivative by Poisson's ratio of the body [-].
+        density: derivative by the density of the body, through the weight [m^3/kg]; 0 without gravity.
+        part_young: derivative by Young's modulus of each part of the body [1/Pa], (parts,); 0 for rigid ones.
+        part_poisson: derivative by Poisson's ratio of each part [-], (parts,); 0 for rigid ones.
+        part_density: derivative by the density of each part [m^3/kg], (parts,).
         thickness: derivative by the thickness of a flat body [1/m]; None in space.
     """
 
@@ -74,6 +78,9 @@ class Sensitivity:
     young: float
     poisson: float
     density: float
+    part_young: Vector
+    part_poisson: Vector
+    part_density: Vector
     thickness: float | None
 
 
@@ -118,18 +125,13 @@ def sensitivity(
     by_tension = tensions - columns.T @ field
     by_elongation = tangents * by_tension
     field = field.reshape(assembly.shape)
-    young, poisson, density, thickness, pins = by_body(body, pose, field)
     return Sensitivity(
         contractions=by_controls,
         slack=-by_elongation,
         routes=points.by_cable(by_routes(points, cables, pose.nodes, field[None], by_elongation[None], pulls)[0]),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
         friction=np.zeros(len(tensions)),
-        pin_stiffness=pins,
-        young=young,
-        poisson=poisson,
-        density=density,
-        thickness=thickness,
+        **by_body(body, pose, field),
     )
 
 
@@ -160,26 +162,39 @@ def _check_shape(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.nda
     return values
 
 
-def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> tuple[float, float, float, float | None, Vector]:
-    """By Young's modulus, Poisson's ratio, density, thickness and the stiffness of pins."""
-    material = body.material
+def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any]:
+    """Sensitivities by materials, thickness and stiffness of pins, by their names in `Sensitivity`."""
     works: dict[str, Vector] = {}
     for energy in body.assembly.energies:
         for name, work in energy.parameter_work(pose.nodes, field).items():
             works[name] = works[name] + work if name in works else work
-    shear, squeeze, load, whole = (float(works.get(name, np.zeros(1))[0]) for name in _BODY)
-    (mu_by_young, lame_by_young), (mu_by_poisson, lame_by_poisson) = _lame_slopes(material)
-    return (
-        -(mu_by_young * shear + lame_by_young * squeeze),
-        -(mu_by_poisson * shear + lame_by_poisson * squeeze),
-        -load / material.density,
-        None if body.thickness is None else -whole / body.thickness,
-        -works["support_stiffness"],
-    )
+    materials = pose.robot.body.materials
+    none = np.zeros(len(materials))
+    shear, squeeze = (np.resize(works.get(name, none), len(materials)) for name in ("mu", "lame"))
+    slopes = np.array([_lame_slopes(material) for material in materials])  # (materials, young and poisson, mu and lame)
+    young, poisson = -(slopes[:, :, 0] * shear[:, None] + slopes[:, :, 1] * squeeze[:, None]).T
+    density = _density_slopes(pose.robot, field)
+    rigid = np.array([False, *(part.is_rigid for part in pose.robot.body.parts)])
+    stiffness = np.array([material.young for material in materials]) / body.material.young  # what rigid parts keep
+    return {
+        "young": float(young[0] + stiffness[rigid] @ young[rigid]),
+        "poisson": float(poisson[0]),
+        "density": float(density[0]),
+        "part_young": np.where(rigid, 0.0, young)[1:],
+        "part_poisson": np.where(rigid, 0.0, poisson)[1:],
+        "part_density": density[1:],
+        "thickness": None if body.thickness is None else -float(works["thickness"][0]) / body.thickness,
+        "pin_stiffness": -works["support_stiffness"],
+    }
 
 
-_BODY = ("mu", "lame", "load", "thickness")
-"""Parameters of the body: see `Energy.parameter_work`."""
+def _density_slopes(robot: Robot, field: Nodes) -> Vector:
+    """Work of gravity along a field, by the density of each material [m^3/kg per unit of the field]."""
+    body, count = robot.body, len(robot.body.materials)
+    if robot.gravity is None:
+        return np.zeros(count)
+    along = (field[: len(body.mesh.nodes)] @ np.array(robot.gravity))[body.mesh.elements].mean(axis=1)
+    return np.bincount(body.element_materials, (body.thickness or 1.0) * body.mesh.volumes * along, count)
 
 
 def _lame_slopes(material: Material) -> tuple[tuple[float, float], tuple[float, float]]:

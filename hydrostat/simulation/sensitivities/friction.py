@@ -100,18 +100,13 @@ def friction_adjoint(
     body: BodyPhysics, points: RoutePoints, pose: Equilibrium, slopes: FrictionSensitivities
 ) -> Sensitivity:
     """Return the sensitivities of one scalar with cable friction, including those to body parameters."""
-    young, poisson, density, thickness, pins = by_body(body, pose, slopes.fields[0])
     return Sensitivity(
         contractions=slopes.contractions[0],
         slack=slopes.slack[0],
         routes=points.by_cable(slopes.points[0]),
         cable_stiffness=slopes.stiffness[0],
         friction=slopes.friction[0],
-        pin_stiffness=pins,
-        young=young,
-        poisson=poisson,
-        density=density,
-        thickness=thickness,
+        **by_body(body, pose, slopes.fields[0]),
     )
 
 

@@ -29,7 +29,7 @@ def look_over(robot: Robot) -> Findings:
         nodes=len(mesh.nodes),
         elements=len(mesh.elements),
         kind="triangles" if mesh.dim == 2 else "tetrahedra",
-        mass=float(mesh.volumes.sum()) * (robot.body.thickness or 1.0) * robot.body.material.density,
+        mass=robot.body.mass,
         cables=len(robot.cables),
         cable_length=sum(cable.length for cable in robot.cables),
     )

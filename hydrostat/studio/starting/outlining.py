@@ -1,6 +1,6 @@
 """`Outlining`, `reshape_outline`: an outline while a person draws it, and a robot that is given it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import read_drawing
 from hydrostat.project import Work, follow_robot, moved_zone
-from hydrostat.robot import Body, Cable, Mount, Pin, Point, PoseTarget, Robot, outline_body
+from hydrostat.robot import Body, BodyPart, Cable, Mount, Pin, Point, PoseTarget, Robot, outline_body
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fit_loops, loops_svg, outline_of, read_loops
 from hydrostat.studio.starting.photo import Backdrop
 from hydrostat.units import plural
@@ -111,8 +111,20 @@ def reshape_outline(work: Work, drawing: bytes, corner: tuple[float, float]) -> 
     def move(point: Point) -> Point:
         return tuple(float(value) for value in np.round(np.array(point) - middle, 9))
 
+    body, lost = _with_regions(body, [part.with_transform(move) for part in old.parts])
     robot, dropped = _within_body(_move_parts(work.robot, move), work.robot, body)
-    return Reshaped(work=_matching(work, robot, move), dropped=dropped)
+    return Reshaped(work=_matching(work, robot, move), dropped=(*lost, *dropped))
+
+
+def _with_regions(body: Body, parts: Sequence[BodyPart]) -> tuple[Body, list[str]]:
+    """The body with the parts that it still holds, and the rest in words."""
+    lost = []
+    for part in parts:
+        try:
+            body = body.with_parts((*body.parts, part))
+        except InputError:
+            lost.append(f"part {part.name}")
+    return body, lost
 
 
 @dataclass(frozen=True, kw_only=True)

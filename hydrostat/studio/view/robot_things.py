@@ -63,7 +63,7 @@ def robot_things(
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, color=MUTED, loose=-1)
         for line in obstacle_lines(obstacles_in_pose(robot, carried))
     ]
-    things += _drawing_things(robot)
+    things += [*_part_things(robot), *_drawing_things(robot)]
     held = pinned_points(robot)
     if len(held):
         things.append(Cloud(name="pins", points=held, color=PIN))
@@ -120,6 +120,16 @@ def _winch(winch: Winch, color: str, mark: str, *, chosen: bool) -> Dot:
         stuck=winch.mount is Mount.BODY,
         chosen=chosen,
     )
+
+
+def _part_things(robot: Robot) -> list[Thing]:
+    """Borders of the parts of a flat body."""
+    nodes = robot.body.mesh.nodes
+    return [
+        Strand(points=tuple(map(tuple, nodes[[*loop, loop[0]]].tolist())), stroke=Stroke.DRAWN, color=MUTED)
+        for loops in robot.body.part_rings
+        for loop in loops
+    ]
 
 
 def _drawing_things(robot: Robot) -> list[Thing]:

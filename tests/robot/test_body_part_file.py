@@ -1,0 +1,114 @@
+"""Parts of a body in robot.toml. Oracle: what was written, areas of circles, and the line that tells each fault."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import box_mesh, mesh_body
+from robot_files import GOOD, edit, load
+
+from hydrostat.errors import InputError
+from hydrostat.robot import BodyPart, Material, inflated_robot, load_robot, merged_text, robot_text, save_robot
+from hydrostat.robot.scaled import scaled_robot
+
+BONE = (
+    '[[body.part]]\nname = "bone"\nshape = "box"\nat = [0, -30]\nto = [20, 30]\nrigid = true\ndensity = "1.2 g/cm^3"\n'
+)
+JOINT = '[[body.part]]\nname = "joint"\nshape = "sphere"\nat = [-12, 0]\nradius = 8\nmaterial = "ecoflex 00-30"\n'
+
+
+def with_parts(*tables: str) -> str:
+    """A robot in a finer mesh with these parts."""
+    finer = edit(GOOD, 'element_size = "12 mm"', 'element_size = "4 mm"')
+    return edit(finer, "[[pin]]", "".join(tables) + "\n[[pin]]")
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    robot = load(tmp_path / "a", with_parts(BONE, JOINT))
+    assert [part.name for part in robot.body.parts] == ["bone", "joint"]
+    assert robot.body.materials[1].density == pytest.approx(1200.0)
+    assert robot.body.materials[2].name == "ecoflex 00-30"
+    save_robot(robot, tmp_path / "b")
+    again = load_robot(tmp_path / "b")
+    assert again == robot
+    assert (again.body.mesh.nodes == robot.body.mesh.nodes).all()
+
+
+def test_a_text_keeps_its_comments(tmp_path: Path) -> None:
+    text = "# mine\n" + with_parts(BONE, "# soft\n" + JOINT)
+    robot = load(tmp_path, text)
+    harder = replace(robot, body=robot.body.with_parts((robot.body.parts[0],)))
+    assert merged_text(text, robot) == text
+    assert "# mine" in merged_text(text, harder)
+    assert "joint" not in robot_text(harder)
+
+
+def test_the_mesh_follows_the_borders(tmp_path: Path) -> None:
+    """The areas of the parts are those of their shapes, the corners of a circle lie on it, nothing is turned over."""
+    body = load(tmp_path, with_parts(BONE, JOINT)).body
+    areas = np.bincount(body.element_materials, body.mesh.volumes)
+    assert areas[1] == pytest.approx(0.02 * 0.04, rel=0.01)
+    assert areas[2] == pytest.approx(np.pi * 0.008**2, rel=0.06)  # of the polygon within the circle
+    (ring,) = body.part_rings[1]
+    radii = np.linalg.norm(body.mesh.nodes[ring] - [-0.012, 0.0], axis=1)
+    assert np.mean(np.abs(radii - 0.008) < 1e-6) > 0.8
+    loose = replace(body, mesh=load(tmp_path, with_parts()).body.mesh)
+    assert (np.linalg.norm(loose.mesh.nodes[ring] - [-0.012, 0.0], axis=1) != radii).any()
+
+
+def test_a_part_in_the_plane_goes_through_a_body_in_space() -> None:
+    disc = BodyPart(
+        name="disc", shape="polygon", points=((0.02, 0.0), (0.05, 0.0), (0.05, 0.03), (0.02, 0.03)), density=1e3
+    )
+    body = mesh_body(box_mesh((10, 5, 4), size=(0.1, 0.05, 0.04))).with_parts((disc,))
+    volumes = np.bincount(body.element_materials, body.mesh.volumes)
+    assert volumes[1] == pytest.approx(0.03 * 0.03 * 0.04, rel=1e-6)
+
+
+def test_a_robot_keeps_its_parts_when_scaled_and_blown_up(tmp_path: Path) -> None:
+    robot = load(tmp_path, with_parts(JOINT))
+    twice, blown = scaled_robot(robot, 2.0), inflated_robot(robot)
+    assert twice.body.parts[0].radius == pytest.approx(0.016)
+    assert twice.body.mass == pytest.approx(8 * robot.body.mass, rel=1e-3)
+    assert (blown.body.element_materials == 1).any()
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        (edit(BONE, "density", "# density"), r"body.part\[0\]: a rigid part needs its density"),
+        (edit(BONE, "rigid = true\n", ""), r"body.part\[0\]: give either material or rigid = true"),
+        (edit(JOINT, "material", "rigid = true\nmaterial"), "give either material or rigid = true"),
+        (edit(JOINT, "radius", 'density = "1 g/cm^3"\nradius'), "density is for rigid parts"),
+        (edit(JOINT, "[-12, 0]", "[90, 0]"), r'body.part\[0\]: "joint" holds no element: it lies outside the body'),
+        (edit(JOINT, "radius = 8", "radius = 0.1"), "is thinner than an element"),
+        (BONE + edit(JOINT, "[-12, 0]", "[0, 0]"), r'body.part\[1\]: "joint" overlaps "bone" in \d+ elements'),
+        (BONE + edit(JOINT, '"joint"', '"bone"'), r'body.part\[1\].name: there are two of the name "bone"'),
+        (edit(JOINT, "[-12, 0]", "[-12, 0, 0]"), r"body.part\[0\]: has 3 coordinates, but the body has 2"),
+        (edit(JOINT, "radius = 8", "radius = -8"), r"body.part\[0\].radius must be finite and above 0"),
+        (edit(JOINT, "radius = 8\n", ""), "a sphere needs a radius"),
+        (edit(JOINT, '"sphere"', '"cone"'), r'body.part\[0\].shape: "cone" is not known'),
+        (edit(JOINT, '"sphere"', '"mesh"'), 'shape = "mesh" needs a file'),
+        (edit(JOINT, '"ecoflex 00-30"', '"cheese"'), 'body.part.0.: unknown material "cheese"'),
+        (
+            '[[body.part]]\nname = "x"\nshape = "polygon"\npoints = [[0, 0], [9, 9], [9, 0], [0, 9]]\nrigid = true\n'
+            'density = "1 g/cm^3"\n',
+            "the sides of the polygon cross",
+        ),
+        (edit(BONE, "[[body.part]]", "[[part]]"), "begin each with .*body.part"),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(table: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=told) as caught:
+        load(tmp_path, with_parts(table))
+    assert "\n" not in str(caught.value)
+    assert "robot.toml" in str(caught.value)
+
+
+def test_a_record_checks_itself() -> None:
+    soft = Material(young=1e5, poisson=0.3, density=100.0)
+    with pytest.raises(InputError, match="a box needs at"):
+        BodyPart(name="a", shape="box", to=(1.0, 1.0), material=soft)
+    with pytest.raises(InputError, match="a polygon has no radius"):
+        BodyPart(name="a", shape="polygon", points=((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)), radius=1.0, material=soft)
