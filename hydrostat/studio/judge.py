@@ -22,6 +22,7 @@ class _RobotFacts:
 
     robot: Robot
     demand: Demand | None = None  # loads of its poses, as a design has found them
+    torque: float | None = None  # torque limit of its design [N m]
     refused: tuple[str, ...] = ()  # sentences with which a kit of it was refused
 
 
@@ -107,11 +108,25 @@ class Judge:
             self._verdicts = (verdict, *self._verdicts)[:KEPT]
             self._bell.ring(Topic.JOB)
 
-    def learn(self, robot: Robot, *, demand: Demand | None = None, refused: tuple[str, ...] = ()) -> None:
-        """Remember the loads of a robot's poses, or why a kit of it was refused."""
+    def torque_limit(self, robot: Robot) -> float | None:
+        """Torque limit of the design that found a robot's network [N m]; None: no design or no limit."""
+        known = self._of(robot)
+        return None if known is None else known.torque
+
+    def learn(
+        self,
+        robot: Robot,
+        *,
+        demand: Demand | None = None,
+        torque: float | None = None,
+        refused: tuple[str, ...] = (),
+    ) -> None:
+        """Remember the loads of a robot's poses with the torque limit of their design, or why a kit was refused."""
         before = self._of(robot) or _RobotFacts(robot)
-        known = replace(before, robot=robot, demand=demand or before.demand, refused=refused or before.refused)
-        self._known = (known, *(other for other in self._known if other is not before))[:KEPT]
+        if demand is not None:
+            before = replace(before, demand=demand, torque=torque)
+        known = replace(before, robot=robot, refused=refused or before.refused)
+        self._known = (known, *(other for other in self._known if not _alike(other.robot, robot)))[:KEPT]
         self._seen = None
         self._bell.ring(Topic.JOB, Topic.THINGS)
 

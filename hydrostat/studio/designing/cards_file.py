@@ -50,6 +50,7 @@ class CardRecord(BaseModel):
     tensions: list[float]  # the largest of each cable [N]
     torques: list[float]  # the largest of each winch [N m]
     taken: list[list[float]]  # least and most cable of each winch [m]
+    torque: float | None = None  # torque limit of the design [N m]
 
 
 class CardsFile(BaseModel):
@@ -109,6 +110,7 @@ def _record(candidate: Candidate) -> CardRecord:
         tensions=demand.tensions.tolist(),
         torques=demand.torques.tolist(),
         taken=demand.taken.tolist(),
+        torque=candidate.torque,
     )
 
 
@@ -141,6 +143,7 @@ def _candidate(record: CardRecord, robot: Robot, number: int) -> Candidate:
         craft=record.craft,
         demand=demand,
         complete=record.complete,
+        torque=record.torque,
     )
 
 

@@ -48,6 +48,7 @@ class Solution:
     built: float  # the same, expected of a robot as it is built [m]
     craft: Craft  # what it takes to sew and to motorise it
     demand: Demand  # what its poses ask of motors and cables
+    torque: float | None = None  # torque limit of the design, which its kit keeps to [N m]; None: none
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,6 +64,7 @@ class Candidate:
     craft: Craft  # what it takes to sew and to motorise it
     demand: Demand  # what its poses ask of motors and cables
     complete: bool  # whether the search came to its end
+    torque: float | None = None  # torque limit of the design, which its kit keeps to [N m]; None: none
 
     @property
     def counts(self) -> str:
@@ -96,6 +98,7 @@ def make_candidate(solution: Solution, source: Robot, *, number: int, complete: 
         craft=solution.craft,
         demand=solution.demand,
         complete=complete,
+        torque=solution.torque,
     )
 
 
@@ -104,8 +107,8 @@ def network_words(robot: Robot) -> str:
     return f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
 
 
-def solution(found: Network | Alternative) -> Solution:
-    """Return the solution record that a design process sends to the studio."""
+def solution(found: Network | Alternative, torque: float | None) -> Solution:
+    """Return the solution record that a design process sends to the studio, with the torque limit of the design."""
     return Solution(
         winches=found.robot.winches,
         cables=found.robot.cables,
@@ -114,6 +117,7 @@ def solution(found: Network | Alternative) -> Solution:
         built=found.built,
         craft=build_effort(found.robot, found.reached),
         demand=demand_of(found.robot, found.reached),
+        torque=torque,
     )
 
 
@@ -161,18 +165,18 @@ def design_work(report: Report, robot: Robot, request: DesignRequest) -> Designs
 
     network = find_network(robot, request, progress=report.progress, watch=watch)
     report.finish()
-    solutions = _each_once([network, *network.alternatives])
+    solutions = _each_once([network, *network.alternatives], network.constraints.torque)
     return DesignsFound(solutions=solutions, tried=network.tried, complete=network.complete)
 
 
-def _each_once(networks: Iterable[Network | Alternative]) -> tuple[Solution, ...]:
+def _each_once(networks: Iterable[Network | Alternative], torque: float | None) -> tuple[Solution, ...]:
     """Networks, but those that are no simpler than a better one before: in winches, cables and holes."""
     kept: list[Network | Alternative] = []
     for found in networks:
         better = (other for other in kept if other.built <= found.built)
         if not any(all(np.less_equal(_parts(other), _parts(found))) for other in better):
             kept.append(found)
-    return tuple(map(solution, kept))
+    return tuple(solution(found, torque) for found in kept)
 
 
 def _parts(found: Network | Alternative) -> tuple[int, int, int]:

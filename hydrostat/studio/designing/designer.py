@@ -313,7 +313,7 @@ class Designer(Stage):
             return
         self._all, self._numbered = tuple(found), max(len(found), self._numbered)
         for candidate in found:
-            self._document.judge.learn(candidate.robot, demand=candidate.demand)
+            self._document.judge.learn(candidate.robot, demand=candidate.demand, torque=candidate.torque)
         self.outcome = f"{plural(len(found), 'network')} restored from an earlier session" if found else ""
 
     def _reach(self) -> PoseResult | None:
@@ -353,7 +353,7 @@ class Designer(Stage):
         for solution in found.solutions:
             self._numbered += 1
             made.append(make_candidate(solution, source, number=self._numbered, complete=found.complete))
-            self._document.judge.learn(made[-1].robot, demand=solution.demand)
+            self._document.judge.learn(made[-1].robot, demand=solution.demand, torque=solution.torque)
         self._shelve(made, is_live=run.is_live)
         best = made[0]
         seconds = time.monotonic() - run.began

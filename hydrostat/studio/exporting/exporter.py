@@ -100,8 +100,13 @@ class Exporter(Stage):
         """Make the kit as a job; if forced, even where it cannot be built well (InputError: no cables, or busy)."""
         if not self._document.robot.cables:
             raise InputError("a kit needs cables. Press Design, or place winches and cables by hand")
-        wished = wished_constraints(self._document.robot, self._document.work.wishes)
-        kept = replace(self.options, tension=wished.tension_limit, torque=wished.torque)
+        robot = self._document.robot
+        wished, designed = (
+            wished_constraints(robot, self._document.work.wishes),
+            self._document.judge.torque_limit(robot),
+        )
+        limits = [torque for torque in (wished.torque, designed) if torque is not None]
+        kept = replace(self.options, tension=wished.tension_limit, torque=min(limits, default=None))
         options = replace(kept, force=force or kept.force)
         self._start(Export.KIT, "Building the kit", make_kit, options)
 

@@ -31,7 +31,7 @@ def found_by(session: Session, robot: Robot) -> None:
         Alternative(robot=one, reached=(solve_ik(Simulation(one), pose, options=once),), built=0.004)
         for one in (robot, few)
     ]
-    designer._on_found(DesignsFound(solutions=tuple(map(solution, made)), tried=2, complete=True))
+    designer._on_found(DesignsFound(solutions=tuple(solution(one, 0.09) for one in made), tried=2, complete=True))
 
 
 @pytest.fixture
@@ -71,6 +71,7 @@ def test_cards_come_back_with_their_poses_and_loads(crashed: Session, tmp_path: 
         np.testing.assert_array_equal(new.reaches[0].contractions, old.reaches[0].contractions)
         np.testing.assert_array_equal(new.demand.torques, old.demand.torques)
         np.testing.assert_array_equal(new.demand.taken, old.demand.taken)
+        assert new.torque == old.torque == 0.09
     assert session.designer.outcome == "2 networks restored from an earlier session"
     session.designer.show(after[1].number, after[1].reaches[0].pose.name)
     session.designer.accept()
@@ -79,6 +80,24 @@ def test_cards_come_back_with_their_poses_and_loads(crashed: Session, tmp_path: 
     session.close()
     (again,) = session.starter.autosave.find_recovered()
     assert (again.folder / "designs.json").is_file(), "what was restored is not saved yet"
+
+
+def test_the_kit_of_an_accepted_network_keeps_to_the_torque_of_its_design(
+    crashed: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Oracle: the torque limit that the design kept; a lower one of the settings counts, a higher one does not."""
+    asked = list[float | None]()
+    monkeypatch.setattr(crashed.exporter._jobs, "start", lambda *told, **_: asked.append(told[3].torque))
+    few = crashed.designer.candidates[1]
+    crashed.designer.show(few.number, few.reaches[0].pose.name)
+    crashed.designer.accept()
+    for torque in (None, 0.05, 0.2):
+        wishes = crashed.document.work.wishes
+        constraints = replace(wishes.constraints, torque=torque)
+        crashed.document.change("torque", wishes=replace(wishes, constraints=constraints))
+        crashed.exporter.busy = None
+        crashed.exporter.make_kit()
+    assert asked == [0.09, 0.05, 0.09]
 
 
 def test_a_studio_that_ends_well_leaves_no_cards_of_saved_work(crashed: Session, tmp_path: Path) -> None:
