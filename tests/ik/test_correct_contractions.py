@@ -32,11 +32,23 @@ def test_what_winches_miss_is_taken_back_up_to_second_order(reached: IKResult) -
     left = []
     for missing in (np.array([1e-3, 2e-4]), np.array([5e-4, 1e-4])):
         played = SIMULATION.solve(reached.pose.contractions - missing).markers["tip"]
-        corrected = correct_contractions(SIMULATION, reached, {"tip": played})
+        corrected = correct_contractions(SIMULATION, reached, {"tip": played}, damping=0.0)
         again = SIMULATION.solve(corrected - missing).markers["tip"]
         left.append(float(np.linalg.norm(again - reached.pose_target.targets["tip"])))
         assert left[-1] < 0.1 * np.linalg.norm(played - reached.pose_target.targets["tip"])
     assert left[0] / left[1] == pytest.approx(4.0, rel=0.3)
+
+
+def test_damping_leaves_its_share_of_a_single_winch(reached: IKResult) -> None:
+    """Oracle: J^2 / (J^2 + d^2 J^2), the share that Marquardt's diagonal moves one winch."""
+    robot = replace(ROBOT, winches=ROBOT.winches[:1], cables=ROBOT.cables[:1])
+    simulation = Simulation(robot)
+    tip = simulation.solve(np.array([0.01])).markers["tip"]
+    pulled = solve_ik(simulation, PoseTarget(name="up", targets={"tip": tuple(tip.tolist())}))
+    low = simulation.solve(np.array([0.0099])).markers["tip"]
+    for damping in (0.0, 0.35, 1.0):
+        corrected = correct_contractions(simulation, pulled, {"tip": low}, damping=damping)
+        assert corrected[0] - 0.01 == pytest.approx(1e-4 / (1 + damping**2), rel=0.03)
 
 
 def test_a_correction_stays_within_the_travel_of_winches(reached: IKResult) -> None:
@@ -48,7 +60,7 @@ def test_a_correction_stays_within_the_travel_of_winches(reached: IKResult) -> N
     assert corrected.max() == pytest.approx(least, abs=1e-9)
     assert corrected.min() >= 0.0
     gentle = Limits(tension=1.1 * float(reached.pose.tensions.max()))
-    held = SIMULATION.solve(correct_contractions(SIMULATION, reached, {"tip": far}, limits=gentle))
+    held = SIMULATION.solve(correct_contractions(SIMULATION, reached, {"tip": far}, limits=gentle, damping=0.0))
     assert held.tensions.max() < 1.25 * reached.pose.tensions.max()
 
 
