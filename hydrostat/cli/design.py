@@ -206,10 +206,10 @@ def design(
     source = read_robot(robot)
     request = parse_request(source, typed)
     network, made = _search(source, request, out, kit=kit)
-    print_poses(network, time.perf_counter() - began)
+    printed = print_poses(network, time.perf_counter() - began)
     _tell_count(network, request)
     if made is not None:
-        print_kit(made)
+        print_kit(made, printed=printed)
     fits = kit_fits(network) and not (made is not None and made.problems)
     _tell_next(network, robot, out, kit=kit, fits=fits)
     if network.timed_out:

@@ -84,8 +84,8 @@ def _wished_tension(robot: "Robot", folder: Path) -> float | None:
         raise InputError(f"{error}. Fix the file, or set the limit with --tension") from None
 
 
-def print_poses(network: "Network", seconds: float) -> None:
-    """A table of the poses, and a line on all of them."""
+def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
+    """Print a table of the poses, and a line on all of them; return the errors and warnings that were printed."""
     from rich.console import Console
     from rich.table import Table
 
@@ -117,18 +117,20 @@ def print_poses(network: "Network", seconds: float) -> None:
     if words := describe_cable_side(robot):
         print(f"cables: {words}")
     _print_filled(network)
-    _print_findings(network)
+    return _print_findings(network)
 
 
-def _print_findings(network: "Network") -> None:
-    """Print errors that would prevent a kit, and warnings, for the loads that the design found."""
+def _print_findings(network: "Network") -> tuple[str, ...]:
+    """Print errors that would prevent a kit, and warnings, for the loads that the design found; return them."""
     from hydrostat.cli.check import FINDINGS
     from hydrostat.design import review_robot
     from hydrostat.fabrication import demand_of
     from hydrostat.robot import in_words
 
-    for finding in review_robot(network.robot, demand=demand_of(network.robot, network.reached)):
+    found = review_robot(network.robot, demand=demand_of(network.robot, network.reached))
+    for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
+    return tuple(finding.text for finding in found)
 
 
 def _print_filled(network: "Network") -> None:

@@ -2,6 +2,7 @@
 
 import re
 import time
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -120,16 +121,14 @@ def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: P
         raise InputError(words) from None
 
 
-def print_kit(kit: "Kit") -> None:
-    """Print what is in a kit, what to mind, and whether it is true to the robot."""
+def print_kit(kit: "Kit", *, printed: Collection[str] = ()) -> None:
+    """Print the contents of a kit, its problems but those printed already, and its quality checks."""
     from hydrostat.robot import in_words
 
-    for problem in kit.problems:
-        print(f"error: {in_words(problem)}")
-    for warning in kit.warnings:
-        print(f"warning: {in_words(warning)}")
-    for note in kit.notes:
-        print(f"note: {in_words(note)}")
+    for level, texts in (("error", kit.problems), ("warning", kit.warnings), ("note", kit.notes)):
+        for text in texts:
+            if text not in printed:
+                print(f"{level}: {in_words(text)}")
     for line in kit.summary:
         print(line)
     held = sum(check.passed for check in kit.checks)

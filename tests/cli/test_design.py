@@ -151,6 +151,16 @@ def test_a_design_that_no_kit_can_be_made_of_is_an_error(
 
 
 @pytest.mark.slow
+def test_design_and_kit_report_each_problem_once(run: Run, strip: Path, search: Search, no_report: None) -> None:
+    """Oracle: the problems of the kit, one line each, among those of the design."""
+    code, told, _ = run("design", strip, "--kit", "--out", strip.parent / "out")
+    assert code == 1
+    lines = [line for line in told.splitlines() if line.startswith(("error: ", "warning: ", "note: "))]
+    assert any(line.startswith("error: the units of winches") for line in lines)
+    assert len(lines) == len(set(lines))
+
+
+@pytest.mark.slow
 def test_everything_is_written_and_can_be_read(run: Run, strip: Path, search: Search, tmp_path: Path) -> None:
     out = tmp_path / "new" / "out"
     code, told, _ = run("design", strip, "--out", out)
