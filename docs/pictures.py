@@ -1,20 +1,24 @@
 """Draw the pictures of the README from the examples: python docs/pictures.py (make pictures).
 
-Everything shown is computed here: the network is designed, its poses are solved.
+Everything shown is computed here: the network is designed, its poses are solved. `python docs/pictures.py demo` draws
+the pictures of `make demo` alone; demo.json next to them holds its network and its figures, which tests compare.
 """
 
-import subprocess
+import json
 import sys
-import tempfile
+from dataclasses import asdict
+from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
 
 import matplotlib.image
 import numpy as np
 from matplotlib.figure import Figure
+from PIL import Image
 
 import hydrostat as hs
 from hydrostat.design import activate, edge_fibres
+from hydrostat.fabrication import KitOptions
 from hydrostat.geometry import Surface, contour, heal
 from hydrostat.plot import (
     draw_activation,
@@ -26,7 +30,9 @@ from hydrostat.plot import (
     draw_trajectory,
     save_png,
 )
-from hydrostat.robot import gallery_folder, list_gallery
+from hydrostat.robot import gallery_folder, list_gallery, robot_hash
+from hydrostat.studio.exporting.kit_work import page_pictures
+from hydrostat.version import __version__
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 from hand_body import hand_robot
@@ -36,26 +42,54 @@ PORTRAIT = 3.2
 """Width of a portrait [inches]."""
 
 
+DEMO_POSE, DEMO_WINCHES, DEMO_CABLES = "wave", 2, 6
+"""The design of `make demo`."""
+
+DEMO_PICTURES = ("activation.png", "network.png", "reached.png", "kit.png")
+
+
 def main() -> None:
-    """Draw all of them."""
+    """Draw all of them, or those of the demo."""
     draw_demo()
+    if sys.argv[1:] == ["demo"]:
+        return
     draw_dance()
     draw_gallery()
     draw_bodies()
     draw_hand()
     draw_dirt()
-    draw_kits()
 
 
 def draw_demo() -> None:
-    """The stages of the design of `make demo`."""
+    """The stages of the design of `make demo`, pages of its kit, and a record of both."""
     robot = hs.load_robot(gallery_folder("starfish"))
-    wave = robot.poses["wave"]
-    activation = activate(robot, wave, edge_fibres(robot.body.mesh))
+    pose = robot.poses[DEMO_POSE]
+    activation = activate(robot, pose, edge_fibres(robot.body.mesh))
     save_png(draw_activation(robot, activation, title=""), HERE / "activation.png", dpi=110)
-    network = hs.design_cables(robot, [wave], winches=2, cables=6)
+    network = hs.design_cables(robot, [pose], winches=DEMO_WINCHES, cables=DEMO_CABLES)
     save_png(draw_network(network.robot, title=""), HERE / "network.png", dpi=110)
     save_png(draw_reached(network.robot, network.reached[0], title=""), HERE / "reached.png", dpi=110)
+    limits = network.constraints
+    kit = hs.build_kit(network.robot, options=KitOptions(tension=limits.tension_limit, torque=limits.torque))
+    draw_kits(kit)
+    own = network.robot
+    record = {
+        "command": f"hydrostat design examples/starfish --pose {DEMO_POSE} --winches {DEMO_WINCHES} "
+        f"--cables {DEMO_CABLES} --kit",
+        "version": __version__,
+        "source_robot": robot_hash(robot),
+        "robot": robot_hash(own),
+        "rms_error": network.rms_error,
+        "rms_error_as_built": network.built,
+        "tension_limit": limits.tension_limit,
+        "contractions": network.reached[0].pose.contractions.tolist(),
+        "face": own.face,
+        "winches": [asdict(winch) for winch in own.winches],
+        "cables": [asdict(cable) for cable in own.cables],
+        "pictures": {name: sha256((HERE / name).read_bytes()).hexdigest() for name in DEMO_PICTURES},
+    }
+    lines = [f" {json.dumps(name)}: {json.dumps(value)}" for name, value in record.items()]
+    (HERE / "demo.json").write_text("{\n" + ",\n".join(lines) + "\n}\n")
 
 
 def draw_dance() -> None:
@@ -65,24 +99,19 @@ def draw_dance() -> None:
     save_png(draw_trajectory(robot, trajectory, title=""), HERE / "trajectory.png", dpi=140)
 
 
-def draw_kits() -> None:
-    """Pages of assembly sheets beside each other, by pdftoppm (Debian's poppler-utils)."""
-    pages = [_page("starfish", 1), _page("cupping_hand", 2), _page("cupping_hand", 3)]
+def draw_kits(kit: hs.Kit) -> None:
+    """The first page of a kit's assembly sheet, next to two pages of a hand of foam."""
+    hand = hs.build_kit(hs.load_robot(gallery_folder("cupping_hand")))
+    pages = [_page(kit, 1), _page(hand, 2), _page(hand, 3)]
     gap = np.ones((pages[0].shape[0], 24, 3))
     row = np.concatenate([pages[0], gap, pages[1], gap, pages[2]], axis=1)
     matplotlib.image.imsave(HERE / "kit.png", row)
 
 
-def _page(name: str, page: int) -> np.ndarray:
-    """A page of the assembly sheet of a gallery robot, with a thin grey frame."""
-    kit = hs.build_kit(hs.load_robot(gallery_folder(name)))
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "sheet.pdf"
-        path.write_bytes(kit.files["assembly_sheet.pdf"])
-        which = ["-f", str(page), "-l", str(page), "-singlefile"]
-        subprocess.run(["pdftoppm", "-png", "-r", "75", *which, path, path.with_suffix("")], check=True)
-        picture = matplotlib.image.imread(path.with_suffix(".png"))[:, :, :3]
-    picture = picture.copy()
+def _page(kit: hs.Kit, page: int) -> np.ndarray:
+    """A page of the assembly sheet of a kit, with a thin grey frame."""
+    drawn = Image.open(BytesIO(page_pictures(kit.files["assembly_sheet.pdf"])[page - 1])).convert("RGB")
+    picture = np.asarray(drawn.resize((620, 877), Image.Resampling.LANCZOS)) / 255
     for edge in (picture[:2], picture[-2:], picture[:, :2], picture[:, -2:]):
         edge[:] = 0.75
     return picture
