@@ -89,7 +89,7 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import build_effort, rest_error
+    from hydrostat.design import build_effort, corrected_error, rest_error
     from hydrostat.geometry import find_crossings
     from hydrostat.ik import unconstrained_motion
     from hydrostat.robot import describe_cable_side
@@ -108,9 +108,11 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
             print(f"{reached.pose_target.name}: {words}")
         if words := unconstrained_motion(reached):
             print(f"{reached.pose_target.name}: {words}")
+    corrected = corrected_error(network)
+    after = f", {1e3 * corrected:.2f} mm after one correction by measured markers" if corrected < network.built else ""
     print(
         f"model error {1e3 * network.rms_error:.2f} mm rms (at rest {1e3 * rest_error(network):.2f} mm), "
-        f"expected as-built error {1e3 * network.built:.2f} mm "
+        f"expected as-built error {1e3 * network.built:.2f} mm{after} "
         f"({plural(network.tried, 'candidate')}, {seconds:.1f} s)"
     )
     print(f"build: {build_effort(robot, network.reached)}")

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from hydrostat.design.built_error import BuiltErrors, built_errors, expected_error
     from hydrostat.design.constraints import RANGES, STEPPED, Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
-    from hydrostat.design.corrected_error import corrected_errors, spread_markers
+    from hydrostat.design.corrected_error import corrected_errors, expected_corrected_error, spread_markers
     from hydrostat.design.craft import Craft, SewingTimes, build_effort, front, sewing_minutes
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.faced import assign_cable_sides
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from hydrostat.design.routes.propose import route_along
     from hydrostat.design.routes.quick_search import QuickSearch, RouteProposal, propose_routes
     from hydrostat.design.routes.route_graph import RouteGraph, route_graph
-    from hydrostat.design.score_card import rest_error, score_card
+    from hydrostat.design.score_card import corrected_error, rest_error, score_card
     from hydrostat.design.trees.design_trees import propose_trees
     from hydrostat.design.uncertainty import BuildTolerances
     from hydrostat.design.winch_room import find_no_room
@@ -101,9 +101,11 @@ __all__ = [
     "build_effort",
     "built_errors",
     "cable_name",
+    "corrected_error",
     "corrected_errors",
     "design_cables",
     "edge_fibres",
+    "expected_corrected_error",
     "expected_error",
     "find_network",
     "find_no_room",

@@ -1,4 +1,4 @@
-"""`corrected_errors`: pose errors of built robots after one round of correction by measured markers."""
+"""`corrected_errors`, `expected_corrected_error`: pose errors of built robots after one correction by a measurement."""
 
 from collections.abc import Sequence
 
@@ -6,10 +6,12 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.design.built_error import BuiltErrors, mean_square
+from hydrostat.design.spread import spread_columns
 from hydrostat.design.uncertainty import BuildTolerances
-from hydrostat.ik import IKResult, Limits, correct_contractions
+from hydrostat.errors import NotConvergedError
+from hydrostat.ik import CORRECTION_DAMPING, IKResult, Limits, correct_contractions
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, cable_sensitivities
 
 MEASURED = 5
 """Number of markers that are measured in each pose, if it has targets for so many."""
@@ -62,6 +64,40 @@ def corrected_errors(
             squares.append(mean_square(played, one.pose_target))
         found.append(np.sqrt(np.mean(squares)))
     return BuiltErrors(drawn=np.array(found), model=float(np.sqrt(np.mean([one.rms_error**2 for one in reached]))))
+
+
+def expected_corrected_error(
+    simulation: Simulation,
+    reached: Sequence[IKResult],
+    uncertainty: BuildTolerances,
+    *,
+    measured: int = MEASURED,
+    noise: float = NOISE,
+) -> float:
+    """Root mean square of the marker error over poses and built robots after one correction [m], to first order.
+
+    As `expected_error`, with what the correction takes back of each tolerance. Limits of winches do not count here,
+    and a slack cable does not help. Infinite at a pose that is about to snap.
+    """
+    rest = {marker.name: np.array(marker.at) for marker in simulation.robot.markers}
+    names, squares = list(rest), []
+    for one in reached:
+        targets = list(one.pose_target.targets)
+        chosen = spread_markers({name: rest[name] for name in targets}, measured)
+        try:
+            slopes = cable_sensitivities(simulation, one.pose, [names.index(name) for name in targets])
+        except NotConvergedError:
+            return float("inf")
+        dim = simulation.robot.body.mesh.dim
+        rows = dim * len(targets)
+        columns = spread_columns(simulation, one.pose, slopes, uncertainty, rows)
+        jacobian, seen = slopes.contractions[:rows], np.repeat([name in chosen for name in targets], dim)
+        normal = jacobian.T @ jacobian
+        normal += CORRECTION_DAMPING**2 * np.diag(normal.diagonal())
+        back = jacobian @ np.linalg.pinv(normal, hermitian=True) @ jacobian.T * seen
+        left = float(((columns - back @ columns) ** 2).sum()) + noise**2 * float((back**2).sum())
+        squares.append(one.rms_error**2 + left / len(targets))
+    return float(np.sqrt(np.mean(squares)))
 
 
 def spread_markers(places: dict[str, Vector], count: int) -> list[str]:

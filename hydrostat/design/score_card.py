@@ -5,11 +5,14 @@ from typing import Any
 
 import numpy as np
 
+from hydrostat.design.corrected_error import expected_corrected_error
 from hydrostat.design.craft import build_effort
 from hydrostat.design.filled_reach import out_of_plane
 from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
+from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.ik import IKResult
 from hydrostat.robot import Robot, robot_hash
+from hydrostat.simulation import Simulation
 
 
 def score_card(network: Network, *, version: str) -> dict[str, Any]:
@@ -19,6 +22,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
     return {
         "rms_error": network.rms_error,
         "rms_error_as_built": network.built,
+        "rms_error_corrected": corrected_error(network),
         "rms_error_at_rest": rest_error(network),
         "craft": build_effort(robot, network.reached).as_values,
         "tension_limit": network.constraints.tension_limit,
@@ -37,6 +41,12 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "source_robot": robot_hash(network.source),
         "robot": robot_hash(robot),
     }
+
+
+def corrected_error(network: Network) -> float:
+    """Return the rms error expected of a built robot after one correction by measured markers [m]."""
+    uncertainty = network.request.uncertainty or BuildTolerances.of(network.robot.body)
+    return expected_corrected_error(Simulation(network.robot), network.reached, uncertainty)
 
 
 def rest_error(network: Network) -> float:

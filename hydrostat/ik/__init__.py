@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.ik.correct_contractions import correct_contractions
+    from hydrostat.ik.correct_contractions import CORRECTION_DAMPING, correct_contractions
     from hydrostat.ik.ik_result import IKResult, IKStatus
     from hydrostat.ik.limits import Limits, spool_arms
     from hydrostat.ik.linearized_pose import LinearizedPose, unconstrained_motion
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory
 
 __all__ = [
+    "CORRECTION_DAMPING",
     "BegunRobot",
     "BranchJump",
     "CenterOfMassTarget",

@@ -13,7 +13,7 @@ from hydrostat.ik.objectives.marker_target import named_targets
 from hydrostat.ik.tracker import Tracker
 from hydrostat.simulation import Simulation
 
-DAMPING = 0.35
+CORRECTION_DAMPING = 0.35
 """Default damping: one winch alone takes back 89 % of its error, winches against each other move little."""
 
 
@@ -23,7 +23,7 @@ def correct_contractions(
     measured: Mapping[str, Sequence[float] | Vector],
     *,
     limits: Limits | None = None,
-    damping: float = DAMPING,
+    damping: float = CORRECTION_DAMPING,
 ) -> Vector:
     """Return contractions that take back measured marker errors, by one damped Gauss-Newton step of the model [m].
 

@@ -181,7 +181,9 @@ def test_everything_is_written_and_can_be_read(run: Run, strip: Path, search: Se
     for other, folder in zip(card["alternatives"], sorted((out / "alternatives").iterdir()), strict=True):
         assert other["robot"] == robot_hash(hs.load_robot(folder))
     assert f"model error {1e3 * network.rms_error:.2f} mm rms (at rest 31.62 mm), expected as-built error " in told
-    assert f"error {1e3 * network.built:.2f} mm (4 candidates, " in told
+    corrected = f"{1e3 * card['rms_error_corrected']:.2f} mm after one correction by measured markers"
+    assert f"error {1e3 * network.built:.2f} mm, {corrected} (4 candidates, " in told
+    assert card["rms_error_corrected"] < network.built
     assert f"Open {out / 'report.html'}" in told
     assert "How it grew" in (out / "report.html").read_text()
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design import BuildTolerances, built_errors, corrected_errors, spread_markers
+from hydrostat.design import BuildTolerances, built_errors, corrected_errors, expected_corrected_error, spread_markers
 from hydrostat.ik import solve_ik
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import Simulation
@@ -27,6 +27,19 @@ def test_one_correction_takes_back_what_winches_can(unchecked: None) -> None:
     assert np.linalg.norm(corrected.drawn) < 0.2 * np.linalg.norm(played.drawn)
     noisy = corrected_errors(ROBOT, reached, NONE, noise=5e-4, draws=30)
     assert 0.6 < np.sqrt(np.mean(noisy.drawn**2)) / (np.sqrt(2) * 5e-4) < 1.1
+
+
+@pytest.mark.slow
+def test_the_expected_error_after_a_correction_is_that_of_many_draws(unchecked: None) -> None:
+    """Oracle: 60 robots, played, measured, corrected and played again; their mean square is known to a fifth."""
+    tip = Simulation(ROBOT).solve(np.array([0.014, 0.004])).markers["tip"]
+    reached = [solve_ik(Simulation(ROBOT), PoseTarget(name="up", targets={"tip": tuple(tip.tolist())}))]
+    small = BuildTolerances(sewing=5e-4, friction=(0.0, 0.0))
+    expected = expected_corrected_error(Simulation(ROBOT), reached, small)
+    drawn = corrected_errors(ROBOT, reached, small, draws=60).drawn
+    played = built_errors(ROBOT, [reached[0].pose_target], [reached[0].pose.contractions], small, draws=60).drawn
+    assert np.sqrt(np.mean(drawn**2)) == pytest.approx(expected, rel=0.2)
+    assert expected < 0.5 * np.sqrt(np.mean(played**2))
 
 
 def test_measured_markers_are_far_from_one_another() -> None:
