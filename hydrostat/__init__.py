@@ -42,6 +42,7 @@ if TYPE_CHECKING:
         new_robot,
         solve_ik,
         solve_ik_trajectory,
+        solve_pulls,
     )
     from hydrostat.mechanics import NewtonOptions
     from hydrostat.plot import draw_network, draw_pose, draw_reached, draw_rest
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
         BodyPart,
         Cable,
         Contact,
+        Load,
         Marker,
         Material,
         Obstacle,
@@ -75,6 +77,7 @@ if TYPE_CHECKING:
         find_contacts,
         find_equilibria,
         friction_hysteresis,
+        marker_compliance,
     )
 
 __all__ = [
@@ -100,6 +103,7 @@ __all__ = [
     "Kit",
     "KitOptions",
     "Limits",
+    "Load",
     "Marker",
     "MarkerTarget",
     "Material",
@@ -144,10 +148,12 @@ __all__ = [
     "list_gallery",
     "load_robot",
     "load_target_outline",
+    "marker_compliance",
     "new_robot",
     "save_robot",
     "solve_ik",
     "solve_ik_trajectory",
+    "solve_pulls",
     "write_kit",
 ]
 

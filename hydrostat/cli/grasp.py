@@ -32,7 +32,7 @@ def grasp(
         str | None, typer.Option(metavar="NAME", help="Pose that closes the robot, instead of --contract.")
     ] = None,
     contract: Contract = None,
-    pull: Annotated[str, typer.Option(metavar="DIRECTION", help="Pull direction, e.g. +z.")] = "+z",
+    direction: Annotated[str, typer.Option(metavar="AXIS", help="Pull direction, e.g. +z.")] = "+z",
     at: Annotated[
         str | None,
         typer.Option(metavar="X,Y,Z", help="Object center [mm].", show_default="near the markers of the pose"),
@@ -58,7 +58,7 @@ def grasp(
     straight line. Self-contact and contact with the object are on, with friction on the object. Writes pull.csv,
     pull.png and pull.gif; with --bands also bands.csv.
 
-    Example: hydrostat grasp gallery:caging_gripper --pose close --object sphere:65mm --pull +z --out build/grasp
+    Example: hydrostat grasp gallery:caging_gripper --pose close --object sphere:65mm --direction +z --out build/grasp
     """
     from hydrostat.grasp import PullOptions, pull_bands, pull_out, read_thing
     from hydrostat.plot import draw_pull, pull_frames, save_gif, save_png
@@ -69,7 +69,7 @@ def grasp(
     weight, stride = positive("--mass", mass, MASS), positive("--increment", step, LENGTH)
     loaded = _feeling(read_robot(robot))
     held = read_thing(thing, loaded.body.mesh.dim, mass=weight, friction=friction)
-    options = PullOptions(direction=_direction(pull, loaded.body.mesh.dim), step=stride)
+    options = PullOptions(direction=_direction(direction, loaded.body.mesh.dim), step=stride)
     with progress_bar() as progress:
         closing, closed = _close_robot(loaded, pose, contractions(loaded, contract))
         placed = _place_object(loaded, held, at, closed)
@@ -126,7 +126,7 @@ def _direction(text: str, dim: int) -> tuple[float, ...]:
     axes = "xyz"[:dim]
     if len(text) != 2 or text[0] not in "+-" or text[1] not in axes:
         raise InputError(
-            f"--pull {text}: unknown direction. Allowed: {', '.join(sign + axis for axis in axes for sign in '+-')}."
+            f"--direction {text}: unknown direction. Allowed: {', '.join(sign + axis for axis in axes for sign in '+-')}."
         )
     return tuple((1.0 if text[0] == "+" else -1.0) * (axis == text[1]) for axis in axes)
 

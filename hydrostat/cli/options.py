@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -41,6 +42,20 @@ def load_matplotlib() -> None:
 Contract = Annotated[
     list[str] | None,
     typer.Option(metavar="WINCH=LENGTH", help="Length of cable to reel in on one winch, e.g. left=12mm. Repeatable."),
+]
+AddedLoads = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--load",
+        metavar="MARKER=FORCE",
+        help='Force along each axis at a marker, e.g. "tip=0,0,-1N", or a hung mass, e.g. tip=100g. Repeatable.',
+    ),
+]
+Pulls = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--pull", metavar="WINCH=FORCE", help="Pull of a winch in place of its contraction, e.g. left=5N. Repeatable."
+    ),
 ]
 MostTension = Annotated[
     str | None, typer.Option(metavar="FORCE", help="Maximum cable tension, e.g. 20N.", show_default="no limit")
@@ -168,6 +183,53 @@ def _contraction(text: str) -> tuple[str, float]:
         return name.strip(), sign * parse_quantity(length.strip().removeprefix("-"), LENGTH)
     except InputError as error:
         raise InputError(f"--contract {text}: {error}") from None
+
+
+def loads(robot: "Robot", texts: Sequence[str] | None) -> "Robot":
+    """Robot with more loads at its markers, from texts such as "tip=0,0,-1N" or "tip=100g" (InputError: it is none)."""
+    from hydrostat.robot import Load
+    from hydrostat.units import FORCE, MASS, parse_quantity
+
+    for number, text in enumerate(texts or [], start=1):
+        marker, equals, value = (part.strip() for part in text.partition("="))
+        numbers = [each.strip().removesuffix("N").strip() for each in value.split(",")]
+        try:
+            if not equals:
+                raise InputError('missing "=". Write MARKER=FORCE or MARKER=MASS, e.g. tip=0,0,-1N or tip=100g.')
+            if len(numbers) > 1:
+                force = tuple(_parse_signed(f"{each} N", FORCE) for each in numbers)
+                load = Load(name=f"given load {number}", marker=marker, force=force)
+            else:
+                load = Load(name=f"given load {number}", marker=marker, mass=parse_quantity(value, MASS))
+            robot.marker(marker)
+            robot = replace(robot, loads=(*robot.loads, load))
+        except InputError as error:
+            raise InputError(f"--load {text}: {error}") from None
+    return robot
+
+
+def pulls(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
+    """Pulls [N] by winch, from texts such as "left=5N" (InputError: a text or winch that is none)."""
+    from hydrostat.units import FORCE, parse_quantity
+
+    found = {}
+    for text in texts or []:
+        name, equals, force = (part.strip() for part in text.partition("="))
+        try:
+            if not equals:
+                raise InputError('missing "=". Write WINCH=FORCE, e.g. left=5N.')
+            robot.winch(name)
+            found[name] = parse_quantity(force, FORCE)
+        except InputError as error:
+            raise InputError(f"--pull {text}: {error}") from None
+    return found
+
+
+def _parse_signed(text: str, dimension: "Dimension") -> float:
+    """Quantity that may have a sign before it."""
+    from hydrostat.units import parse_quantity
+
+    return (-1.0 if text.startswith("-") else 1.0) * parse_quantity(text.removeprefix("-"), dimension)
 
 
 def check_contraction(robot: "Robot", name: str, value: float, *, option: str = "--contract") -> None:

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import Contract, check_contraction, contractions, parse_optional, positive
+from hydrostat.cli.options import (
+    AddedLoads,
+    Contract,
+    Pulls,
+    check_contraction,
+    contractions,
+    loads,
+    parse_optional,
+    positive,
+    pulls,
+)
 from hydrostat.cli.profiling import print_profile
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
@@ -25,6 +35,8 @@ def simulate(
     robot: RobotFolder,
     out: OutFolder,
     contract: Contract = None,
+    pull: Pulls = None,
+    load: AddedLoads = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
     dynamic: Annotated[
         bool,
@@ -49,7 +61,7 @@ def simulate(
 ) -> None:
     """Solve for static equilibrium, or simulate a motion.
 
-    Give winch contractions with --contract, and add --dynamic to simulate the motion.
+    Give winch contractions with --contract or forces with --pull, and add --dynamic to simulate the motion.
 
     Writes pose.json, pose.vtu (for ParaView) and pose.png. With --dynamic these show the final state, and the command
     also writes motion.csv, motion.pvd (for ParaView) and motion.png.
@@ -63,8 +75,12 @@ def simulate(
 
     require_folder(out)
     with print_profile(profile, "reading"):
-        loaded = read_robot(robot)
-    given = contractions(loaded, contract)
+        loaded = loads(read_robot(robot), load)
+    given, forces = contractions(loaded, contract), pulls(loaded, pull)
+    if both := sorted(given.keys() & forces.keys()):
+        raise InputError(f"--pull {both[0]}: --contract is given for this winch, too. Remove one of them.")
+    if forces and (dynamic or within is not None):
+        raise InputError(f"--pull: not available with {'--dynamic' if dynamic else '--within'}. Remove one of them.")
     if dynamic and jacobian:
         raise InputError("--jacobian: not available with --dynamic. Remove one of them.")
     if not dynamic and (play is not None or duration is not None):
@@ -81,9 +97,12 @@ def simulate(
         return
     began = time.process_time()
     with print_profile(profile, "solving"):
-        pose = simulation.solve(given, strict=False, seconds=limit)
+        pose = _solve(simulation, given, forces, limit)
     seconds = time.process_time() - began
     _print_places(pose, loaded)
+    for name, contraction in zip(forces, _contractions_of(pose, forces), strict=True):
+        print(f"winch {name}: {1e3 * contraction:.2f} mm at {forces[name]:g} N")
+        check_contraction(loaded, name, contraction, option="--pull")
     print(f"{pose.result.reason} after {plural(pose.result.iterations, 'iteration')}, {1e3 * seconds:.0f} ms")
     _print_notes(simulation, pose)
     sys.stdout.flush()  # the answer is there before the picture is drawn
@@ -95,6 +114,23 @@ def simulate(
     print("Wrote " + ", ".join(str(file) for file in files))
     if not pose.result.converged:
         raise typer.Exit(1)
+
+
+def _solve(
+    simulation: "Simulation", given: Mapping[str, float], pulls: Mapping[str, float], limit: float | None
+) -> "Equilibrium":
+    """Equilibrium at contractions [m], with pulls of some winches [N]."""
+    if not pulls:
+        return simulation.solve(given, strict=False, seconds=limit)
+    from hydrostat.ik import solve_pulls
+
+    return solve_pulls(simulation, pulls, given)
+
+
+def _contractions_of(pose: "Equilibrium", names: Iterable[str]) -> list[float]:
+    """Contraction of some winches [m]."""
+    order = [winch.name for winch in pose.robot.winches]
+    return [float(pose.contractions[order.index(name)]) for name in names]
 
 
 def _print_places(found: "Equilibrium | Motion", robot: "Robot") -> None:

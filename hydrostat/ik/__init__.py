@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from hydrostat.ik.search.linear_model import least_squares
     from hydrostat.ik.search.problem import IKOptions
     from hydrostat.ik.solve_ik import Targets, solve_ik
+    from hydrostat.ik.solve_pulls import solve_pulls
     from hydrostat.ik.tracker import Tracker
     from hydrostat.ik.trajectory.keys import Keyframe
     from hydrostat.ik.trajectory.poses import BranchJump
@@ -73,6 +74,7 @@ __all__ = [
     "reach_extent",
     "solve_ik",
     "solve_ik_trajectory",
+    "solve_pulls",
     "spool_arms",
     "state_at",
     "state_jacobian_at",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimize
     from hydrostat.mechanics.newton_result import NewtonOptions, NewtonResult, Reason, RoundOff
-    from hydrostat.mechanics.nodal_energies import PinEnergy, WeightEnergy
+    from hydrostat.mechanics.nodal_energies import LoadEnergy, PinEnergy, WeightEnergy
     from hydrostat.mechanics.obstacle import ObstacleEnergy
     from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
@@ -45,6 +45,7 @@ __all__ = [
     "FrictionCableEnergy",
     "GuideEnergy",
     "InertiaEnergy",
+    "LoadEnergy",
     "LowRankStiffness",
     "MaxwellBranches",
     "Metrics",

@@ -1,4 +1,4 @@
-"""`WeightEnergy`, `PinEnergy`: energies of nodes one by one."""
+"""`WeightEnergy`, `LoadEnergy`, `PinEnergy`: energies of nodes one by one."""
 
 from collections.abc import Mapping
 from copy import copy
@@ -39,6 +39,16 @@ class WeightEnergy(Energy):
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         work = np.array([float((self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum())])
         return {"load": work, "thickness": work}
+
+
+class LoadEnergy(WeightEnergy):
+    """`WeightEnergy` of given forces, which do not grow with the thickness of the body."""
+
+    def with_load(self, share: float) -> "LoadEnergy":
+        return LoadEnergy(self._rest, share * self.forces)
+
+    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+        return {}
 
 
 class PinEnergy(Energy):

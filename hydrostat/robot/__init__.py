@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
     from hydrostat.robot.html_repr import html_repr, in_words
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
+    from hydrostat.robot.load import Load
     from hydrostat.robot.marker import Marker, Pin, PoseTarget
     from hydrostat.robot.materials import MATERIALS, Material, Relaxation, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
@@ -51,6 +52,7 @@ __all__ = [
     "Face",
     "Force",
     "Length",
+    "Load",
     "Marker",
     "Material",
     "Mount",

@@ -12,6 +12,7 @@ from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import LONGEST_NAME, Point
 from hydrostat.robot.face import Face
+from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Pin
 from hydrostat.robot.robot import Robot
 
@@ -79,6 +80,7 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
         gravity=None if flat is None else (*flat, 0.0),
         face=None,
         obstacles=(),
+        loads=tuple(map(_lift_load, robot.loads)),
     )
 
 
@@ -135,6 +137,11 @@ _HEIGHTS = {
     Face.PAIRS: (("front", 1.0), ("back", -1.0)),
     Face.MIDDLE: (("", 0.0),),
 }
+
+
+def _lift_load(load: Load) -> Load:
+    at = None if load.at is None else _raise_place(load.at)
+    return replace(load, at=at, force=None if load.force is None else (*load.force, 0.0))
 
 
 def _raise_place(place: Point) -> Point:

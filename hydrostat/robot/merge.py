@@ -14,6 +14,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import Contact, Obstacle
+from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
@@ -114,8 +115,9 @@ _RECORDS = {
     "marker": Marker,
     "pose": PoseTarget,
     "obstacle": Obstacle,
+    "load": Load,
 }
-_LISTS = ("pin", "winch", "cable", "marker", "pose", "obstacle")
+_LISTS = ("pin", "winch", "cable", "marker", "pose", "obstacle", "load")
 _SINGLE = ("body", "contact")
 _ORDER = ("", *_SINGLE, *_LISTS)
 _TOP = ("name", "length_unit", "gravity", "face")

@@ -15,6 +15,7 @@ from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
 from hydrostat.robot.gravity import gravity_along
+from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, Relaxation, get_material
 from hydrostat.robot.part import BodyPart, PartShape
@@ -98,6 +99,7 @@ class RobotReader(TablesFile):
             "cables": self.records("cable", self._cable),
             "markers": self.records("marker", self._marker),
             "obstacles": self.records("obstacle", self._obstacle),
+            "loads": self.records("load", self._load),
         }
         poses: dict[str, PoseTarget] = {}
         for index, pose in enumerate(self.records("pose", self._pose)):
@@ -149,6 +151,11 @@ class RobotReader(TablesFile):
         friction = {} if entry.friction is None else {"friction": float(entry.friction)}
         given = _given_keys(entry, "name", "stiffness", "smoothing", "slack", "spool_radius")
         return Cable(winch=entry.winch, points=points, **sheathed, **friction, **given)
+
+    def _load(self, entry: Any) -> Load:
+        at = {} if entry.at is None else {"at": self.point(entry.at)}
+        force = {} if entry.force is None else {"force": tuple(entry.force)}
+        return Load(name=entry.name, **at, **force, **_given_keys(entry, "marker", "mass"))
 
     def _marker(self, entry: Any) -> Marker:
         return Marker(name=entry.name, at=self.point(entry.at))

@@ -7,7 +7,7 @@ from typing import Self, TypeVar
 import numpy as np
 
 from hydrostat import units
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Points, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
@@ -20,12 +20,13 @@ from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.html_repr import html_repr
+from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, get_material
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import plural
 
-_Part = TypeVar("_Part", Winch, Cable)
+_Part = TypeVar("_Part", Winch, Cable, Marker)
 
 LARGEST_STEP = 4.0
 """The spool of a cable is at most so many times larger or smaller than its winch's: more is no step on one shaft."""
@@ -49,6 +50,7 @@ class Robot:
         face: side of a flat body on which its cables run, or a word such as "pairs"; None: unspecified.
         contact: self-contact and obstacle contact; None: disabled, so the body passes through itself.
         obstacles: rigid objects next to the body.
+        loads: forces at points of the body, and hung masses.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -66,6 +68,7 @@ class Robot:
     face: Face | None = None
     contact: Contact | None = None
     obstacles: tuple[Obstacle, ...] = ()
+    loads: tuple[Load, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -91,11 +94,16 @@ class Robot:
         self._check_pins()
         self._check_contact()
         self._check_markers_and_poses()
+        self._check_loads()
         self._check_cables()
 
     def winch(self, name: str) -> Winch:
         """Return the winch of this name (InputError: there is none)."""
         return _find_part("winch", "winches", self.winches, name)
+
+    def marker(self, name: str) -> Marker:
+        """Return the marker of this name (InputError: there is none)."""
+        return _find_part("marker", "markers", self.markers, name)
 
     def cable(self, name: str) -> Cable:
         """Return the cable of this name (InputError: there is none)."""
@@ -215,6 +223,8 @@ class Robot:
             yield from ((f"cable[{index}].points[{place}]", point) for place, point in enumerate(cable.points))
         for index, marker in enumerate(self.markers):
             yield f"marker[{index}].at", marker.at
+        for index, load in enumerate(self.loads):
+            yield from ((f"load[{index}].at", point) for point in ((load.at,) if load.at is not None else ()))
         for index, pose in enumerate(self.poses.values()):
             yield from ((f"pose[{index}].targets.{name}", point) for name, point in pose.targets.items())
 
@@ -276,6 +286,30 @@ class Robot:
                 if name not in names:
                     key = f"pose[{index}].targets.{name}"
                     raise InputError(f'{key}: unknown marker "{name}". {_choices("markers", names)}')
+
+    def _check_loads(self) -> None:
+        names = [marker.name for marker in self.markers]
+        _unique("load", [load.name for load in self.loads])
+        for index, load in enumerate(self.loads):
+            if load.marker is not None and load.marker not in names:
+                raise InputError(f'load[{index}].marker: unknown marker "{load.marker}". {_choices("markers", names)}')
+            if load.mass is not None and self.gravity is None:
+                raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')
+            if load.force is not None and len(load.force) != self.body.mesh.dim:
+                count = len(load.force)
+                raise InputError(f"load[{index}].force has {count} entries, but the body has {self.body.mesh.dim} axes")
+        self._check_inside([(f"load[{index}].at", load.at) for index, load in enumerate(self.loads) if load.at])
+
+    def load_points(self) -> Points:
+        """Point of the body at rest that carries each load [m], (loads, dim)."""
+        markers = {marker.name: marker.at for marker in self.markers}
+        points = [markers[load.marker] if load.marker is not None else load.at for load in self.loads]
+        return np.array(points, dtype=float).reshape(-1, self.body.mesh.dim)
+
+    def load_forces(self) -> Points:
+        """Force of each load [N], (loads, dim)."""
+        dim = self.body.mesh.dim
+        return np.array([load.force_under(self.gravity, dim) for load in self.loads]).reshape(-1, dim)
 
     def _check_cables(self) -> None:
         named = [
@@ -343,4 +377,4 @@ def _choices(kind: str, names: list[str]) -> str:
     return f"Available: {', '.join(names)}." if names else f"The robot has no {kind}."
 
 
-_PARTS = {"pins": Pin, "winches": Winch, "cables": Cable, "markers": Marker, "obstacles": Obstacle}
+_PARTS = {"pins": Pin, "winches": Winch, "cables": Cable, "markers": Marker, "obstacles": Obstacle, "loads": Load}

@@ -84,6 +84,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
             for name, pose in robot.poses.items()
         },
         obstacles=tuple(map(scale_obstacle, robot.obstacles)),
+        loads=tuple(replace(load, at=None if load.at is None else point(load.at)) for load in robot.loads),
         contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),
     )
 

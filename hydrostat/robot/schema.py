@@ -263,6 +263,16 @@ class ObstacleTable(TomlTable):
     file: Text | None = None
 
 
+class LoadTable(TomlTable):
+    """[[load]]."""
+
+    name: Name
+    at: Coordinates | None = None
+    marker: Text | None = None
+    force: Annotated[list[Force], Field(min_length=2, max_length=3)] | None = None
+    mass: Mass | None = None
+
+
 class RobotTable(TomlTable):
     """All tables of robot.toml."""
 
@@ -279,6 +289,7 @@ class RobotTable(TomlTable):
     pose: list[PoseTable] = []
     contact: ContactTable | None = None
     obstacle: list[ObstacleTable] = []
+    load: list[LoadTable] = []
 
 
 _NAMED = "a material with a name has its own; remove this key, or the name"
@@ -288,9 +299,7 @@ REFUSED = {
     "body.face": "where the cables of a flat robot run stands at the top of the file, before [body]; move it there",
     "body.viscosity": "it belongs to the material; write " + _VISCOUS,
     "body.relaxation": "it belongs to the material; write " + _VISCOUS,
-    "body.material.young": _NAMED,
-    "body.material.poisson": _NAMED,
-    "body.material.density": _NAMED,
+    **dict.fromkeys(("body.material.young", "body.material.poisson", "body.material.density"), _NAMED),
     "part": "parts belong to the body; begin each with [[body.part]]",
 }
 """Known keys where they may not stand, and why."""
@@ -307,6 +316,7 @@ _EXAMPLES = {
     "relaxation": 'relaxation = [{ modulus = "10 kPa", time = "2 s" }]',
     "modulus": 'modulus = "10 kPa"',
     "time": 'time = "2 s"',
+    "force": 'force = ["0 N", "-1 N"]',
     "at": "at = [0, 0]",
     "box": "box = [[0, 0], [10, 20]]",
     "winch": 'winch = "left"',

@@ -17,6 +17,7 @@ from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.gravity import direction_of
+from hydrostat.robot.load import Load
 from hydrostat.robot.marker import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.part import BodyPart
@@ -41,7 +42,11 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     """
     check_type(robot, Robot, "a folder is written of a Robot, such as load_robot gives")
     folder = path_of(folder, "a robot is kept in a folder")
-    for name in (robot.name, *robot.poses, *(part.name for part in (*robot.winches, *robot.cables, *robot.markers))):
+    for name in (
+        robot.name,
+        *robot.poses,
+        *(part.name for part in (*robot.winches, *robot.cables, *robot.markers, *robot.loads)),
+    ):
         check_name(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -114,6 +119,7 @@ def robot_text(robot: Robot) -> str:
         "marker": ({"name": marker.name, "at": writer.point(marker.at)} for marker in robot.markers),
         "pose": map(writer.pose, robot.poses.values()),
         "obstacle": map(writer.obstacle, robot.obstacles),
+        "load": map(writer.load, robot.loads),
     }
     for key, entries in groups.items():
         tables = tomlkit.aot()
@@ -238,6 +244,18 @@ class _Writer:
             entry["path"] = self._array(
                 self._key(units.format_quantity(time, units.TIME), place) for time, place in obstacle.path
             )
+        return entry
+
+    def load(self, load: Load) -> dict[str, Any]:
+        entry: dict[str, Any] = {"name": load.name}
+        if load.at is not None:
+            entry["at"] = self.point(load.at)
+        if load.marker is not None:
+            entry["marker"] = load.marker
+        if load.force is not None:
+            entry["force"] = [units.format_quantity(value, units.FORCE) for value in load.force]
+        if load.mass is not None:
+            entry["mass"] = units.format_quantity(load.mass, units.MASS)
         return entry
 
     def _key(self, time: str, place: Point) -> Any:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     )
     from hydrostat.simulation.filled import filled_motion, is_filled_motion_fast
     from hydrostat.simulation.find_contacts import ContactPatch, describe_contacts, find_contacts
+    from hydrostat.simulation.marker_compliance import marker_compliance
     from hydrostat.simulation.motion_file import MotionTable, write_motion, write_pose
     from hydrostat.simulation.obstacle_frames import obstacle_forces, obstacles_in_pose, with_obstacles, with_replaced
     from hydrostat.simulation.simulation import Simulation
@@ -66,6 +67,7 @@ __all__ = [
     "friction_hysteresis",
     "is_filled_motion_fast",
     "largest_distance",
+    "marker_compliance",
     "node_strains",
     "node_stresses",
     "not_converged",

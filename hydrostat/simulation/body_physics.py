@@ -8,6 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
+from hydrostat.geometry import locate
 from hydrostat.given import check_type
 from hydrostat.mechanics import (
     PATCH_SIZE,
@@ -18,6 +19,7 @@ from hydrostat.mechanics import (
     Energy,
     Factorization,
     GuideEnergy,
+    LoadEnergy,
     NeoHookean,
     ObstacleEnergy,
     PatchVolume,
@@ -45,7 +47,8 @@ class BodyPhysics:
         assembly: sum of all energies of the body; they read no control.
         material: material of the body.
         thickness: thickness of a flat body [m]; None in space.
-        masses: lumped mass of each node [kg], (nodes,): each element shares its mass evenly among its corners.
+        masses: lumped mass of each node [kg], (nodes,): each element shares its mass evenly among its corners, a hung
+            mass by its anchor.
         inertias: mass of each unknown in motion [kg], (rows,).
         carriages: rows of the unknowns of moving obstacles, by index of the obstacle.
         guides: index of each energy that keeps an obstacle on its path, with the obstacle.
@@ -63,7 +66,7 @@ class BodyPhysics:
         """
         check_type(robot, Robot, "a simulation is of a Robot, such as load_robot gives")
         body = robot.body
-        self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles
+        self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads
         self.material, self.thickness = body.material, body.thickness
         mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.lame()
         self.carriages = _carriages(robot, in_time=in_time)
@@ -74,7 +77,8 @@ class BodyPhysics:
         self.elastic = NeoHookean(self.rest_unknowns, mesh.elements, mu=mu, lame=None if patched else lame, **kinds)
         self.pins = _pins(robot)
         carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
-        self.masses = _masses(robot)
+        own, hung = _masses(robot), _hung_masses(robot)
+        self.masses, self._hung = own + hung, hung
         self.inertias = np.concatenate([self.masses, *carried]) if carried else self.masses
         energies: list[Energy] = [self.elastic, self.pins]
         if patched:
@@ -82,6 +86,8 @@ class BodyPhysics:
             energies.append(PatchVolume(self.rest_unknowns, mesh.elements, patches, lame=lame, **kinds))
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
+        if robot.loads:
+            energies.append(LoadEnergy(self.rest_unknowns, self._load_forces(robot)))
         self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
             own = ContactEnergy.of(mesh, **_contact_parameters(robot), rest=self.rest_unknowns)
@@ -101,9 +107,10 @@ class BodyPhysics:
         return len(self._given[0].mesh.nodes) if self.carriages else None
 
     def fits(self, robot: Robot) -> bool:
-        """Return True if this is the physics of a robot's body: same body, equal pins, gravity and contact."""
+        """Return True if this is the physics of a robot's body: same body, equal pins, gravity, contact and loads."""
         body, *others = self._given
-        return robot.body is body and [robot.pins, robot.gravity, robot.contact, robot.obstacles] == others
+        given = [robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads]
+        return robot.body is body and given == others
 
     def check(self, robot: Robot) -> None:
         """Check that this is the physics of the body of a robot.
@@ -112,12 +119,13 @@ class BodyPhysics:
             InputError: it is that of another body, of other pins or of another gravity.
         """
         if not self.fits(robot):
-            raise InputError("these body physics are of another body, other pins, gravity or contact; make new ones")
+            raise InputError("these body physics are of another body, pins, gravity, contact or loads; make new ones")
 
     @property
     def _heavy(self) -> Float[np.ndarray, " rows"]:
-        """Masses that gravity pulls at: not the axes of obstacles, which are at their middle."""
+        """Masses that gravity pulls at: not the axes of obstacles, which are at their middle, nor loads."""
         heavy = self.inertias.copy()
+        heavy[: len(self._hung)] -= self._hung
         for carriage in self.carriages.values():
             heavy[carriage.rows[1:]] = 0.0
         return heavy
@@ -132,7 +140,7 @@ class BodyPhysics:
         Raises:
             InputError: no pin, so it moves before friction on the ground can hold it; or an obstacle floats.
         """
-        where, (_, _, _, _, obstacles) = self.rest_unknowns if start is None else start, self._given
+        where, (_, _, _, _, obstacles, _) = self.rest_unknowns if start is None else start, self._given
         for index in () if guided else self.carriages:
             met = self.assembly.energies[self.obstacles[index]]
             if not met.push(where).any():  # type: ignore[attr-defined]
@@ -145,6 +153,12 @@ class BodyPhysics:
                 "no pin holds the robot: where it comes to rest on the ground depends on how it gets there, so let it "
                 "move (`hydrostat simulate --dynamic`, or `Simulation.play`), or pin it"
             )
+
+    def _load_forces(self, robot: Robot) -> Points:
+        """Force of the loads on each unknown [N]."""
+        forces, anchors = np.zeros_like(self.rest_unknowns), locate(robot.body.mesh, robot.load_points())
+        np.add.at(forces, anchors.stencils, anchors.weights[:, :, None] * robot.load_forces()[:, None])
+        return forces
 
     def _obstacle_energies(self, robot: Robot, obstacle: Obstacle, carriage: RigidBodyDofs | None) -> list[Energy]:
         """Return the contact energy of an obstacle and the energy that keeps a moving one rigid or on its path."""
@@ -239,6 +253,15 @@ def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
     elements = robot.body.mesh.elements
     shares = np.repeat(robot.body.element_masses / elements.shape[1], elements.shape[1])
     return np.bincount(elements.ravel(), shares, len(robot.body.mesh.nodes))
+
+
+def _hung_masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
+    """Mass of the loads at each node [kg]."""
+    masses = np.zeros(len(robot.body.mesh.nodes))
+    if robot.loads:
+        anchors, hung = locate(robot.body.mesh, robot.load_points()), [load.mass or 0.0 for load in robot.loads]
+        np.add.at(masses, anchors.stencils, anchors.weights * np.array(hung)[:, None])
+    return masses
 
 
 def _pins(robot: Robot) -> PinEnergy:

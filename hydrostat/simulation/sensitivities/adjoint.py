@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
+from hydrostat.geometry import locate
 from hydrostat.mechanics import Assembly, CableEnergy, Stiffness
 from hydrostat.robot import Material, Robot
 from hydrostat.simulation.body_physics import BodyPhysics
@@ -67,6 +68,7 @@ class Sensitivity:
         part_poisson: derivative by Poisson's ratio of each part [-], (parts,); 0 for rigid ones.
         part_density: derivative by the density of each part [m^3/kg], (parts,).
         thickness: derivative by the thickness of a flat body [1/m]; None in space.
+        loads: derivative by the force of each load along each axis [1/N], (loads, dim).
     """
 
     contractions: Vector
@@ -82,6 +84,7 @@ class Sensitivity:
     part_poisson: Vector
     part_density: Vector
     thickness: float | None
+    loads: Points
 
 
 def sensitivity(
@@ -184,6 +187,7 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         "part_poisson": np.where(rigid, 0.0, poisson)[1:],
         "part_density": density[1:],
         "thickness": None if body.thickness is None else -float(works["thickness"][0]) / body.thickness,
+        "loads": locate(pose.robot.body.mesh, pose.robot.load_points()).positions(field[: len(pose.nodes)]),
         "pin_stiffness": -works["support_stiffness"],
     }
 

@@ -61,7 +61,8 @@ def rename(robot: Robot, key: str, name: str) -> Robot:
             )
             for pose in robot.poses.values()
         }
-        return replace(robot, markers=markers, poses=poses)
+        loads = tuple(replace(load, marker=name) if load.marker == before else load for load in robot.loads)
+        return replace(robot, markers=markers, poses=poses, loads=loads)
     raise InputError(f"{key} has no name")
 
 

@@ -108,7 +108,7 @@ def _rerun(cables: Iterable[Cable], points: Iterable[Iterable[Point]]) -> tuple[
 
 
 def remove(robot: Robot, keys: Collection[str]) -> Robot:
-    """The same robot without parts, a winch's cables, a marker's targets (InputError: no such part, or needed)."""
+    """The same robot without parts, a winch's cables, a marker's targets and loads (InputError: no such part)."""
     gone: dict[Kind, set[int]] = {kind: set() for kind in Kind}
     vias: dict[int, set[int]] = {}
     for key in keys:
@@ -132,6 +132,7 @@ def remove(robot: Robot, keys: Collection[str]) -> Robot:
         ),
         markers=markers,
         poses=_poses(robot, {marker.name for marker in markers}),
+        loads=tuple(load for load in robot.loads if load.marker in {None, *(marker.name for marker in markers)}),
     )
 
 

@@ -152,6 +152,7 @@ def _move_parts(robot: Robot, move: Move) -> _Parts:
             "winches": tuple(replace(winch, at=move(winch.at)) for winch in robot.winches),
             "cables": tuple(replace(cable, points=tuple(map(move, cable.points))) for cable in robot.cables),
             "markers": tuple(replace(marker, at=move(marker.at)) for marker in robot.markers),
+            "loads": tuple(replace(load, at=None if load.at is None else move(load.at)) for load in robot.loads),
         },
         poses=tuple(map(pose_moved, robot.poses.values())),
     )
@@ -190,7 +191,11 @@ def _within_body(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, tuple[
             cables.append(cable)
     markers = [marker for marker in parts.rest["markers"] if fits(f"marker {marker.name}", (marker.at,))]
     poses = _poses_of(parts.poses, {marker.name for marker in markers}, dropped)
-    options = {"pins": tuple(pins), "markers": tuple(markers), "poses": poses}
+    carriers = {None, *(marker.name for marker in markers)}
+    loads = [load for load in parts.rest["loads"] if load.at is None or fits(f"load {load.name}", (load.at,))]
+    dropped += [f"load {load.name}" for load in loads if load.marker not in carriers]
+    loads = tuple(load for load in loads if load.marker in carriers)
+    options = {"pins": tuple(pins), "markers": tuple(markers), "poses": poses, "loads": loads}
     made = replace(robot, body=body, winches=tuple(winches), cables=tuple(cables), **options)
     return made, tuple(dropped)
 

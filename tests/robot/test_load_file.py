@@ -1,0 +1,57 @@
+"""Loads in robot.toml. Oracle: what was written, and the line that tells each fault."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from robot_files import GOOD, load
+
+from hydrostat.errors import InputError
+from hydrostat.robot import inflated_robot, load_robot, merged_text, save_robot, scaled_robot
+
+HUNG = '[[load]]\nname = "weight"\nmarker = "tip"\nmass = "20 g"\n'
+PUSH = '[[load]]\nname = "push"\nat = [0, 0]\nforce = ["0.5 N", "-1 N"]\n'
+HEAVY = 'gravity = "-y"\n'
+
+
+def text(*tables: str, gravity: str = HEAVY) -> str:
+    return GOOD.replace('name = "small"\n', f'name = "small"\n{gravity}') + "\n" + "\n".join(tables)
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    robot = load(tmp_path / "a", text(HUNG, PUSH))
+    assert robot.load_forces() == pytest.approx(np.array([[0.0, -0.02 * 9.80665], [0.5, -1.0]]))
+    save_robot(robot, tmp_path / "b")
+    assert load_robot(tmp_path / "b") == robot
+    assert merged_text(text(HUNG, "# mine\n" + PUSH), robot) == text(HUNG, "# mine\n" + PUSH)
+
+
+def test_loads_go_along(tmp_path: Path) -> None:
+    robot = load(tmp_path, text(HUNG, PUSH))
+    assert inflated_robot(robot).load_forces().shape == (2, 3)
+    shift = scaled_robot(robot, 2.0).load_points()
+    assert shift == pytest.approx(2 * robot.load_points())
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        (HUNG.replace("tip", "top"), r'load\[0\].marker: unknown marker "top". Available: tip.'),
+        (PUSH.replace("[0, 0]", "[90, 0]"), r"load\[0\].at = \[90, 0\] lies 60 mm outside the body"),
+        (PUSH.replace(', "-1 N"', ', "-1 N", "2 N"'), r"load\[0\].force has 3 entries, but the body has 2 axes"),
+        (PUSH.replace('"-1 N"', "-1"), r"load\[0\].force\[1\]: -1 has no unit"),
+        (PUSH + 'mass = "2 g"\n', r"load\[0\]: give either force, or mass"),
+        (PUSH + 'marker = "tip"\n', r"load\[0\]: give either marker, or at"),
+        (HUNG.replace("20 g", "0 g"), r"load\[0\].mass must be finite and above 0"),
+        (PUSH + PUSH, r'load\[1\].name: there are two of the name "push"'),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(table: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=told) as caught:
+        load(tmp_path, text(table))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_mass_needs_gravity(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"load\[0\].mass weighs nothing without gravity"):
+        load(tmp_path, text(HUNG, gravity=""))
