@@ -12,7 +12,7 @@ routes that are designed for the half-way poses too.
 
 Columns, errors in mm rms over markers and poses: `model`, as designed; `built`, median and 90 % of the draws;
 `corrected`, the same after one round of correction: up to five markers of each pose are measured on the built robot,
-each coordinate to 0.5 mm, and one damped Gauss-Newton step of the model corrects the contractions, within the limits;
+each coordinate to 0.5 mm, and the contractions are solved again in the model for targets moved by what it missed;
 `mu 0.3`, 90 % with friction 0.3 in all cables; `held out`, poses that hidden networks reach, solved again in the model.
 """
 

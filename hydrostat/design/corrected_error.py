@@ -92,9 +92,8 @@ def expected_corrected_error(
         rows = dim * len(targets)
         columns = spread_columns(simulation, one.pose, slopes, uncertainty, rows)
         jacobian, seen = slopes.contractions[:rows], np.repeat([name in chosen for name in targets], dim)
-        normal = jacobian.T @ jacobian
-        normal += CORRECTION_DAMPING**2 * np.diag(normal.diagonal())
-        back = jacobian @ np.linalg.pinv(normal, hermitian=True) @ jacobian.T * seen
+        normal = jacobian.T @ jacobian + CORRECTION_DAMPING**2 * np.eye(jacobian.shape[1])
+        back = jacobian @ np.linalg.solve(normal, jacobian.T) * seen
         left = float(((columns - back @ columns) ** 2).sum()) + noise**2 * float((back**2).sum())
         squares.append(one.rms_error**2 + left / len(targets))
     return float(np.sqrt(np.mean(squares)))

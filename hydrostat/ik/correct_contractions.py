@@ -10,11 +10,13 @@ from hydrostat.given import check_type
 from hydrostat.ik.ik_result import IKResult
 from hydrostat.ik.limits import Limits
 from hydrostat.ik.objectives.marker_target import named_targets
-from hydrostat.ik.tracker import Tracker
+from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
+from hydrostat.ik.search.problem import IKOptions
+from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.simulation import Simulation
 
 CORRECTION_DAMPING = 0.35
-"""Default damping: one winch alone takes back 89 % of its error, winches against each other move little."""
+"""Default marker error that a change of a contraction is worth [m/m]."""
 
 
 def correct_contractions(
@@ -25,18 +27,18 @@ def correct_contractions(
     limits: Limits | None = None,
     damping: float = CORRECTION_DAMPING,
 ) -> Vector:
-    """Return contractions that take back measured marker errors, by one damped Gauss-Newton step of the model [m].
+    """Return contractions that take back measured marker errors, solved again in the model from the pose played [m].
 
     Play `reached.pose.contractions` on the built robot, measure markers, then play the answer. Each target moves by
-    the difference of model and measurement; a marker that is not measured keeps its target. The step keeps to the
-    limits and accounts for slack cables.
+    the difference of model and measurement; a marker that is not measured keeps its target. The search stays near the
+    contractions played, for winches with nearly the same effect would move far for a small measured error.
 
     Args:
         simulation: model of the robot.
         reached: pose that was played, with its targets.
         measured: measured positions of markers of the pose [m].
         limits: limits of the winches, in addition to travel and release.
-        damping: relative uncertainty of each winch's effect on the markers; 0 trusts the model.
+        damping: marker error that a change of a contraction is worth [m/m]; 0 trusts the model.
 
     Raises:
         InputError: a marker without a target in this pose, a position that is not in the body's space, or a pose of
@@ -52,8 +54,11 @@ def correct_contractions(
             )
         if np.shape(seen[name]) != np.shape(targets[name]) or not np.isfinite(seen[name]).all():
             raise InputError(f'marker "{name}": measured position must be {len(targets[name])} finite numbers [m]')
-    tracker = Tracker(simulation, limits=limits, start=reached.pose)
-    tracker.update(reached.pose_target, seconds=1.0)
     moved = {name: np.subtract(place, reached.pose.markers[name]) for name, place in seen.items()}
     wanted = {name: tuple(np.subtract(to, moved.get(name, 0.0)).tolist()) for name, to in targets.items()}
-    return tracker.linearize(seconds=1.0).towards(wanted, damping=damping)
+    near = PoseRegularizer(pose=reached.pose, of=ClosenessKind.CONTRACTIONS, weight=damping)
+    found = solve_ik(simulation, wanted, limits=limits, objectives=[near], start=reached.pose, options=_FROM_HERE)
+    return found.pose.contractions
+
+
+_FROM_HERE = IKOptions(restarts=0, min_tension=False, hold_free_markers=False)

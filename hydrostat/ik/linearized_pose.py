@@ -40,20 +40,15 @@ class LinearizedPose:
     radius: float
     spread: Float[np.ndarray, "winches channels"]
 
-    def towards(self, targets: Mapping[str, Point], *, damping: float = 0.0) -> Vector:
-        """Contractions of the winches [m] towards targets of the same markers [m] (InputError: other markers).
-
-        Damping is the relative uncertainty of each channel's effect: channels with nearly the same effect then move
-        less (Marquardt's diagonal).
-        """
+    def towards(self, targets: Mapping[str, Point]) -> Vector:
+        """Contractions of the winches [m] towards targets of the same markers [m] (InputError: other markers)."""
         if targets.keys() != self.targets.keys():
             raise InputError(f"targets must be of the markers of the last update: {', '.join(self.targets)}")
         moved = np.concatenate([np.subtract(self.targets[name], targets[name]) for name in self.targets])
         residual = self.model.residual.copy()
         residual[: len(moved)] += moved
         model, weight = self.model.with_residual(residual), effort_weight(residual, self.size, self.effort)
-        curvature = damping**2 * np.diag(np.sum(np.square(model.matrix), axis=0)) if damping else None
-        return self.spread @ model.apply_step(model.best(weight * self.worth, self.radius, curvature)[0])
+        return self.spread @ model.apply_step(model.best(weight * self.worth, self.radius)[0])
 
 
 def unconstrained_motion(reached: IKResult) -> str:
